@@ -1,0 +1,57 @@
+// What all programs do the same way: the common options, progress bars on a terminal, one-line errors,
+// Ctrl-C, exit status 0 (done), 1 (the work failed) or 2 (the command line or an input is wrong), and
+// --summary.
+//
+//   int main(int argc, char** argv) {
+//     Program program("synth", "Turns a recipe into a mesh.");
+//     program.app.add_option("recipe", options.recipe, "the recipe")->required();
+//     return program.run(argc, argv, [&] { ...; program.summary["triangles"] = n; });
+//   }
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+class Program {
+ public:
+  Program(std::string name, std::string description);
+
+  // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
+  // one line on stderr: InputError gives 2, everything else 1.
+  int run(int argc, char** argv, const std::function<void()>& work);
+
+  // Draws a bar labelled with the stage while stderr is a terminal and --quiet is not given; asks the work to
+  // stop once Ctrl-C has been pressed. A second Ctrl-C ends the program at once.
+  Progress progress(std::string stage) const;
+  // True once Ctrl-C has been pressed.
+  static bool interrupted();
+
+  // One line to stderr, unless --quiet.
+  void say(const std::string& line) const;
+
+  // "fit_shape 0.1.0", for provenance.
+  std::string tool() const;
+  // The options that were given on the command line, sorted by name, for provenance; output names, threads,
+  // quiet and summary left out, since they do not change the result.
+  std::vector<std::pair<std::string, std::string>> given_options() const;
+
+  CLI::App app;
+  nlohmann::ordered_json summary;
+
+  std::uint64_t seed = 1;
+  int threads = 0;  // 0 = all
+  bool quiet = false;
+  std::string summary_file;
+
+ private:
+  std::string name_;
+};
+
+}  // namespace astrolith

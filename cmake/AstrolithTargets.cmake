@@ -1,0 +1,64 @@
+# One function each for a library, a program and a test, so that warnings, floating-point rules and
+# installation are stated once.
+
+# The floating-point rules behind "same input, same bytes": no contraction of a*b+c unless the code says
+# fma, and no errno or trap bookkeeping, which would keep loops from vectorising without changing a value.
+add_library(astrolith_compile_rules INTERFACE)
+target_compile_options(astrolith_compile_rules INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-ffp-contract=off;-fno-math-errno;-fno-trapping-math>)
+if(ASTROLITH_SANITIZE)
+  target_compile_options(astrolith_compile_rules INTERFACE
+    -fsanitize=${ASTROLITH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(astrolith_compile_rules INTERFACE -fsanitize=${ASTROLITH_SANITIZE})
+  target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_SANITIZED)
+endif()
+
+add_library(astrolith_warnings INTERFACE)
+target_compile_options(astrolith_warnings INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-psabi;-fopenmp-simd>
+  $<$<AND:$<BOOL:${ASTROLITH_WERROR}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>>:-Werror>)
+
+# astrolith_library(NAME SOURCES a.cpp ... PUBLIC link ... PRIVATE link ...)
+# Makes target astrolith_NAME with alias astrolith::NAME; without SOURCES it is header-only.
+function(astrolith_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target astrolith_${name})
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:astrolith_warnings>)
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+    target_link_libraries(${target} INTERFACE ${ARG_PUBLIC})
+  endif()
+  add_library(astrolith::${name} ALIAS ${target})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_link_libraries(${target} ${scope} astrolith_compile_rules)
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/astrolith>)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY ASTROLITH_LIBRARIES ${target})
+endfunction()
+
+# astrolith_program(NAME LINK link ...)  builds apps/NAME.cpp
+function(astrolith_program name)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  add_executable(${name} ${name}.cpp)
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} astrolith_program_common astrolith_warnings)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# astrolith_test(NAME SOURCES x_test.cpp ... LINK link ...)  one executable of GoogleTest cases
+function(astrolith_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name}_tests ${ARG_SOURCES})
+  target_link_libraries(${name}_tests PRIVATE ${ARG_LINK} astrolith_warnings GTest::gtest_main)
+  target_precompile_headers(${name}_tests PRIVATE <gtest/gtest.h>)
+  target_compile_definitions(${name}_tests PRIVATE
+    ASTROLITH_SHARED_DATA="${ASTROLITH_SHARED_DATA}" ASTROLITH_PACKAGE_DATA="${ASTROLITH_PACKAGE_DATA}")
+  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,41 @@
+// Where a mesher pours vertices and triangles as it makes them, so that no mesh need be held whole.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+struct MeshVertex {
+  Vec3f position;
+  Vec3f normal;  // unit length, pointing out of the body
+};
+
+class MeshSink {
+ public:
+  virtual ~MeshSink() = default;
+  // Vertices are numbered from 0 in the order of the calls. Triangles may name only vertices already given.
+  virtual void add_vertices(std::span<const MeshVertex> vertices) = 0;
+  virtual void add_triangles(std::span<const Triangle> triangles) = 0;
+};
+
+// Collects everything in memory.
+class MeshCollector : public MeshSink {
+ public:
+  void add_vertices(std::span<const MeshVertex> vertices) override {
+    for (const MeshVertex& v : vertices) {
+      mesh.vertices.push_back({v.position.x, v.position.y, v.position.z});
+      mesh.normals.push_back({v.normal.x, v.normal.y, v.normal.z});
+    }
+  }
+  void add_triangles(std::span<const Triangle> triangles) override {
+    mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+  }
+
+  TriangleMesh mesh;
+};
+
+}  // namespace astrolith

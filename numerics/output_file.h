@@ -1,0 +1,69 @@
+// Files that are either whole or absent: written under a temporary name beside the target, then renamed.
+#pragma once
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+
+//   OutputFile file("rock.json");
+//   file.write(text.data(), text.size());
+//   file.commit();                      // without this the destructor leaves nothing behind
+class OutputFile {
+ public:
+  // Throws InputError when the folder does not exist or cannot be written.
+  explicit OutputFile(const std::filesystem::path& target)
+      : target_(target), temporary_(target.string() + ".tmp" + std::to_string(::getpid())) {
+    if (std::filesystem::is_directory(target_)) {
+      throw InputError(target_.string() + ": is a folder; give the name of a file");
+    }
+    file_ = std::fopen(temporary_.c_str(), "wb");
+    if (file_ == nullptr) {
+      throw InputError(target_.string() + ": cannot write (" + std::strerror(errno) +
+                       "); choose a folder that exists and is writable");
+    }
+  }
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile() {
+    if (file_ != nullptr) std::fclose(file_);
+    if (!committed_) std::remove(temporary_.c_str());
+  }
+
+  void write(const void* data, std::size_t bytes) {
+    if (bytes != 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail();
+  }
+  // For formats whose header states counts that are known only at the end.
+  void seek(std::int64_t offset) {
+    if (fseeko(file_, offset, SEEK_SET) != 0) fail();
+  }
+  // For libraries that open the file themselves: write to this name, then commit.
+  const std::string& temporary_name() const { return temporary_; }
+
+  void commit() {
+    const bool flushed = std::fflush(file_) == 0;
+    const bool closed = std::fclose(file_) == 0;
+    file_ = nullptr;
+    if (!flushed || !closed || std::rename(temporary_.c_str(), target_.c_str()) != 0) fail();
+    committed_ = true;
+  }
+
+ private:
+  [[noreturn]] void fail() {
+    throw WorkError(target_.string() + ": writing failed (" + std::strerror(errno) + "); is the disk full?");
+  }
+
+  std::filesystem::path target_;
+  std::string temporary_;
+  std::FILE* file_ = nullptr;
+  bool committed_ = false;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,18 @@
+// How long work reports back: libraries never print, they call.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace astrolith {
+
+// Called with the fraction done in [0, 1] and a few words ("refine 0.12 %"). Returns false to ask the work to
+// stop early; the work then returns its best result so far and says so. May be empty.
+using Progress = std::function<bool(double fraction, std::string_view words)>;
+
+// True when the work may go on.
+inline bool report(const Progress& progress, double fraction, std::string_view words) {
+  return !progress || progress(fraction, words);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,138 @@
+// Elementary functions of one float whose bits are the same on every CPU, every vector width and every GPU:
+// our own polynomials, explicit fma, no branches and no tables, so that compilers vectorise loops over them.
+// The double overloads are the standard library's; they serve as references and in fits.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "numerics/host_device.h"
+
+namespace astrolith::math {
+
+ASTROLITH_HD inline std::int32_t bits_of(float x) {
+#ifdef __CUDA_ARCH__
+  return __float_as_int(x);
+#else
+  return std::bit_cast<std::int32_t>(x);
+#endif
+}
+
+ASTROLITH_HD inline float float_of(std::int32_t bits) {
+#ifdef __CUDA_ARCH__
+  return __int_as_float(bits);
+#else
+  return std::bit_cast<float>(bits);
+#endif
+}
+
+// a*b + c with one rounding.
+ASTROLITH_HD inline float fma(float a, float b, float c) {
+#ifdef __CUDA_ARCH__
+  return __fmaf_rn(a, b, c);
+#else
+  return __builtin_fmaf(a, b, c);
+#endif
+}
+ASTROLITH_HD inline double fma(double a, double b, double c) { return std::fma(a, b, c); }
+
+// IEEE square root, correctly rounded.
+ASTROLITH_HD inline float sqrt(float x) {
+#ifdef __CUDA_ARCH__
+  return __fsqrt_rn(x);
+#else
+  return __builtin_sqrtf(x);
+#endif
+}
+ASTROLITH_HD inline double sqrt(double x) { return std::sqrt(x); }
+
+ASTROLITH_HD inline float abs(float x) { return float_of(bits_of(x) & 0x7fffffff); }
+ASTROLITH_HD inline float min(float a, float b) { return a < b ? a : b; }
+ASTROLITH_HD inline float max(float a, float b) { return a > b ? a : b; }
+ASTROLITH_HD inline float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
+
+// Nearest integer as a float, ties to even; |x| < 2^22. Adding 1.5 * 2^23 leaves no fraction bits, and works
+// where the baseline instruction set has no rounding instruction.
+ASTROLITH_HD inline float round_even(float x) {
+  constexpr float kMagic = 12582912.0f;
+  return (x + kMagic) - kMagic;
+}
+
+// Largest integer not above x, as a float; |x| < 2^22.
+ASTROLITH_HD inline float floor(float x) {
+  const float n = round_even(x);
+  return n > x ? n - 1.0f : n;
+}
+
+// e^x within 2 ulp for x in [-87, 88]; 0 below -87, the value at 88 above.
+ASTROLITH_HD inline float exp(float x) {
+  const float clamped = clamp(x, -87.0f, 88.0f);
+  const float n = round_even(clamped * 1.44269504088896341f);
+  // ln 2 in two parts, so that the reduced argument keeps all its bits (Cody and Waite).
+  const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, clamped));
+  // Taylor coefficients 1/k!; |r| <= ln(2)/2 leaves a remainder below 2e-8.
+  float p = 1.0f / 5040.0f;
+  p = fma(p, r, 1.0f / 720.0f);
+  p = fma(p, r, 1.0f / 120.0f);
+  p = fma(p, r, 1.0f / 24.0f);
+  p = fma(p, r, 1.0f / 6.0f);
+  p = fma(p, r, 0.5f);
+  p = fma(p, r, 1.0f);
+  p = fma(p, r, 1.0f);
+  const float scale = float_of((static_cast<std::int32_t>(n) + 127) << 23);
+  return x < -87.0f ? 0.0f : p * scale;
+}
+ASTROLITH_HD inline double exp(double x) { return std::exp(x); }
+
+// Natural logarithm within 2 ulp for normal positive x; about -87.3 for zero and subnormals.
+ASTROLITH_HD inline float log(float x) {
+  const float normal = max(x, 1.17549435e-38f);
+  const std::int32_t i = bits_of(normal);
+  // Exponent such that the mantissa lies in [sqrt(1/2), sqrt(2)).
+  const std::int32_t e = (i - 0x3f3504f3) >> 23;
+  const float m = float_of(i - (e << 23));
+  const float f = m - 1.0f;
+  // log(m) = 2 atanh(s), s = f / (2 + f), |s| <= 0.172.
+  const float s = f / (2.0f + f);
+  const float z = s * s;
+  float p = 2.0f / 9.0f;
+  p = fma(p, z, 2.0f / 7.0f);
+  p = fma(p, z, 2.0f / 5.0f);
+  p = fma(p, z, 2.0f / 3.0f);
+  const float tail = s * z * p;
+  const float k = static_cast<float>(e);
+  // 2s = f - s f: written so that f keeps its bits next to the small corrections.
+  const float log_m = f - (s * f - tail);
+  return fma(k, 0.693145751953125f, fma(k, 1.42860677e-6f, log_m));
+}
+ASTROLITH_HD inline double log(double x) { return std::log(x); }
+
+// sin(2 pi x) for |x| < 2^22: arguments in turns need no multiple-precision reduction. Absolute error < 2e-7.
+ASTROLITH_HD inline float sin_turns(float x) {
+  const float r = x - round_even(x);  // [-1/2, 1/2]
+  // Fold to [-1/4, 1/4] with sin(pi - t) = sin t.
+  const float a = abs(r);
+  const float folded = a > 0.25f ? 0.5f - a : a;
+  const float y = r < 0.0f ? -folded : folded;
+  const float t = y * 6.28318530717958648f;
+  const float z = t * t;
+  float p = -2.50521084e-8f;  // Taylor: -1/11!
+  p = fma(p, z, 2.75573192e-6f);
+  p = fma(p, z, -1.98412698e-4f);
+  p = fma(p, z, 8.33333333e-3f);
+  p = fma(p, z, -1.66666667e-1f);
+  return fma(t * z, p, t);
+}
+ASTROLITH_HD inline double sin_turns(double x) {
+  return std::sin(6.283185307179586476925 * (x - std::round(x)));
+}
+
+// cos(2 pi x), as sin_turns. The shift by a quarter turn is made after the reduction, where it is exact
+// enough.
+ASTROLITH_HD inline float cos_turns(float x) { return sin_turns((x - round_even(x)) + 0.25f); }
+ASTROLITH_HD inline double cos_turns(double x) {
+  return std::cos(6.283185307179586476925 * (x - std::round(x)));
+}
+
+}  // namespace astrolith::math

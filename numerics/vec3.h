@@ -1,0 +1,86 @@
+// Three-component vectors for points, directions and frequencies; the scalar may be float, double or a Ceres
+// Jet.
+#pragma once
+
+#include <cmath>
+
+#include "numerics/host_device.h"
+
+namespace astrolith {
+
+template <typename T>
+struct Vec3 {
+  T x{}, y{}, z{};
+
+  ASTROLITH_HD Vec3& operator+=(const Vec3& o) {
+    x += o.x;
+    y += o.y;
+    z += o.z;
+    return *this;
+  }
+  ASTROLITH_HD Vec3& operator-=(const Vec3& o) {
+    x -= o.x;
+    y -= o.y;
+    z -= o.z;
+    return *this;
+  }
+  ASTROLITH_HD Vec3& operator*=(T s) {
+    x *= s;
+    y *= s;
+    z *= s;
+    return *this;
+  }
+  friend ASTROLITH_HD Vec3 operator+(Vec3 a, const Vec3& b) { return a += b; }
+  friend ASTROLITH_HD Vec3 operator-(Vec3 a, const Vec3& b) { return a -= b; }
+  friend ASTROLITH_HD Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+  friend ASTROLITH_HD Vec3 operator*(Vec3 a, T s) { return a *= s; }
+  friend ASTROLITH_HD Vec3 operator*(T s, Vec3 a) { return a *= s; }
+  friend ASTROLITH_HD bool operator==(const Vec3& a, const Vec3& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+  }
+};
+
+using Vec3d = Vec3<double>;
+using Vec3f = Vec3<float>;
+
+template <typename T>
+ASTROLITH_HD T dot(const Vec3<T>& a, const Vec3<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <typename T>
+ASTROLITH_HD Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <typename T>
+ASTROLITH_HD T squared_norm(const Vec3<T>& a) {
+  return dot(a, a);
+}
+template <typename T>
+ASTROLITH_HD T norm(const Vec3<T>& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+// The zero vector stays zero.
+template <typename T>
+ASTROLITH_HD Vec3<T> normalized(const Vec3<T>& a) {
+  const T n = norm(a);
+  return n > T(0) ? a * (T(1) / n) : a;
+}
+
+// An axis-aligned box; empty until it has been extended.
+struct Box {
+  Vec3d min{1e300, 1e300, 1e300};
+  Vec3d max{-1e300, -1e300, -1e300};
+
+  void extend(const Vec3d& p) {
+    min = {std::fmin(min.x, p.x), std::fmin(min.y, p.y), std::fmin(min.z, p.z)};
+    max = {std::fmax(max.x, p.x), std::fmax(max.y, p.y), std::fmax(max.z, p.z)};
+  }
+  bool empty() const { return !(min.x <= max.x); }
+  Vec3d extent() const { return max - min; }
+  Vec3d center() const { return 0.5 * (min + max); }
+  // The length that errors are stated in: "fraction of the bounding-box diagonal".
+  double diagonal() const { return norm(extent()); }
+};
+
+}  // namespace astrolith

@@ -1,0 +1,96 @@
+// The recipe: the contract between fitting and synthesis, and the meaning of the JSON file of the same shape
+// (recipe/recipe.schema.json). Plain data; recipe_json.h reads and writes it, and checks every rule stated
+// here.
+//
+// All lengths are in `length_unit`; positions are in the body-fixed frame.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+inline constexpr int kRecipeFormatVersion = 1;
+
+struct Sphere {
+  Vec3d center;
+  double radius = 1.0;  // > 0
+};
+
+// m(p) = (sum_i f_i(p)^m)^(1/m),  f_i = exp(a - b |p - c_i|^2 / r_i^2)     (thesis eq. 4.3 to 4.5, per
+// sphere) with f_i = 0 beyond cutoff_radii * r_i. The bare body is the set where m(p) >= iso_value. With a =
+// b and iso_value = 1 a lone sphere's surface has its own radius.
+struct MetaballBody {
+  double a = 1.0;               // tension, > 0
+  double b = 1.0;               // tension, > 0
+  double blend_exponent = 1.0;  // the thesis's m, > 0; blend_exponent * a <= 80 keeps float sums finite
+  double iso_value = 1.0;       // the thesis's T, > 0
+  double cutoff_radii = 5.0;    // support of each kernel in its own radii, > 1
+  std::vector<Sphere> spheres;  // at least one
+};
+
+// Fractal sum of simplex noise (thesis algorithm 4):
+//   n(p) = amplitude * weight * sum_o gain^o simplex(lacunarity^o * frequency * (scale * p + bias))
+// A height in length units, added along the outward normal.
+struct FractalLayer {
+  std::string name;
+  double amplitude = 0.0;      // length units
+  double frequency = 1.0;      // cycles per length unit of the first octave, > 0
+  int octaves = 8;             // 1 .. 24
+  double gain = 0.5;           // >= 0
+  double lacunarity = 1.95;    // > 1
+  Vec3d scale{1.0, 1.0, 1.0};  // of the coordinates
+  Vec3d bias{0.0, 0.0, 0.0};   // added after scaling, length units
+  double weight = 1.0;
+};
+
+// One symmetric pair of Gaussians in the power spectrum of a texture.
+struct GaborLobe {
+  // Spectral standard deviation 2^-bandwidth / (2 sqrt(2 ln 2)) cycles per pixel: the full width at half
+  // maximum is 2^-bandwidth. 1 .. 12.
+  int bandwidth = 4;
+  double frequency_x = 0.0;  // cycles per pixel along a row, [-1/2, 1/2]
+  double frequency_y = 0.0;  // cycles per pixel down a column, [-1/2, 1/2]
+  double variance = 0.0;     // what this pair adds to the texture's variance, in squared exemplar units, > 0
+};
+
+// Bandwidth-quantised Gabor noise (thesis eq. 5.7 to 5.11) fitted to an exemplar.
+// Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
+struct GaborLayer {
+  std::string name;
+  double pixel_size = 1.0;       // length units per exemplar pixel, > 0
+  double height_rms = 0.0;       // length units, >= 0: brightness is not height, so the user states it
+  int impulses_per_kernel = 32;  // expected impulses under one kernel, for each bandwidth, 1 .. 1024
+  double exemplar_mean = 0.0;    // of the exemplar's grey values, full scale = 1
+  double exemplar_rms = 0.0;     // their standard deviation after the fit's preprocessing
+  std::vector<GaborLobe> lobes;  // at least one
+};
+
+using Layer = std::variant<FractalLayer, GaborLayer>;
+
+// Where a recipe came from.
+struct Provenance {
+  std::string tool;                                          // "fit_shape 0.1.0"
+  std::string input_name;                                    // file name without folders
+  std::string input_sha256;                                  // 64 hexadecimal digits, or empty
+  std::vector<std::pair<std::string, std::string>> options;  // as given, sorted by name
+  std::vector<std::pair<std::string, double>> achieved;      // errors reached, sorted by name
+};
+
+struct Recipe {
+  int format_version = kRecipeFormatVersion;
+  std::string length_unit = "km";  // "m", "km" or "px" (a texture without a physical scale)
+  std::string frame = "body-fixed, right-handed, +z spin pole, +x prime meridian";
+  std::uint64_t seed = 1;  // below 2^53, so that every JSON reader keeps it exact
+  Provenance provenance;
+  std::optional<MetaballBody> body;  // absent in what fit_gabor writes
+  std::vector<Layer> layers;
+};
+
+}  // namespace astrolith
