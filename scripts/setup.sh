@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Installs what is missing to build and test Astrolith on Debian 12. Does nothing, and needs no rights, when all is there.
+set -euo pipefail
+
+packages=(
+  build-essential cmake ninja-build pkg-config
+  libtbb-dev libeigen3-dev nlohmann-json3-dev libvalijson-dev libssl-dev libfmt-dev libcli11-dev
+  libembree-dev libopenmesh-dev libtinygltf-dev libpng-dev libtiff-dev
+  libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev
+  libgtest-dev libbenchmark-dev
+)
+# With --format also the formatter that CI checks with.
+[[ "${1:-}" == "--format" ]] && packages+=(clang-format-14)
+
+missing=()
+for package in "${packages[@]}"; do
+  [[ "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" == "install ok installed" ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -eq 0 ]] && exit 0
+
+as_root=()
+if [[ $EUID -ne 0 ]]; then
+  command -v sudo >/dev/null || { echo "setup.sh: run as root (or install sudo): these packages are missing: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
