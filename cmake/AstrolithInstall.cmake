@@ -15,7 +15,7 @@ if(ASTROLITH_ESTIMATION)
   install(DIRECTORY estimation DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/astrolith
     FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
 endif()
-install(FILES recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith OPTIONAL)
+install(FILES recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith)
 configure_package_config_file(cmake/astrolithConfig.cmake.in ${PROJECT_BINARY_DIR}/astrolithConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/astrolith)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/astrolithConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -2,7 +2,8 @@
 // (recipe/recipe.schema.json). Plain data; recipe_json.h reads and writes it, and checks every rule stated
 // here.
 //
-// All lengths are in `length_unit`; positions are in the body-fixed frame.
+// All lengths are in `length_unit`; positions are in the body-fixed frame. No number exceeds kMaxNumber in
+// magnitude and "> 0" means at least kMinPositive, so that a field evaluated in floats stays finite.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +18,9 @@
 namespace astrolith {
 
 inline constexpr int kRecipeFormatVersion = 1;
+inline constexpr double kMaxNumber = 1e12;
+inline constexpr double kMinPositive = 1e-12;
+inline constexpr double kMaxKernelExponent = 80.0;  // e^80 times a million spheres is still a float
 
 struct Sphere {
   Vec3d center;
@@ -29,7 +33,7 @@ struct Sphere {
 struct MetaballBody {
   double a = 1.0;               // tension, > 0
   double b = 1.0;               // tension, > 0
-  double blend_exponent = 1.0;  // the thesis's m, > 0; blend_exponent * a <= 80 keeps float sums finite
+  double blend_exponent = 1.0;  // the thesis's m, > 0; blend_exponent * a <= kMaxKernelExponent
   double iso_value = 1.0;       // the thesis's T, > 0
   double cutoff_radii = 5.0;    // support of each kernel in its own radii, > 1
   std::vector<Sphere> spheres;  // at least one
@@ -42,9 +46,9 @@ struct FractalLayer {
   std::string name;
   double amplitude = 0.0;      // length units
   double frequency = 1.0;      // cycles per length unit of the first octave, > 0
-  int octaves = 8;             // 1 .. 24
-  double gain = 0.5;           // >= 0
-  double lacunarity = 1.95;    // > 1
+  int octaves = 8;             // 1 .. 24; the last octave's frequency is at most kMaxNumber
+  double gain = 0.5;           // [0, 4]
+  double lacunarity = 1.95;    // (1, 16]
   Vec3d scale{1.0, 1.0, 1.0};  // of the coordinates
   Vec3d bias{0.0, 0.0, 0.0};   // added after scaling, length units
   double weight = 1.0;

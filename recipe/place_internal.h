@@ -1,0 +1,39 @@
+// Where in a recipe a value stands, for error messages: "rock.json: layers[0].lobes[3].bandwidth".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace astrolith {
+
+// A chain of places on the stack, so that walking a recipe allocates nothing. A place points to its parent:
+// the parent must outlive it.
+class Place {
+ public:
+  // The recipe as a whole.
+  explicit Place(const std::string& file_name) : file_name_(&file_name) {}
+
+  Place field(std::string_view name) const { return {*file_name_, this, name, -1}; }
+  Place element(std::size_t index) const { return {*file_name_, this, {}, static_cast<std::int64_t>(index)}; }
+
+  // "layers[0].lobes[3].bandwidth"; empty for the recipe as a whole.
+  std::string path() const;
+  // Throws InputError "file: path: message" on one line.
+  [[noreturn]] void fail(std::string_view message) const;
+
+ private:
+  Place(const std::string& file_name, const Place* parent, std::string_view name, std::int64_t index)
+      : file_name_(&file_name), parent_(parent), name_(name), index_(index) {}
+
+  const std::string* file_name_;
+  const Place* parent_ = nullptr;
+  std::string_view name_;
+  std::int64_t index_ = -1;
+};
+
+// Text of a file as it may stand in a one-line message: quoted, escaped, cut after 40 characters.
+std::string quote_text(std::string_view text);
+
+}  // namespace astrolith

@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "numerics/errors.h"
+#include "recipe/json_document_internal.h"
+#include "recipe/object_reader_internal.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+using nlohmann::json;
+
+template <typename T>
+void read_named(const json& value, const Place& place, std::vector<std::pair<std::string, T>>& out) {
+  ObjectReader object(value, place);  // any names
+  for (const auto& [name, member] : value.items()) {
+    out.emplace_back(name, T{});
+    read_value(member, place.field(name), out.back().second);
+  }
+  std::sort(out.begin(), out.end());
+}
+
+template <typename T>
+using ReadElement = void (*)(const json&, const Place&, T&);
+
+template <typename T>
+void read_elements(const json& value, const Place& place, std::vector<T>& out, ReadElement<T> read_element) {
+  expect_array(value, place);
+  out.resize(value.size());
+  for (std::size_t i = 0; i < out.size(); ++i) read_element(value[i], place.element(i), out[i]);
+}
+
+void read_sphere(const json& value, const Place& place, Sphere& out) {
+  expect_row(value, place, {"x", "y", "z", "radius"});
+  read_value(value[0], place.field("x"), out.center.x);
+  read_value(value[1], place.field("y"), out.center.y);
+  read_value(value[2], place.field("z"), out.center.z);
+  read_value(value[3], place.field("radius"), out.radius);
+}
+
+void read_lobe(const json& value, const Place& place, GaborLobe& out) {
+  expect_row(value, place, {"bandwidth", "frequency_x", "frequency_y", "variance"});
+  read_value(value[0], place.field("bandwidth"), out.bandwidth);
+  read_value(value[1], place.field("frequency_x"), out.frequency_x);
+  read_value(value[2], place.field("frequency_y"), out.frequency_y);
+  read_value(value[3], place.field("variance"), out.variance);
+}
+
+template <typename T>
+void require_elements(ObjectReader& object, std::string_view name, std::vector<T>& out,
+                      ReadElement<T> read_element) {
+  if (const json* value = object.find(name)) return read_elements(*value, object.at(name), out, read_element);
+  object.note_missing(name);
+}
+
+// A field that must have one of a few words.
+void expect_word(const std::string& word, const Place& place, std::string_view wanted) {
+  if (word != wanted) place.fail(fmt::format("must be \"{}\", is {}", wanted, quote_text(word)));
+}
+
+void read_body(const json& value, const Place& place, MetaballBody& out) {
+  ObjectReader object(value, place);
+  std::string type = "metaballs", kernel = "gaussian";
+  object.require("type", type);
+  expect_word(type, object.at("type"), "metaballs");
+  object.allow("kernel", kernel);
+  expect_word(kernel, object.at("kernel"), "gaussian");
+  object.allow("a", out.a);
+  object.allow("b", out.b);
+  object.allow("blend_exponent", out.blend_exponent);
+  object.allow("iso_value", out.iso_value);
+  object.allow("cutoff_radii", out.cutoff_radii);
+  require_elements(object, "spheres", out.spheres, read_sphere);
+  object.finish();
+}
+
+void read_fields(ObjectReader& object, FractalLayer& out) {
+  object.allow("name", out.name);
+  object.allow("amplitude", out.amplitude);
+  object.allow("frequency", out.frequency);
+  object.allow("octaves", out.octaves);
+  object.allow("gain", out.gain);
+  object.allow("lacunarity", out.lacunarity);
+  object.allow("scale", out.scale);
+  object.allow("bias", out.bias);
+  object.allow("weight", out.weight);
+}
+
+void read_fields(ObjectReader& object, GaborLayer& out) {
+  object.allow("name", out.name);
+  object.allow("pixel_size", out.pixel_size);
+  object.allow("height_rms", out.height_rms);
+  object.allow("impulses_per_kernel", out.impulses_per_kernel);
+  object.allow("exemplar_mean", out.exemplar_mean);
+  object.allow("exemplar_rms", out.exemplar_rms);
+  require_elements(object, "lobes", out.lobes, read_lobe);
+}
+
+void read_layer(const json& value, const Place& place, Layer& out) {
+  ObjectReader object(value, place);
+  std::string type;
+  if (!object.allow("type", type)) object.at("type").fail("is missing; add \"simplex\" or \"gabor\"");
+  if (type == "simplex") {
+    read_fields(object, out.emplace<FractalLayer>());
+  } else if (type == "gabor") {
+    read_fields(object, out.emplace<GaborLayer>());
+  } else {
+    object.at("type").fail("must be \"simplex\" or \"gabor\", is " + quote_text(type));
+  }
+  object.finish();
+}
+
+void read_provenance(const json& value, const Place& place, Provenance& out) {
+  ObjectReader object(value, place);
+  object.allow("tool", out.tool);
+  object.allow("input_name", out.input_name);
+  object.allow("input_sha256", out.input_sha256);
+  if (const json* options = object.find("options")) read_named(*options, object.at("options"), out.options);
+  if (const json* figures = object.find("achieved"))
+    read_named(*figures, object.at("achieved"), out.achieved);
+  object.finish();
+}
+
+// Before anything else: fields of another version would only be reported as unknown.
+void read_version(const json& document, const Place& place, int& out) {
+  ObjectReader object(document, place);
+  if (!object.allow("format_version", out)) {
+    object.at("format_version").fail(fmt::format("is missing; add {}", kRecipeFormatVersion));
+  }
+  if (out != kRecipeFormatVersion) {
+    object.at("format_version")
+        .fail(fmt::format("is {}, this program reads {}; use the program version that wrote the file", out,
+                          kRecipeFormatVersion));
+  }
+}
+
+Recipe read_document(const json& document, const Place& place) {
+  Recipe recipe;
+  read_version(document, place, recipe.format_version);
+  ObjectReader object(document, place);
+  object.find("format_version");
+  object.require("length_unit", recipe.length_unit);
+  object.allow("frame", recipe.frame);
+  object.allow("seed", recipe.seed);
+  if (const json* from = object.find("provenance"))
+    read_provenance(*from, object.at("provenance"), recipe.provenance);
+  if (const json* body = object.find("body")) read_body(*body, object.at("body"), recipe.body.emplace());
+  if (const json* layers = object.find("layers"))
+    read_elements(*layers, object.at("layers"), recipe.layers, read_layer);
+  object.finish();
+  return recipe;
+}
+
+}  // namespace
+
+Recipe parse_recipe(std::string_view text, const std::string& name) {
+  const json document = parse_json(text, name);
+  Recipe recipe = read_document(document, Place(name));
+  validate_recipe(recipe, name);
+  return recipe;
+}
+
+Recipe read_recipe(const std::filesystem::path& file) {
+  return parse_recipe(read_json_text(file), file.string());
+}
+
+}  // namespace astrolith

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "recipe/place_internal.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+void expect_range(double value, const Place& place, double low, double high) {
+  if (value >= low && value <= high) return;  // false for NaN
+  place.fail(fmt::format("must be from {} to {}, is {}", low, high, value));
+}
+void expect_integer(int value, const Place& place, int low, int high) {
+  if (value >= low && value <= high) return;
+  place.fail(fmt::format("must be an integer from {} to {}, is {}", low, high, value));
+}
+void expect_number(double value, const Place& place) { expect_range(value, place, -kMaxNumber, kMaxNumber); }
+void expect_not_negative(double value, const Place& place) { expect_range(value, place, 0.0, kMaxNumber); }
+void expect_positive(double value, const Place& place) {
+  expect_range(value, place, kMinPositive, kMaxNumber);
+}
+void expect_above_one(double value, const Place& place, double high) {
+  if (value > 1.0 && value <= high) return;
+  place.fail(fmt::format("must be above 1 and at most {}, is {}", high, value));
+}
+void expect_vector(const Vec3d& v, const Place& place) {
+  expect_number(v.x, place.field("x"));
+  expect_number(v.y, place.field("y"));
+  expect_number(v.z, place.field("z"));
+}
+
+void check(const Sphere& sphere, const Place& place) {
+  expect_vector(sphere.center, place);
+  expect_positive(sphere.radius, place.field("radius"));
+}
+
+void check(const MetaballBody& body, const Place& place) {
+  expect_positive(body.a, place.field("a"));
+  expect_positive(body.b, place.field("b"));
+  expect_positive(body.blend_exponent, place.field("blend_exponent"));
+  if (body.blend_exponent * body.a > kMaxKernelExponent) {
+    place.field("blend_exponent")
+        .fail(fmt::format("blend_exponent * a must be at most {}, is {}; lower one of them",
+                          kMaxKernelExponent, body.blend_exponent * body.a));
+  }
+  expect_positive(body.iso_value, place.field("iso_value"));
+  expect_above_one(body.cutoff_radii, place.field("cutoff_radii"), kMaxNumber);
+  const Place spheres = place.field("spheres");
+  if (body.spheres.empty()) spheres.fail("must hold at least one [x, y, z, radius]");
+  for (std::size_t i = 0; i < body.spheres.size(); ++i) check(body.spheres[i], spheres.element(i));
+}
+
+void check(const FractalLayer& layer, const Place& place) {
+  expect_number(layer.amplitude, place.field("amplitude"));
+  expect_positive(layer.frequency, place.field("frequency"));
+  expect_integer(layer.octaves, place.field("octaves"), 1, 24);
+  expect_range(layer.gain, place.field("gain"), 0.0, 4.0);
+  expect_above_one(layer.lacunarity, place.field("lacunarity"), 16.0);
+  const double finest = layer.frequency * std::pow(layer.lacunarity, layer.octaves - 1);
+  if (finest > kMaxNumber) {
+    place.field("octaves").fail(fmt::format(
+        "the last octave's frequency is {:.3g}, above {:g}; use fewer octaves", finest, kMaxNumber));
+  }
+  expect_vector(layer.scale, place.field("scale"));
+  expect_vector(layer.bias, place.field("bias"));
+  expect_number(layer.weight, place.field("weight"));
+}
+
+void check(const GaborLobe& lobe, const Place& place) {
+  expect_integer(lobe.bandwidth, place.field("bandwidth"), 1, 12);
+  expect_range(lobe.frequency_x, place.field("frequency_x"), -0.5, 0.5);
+  expect_range(lobe.frequency_y, place.field("frequency_y"), -0.5, 0.5);
+  expect_positive(lobe.variance, place.field("variance"));
+}
+
+void check(const GaborLayer& layer, const Place& place) {
+  expect_positive(layer.pixel_size, place.field("pixel_size"));
+  expect_not_negative(layer.height_rms, place.field("height_rms"));
+  expect_integer(layer.impulses_per_kernel, place.field("impulses_per_kernel"), 1, 1024);
+  expect_number(layer.exemplar_mean, place.field("exemplar_mean"));
+  expect_not_negative(layer.exemplar_rms, place.field("exemplar_rms"));
+  const Place lobes = place.field("lobes");
+  if (layer.lobes.empty())
+    lobes.fail("must hold at least one [bandwidth, frequency_x, frequency_y, variance]");
+  for (std::size_t i = 0; i < layer.lobes.size(); ++i) check(layer.lobes[i], lobes.element(i));
+}
+
+template <typename T>
+void expect_sorted(const std::vector<std::pair<std::string, T>>& named, const Place& place) {
+  for (std::size_t i = 1; i < named.size(); ++i) {
+    if (!(named[i - 1].first < named[i].first)) {
+      place.fail("must be sorted by name, each name once: " + quote_text(named[i].first) + " is not");
+    }
+  }
+}
+
+void check(const Provenance& provenance, const Place& place) {
+  if (provenance.input_name.find('/') != std::string::npos) {
+    place.field("input_name")
+        .fail("must be a file name without folders, is " + quote_text(provenance.input_name));
+  }
+  const std::string& hash = provenance.input_sha256;
+  const bool digits = std::all_of(hash.begin(), hash.end(), [](unsigned char c) { return std::isxdigit(c); });
+  if (!hash.empty() && (hash.size() != 64 || !digits)) {
+    place.field("input_sha256").fail("must be 64 hexadecimal digits or empty, is " + quote_text(hash));
+  }
+  expect_sorted(provenance.options, place.field("options"));
+  const Place achieved = place.field("achieved");
+  expect_sorted(provenance.achieved, achieved);
+  for (const auto& [name, value] : provenance.achieved) {
+    if (!std::isfinite(value)) achieved.field(name).fail(fmt::format("must be finite, is {}", value));
+  }
+}
+
+}  // namespace
+
+void validate_recipe(const Recipe& recipe, const std::string& name) {
+  const Place place(name);
+  if (recipe.format_version != kRecipeFormatVersion) {
+    place.field("format_version")
+        .fail(fmt::format("must be {}, is {}", kRecipeFormatVersion, recipe.format_version));
+  }
+  const std::string& unit = recipe.length_unit;
+  if (unit != "m" && unit != "km" && unit != "px") {
+    place.field("length_unit").fail("must be \"m\", \"km\" or \"px\", is " + quote_text(unit));
+  }
+  if (recipe.seed >= std::uint64_t{1} << 53) {
+    place.field("seed").fail(fmt::format("must be below 2^53, is {}", recipe.seed));
+  }
+  check(recipe.provenance, place.field("provenance"));
+  if (!recipe.body && recipe.layers.empty()) place.fail("has neither a body nor layers; add one of them");
+  if (recipe.body) check(*recipe.body, place.field("body"));
+  const Place layers = place.field("layers");
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    std::visit([&](const auto& layer) { check(layer, layers.element(i)); }, recipe.layers[i]);
+  }
+}
+
+}  // namespace astrolith

@@ -1,0 +1,34 @@
+// SHA-256 (FIPS 180-4) of files and streams: names the input in a recipe, and proves that two meshes are the
+// same bytes.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace astrolith {
+
+//   Sha256 hash;
+//   hash.update(data, bytes);
+//   std::string digits = hash.hex();
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) noexcept;
+
+  void update(const void* data, std::size_t bytes);
+  // 64 lower-case hexadecimal digits of everything so far; more may follow.
+  std::string hex() const;
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
+
+// Throws InputError when the file cannot be read.
+std::string sha256_of_file(const std::filesystem::path& file);
+
+}  // namespace astrolith

@@ -1,0 +1,134 @@
+// Recipes for tests: one valid document that uses every field, and the ways to spoil it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace astrolith::testing {
+
+inline const std::string kCompleteRecipe = R"({
+  "format_version": 1,
+  "length_unit": "km",
+  "frame": "body-fixed",
+  "seed": 9007199254740991,
+  "provenance": {
+    "tool": "fit_shape 0.1.0",
+    "input_name": "rock.obj",
+    "input_sha256": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",
+    "options": {"spheres": "2"},
+    "achieved": {"mean_distance": 0.001}
+  },
+  "body": {
+    "type": "metaballs", "kernel": "gaussian",
+    "a": 1.5, "b": 1.25, "blend_exponent": 2, "iso_value": 1, "cutoff_radii": 5,
+    "spheres": [[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]]
+  },
+  "layers": [
+    {"type": "simplex", "name": "grit", "amplitude": 0.02, "frequency": 3, "octaves": 6, "gain": 0.5,
+     "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1},
+    {"type": "gabor", "name": "rock", "pixel_size": 0.001, "height_rms": 0.002, "impulses_per_kernel": 32,
+     "exemplar_mean": 0.4, "exemplar_rms": 0.1, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]}
+  ]
+}
+)";
+
+// kCompleteRecipe with the first `from` replaced by `to`, and what the reader's error must contain.
+struct Spoiled {
+  std::string from;
+  std::string to;
+  std::string error;
+  bool schema_can_tell = true;
+};
+
+inline std::string spoil(const Spoiled& change) {
+  std::string text = kCompleteRecipe;
+  return text.replace(text.find(change.from), change.from.size(), change.to);
+}
+
+// Documents that are JSON and no recipe.
+inline std::vector<Spoiled> spoiled_recipes() {
+  return {
+      // Names.
+      {R"("spheres": [[0)", R"("sphers": [[0)", R"(body.sphers: unknown field; did you mean 'spheres'?)"},
+      {R"("amplitude")", R"("amplitdue")",
+       R"(layers[0].amplitdue: unknown field; did you mean 'amplitude'?)"},
+      {R"("length_unit")", R"("lenght_unit")", R"(lenght_unit: unknown field; did you mean 'length_unit'?)"},
+      {R"("seed")", R"("colour")", R"(colour: unknown field; known are)"},
+      {R"("tool")", R"("tol")", R"(provenance.tol: unknown field; did you mean 'tool'?)"},
+      {R"("lobes")", R"("LOBES")", R"(layers[1].LOBES: unknown field; known are)"},
+      {R"("height_rms")", R"("height\nrms")",
+       R"(layers[1].height\nrms: unknown field; did you mean 'height_rms'?)"},
+      // Missing fields.
+      {R"("format_version": 1,)", R"()", R"(format_version: is missing)"},
+      {R"("length_unit": "km",)", R"()", R"(length_unit: is missing)"},
+      {R"("type": "metaballs",)", R"()", R"(body.type: is missing)"},
+      {R"("type": "simplex",)", R"()", R"(layers[0].type: is missing)"},
+      {R"(, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]])", R"()",
+       R"(layers[1].lobes: is missing)"},
+      // Types.
+      {R"("format_version": 1)", R"("format_version": "1")",
+       R"(format_version: must be an integer, is the string "1")"},
+      {R"("km")", R"(7)", R"(length_unit: must be a string, is 7)"},
+      {R"("body-fixed")", R"(null)", R"(frame: must be a string, is null)"},
+      {R"(9007199254740991)", R"(1.5)", R"(seed: must be an integer, is 1.5)"},
+      {R"({"spheres": "2"})", R"({"spheres": 2})", R"(provenance.options.spheres: must be a string, is 2)"},
+      {R"({"mean_distance": 0.001})", R"({"mean_distance": "small"})",
+       R"(provenance.achieved.mean_distance: must be a number)"},
+      {R"({"mean_distance": 0.001})", R"([1])",
+       R"(provenance.achieved: must be an object, is an array of 1)"},
+      {R"("a": 1.5)", R"("a": true)", R"(body.a: must be a number, is true)"},
+      {R"([[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]])", R"({})",
+       R"(body.spheres: must be an array, is an object)"},
+      {R"([0, 0, 0, 1])", R"([0, 0, 1])", R"(body.spheres[0]: must be [x, y, z, radius], is an array of 3)"},
+      {R"([0, 0, 0, 1])", R"([0, "0", 0, 1])", R"(body.spheres[0].y: must be a number)"},
+      {R"([0.5, 0, 0])", R"([0.5, 0])", R"(layers[0].bias: must be [x, y, z], is an array of 2)"},
+      {R"("octaves": 6)", R"("octaves": 6.5)", R"(layers[0].octaves: must be an integer, is 6.5)"},
+      {R"([4, 0.125, -0.25, 0.75])", R"([4, 0.125, -0.25, 0.75, 0])",
+       R"(layers[1].lobes[0]: must be [bandwidth, frequency_x, frequency_y, variance])"},
+      {R"([4, 0.125, -0.25, 0.75])", R"([4.5, 0.125, -0.25, 0.75])",
+       R"(layers[1].lobes[0].bandwidth: must be an integer)"},
+      // Words.
+      {R"("format_version": 1)", R"("format_version": 2)", R"(format_version: is 2, this program reads 1)"},
+      {R"("km")", R"("Km")", R"(length_unit: must be "m", "km" or "px", is "Km")"},
+      {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
+      {R"("gaussian")", R"("wyvill")", R"(body.kernel: must be "gaussian")"},
+      {R"("simplex")", R"("perlin")", R"(layers[0].type: must be "simplex" or "gabor", is "perlin")"},
+      {R"("rock.obj")", R"("shapes/rock.obj")",
+       R"(provenance.input_name: must be a file name without folders)"},
+      {R"(ba7816bf)", R"(xa7816bf)", R"(provenance.input_sha256: must be 64 hexadecimal digits)"},
+      // Ranges.
+      {R"(9007199254740991)", R"(9007199254740992)",
+       R"(seed: must be an integer from 0 to 9007199254740991)"},
+      {R"(9007199254740991)", R"(-1)", R"(seed: must be an integer from 0)"},
+      {R"("a": 1.5)", R"("a": 0)", R"(body.a: must be from 1e-12)"},
+      {R"("b": 1.25)", R"("b": -1)", R"(body.b: must be from 1e-12)"},
+      {R"("blend_exponent": 2)", R"("blend_exponent": 0)", R"(body.blend_exponent: must be from 1e-12)"},
+      {R"("blend_exponent": 2)", R"("blend_exponent": 60)", R"(blend_exponent * a must be at most 80, is 90)",
+       false},
+      {R"("iso_value": 1)", R"("iso_value": 0)", R"(body.iso_value: must be from 1e-12)"},
+      {R"("cutoff_radii": 5)", R"("cutoff_radii": 1)", R"(body.cutoff_radii: must be above 1)"},
+      {R"(1e-3, 0.75])", R"(1e-3, -0.75])",
+       R"(body.spheres[1].radius: must be from 1e-12 to 1000000000000, is -0.75)"},
+      {R"(1e-3, 0.75])", R"(1e300, 0.75])", R"(body.spheres[1].z: must be from -1000000000000)"},
+      {R"([[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]])", R"([])", R"(body.spheres: must hold at least one)"},
+      {R"("frequency": 3)", R"("frequency": 0)", R"(layers[0].frequency: must be from 1e-12)"},
+      {R"("octaves": 6)", R"("octaves": 0)", R"(layers[0].octaves: must be an integer from 1 to 24, is 0)"},
+      {R"("octaves": 6)", R"("octaves": 25)", R"(layers[0].octaves: must be an integer from 1 to 24, is 25)"},
+      {R"("octaves": 6)", R"("octaves": 3000000000)", R"(layers[0].octaves: must be an integer)"},
+      {R"("gain": 0.5)", R"("gain": -0.5)", R"(layers[0].gain: must be from 0 to 4, is -0.5)"},
+      {R"(1.95)", R"(1)", R"(layers[0].lacunarity: must be above 1 and at most 16, is 1)"},
+      {R"("pixel_size": 0.001)", R"("pixel_size": 0)", R"(layers[1].pixel_size: must be from 1e-12)"},
+      {R"("height_rms": 0.002)", R"("height_rms": -1)", R"(layers[1].height_rms: must be from 0)"},
+      {R"("impulses_per_kernel": 32)", R"("impulses_per_kernel": 0)",
+       R"(layers[1].impulses_per_kernel: must be an integer from 1 to 1024)"},
+      {R"("exemplar_rms": 0.1)", R"("exemplar_rms": -0.1)", R"(layers[1].exemplar_rms: must be from 0)"},
+      {R"([[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]])", R"([])",
+       R"(layers[1].lobes: must hold at least one)"},
+      {R"([12, 0.5)", R"([14, 0.5)",
+       R"(layers[1].lobes[1].bandwidth: must be an integer from 1 to 12, is 14)"},
+      {R"([12, 0.5)", R"([12, 0.51)", R"(layers[1].lobes[1].frequency_x: must be from -0.5 to 0.5, is 0.51)"},
+      {R"(-0.25, 0.75], [12)", R"(-0.25, 0], [12)", R"(layers[1].lobes[0].variance: must be from 1e-12)"},
+  };
+}
+
+}  // namespace astrolith::testing

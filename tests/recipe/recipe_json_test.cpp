@@ -1,0 +1,198 @@
+#include "recipe/recipe_json.h"
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "tests/recipe/recipe_examples.h"
+
+namespace astrolith {
+namespace {
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_recipe(text, "rock.json");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+void expect_error(const std::string& text, const std::string& part) {
+  const std::string error = error_of(text);
+  EXPECT_NE(error.find(part), std::string::npos) << "error is: " << error << "\nwanted: " << part;
+  EXPECT_EQ(error.rfind("rock.json: ", 0), 0u) << error;
+  EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+}
+
+void expect_same_bits(double a, double b) {
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b)) << a << " " << b;
+}
+
+TEST(RecipeJson, ReadsEveryField) {
+  const Recipe r = parse_recipe(testing::kCompleteRecipe, "r");
+  EXPECT_EQ(r.length_unit, "km");
+  EXPECT_EQ(r.frame, "body-fixed");
+  EXPECT_EQ(r.seed, 9007199254740991u);
+  EXPECT_EQ(r.provenance.input_name, "rock.obj");
+  EXPECT_EQ(r.provenance.options.at(0), std::make_pair(std::string("spheres"), std::string("2")));
+  EXPECT_EQ(r.provenance.achieved.at(0), std::make_pair(std::string("mean_distance"), 0.001));
+  ASSERT_TRUE(r.body.has_value());
+  EXPECT_EQ(r.body->a, 1.5);
+  EXPECT_EQ(r.body->b, 1.25);
+  EXPECT_EQ(r.body->blend_exponent, 2);
+  ASSERT_EQ(r.body->spheres.size(), 2u);
+  EXPECT_EQ(r.body->spheres[1].center, (Vec3d{0.5, -0.25, 1e-3}));
+  EXPECT_EQ(r.body->spheres[1].radius, 0.75);
+  const auto& simplex = std::get<FractalLayer>(r.layers.at(0));
+  EXPECT_EQ(simplex.name, "grit");
+  EXPECT_EQ(simplex.octaves, 6);
+  EXPECT_EQ(simplex.scale, (Vec3d{1, 1, 2}));
+  EXPECT_EQ(simplex.bias, (Vec3d{0.5, 0, 0}));
+  const auto& gabor = std::get<GaborLayer>(r.layers.at(1));
+  EXPECT_EQ(gabor.pixel_size, 0.001);
+  EXPECT_EQ(gabor.lobes.at(1).bandwidth, 12);
+  EXPECT_EQ(gabor.lobes.at(0).frequency_y, -0.25);
+  EXPECT_EQ(gabor.lobes.at(0).variance, 0.75);
+}
+
+TEST(RecipeJson, AbsentFieldsHaveTheirDefaults) {
+  const Recipe r = parse_recipe(R"({"format_version": 1, "length_unit": "m",
+      "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}, "layers": [{"type": "simplex"}]})",
+                                "r");
+  EXPECT_EQ(r.seed, 1u);
+  EXPECT_EQ(r.frame, Recipe{}.frame);
+  EXPECT_EQ(r.body->cutoff_radii, 5.0);
+  EXPECT_EQ(std::get<FractalLayer>(r.layers.at(0)).lacunarity, 1.95);
+}
+
+TEST(RecipeJson, WritingAndReadingAreInverse) {
+  const std::string text = recipe_to_json(parse_recipe(testing::kCompleteRecipe, "r"));
+  EXPECT_EQ(recipe_to_json(parse_recipe(text, "r")), text);
+}
+
+// Doubles of every size, with all 53 bits in use, and the awkward ones.
+TEST(RecipeJson, NumbersKeepTheirBits) {
+  Recipe recipe;
+  recipe.body.emplace();
+  std::vector<double> values{0.0, -0.0, 0.1, 1.0 / 3, 5e-324, -2.2250738585072014e-308, 1e12, 123456789012.0};
+  CounterRandom random(9);
+  for (int i = 0; i < 2000; ++i) {
+    values.push_back(random.uniform(-1, 1) * std::pow(10.0, random.uniform(-300, 12)));
+  }
+  for (double v : values) recipe.body->spheres.push_back({{v, -v, 0}, std::fmax(std::fabs(v), 1e-12)});
+  const Recipe read = parse_recipe(recipe_to_json(recipe), "r");
+  ASSERT_EQ(read.body->spheres.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    expect_same_bits(read.body->spheres[i].center.x, recipe.body->spheres[i].center.x);
+    expect_same_bits(read.body->spheres[i].center.y, recipe.body->spheres[i].center.y);
+    expect_same_bits(read.body->spheres[i].radius, recipe.body->spheres[i].radius);
+  }
+}
+
+TEST(RecipeJson, TwoHundredSpheresAreTenKilobytesOneALine) {
+  Recipe recipe;
+  recipe.body.emplace();
+  CounterRandom random(4);
+  const auto value = [&](double low, double high) {
+    return round_to_seven_digits(random.uniform(low, high));
+  };
+  for (int i = 0; i < 200; ++i) {
+    recipe.body->spheres.push_back(
+        {{value(-0.3, 0.3), value(-0.15, 0.15), value(-0.1, 0.1)}, value(0.005, 0.1)});
+  }
+  const std::string text = recipe_to_json(recipe);
+  EXPECT_LT(text.size(), 11500u);
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  EXPECT_GT(lines, 200);
+  EXPECT_LT(lines, 240);
+}
+
+TEST(RecipeJson, SevenDigitsKeepAFloatsPrecision) {
+  CounterRandom random(11);
+  for (int i = 0; i < 1000; ++i) {
+    const double x = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-12, 12));
+    EXPECT_NEAR(round_to_seven_digits(x), x, 5.0001e-7 * std::fabs(x));
+  }
+  EXPECT_EQ(round_to_seven_digits(0.123456749), 0.1234567);
+  EXPECT_EQ(round_to_seven_digits(-2.0), -2.0);
+  EXPECT_EQ(round_to_seven_digits(0.0), 0.0);
+}
+
+TEST(RecipeJson, StringsSurvive) {
+  Recipe recipe = parse_recipe(testing::kCompleteRecipe, "r");
+  recipe.frame = "quote \" backslash \\ line\nbreak \t tab \x01 \xc3\xa9";
+  EXPECT_EQ(parse_recipe(recipe_to_json(recipe), "r").frame, recipe.frame);
+  recipe.frame = "latin-1 \xe9";
+  EXPECT_EQ(parse_recipe(recipe_to_json(recipe), "r").frame, "latin-1 \xef\xbf\xbd");
+}
+
+TEST(RecipeJson, ErrorsNameFilePathAndRemedy) {
+  for (const testing::Spoiled& change : testing::spoiled_recipes()) {
+    ASSERT_NE(testing::kCompleteRecipe.find(change.from), std::string::npos) << change.from;
+    expect_error(testing::spoil(change), change.error);
+  }
+  expect_error(R"({"format_version": 1, "length_unit": "m"})", "has neither a body nor layers");
+  expect_error("[]", "must be an object, is an array of 0");
+}
+
+TEST(RecipeJson, SyntaxErrorsGiveLineAndColumn) {
+  expect_error("", "line 1, column 1: not valid JSON");
+  expect_error("{\n  \"format_version\": 1,\n  oops\n}", "line 3, column 3: not valid JSON");
+  expect_error("{\n  \"seed\": NaN}", "line 2, column 11");
+  expect_error(R"({"seed": Infinity})", "not valid JSON");
+  expect_error(R"({"seed": 1e999})", "not valid JSON: number overflow");
+  expect_error(testing::kCompleteRecipe + "x", "line 25, column 1: not valid JSON");
+  expect_error("{\"frame\": \"\xff\xfe\"}", "ill-formed UTF-8");
+  expect_error("{\"frame\": \"a\nb\"}", "not valid JSON");
+  expect_error(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "line 1, column 1: not valid JSON");
+}
+
+TEST(RecipeJson, KeysStandOnce) {
+  expect_error(R"({"seed": 1, "seed": 1})", "the field \"seed\" stands twice");
+  expect_error(R"({"provenance": {"options": {"a": "1", "a": "2"}}})", "the field \"a\" stands twice");
+}
+
+TEST(RecipeJson, CostOfHostileTextIsBounded) {
+  expect_error(std::string(100000, '['), "nested deeper than 32 levels");
+  expect_error(std::string(std::size_t{65} << 20, ' '), "larger than 64 MB");
+  std::string many = "[0";
+  for (int i = 0; i < 8'000'000; ++i) many += ",0";
+  expect_error(many + "]", "more than 8000000 values");
+}
+
+// Every prefix of a document is an error, never a crash or a silent success.
+TEST(RecipeJson, TruncatedTextIsAnError) {
+  const std::string text = testing::kCompleteRecipe.substr(0, testing::kCompleteRecipe.rfind('}'));
+  for (std::size_t n = 0; n <= text.size(); ++n) EXPECT_NE(error_of(text.substr(0, n)), "no error") << n;
+}
+
+TEST(RecipeJson, InvalidRecipesAreNotWritten) {
+  Recipe recipe = parse_recipe(testing::kCompleteRecipe, "r");
+  recipe.body->spheres[0].radius = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(recipe_to_json(recipe), WorkError);
+  recipe = parse_recipe(testing::kCompleteRecipe, "r");
+  recipe.provenance.achieved = {{"b", 1.0}, {"a", 1.0}};
+  EXPECT_THROW(recipe_to_json(recipe), WorkError);
+  recipe.provenance.achieved = {{"a", std::numeric_limits<double>::infinity()}};
+  EXPECT_THROW(recipe_to_json(recipe), WorkError);
+}
+
+TEST(RecipeJson, Files) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("astrolith_recipe_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const Recipe recipe = parse_recipe(testing::kCompleteRecipe, "r");
+  write_recipe(recipe, folder / "r.json");
+  EXPECT_EQ(recipe_to_json(read_recipe(folder / "r.json")), recipe_to_json(recipe));
+  EXPECT_THROW(read_recipe(folder / "absent.json"), InputError);
+  EXPECT_THROW(read_recipe(folder), InputError);
+  EXPECT_THROW(write_recipe(recipe, folder / "absent" / "r.json"), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace astrolith
