@@ -30,7 +30,7 @@ std::string recipe_to_json(const Recipe& recipe);
 void write_recipe(const Recipe& recipe, const std::filesystem::path& file);
 
 // x to seven significant digits, about the precision of a float: what a fit stores, so that 200 spheres take
-// about 11 kB. Round before measuring the errors that the recipe states.
+// about 12 kB. Round before measuring the errors that the recipe states.
 double round_to_seven_digits(double x);
 
 }  // namespace astrolith
