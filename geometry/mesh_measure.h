@@ -1,0 +1,22 @@
+// Area, volume and centroids of triangle meshes, in the mesh's own unit.
+#pragma once
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+double triangle_area(const TriangleMesh& mesh, const Triangle& triangle);
+
+double surface_area(const TriangleMesh& mesh);
+
+// Signed: positive for a closed mesh whose faces are counter-clockwise from outside. For an open mesh it is
+// the volume of the cone over the box's centre and depends on that choice.
+double volume(const TriangleMesh& mesh);
+
+// Centre of mass of the solid at constant density; the box's centre when the volume is zero.
+Vec3d volume_centroid(const TriangleMesh& mesh);
+
+// Centre of mass of the surface at constant density; the box's centre when the area is zero.
+Vec3d surface_centroid(const TriangleMesh& mesh);
+
+}  // namespace astrolith

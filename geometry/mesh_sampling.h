@@ -1,0 +1,39 @@
+// Random points on a mesh's surface, with normals.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+struct SurfaceSamples {
+  std::vector<Vec3d> points;             // (n)
+  std::vector<Vec3d> normals;            // (n) unit, outwards
+  std::vector<std::uint32_t> triangles;  // (n) the triangle each point lies in
+};
+
+enum class SampleNormals {
+  triangle,     // of the triangle the point lies in
+  interpolated  // angle-weighted vertex normals, interpolated over the triangle
+};
+
+// n independent points, uniform over the area. Sample i depends on the mesh, the seed and i alone, so the
+// first k of n samples are the samples of k. Throws InputError for a mesh without area.
+SurfaceSamples sample_surface(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
+                              SampleNormals normals = SampleNormals::triangle);
+
+// Exactly n points spread evenly (blue noise): five times as many area-weighted samples, of which the most
+// crowded is removed until n are left (Yuksel, "Sample elimination for generating Poisson disk sample sets",
+// Computer Graphics Forum 2015, with its constants alpha = 8, beta = 0.65, gamma = 1.5). Distances are
+// straight lines through space. Samples are in the order of the candidates, which is random. Throws as
+// sample_surface.
+SurfaceSamples sample_poisson_disk(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
+                                   SampleNormals normals = SampleNormals::triangle);
+
+// The largest distance that n points on a surface can all keep from one another when they are packed as
+// hexagons: sqrt(area / (2 sqrt(3) n)) is half of it (Yuksel's r_max).
+double poisson_disk_radius(double area, std::int64_t n);
+
+}  // namespace astrolith

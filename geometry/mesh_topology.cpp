@@ -1,0 +1,123 @@
+#include "geometry/mesh_topology.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+
+#include "geometry/mesh_edges_internal.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+void check_indices(const TriangleMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (v < mesh.vertices.size()) continue;
+      throw InputError("mesh: triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                       std::to_string(mesh.vertices.size()) + "; repair the file's faces");
+    }
+  }
+}
+
+bool runs_both_ways_equally(std::span<const TriangleSide> edge) {
+  return 2 * std::count_if(edge.begin(), edge.end(), [](const TriangleSide& s) { return s.forward; }) ==
+         static_cast<std::ptrdiff_t>(edge.size());
+}
+
+// What the edges tell: counts, which corners around a vertex are joined by an edge, which vertices lie on an
+// edge of three or more triangles.
+struct EdgeWalk {
+  std::int64_t edges = 0;
+  DisjointSets fans;              // over the 3 #F corners
+  std::vector<bool> on_bad_edge;  // (#V)
+};
+
+EdgeWalk walk_edges(const TriangleMesh& mesh, MeshTopology& topology) {
+  EdgeWalk walk{0, DisjointSets(3 * mesh.triangles.size()), std::vector<bool>(mesh.vertices.size(), false)};
+  for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
+    ++walk.edges;
+    for (const TriangleSide& side : edge.subspan(1)) {
+      walk.fans.unite(edge[0].corner_of_low(), side.corner_of_low());
+      walk.fans.unite(edge[0].corner_of_high(), side.corner_of_high());
+    }
+    if (edge.size() == 1) ++topology.boundary_edges;
+    if (edge.size() >= 2 && !runs_both_ways_equally(edge)) ++topology.misoriented_edges;
+    if (edge.size() >= 3) {
+      ++topology.non_manifold_edges;
+      walk.on_bad_edge[edge[0].low] = walk.on_bad_edge[edge[0].high] = true;
+    }
+  });
+  return walk;
+}
+
+// Fans of triangles around each vertex: 1 for a disk or half disk, 0 for an unused vertex.
+std::vector<std::uint32_t> count_fans(const TriangleMesh& mesh, DisjointSets& fans) {
+  std::vector<std::uint32_t> count(mesh.vertices.size(), 0);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (is_degenerate(mesh.triangles[t])) continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (fans.find(3 * t + k) == 3 * t + k) ++count[mesh.triangles[t][k]];
+    }
+  }
+  return count;
+}
+
+std::int64_t count_components(const TriangleMesh& mesh) {
+  DisjointSets pieces(mesh.vertices.size());
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    if (is_degenerate(t)) continue;
+    used[t[0]] = used[t[1]] = used[t[2]] = true;
+    pieces.unite(t[0], t[1]);
+    pieces.unite(t[0], t[2]);
+  }
+  std::int64_t components = 0;
+  for (std::uint32_t v = 0; v < used.size(); ++v) components += used[v] && pieces.find(v) == v;
+  return components;
+}
+
+}  // namespace
+
+std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh) {
+  std::vector<TriangleSide> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    if (is_degenerate(triangle)) continue;
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), t, k, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const TriangleSide& a, const TriangleSide& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return sides;
+}
+
+MeshTopology analyze_topology(const TriangleMesh& mesh) {
+  check_indices(mesh);
+  MeshTopology topology;
+  EdgeWalk walk = walk_edges(mesh, topology);
+  const std::vector<std::uint32_t> fans = count_fans(mesh, walk.fans);
+  for (std::size_t v = 0; v < fans.size(); ++v) {
+    topology.unused_vertices += fans[v] == 0;
+    topology.non_manifold_vertices += fans[v] > 1 || walk.on_bad_edge[v];
+  }
+  topology.degenerate_triangles = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate);
+  topology.components = count_components(mesh);
+  const auto faces = static_cast<std::int64_t>(mesh.triangles.size()) - topology.degenerate_triangles;
+  const auto vertices = static_cast<std::int64_t>(mesh.vertices.size()) - topology.unused_vertices;
+  topology.euler_characteristic = vertices - walk.edges + faces;
+  topology.closed = faces > 0 && topology.boundary_edges == 0;
+  topology.manifold = faces > 0 && topology.non_manifold_edges == 0 && topology.non_manifold_vertices == 0;
+  topology.oriented = topology.misoriented_edges == 0;
+  if (topology.closed && topology.manifold && topology.oriented) {
+    // chi = 2 - 2g for each component.
+    topology.genus = topology.components - topology.euler_characteristic / 2;
+  }
+  return topology;
+}
+
+}  // namespace astrolith
