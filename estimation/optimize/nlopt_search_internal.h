@@ -1,0 +1,11 @@
+// NLopt's algorithms with our bounds, seed, progress and bookkeeping.
+#pragma once
+
+#include "estimation/optimize/optimizer.h"
+
+namespace astrolith {
+
+OptimizeResult nlopt_search(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+                            const Progress& progress);
+
+}  // namespace astrolith

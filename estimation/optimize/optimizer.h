@@ -1,0 +1,70 @@
+// Minimises a function of a few dozen numbers inside a box, without derivatives: particle swarm and four
+// algorithms of NLopt behind one face.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+enum class OptimizerAlgorithm {
+  pso,    // global-best particle swarm with constriction (Clerc and Kennedy, IEEE TEC 2002)
+  crs2,   // controlled random search with local mutation (Kaelo and Ali 2006; NLopt GN_CRS2_LM)
+  isres,  // stochastic-ranking evolution strategy (Runarsson and Yao 2005; NLopt GN_ISRES)
+  esch,   // evolutionary algorithm (da Silva Santos 2010; NLopt GN_ESCH)
+  sbplx   // subspace simplex, local, from the start (Rowan 1990; NLopt LN_SBPLX)
+};
+
+// "pso", "crs2", ...; throws InputError that lists the names.
+OptimizerAlgorithm optimizer_from_name(const std::string& name);
+std::string optimizer_name(OptimizerAlgorithm algorithm);
+
+// lower[i] <= x[i] <= upper[i], all finite; equal bounds fix a variable.
+struct Bounds {
+  std::vector<double> lower, upper;
+};
+
+struct OptimizeOptions {
+  OptimizerAlgorithm algorithm = OptimizerAlgorithm::pso;
+  // Particles of pso; population of crs2, isres and esch (crs2 needs one more than there are variables and
+  // gets it); 0 = 20 for pso, NLopt's own choice for the others.
+  int population = 0;
+  // Calls of the objective; pso rounds up to whole generations of population calls.
+  std::int64_t max_evaluations = 2000;
+  // Stop once value <= target.
+  double target = -std::numeric_limits<double>::infinity();
+  // Stop sbplx and crs2 once all x[i] change by less than x_tolerance * (upper[i] - lower[i]).
+  double x_tolerance = 1e-9;
+  std::uint64_t seed = 1;
+  // Where to start: one particle of pso, the first point of the others. Empty = a random particle, the box's
+  // centre. Clipped to the box.
+  std::vector<double> start;
+};
+
+enum class OptimizeTermination { evaluations, target, converged, stopped };
+
+struct OptimizeResult {
+  std::vector<double> x;                                   // inside the bounds
+  double value = std::numeric_limits<double>::infinity();  // at x; infinite if no value was finite
+  std::int64_t evaluations = 0;
+  std::vector<double> history;  // best value after each generation (each population of calls for NLopt)
+  OptimizeTermination termination = OptimizeTermination::evaluations;
+};
+
+// Values that are not finite count as +infinity. pso calls the objective from many threads at once.
+using Objective = std::function<double(std::span<const double> x)>;
+
+// The result is a function of objective, bounds and options alone: thread count and other runs in the process
+// change nothing. Progress is asked after every generation and may come from another thread than the
+// caller's; when it returns false the best so far is returned. Exceptions of the objective end the run and
+// are rethrown. Wrong bounds or options: InputError.
+OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options = {},
+                        const Progress& progress = {});
+
+}  // namespace astrolith
