@@ -1,23 +1,39 @@
 # cmake --install gives programs, libraries, headers and a package:
-#   find_package(astrolith REQUIRED)
+#   find_package(astrolith REQUIRED)                        # evaluates recipes; needs none of the fitting packages
 #   target_link_libraries(mine PRIVATE astrolith::synthesis)
+#   find_package(astrolith REQUIRED COMPONENTS estimation)  # also fits them
 include(CMakePackageConfigHelpers)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/astrolith)
 
 get_property(libraries GLOBAL PROPERTY ASTROLITH_LIBRARIES)
-install(TARGETS ${libraries} astrolith_compile_rules EXPORT astrolithTargets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT astrolithTargets NAMESPACE astrolith:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/astrolith)
-foreach(folder numerics recipe geometry descriptor synthesis)
+set(core_libraries astrolith_compile_rules)
+set(estimation_libraries)
+foreach(library IN LISTS libraries)
+  get_target_property(folder ${library} SOURCE_DIR)
+  if(folder MATCHES "^${PROJECT_SOURCE_DIR}/estimation")
+    list(APPEND estimation_libraries ${library})
+  else()
+    list(APPEND core_libraries ${library})
+  endif()
+endforeach()
+
+install(TARGETS ${core_libraries} EXPORT astrolithTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT astrolithTargets NAMESPACE astrolith:: DESTINATION ${package_folder})
+set(header_folders numerics recipe geometry descriptor synthesis)
+if(ASTROLITH_ESTIMATION)
+  install(TARGETS ${estimation_libraries} EXPORT astrolithEstimationTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT astrolithEstimationTargets NAMESPACE astrolith:: DESTINATION ${package_folder})
+  list(APPEND header_folders estimation)
+endif()
+foreach(folder IN LISTS header_folders)
   install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/astrolith
     FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
 endforeach()
-if(ASTROLITH_ESTIMATION)
-  install(DIRECTORY estimation DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/astrolith
-    FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
-endif()
 install(FILES recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith)
+
 configure_package_config_file(cmake/astrolithConfig.cmake.in ${PROJECT_BINARY_DIR}/astrolithConfig.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/astrolith)
+  INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/astrolithConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/astrolithConfig.cmake ${PROJECT_BINARY_DIR}/astrolithConfigVersion.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/astrolith)
+  DESTINATION ${package_folder})
