@@ -1,0 +1,281 @@
+#include "estimation/shape/refinement.h"
+
+#include <ceres/ceres.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "estimation/shape/field_derivatives.h"
+#include "estimation/shape/point_clusters.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// Points a residual block: larger blocks make the solver's sums longer and fewer, but gather more spheres
+// that reach only some of the points.
+constexpr std::size_t kPointsPerBlock = 24;
+
+// Spheres may move and grow this part of their support before the lists of neighbours are made anew.
+constexpr double kSupportSlack = 1.15;
+
+// A round without any step that lowers the cost ends the refinement only below this radius of the trust
+// region.
+constexpr double kSmallestTrustRegion = 1e-6;
+
+enum class Condition { on_surface, inside, outside };
+
+// One group of near points: its residuals and their derivatives by the spheres that reach it.
+struct Block {
+  Condition condition;
+  std::vector<Vec3d> points;
+  std::vector<std::int32_t> neighbours;
+  std::vector<double> residuals;             // (#points)
+  std::vector<SphereDerivatives> by_sphere;  // (#points x #neighbours)
+  std::vector<double> by_log_sharpness;      // (#points)
+};
+
+// The model as Ceres's parameter blocks: centre and log radius a sphere, and the log of the sharpness.
+struct Parameters {
+  explicit Parameters(const MetaballModel& model) : log_sharpness(std::log(model.sharpness)) {
+    for (const Sphere& s : model.spheres) {
+      spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
+    }
+  }
+  MetaballModel model() const {
+    MetaballModel m{std::exp(log_sharpness), {}};
+    for (const auto& s : spheres) m.spheres.push_back({{s[0], s[1], s[2]}, std::exp(s[3])});
+    return m;
+  }
+
+  std::vector<SphereDerivatives> spheres;
+  double log_sharpness;
+};
+
+struct Scaled {
+  double value;
+  double derivative;
+};
+
+// phi and dphi/ds of the pseudo-Huber loss. phi^2 = 2 s^2 / (1 + t), t = sqrt(1 + s^2 / c^2), which has no
+// cancellation near zero.
+Scaled pseudo_huber(double s, double c) {
+  const double t = std::sqrt(1.0 + s * s / (c * c));
+  const double shrink = std::sqrt(2.0 / (1.0 + t));
+  return {s * shrink, 1.0 / (shrink * t)};
+}
+
+// Evaluates every block when Ceres asks for the first one, in parallel; the blocks only copy.
+class Evaluation : public ceres::EvaluationCallback {
+ public:
+  Evaluation(const FitPoints& points, const RefinementOptions& options, Parameters& parameters)
+      : options_(options), parameters_(parameters) {
+    add_blocks(points.on_surface, Condition::on_surface);
+    if (options.containment_weight > 0.0) {
+      add_blocks(points.inside, Condition::inside);
+      add_blocks(points.outside, Condition::outside);
+    }
+    find_neighbours();
+  }
+
+  void PrepareForEvaluation(bool with_derivatives, bool new_point) override {
+    if (!new_point && (!with_derivatives || derivatives_are_current_)) return;
+    derivatives_are_current_ = with_derivatives;
+    const MetaballModel model = parameters_.model();
+    const MetaballParameters<double> evaluation = evaluation_parameters(model);
+    parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
+      evaluate(blocks_[static_cast<std::size_t>(b)], model, evaluation, with_derivatives);
+    });
+  }
+
+  const std::vector<Block>& blocks() const { return blocks_; }
+
+ private:
+  void add_blocks(const std::vector<Vec3d>& points, Condition condition) {
+    for (const PointCluster& cluster : cluster_points(points, kPointsPerBlock)) {
+      Block block{condition, {}, {}, {}, {}, {}};
+      for (const std::int32_t i : cluster.points) block.points.push_back(points[static_cast<std::size_t>(i)]);
+      blocks_.push_back(std::move(block));
+      reach_.push_back(cluster);
+    }
+  }
+
+  void find_neighbours() {
+    const MetaballModel model = parameters_.model();
+    const double cutoff = kSupportSlack * cutoff_radii(model.sharpness);
+    parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
+      Block& block = blocks_[static_cast<std::size_t>(b)];
+      const PointCluster& cluster = reach_[static_cast<std::size_t>(b)];
+      for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+        const Sphere& s = model.spheres[i];
+        if (norm(s.center - cluster.center) < cluster.radius + cutoff * s.radius) {
+          block.neighbours.push_back(static_cast<std::int32_t>(i));
+        }
+      }
+      block.residuals.resize(block.points.size());
+      block.by_log_sharpness.resize(block.points.size());
+      block.by_sphere.resize(block.points.size() * block.neighbours.size());
+    });
+  }
+
+  void evaluate(Block& block, const MetaballModel& model, const MetaballParameters<double>& evaluation,
+                bool with_derivatives) const {
+    const std::size_t n = block.neighbours.size();
+    for (std::size_t j = 0; j < block.points.size(); ++j) {
+      const std::span<SphereDerivatives> row =
+          with_derivatives ? std::span(block.by_sphere).subspan(j * n, n) : std::span<SphereDerivatives>();
+      const Scaled scaled = block.condition == Condition::on_surface
+                                ? surface_condition(block, j, model, evaluation, row)
+                                : containment_condition(block, j, model, evaluation, row);
+      block.residuals[j] = scaled.value;
+      if (!with_derivatives) continue;
+      for (SphereDerivatives& d : row) {
+        for (double& x : d) x *= scaled.derivative;
+      }
+      block.by_log_sharpness[j] *= scaled.derivative;
+    }
+  }
+
+  Scaled surface_condition(Block& block, std::size_t j, const MetaballModel& model,
+                           const MetaballParameters<double>& evaluation,
+                           std::span<SphereDerivatives> row) const {
+    const double s = distance_with_derivatives(model, evaluation, block.neighbours, block.points[j], row,
+                                               &block.by_log_sharpness[j]);
+    return pseudo_huber(s, options_.loss_scale);
+  }
+
+  Scaled containment_condition(Block& block, std::size_t j, const MetaballModel& model,
+                               const MetaballParameters<double>& evaluation,
+                               std::span<SphereDerivatives> row) const {
+    const double level = level_with_derivatives(model, evaluation, block.neighbours, block.points[j], row,
+                                                &block.by_log_sharpness[j]);
+    const double sign = block.condition == Condition::inside ? -1.0 : 1.0;
+    const double lack = options_.containment_margin + sign * level;
+    if (!(lack > 0.0)) return {0.0, 0.0};
+    return {options_.containment_weight * lack, options_.containment_weight * sign};
+  }
+
+  const RefinementOptions& options_;
+  Parameters& parameters_;
+  std::vector<Block> blocks_;
+  std::vector<PointCluster> reach_;
+  bool derivatives_are_current_ = false;
+};
+
+// Hands one evaluated block to Ceres. Parameter blocks: the neighbours (4 each), then the log sharpness (1).
+class BlockCost : public ceres::CostFunction {
+ public:
+  explicit BlockCost(const Block& block) : block_(block) {
+    set_num_residuals(static_cast<int>(block.points.size()));
+    mutable_parameter_block_sizes()->assign(block.neighbours.size(), 4);
+    mutable_parameter_block_sizes()->push_back(1);
+  }
+
+  bool Evaluate(double const* const*, double* residuals, double** jacobians) const override {
+    std::copy(block_.residuals.begin(), block_.residuals.end(), residuals);
+    for (const double r : block_.residuals) {
+      if (!std::isfinite(r)) return false;
+    }
+    if (jacobians == nullptr) return true;
+    const std::size_t n = block_.neighbours.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (jacobians[i] == nullptr) continue;
+      for (std::size_t j = 0; j < block_.points.size(); ++j) {
+        const SphereDerivatives& d = block_.by_sphere[j * n + i];
+        std::copy(d.begin(), d.end(), jacobians[i] + 4 * j);
+      }
+    }
+    if (jacobians[n] != nullptr) {
+      std::copy(block_.by_log_sharpness.begin(), block_.by_log_sharpness.end(), jacobians[n]);
+    }
+    return true;
+  }
+
+ private:
+  const Block& block_;
+};
+
+class ProgressCallback : public ceres::IterationCallback {
+ public:
+  explicit ProgressCallback(const std::function<bool(int, double)>& go_on) : go_on_(go_on) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    return go_on_(summary.iteration, summary.cost) ? ceres::SOLVER_CONTINUE
+                                                   : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const std::function<bool(int, double)>& go_on_;
+};
+
+ceres::Solver::Options solver_options(int iterations) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = iterations;
+  // One thread: with more, Ceres sums in an order that depends on their speed. The evaluation has its own.
+  options.num_threads = 1;
+  options.function_tolerance = 1e-5;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
+// One round with fixed lists of neighbours; moves `parameters`.
+ceres::Solver::Summary solve_round(Parameters& parameters, const FitPoints& points,
+                                   const RefinementOptions& options, int iterations, double trust_region,
+                                   const std::function<bool(int, double)>& go_on) {
+  Evaluation evaluation(points, options, parameters);
+  ceres::Problem::Options problem_options;
+  problem_options.evaluation_callback = &evaluation;
+  ceres::Problem problem(problem_options);
+  for (const Block& block : evaluation.blocks()) {
+    std::vector<double*> blocks;
+    for (const std::int32_t i : block.neighbours) {
+      blocks.push_back(parameters.spheres[static_cast<std::size_t>(i)].data());
+    }
+    blocks.push_back(&parameters.log_sharpness);
+    problem.AddResidualBlock(new BlockCost(block), nullptr, blocks);
+  }
+  ProgressCallback callback(go_on);
+  ceres::Solver::Options ceres_options = solver_options(iterations);
+  ceres_options.initial_trust_region_radius = trust_region;
+  ceres_options.callbacks.push_back(&callback);
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options, &problem, &summary);
+  if (summary.termination_type == ceres::FAILURE) throw WorkError("refinement: " + summary.message);
+  return summary;
+}
+
+}  // namespace
+
+RefinementSummary refine(const MetaballModel& start, const FitPoints& points,
+                         const RefinementOptions& options, const Progress& progress) {
+  RefinementSummary result{start, 0, 0.0, 0.0, false};
+  Parameters parameters(start);
+  // Damped at first: far from the surface the residuals are far from linear.
+  double trust_region = 1.0;
+  for (bool first = true; result.iterations < options.max_iterations && !result.interrupted; first = false) {
+    const std::function<bool(int, double)> go_on = [&](int iteration, double cost) {
+      const double done = static_cast<double>(result.iterations + iteration) / options.max_iterations;
+      result.interrupted = !report(progress, std::min(done, 1.0), "cost " + std::to_string(cost));
+      return !result.interrupted;
+    };
+    const int iterations = std::min(options.iterations_per_round, options.max_iterations - result.iterations);
+    const ceres::Solver::Summary summary =
+        solve_round(parameters, points, options, iterations, trust_region, go_on);
+    if (first) result.initial_cost = summary.initial_cost;
+    result.final_cost = summary.final_cost;
+    result.iterations += std::max<int>(1, static_cast<int>(summary.iterations.size()) - 1);
+    trust_region = std::min(summary.iterations.back().trust_region_radius, 1e8);
+    const bool stuck = summary.num_successful_steps <= 1;  // counts the start as one
+    if (stuck
+            ? trust_region < kSmallestTrustRegion
+            : summary.initial_cost - summary.final_cost <= options.relative_decrease * summary.initial_cost) {
+      break;
+    }
+  }
+  result.model = parameters.model();
+  return result;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,45 @@
+// Moves all centres and radii, and the shared sharpness, so that the surface passes through samples of the
+// target: Levenberg and Marquardt (Ceres) on the first-order distance of every sample.
+//
+// Residuals, in length units:
+//   on the surface   phi(s(p)),  phi^2 = 2 c^2 (sqrt(1 + s^2 / c^2) - 1)   pseudo-Huber: bad vertices pull
+//   little inside, outside  weight * max(0, margin - L(p)),  weight * max(0, margin + L(p))
+// The second kind keeps cavities and islands away: a surface that no sample lies on costs nothing otherwise.
+// Sums run in a fixed order, so that the result is the same for every thread count.
+#pragma once
+
+#include <vector>
+
+#include "estimation/shape/metaball_model.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+struct FitPoints {
+  std::vector<Vec3d> on_surface;
+  std::vector<Vec3d> inside;   // where the body must be
+  std::vector<Vec3d> outside;  // where it must not be
+};
+
+struct RefinementOptions {
+  int max_iterations = 30;           // of Levenberg and Marquardt, all rounds together, > 0
+  int iterations_per_round = 6;      // before the lists of neighbours are made anew, > 0
+  double loss_scale = 0.0;           // c, length units, > 0
+  double containment_weight = 0.0;   // length units, >= 0
+  double containment_margin = 0.05;  // of the level L, which is 1 at a lone centre
+  double relative_decrease = 1e-4;   // stops when a round lowers the cost by less than this part
+};
+
+struct RefinementSummary {
+  MetaballModel model;
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  bool interrupted = false;
+};
+
+// Progress is asked before every iteration. Throws WorkError when the solver fails at the start.
+RefinementSummary refine(const MetaballModel& start, const FitPoints& points,
+                         const RefinementOptions& options, const Progress& progress = {});
+
+}  // namespace astrolith
