@@ -1,0 +1,89 @@
+// Finds the blocks of one layer that the surface may cross, by a quadtree over the layer: whatever a bound of
+// the field proves to lie outside or inside is left out whole.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <vector>
+
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/block_field.h"
+#include "synthesis/sample_grid.h"
+
+namespace astrolith {
+
+// A square of blocks of one layer and the field narrowed to it.
+template <FieldBlockLike Block>
+struct BlockNode {
+  int x = 0, y = 0;  // first block
+  int size = 1;      // blocks along each side
+  Block field;
+};
+
+// Splits a grid into blocks of B^3 cells, and layers of such blocks along z.
+template <int B>
+struct BlockGrid {
+  SampleGrid samples;
+
+  int blocks(unsigned axis) const { return (samples.cells[axis] + B - 1) / B; }
+  // Half a step wider than its samples, so that normals can be taken at its border.
+  Box box(int x, int y, int z, int size) const {
+    const auto last = [&](unsigned axis, int block) { return std::min(block * B, samples.cells[axis]); };
+    return samples.box({x * B, y * B, z * B}, {last(0, x + size), last(1, y + size), last(2, z + 1)},
+                       0.5 * samples.step);
+  }
+};
+
+[[noreturn]] inline void fail_at_border() {
+  throw WorkError("mesher: the body reaches the border of its bounds; the field's bounds are wrong");
+}
+
+template <int B, FieldBlockLike Block>
+void check_inside_node(const BlockGrid<B>& grid, int z, const BlockNode<Block>& node) {
+  const bool at_border = node.x == 0 || node.y == 0 || z == 0 || node.x + node.size >= grid.blocks(0) ||
+                         node.y + node.size >= grid.blocks(1) || z + 1 == grid.blocks(2);
+  if (at_border) fail_at_border();
+}
+
+// The quarters of a node that are not proved empty or full.
+template <int B, FieldBlockLike Block>
+std::vector<BlockNode<Block>> mixed_quarters(const BlockGrid<B>& grid, int z, const BlockNode<Block>& node) {
+  std::vector<BlockNode<Block>> quarters;
+  const int half = node.size / 2;
+  for (int y = node.y; y < std::min(node.y + node.size, grid.blocks(1)); y += half) {
+    for (int x = node.x; x < std::min(node.x + node.size, grid.blocks(0)); x += half) {
+      BlockNode<Block> quarter{x, y, half, node.field.restricted_to(grid.box(x, y, z, half))};
+      const BlockContent content = quarter.field.content();
+      if (content == BlockContent::kInside) check_inside_node(grid, z, quarter);
+      if (content == BlockContent::kMixed) quarters.push_back(std::move(quarter));
+    }
+  }
+  return quarters;
+}
+
+// Blocks of layer z in rows of y, then x. Throws WorkError when the body fills the border.
+template <int B, FieldBlockLike Block>
+std::vector<BlockNode<Block>> mixed_blocks(const BlockGrid<B>& grid, const Block& whole, int z) {
+  const unsigned longest = static_cast<unsigned>(std::max(grid.blocks(0), grid.blocks(1)));
+  const int size = std::max(2, static_cast<int>(std::bit_ceil(longest)));
+  std::vector<BlockNode<Block>> nodes;
+  nodes.push_back({0, 0, size, whole.restricted_to(grid.box(0, 0, z, size))});
+  while (!nodes.empty() && nodes.front().size > 1) {
+    std::vector<std::vector<BlockNode<Block>>> quarters(nodes.size());
+    parallel_for(0, static_cast<std::int64_t>(nodes.size()), [&](std::int64_t i) {
+      const auto n = static_cast<std::size_t>(i);
+      quarters[n] = mixed_quarters(grid, z, nodes[n]);
+    });
+    nodes.clear();
+    for (auto& group : quarters) {
+      for (auto& quarter : group) nodes.push_back(std::move(quarter));
+    }
+  }
+  std::sort(nodes.begin(), nodes.end(),
+            [](const auto& a, const auto& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+  return nodes;
+}
+
+}  // namespace astrolith

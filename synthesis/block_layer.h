@@ -1,0 +1,99 @@
+// One layer of sparse blocks along z: the samples, and the mesh vertices on their edges.
+//
+// A block of B^3 cells sees (B+1)^3 samples at local coordinates 0 .. B and owns those at 1 .. B; the others
+// belong to its seven lower neighbours. An edge belongs to the owner of its upper end. A layer therefore
+// needs the layer below it and no other.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace astrolith {
+
+template <int B>
+struct LayerBlock {
+  static constexpr int kSide = B + 1;
+  static constexpr std::size_t kSamples = std::size_t{kSide} * kSide * kSide;
+  static constexpr std::size_t kOwned = std::size_t{B} * B * B;
+
+  // Local coordinates 0 .. B.
+  static constexpr std::size_t sample(int x, int y, int z) {
+    return static_cast<std::size_t>((z * kSide + y) * kSide + x);
+  }
+  // Local coordinates 1 .. B.
+  static constexpr std::size_t owned(int x, int y, int z) {
+    return static_cast<std::size_t>(((z - 1) * B + y - 1) * B + x - 1);
+  }
+  static constexpr std::size_t row(int y, int z) { return static_cast<std::size_t>((z - 1) * B + y - 1); }
+
+  bool inside(int i, int j, int k) const { return values[sample(i, j, k)] > 0.0f; }
+
+  int x = 0, y = 0;                    // position in the layer, in blocks
+  std::array<float, kSamples> values;  // at every sample the block sees
+  std::array<std::uint32_t, 3 * kOwned>
+      vertices;  // numbers by (owned sample, axis), where the edge is crossed
+  // By row of owned samples: how many vertices and triangles it holds, then where in the layer they start.
+  std::array<std::uint32_t, B * B> vertex_rows;
+  std::array<std::uint32_t, B * B> triangle_rows;
+};
+
+template <int B>
+class BlockLayer {
+ public:
+  BlockLayer() = default;
+  BlockLayer(int width, int height)
+      : width_(width),
+        height_(height),
+        index_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kAbsent) {}
+
+  LayerBlock<B>& add(int x, int y) {
+    index_[slot(x, y)] = static_cast<std::int32_t>(blocks.size());
+    LayerBlock<B>& block = blocks.emplace_back();
+    block.x = x;
+    block.y = y;
+    return block;
+  }
+
+  // Null where the layer has no active block, or no block at all.
+  const LayerBlock<B>* find(int x, int y) const {
+    if (x < 0 || y < 0 || x >= width_ || y >= height_) return nullptr;
+    const std::int32_t i = index_[slot(x, y)];
+    return i == kAbsent ? nullptr : &blocks[static_cast<std::size_t>(i)];
+  }
+
+  std::vector<LayerBlock<B>> blocks;  // active ones in rows of y, then x
+
+ private:
+  static constexpr std::int32_t kAbsent = -1;
+  std::size_t slot(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+
+  int width_ = 0, height_ = 0;
+  std::vector<std::int32_t> index_;  // (height x width) into blocks
+};
+
+// The owners of what a block sees: bit 0 set = one block lower in x, bit 1 in y, bit 2 in z. Entry 0 is the
+// block itself; null where there is no active block.
+template <int B>
+using Owners = std::array<const LayerBlock<B>*, 8>;
+
+template <int B>
+Owners<B> find_owners(const BlockLayer<B>& layer, const BlockLayer<B>& below, const LayerBlock<B>& block) {
+  Owners<B> owners;
+  for (int i = 0; i < 8; ++i) {
+    const BlockLayer<B>& where = (i & 4) != 0 ? below : layer;
+    owners[static_cast<unsigned>(i)] = where.find(block.x - (i & 1), block.y - ((i >> 1) & 1));
+  }
+  owners[0] = &block;
+  return owners;
+}
+
+// Which owner a local sample has.
+constexpr unsigned owner_of(int x, int y, int z) {
+  return (x == 0 ? 1u : 0u) | (y == 0 ? 2u : 0u) | (z == 0 ? 4u : 0u);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,61 @@
+#include "synthesis/sample_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+double largest_magnitude(const Box& box) {
+  return std::max({std::abs(box.min.x), std::abs(box.min.y), std::abs(box.min.z), std::abs(box.max.x),
+                   std::abs(box.max.y), std::abs(box.max.z)});
+}
+
+// Vertices keep 2^-10 of a cell's edge from its ends; that must be more than a rounding error of a position.
+void check_positions_are_distinct(const Box& bounds, double step) {
+  const double rounding = 0x1.0p-23 * largest_magnitude(bounds);
+  if (step * 0x1.0p-10 <= rounding) {
+    throw InputError("resolution: cells of " + std::to_string(step) +
+                     " are too small for 32-bit positions this far from the origin; lower the resolution");
+  }
+}
+
+}  // namespace
+
+Box SampleGrid::box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const {
+  const Vec3d m{margin, margin, margin};
+  const auto at = [this](const std::array<int, 3>& i) {
+    return origin + Vec3d{step * i[0], step * i[1], step * i[2]};
+  };
+  Box result;
+  result.min = at(first) - m;
+  result.max = at(last) + m;
+  return result;
+}
+
+SampleGrid make_sample_grid(const Box& bounds, int resolution) {
+  if (resolution < kMinResolution || resolution > kMaxResolution) {
+    throw InputError("resolution: " + std::to_string(resolution) + " is outside " +
+                     std::to_string(kMinResolution) + " .. " + std::to_string(kMaxResolution));
+  }
+  const Vec3d extent = bounds.extent();
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  if (bounds.empty() || !(longest > 0.0) || !std::isfinite(longest)) {
+    throw InputError("bounds: the body has no extent to sample; check its spheres");
+  }
+  SampleGrid grid;
+  grid.step = longest / (resolution - 2);
+  check_positions_are_distinct(bounds, grid.step);
+  const auto cells_along = [&](double length) {
+    return std::clamp(static_cast<int>(std::ceil(length / grid.step - 1e-6)), 1, resolution - 2) + 2;
+  };
+  grid.cells = {cells_along(extent.x), cells_along(extent.y), cells_along(extent.z)};
+  grid.origin = bounds.center() -
+                0.5 * grid.step * Vec3d{double(grid.cells[0]), double(grid.cells[1]), double(grid.cells[2])};
+  return grid;
+}
+
+}  // namespace astrolith
