@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cstdint>
+
+#include "geometry/weld.h"
+
+namespace astrolith {
+namespace {
+
+// One side of a face, its ends sorted; forward when the face runs from the lower vertex to the higher.
+struct Side {
+  std::uint32_t low, high, face;
+  bool forward;
+
+  bool same_edge(const Side& o) const { return low == o.low && high == o.high; }
+};
+
+std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles[f][k], b = triangles[f][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    if (a.low != b.low) return a.low < b.low;
+    return a.high != b.high ? a.high < b.high : a.face < b.face;
+  });
+  return sides;
+}
+
+// For each face and side the neighbour across it, or none, and whether the two are wound alike.
+struct Neighbour {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t face = kNone;
+  bool alike = true;
+};
+
+std::vector<std::array<Neighbour, 3>> neighbours(const std::vector<Triangle>& triangles) {
+  std::vector<std::array<Neighbour, 3>> result(triangles.size());
+  std::vector<std::uint8_t> used(triangles.size(), 0);
+  const auto link = [&](const Side& from, const Side& to) {
+    result[from.face][used[from.face]++] = {to.face, from.forward != to.forward};
+  };
+  const std::vector<Side> sides = sorted_sides(triangles);
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
+    if (end - begin != 2) continue;
+    link(sides[begin], sides[begin + 1]);
+    link(sides[begin + 1], sides[begin]);
+  }
+  return result;
+}
+
+// Six times the signed volume of the cone from the origin over a face.
+double cone_volume(const TriangleMesh& mesh, const Vec3d& origin, const Triangle& t) {
+  const auto corner = [&](int k) { return mesh.vertices[t[static_cast<std::size_t>(k)]] - origin; };
+  return dot(corner(0), cross(corner(1), corner(2)));
+}
+
+// Faces reached from a seed across shared edges; flipped says which of all faces are to be reversed.
+double wind_alike(const TriangleMesh& mesh, const std::vector<std::array<Neighbour, 3>>& adjacent,
+                  const Vec3d& origin, std::vector<std::uint32_t>& part, std::vector<std::uint8_t>& visited,
+                  std::vector<std::uint8_t>& flipped) {
+  double volume = 0.0;
+  for (std::size_t i = 0; i < part.size(); ++i) {  // part grows on the way
+    const std::uint32_t face = part[i];
+    const double cone = cone_volume(mesh, origin, mesh.triangles[face]);
+    volume += flipped[face] != 0 ? -cone : cone;
+    for (const Neighbour& n : adjacent[face]) {
+      if (n.face == Neighbour::kNone || visited[n.face] != 0) continue;
+      visited[n.face] = 1;
+      flipped[n.face] = n.alike ? flipped[face] : !flipped[face];
+      part.push_back(n.face);
+    }
+  }
+  return volume;
+}
+
+}  // namespace
+
+TriangleMesh orient_faces(TriangleMesh mesh) {
+  const auto adjacent = neighbours(mesh.triangles);
+  // An open part has a volume only with respect to a point: the box's middle.
+  const Vec3d origin = mesh.bounds().center();
+  std::vector<std::uint8_t> visited(mesh.triangles.size(), 0), flipped(mesh.triangles.size(), 0);
+  std::vector<std::uint32_t> part;
+  for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
+    if (visited[seed] != 0) continue;
+    visited[seed] = 1;
+    part.assign(1, seed);
+    const bool inside_out = wind_alike(mesh, adjacent, origin, part, visited, flipped) < 0.0;
+    for (const std::uint32_t face : part) {
+      Triangle& t = mesh.triangles[face];
+      if ((flipped[face] != 0) != inside_out) std::swap(t[1], t[2]);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace astrolith

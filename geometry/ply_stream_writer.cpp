@@ -1,0 +1,117 @@
+#include "geometry/ply_stream_writer.h"
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "geometry/mesh_writers_internal.h"
+#include "geometry/ply_layout_internal.h"
+#include "geometry/polygon_fan_internal.h"
+
+namespace astrolith {
+
+static_assert(std::endian::native == std::endian::little, "vertices are written as they lie in memory");
+static_assert(sizeof(MeshVertex) == 6 * sizeof(float), "a vertex is six floats without gaps");
+
+std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
+                       bool with_normals) {
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& line : info_lines(info)) header += "comment " + line + "\n";
+  const std::string vertices = std::to_string(num_vertices);
+  const std::string triangles = std::to_string(num_triangles);
+  header += "element vertex " + vertices + "\n";
+  for (const char* name : {"x", "y", "z"}) header += std::string("property float ") + name + "\n";
+  if (with_normals) {
+    for (const char* name : {"nx", "ny", "nz"}) header += std::string("property float ") + name + "\n";
+  }
+  header += "element face " + triangles + "\nproperty list uchar uint vertex_indices\n";
+  constexpr std::size_t kLongestCounts = 40;  // two 64-bit numbers
+  header += "comment " + std::string(kLongestCounts - vertices.size() - triangles.size(), '.') + "\n";
+  return header + "end_header\n";
+}
+
+std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle) {
+  std::array<char, kPlyTriangleBytes> bytes;
+  bytes[0] = 3;
+  std::memcpy(bytes.data() + 1, triangle.data(), sizeof triangle);
+  return bytes;
+}
+
+PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info)
+    : target_(file), info_(info), out_(file) {
+  const std::string spill_name = out_.temporary_name() + ".faces";
+  spill_.reset(std::fopen(spill_name.c_str(), "w+b"));
+  if (!spill_) fail_spill();
+  // Without a name it is gone when the process ends, however that happens.
+  std::remove(spill_name.c_str());
+  const std::string header = ply_header(info_, 0, 0, true);
+  out_.write(header.data(), header.size());
+}
+
+void PlyStreamWriter::add_vertices(std::span<const MeshVertex> vertices) {
+  num_vertices_ += vertices.size();
+  if (num_vertices_ > static_cast<std::uint64_t>(kMaxVertices)) {
+    throw WorkError(target_.string() + ": more than 2^32 - 1 vertices; choose a smaller resolution");
+  }
+  out_.write(vertices.data(), vertices.size_bytes());
+}
+
+void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index >= num_vertices_) {
+        throw WorkError(target_.string() + ": triangle " + std::to_string(num_triangles_) + " names vertex " +
+                        std::to_string(index) + " of " + std::to_string(num_vertices_));
+      }
+    }
+    const auto bytes = ply_triangle(triangle);
+    if (std::fwrite(bytes.data(), 1, bytes.size(), spill_.get()) != bytes.size()) fail_spill();
+    ++num_triangles_;
+  }
+}
+
+void PlyStreamWriter::finish() {
+  append_spill();
+  const std::string header = ply_header(info_, num_vertices_, num_triangles_, true);
+  out_.seek(0);
+  out_.write(header.data(), header.size());
+  out_.commit();
+}
+
+void PlyStreamWriter::append_spill() {
+  if (std::fflush(spill_.get()) != 0 || fseeko(spill_.get(), 0, SEEK_SET) != 0) fail_spill();
+  std::vector<char> block(std::size_t{1} << 20);
+  std::uint64_t left = num_triangles_ * kPlyTriangleBytes;
+  while (left > 0) {
+    const std::size_t bytes = std::fread(block.data(), 1, block.size(), spill_.get());
+    if (bytes == 0) fail_spill();
+    out_.write(block.data(), bytes);
+    left -= bytes;
+  }
+  spill_.reset();
+}
+
+void PlyStreamWriter::fail_spill() const {
+  throw WorkError(target_.string() + ": the temporary file of triangles beside it failed (" +
+                  std::strerror(errno) + "); is the disk full?");
+}
+
+void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  const bool with_normals = !mesh.normals.empty();
+  buffer.append(ply_header(info, mesh.vertices.size(), mesh.triangles.size(), with_normals));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    buffer.append_value(to_float(mesh.vertices[i]));
+    if (with_normals) buffer.append_value(to_float(mesh.normals[i]));
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto bytes = ply_triangle(triangle);
+    buffer.append({bytes.data(), bytes.size()});
+  }
+  buffer.flush();
+  out.commit();
+}
+
+}  // namespace astrolith
