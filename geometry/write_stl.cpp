@@ -1,19 +1,10 @@
 // Binary STL: 80 bytes of text, a count, and 50 bytes a triangle.
 #include <limits>
 
+#include "geometry/mesh_normals.h"
 #include "geometry/mesh_writers_internal.h"
 
 namespace astrolith {
-namespace {
-
-// Unit, and counter-clockwise corners seen from its tip; zero for a triangle without area.
-Vec3d facet_normal(const TriangleMesh& mesh, const Triangle& t) {
-  const Vec3d& a = mesh.vertices[t[0]];
-  return normalized(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a));
-}
-
-}  // namespace
-
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw WorkError(file.string() + ": STL holds at most 2^32 - 1 triangles; write a .ply");
@@ -27,7 +18,7 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   buffer.append(header);
   buffer.append_value(static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const Triangle& t : mesh.triangles) {
-    buffer.append_value(to_float(facet_normal(mesh, t)));
+    buffer.append_value(to_float(triangle_normal(mesh, t)));
     for (const std::uint32_t index : t) buffer.append_value(to_float(mesh.vertices[index]));
     buffer.append_value(std::uint16_t{0});
   }
