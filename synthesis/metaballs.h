@@ -19,6 +19,9 @@ namespace astrolith {
 // negative number. e^-30 changes nothing where any kernel within its support contributes.
 inline constexpr float kKernelFloor = 9.3576e-14f;
 
+// Largest exponent of a kernel: deep inside sharp bodies the field saturates, so that float sums stay finite.
+inline constexpr float kLargestExponent = 60.0f;
+
 // Parameters of a body, ready for evaluation in scalar type T.
 template <typename T>
 struct MetaballParameters {
@@ -53,7 +56,8 @@ ASTROLITH_HD inline void accumulate_metaball(const MetaballParameters<T>& body,
   const T dz = p.z - sphere.center.z;
   const T q = math::fma(dx, dx, math::fma(dy, dy, dz * dz)) * sphere.inverse_radius_squared;
   const T inside_support = q < body.cutoff_squared ? T(1) : T(0);
-  const T value = inside_support * exp(math::fma(-body.m_b, q, body.m_a));
+  const T exponent = math::fma(-body.m_b, q, body.m_a);
+  const T value = inside_support * exp(exponent < T(kLargestExponent) ? exponent : T(kLargestExponent));
   const T weight = value * sphere.inverse_radius_squared;
   sums.kernel += value;
   sums.weighted.x = math::fma(weight, dx, sums.weighted.x);

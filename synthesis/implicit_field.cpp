@@ -1,0 +1,157 @@
+#include "synthesis/implicit_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "synthesis/field_model_internal.h"
+
+namespace astrolith {
+static_assert(BlockField<ImplicitField>);
+
+namespace {
+
+// Points evaluated together: enough to fill vectors, few enough that all arrays stay in the first cache.
+constexpr int kBatch = 256;
+
+struct Batch {
+  std::array<float, kBatch> distance, gx, gy, gz, height;
+  std::array<float, 3 * kBatch> scratch;
+};
+
+void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const float* x,
+                    const float* y, const float* z, float* value) {
+  Batch b;
+  evaluate_metaballs(metaballs, n, x, y, z, b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
+  std::copy_n(b.distance.data(), n, value);
+  for (const HeightLayer& layer : model.layers) {
+    std::get<FractalNoise>(layer).evaluate(n, x, y, z, b.height.data(), b.scratch.data());
+    for (int i = 0; i < n; ++i) value[i] += b.height[static_cast<std::size_t>(i)];
+  }
+}
+
+// Whether F keeps one sign over the box: F has the sign of L - log T + height * divisor.
+BlockContent content_of(const PreparedMetaballs& metaballs, double height_bound, const Box& box) {
+  const MetaballInterval bound = bound_metaballs(metaballs, box);
+  const double margin = height_bound * bound.gradient_max * (1.0 + 1e-5);
+  if (bound.level_max < -margin) return BlockContent::kOutside;
+  if (bound.level_min > margin) return BlockContent::kInside;
+  return BlockContent::kMixed;
+}
+
+std::array<Box, 8> octants(const Box& box) {
+  const Vec3d c = box.center();
+  std::array<Box, 8> children;
+  for (unsigned k = 0; k < 8; ++k) {
+    Box& child = children[k];
+    child.min = {k & 1 ? c.x : box.min.x, k & 2 ? c.y : box.min.y, k & 4 ? c.z : box.min.z};
+    child.max = {k & 1 ? box.max.x : c.x, k & 2 ? box.max.y : c.y, k & 4 ? box.max.z : c.z};
+  }
+  return children;
+}
+
+bool within(const Box& inner, const Box& outer) {
+  return inner.min.x >= outer.min.x && inner.min.y >= outer.min.y && inner.min.z >= outer.min.z &&
+         inner.max.x <= outer.max.x && inner.max.y <= outer.max.y && inner.max.z <= outer.max.z;
+}
+
+// Extends `bounds` by the smallest boxes of an octree that are not proved empty.
+void extend_bounds(const PreparedMetaballs& metaballs, double height_bound, const Box& box, int depth,
+                   Box& bounds) {
+  if (!bounds.empty() && within(box, bounds)) return;
+  const PreparedMetaballs reaching = metaballs_reaching(metaballs, box);
+  const BlockContent content = content_of(reaching, height_bound, box);
+  if (content == BlockContent::kOutside) return;
+  if (depth == 0 || content == BlockContent::kInside) {
+    bounds.extend(box.min);
+    bounds.extend(box.max);
+    return;
+  }
+  for (const Box& child : octants(box)) extend_bounds(reaching, height_bound, child, depth - 1, bounds);
+}
+
+// Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
+Box surface_bounds(const PreparedMetaballs& metaballs, double height_bound) {
+  constexpr int kDepth = 6;
+  Box box = support_bounds(metaballs);
+  for (int pass = 0; pass < 4; ++pass) {
+    Box tighter;
+    extend_bounds(metaballs, height_bound, box, kDepth, tighter);
+    if (tighter.empty()) return tighter;
+    const bool shrunk = norm(tighter.extent()) < 0.7 * norm(box.extent());
+    box = tighter;
+    if (!shrunk) break;
+  }
+  return box;
+}
+
+// Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
+std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const Box& domain) {
+  std::vector<HeightLayer> layers;
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    if (const auto* fractal = std::get_if<FractalLayer>(&recipe.layers[i])) {
+      layers.emplace_back(FractalNoise(*fractal, recipe.seed, static_cast<int>(i), domain));
+    }
+  }
+  return layers;
+}
+
+}  // namespace
+
+BlockContent FieldBlock::content() const { return content_of(metaballs_, model_->height_bound, box_); }
+
+FieldBlock FieldBlock::restricted_to(const Box& child) const {
+  return {*model_, metaballs_reaching(metaballs_, child), child};
+}
+
+void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                          std::span<float> value) const {
+  for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
+    const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
+    evaluate_batch(*model_, metaballs_, n, &x[begin], &y[begin], &z[begin], &value[begin]);
+  }
+}
+
+ImplicitField::ImplicitField(const Recipe& recipe) {
+  if (!recipe.body || recipe.body->spheres.empty()) {
+    throw InputError("recipe: body: is missing; give a body, or lay these layers on one");
+  }
+  FieldModel model;
+  model.metaballs = prepare_metaballs(*recipe.body);
+  model.layers = prepare_layers(recipe, support_bounds(model.metaballs));
+  for (const HeightLayer& layer : model.layers) {
+    model.height_bound += std::visit([](const auto& l) { return l.height_bound(); }, layer);
+  }
+  model.bounds = surface_bounds(model.metaballs, model.height_bound);
+  model_ = std::make_shared<const FieldModel>(std::move(model));
+}
+
+double ImplicitField::value(const Vec3d& p) const {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  float f = 0.0f;
+  evaluate_batch(*model_, model_->metaballs, 1, &x, &y, &z, &f);
+  return static_cast<double>(f);
+}
+
+Vec3d ImplicitField::gradient(const Vec3d& p) const {
+  if (model_->layers.empty()) return distance_gradient(model_->metaballs, p);
+  const double h = gradient_step();
+  const auto slope = [&](const Vec3d& d) { return (value(p + d) - value(p - d)) / (2.0 * h); };
+  return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
+}
+
+double ImplicitField::gradient_step() const {
+  const Vec3d e = model_->bounds.empty() ? Vec3d{1, 1, 1} : model_->bounds.extent();
+  return std::max({e.x, e.y, e.z}) * 0x1p-11;
+}
+
+Box ImplicitField::bounds() const { return model_->bounds; }
+
+double ImplicitField::height_bound() const { return model_->height_bound; }
+
+FieldBlock ImplicitField::gather(const Box& box) const {
+  return {*model_, metaballs_reaching(model_->metaballs, box), box};
+}
+
+}  // namespace astrolith

@@ -1,0 +1,76 @@
+// The field of a recipe: the body's signed distance plus the heights of its layers.
+//
+//   ImplicitField field(read_recipe("bennu.json"));
+//   double f = field.value({0.1, 0.0, 0.25});           // positive inside, recipe's length units
+//   Vec3d inward = field.gradient({0.1, 0.0, 0.25});
+//   bool rock = field.inside({0.1, 0.0, 0.25});
+//
+// F(p) = s(p) + sum of layer heights (synthesis/metaballs.h), and the surface is F = 0. A positive height
+// lies along the outward normal and enlarges the body. Near the surface F is a distance to first order.
+//
+// Every value is computed in float from float coordinates by the functions that blocks and GPUs run, so a
+// single point, a block of any size and any thread count give the same bits.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "recipe/recipe.h"
+#include "synthesis/block_field.h"
+#include "synthesis/metaball_body.h"
+
+namespace astrolith {
+
+struct FieldModel;  // what the field and its blocks share
+
+// The part of a field that reaches a box. Lives no longer than its field. All members may be called from
+// many threads.
+class FieldBlock {
+ public:
+  // kOutside: F < 0 at every float point of the box; kInside: F > 0.
+  BlockContent content() const;
+
+  // For a box within this one. Cheaper than gathering from the field, and the same block.
+  FieldBlock restricted_to(const Box& child) const;
+
+  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size.
+  void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                std::span<float> value) const;
+
+  const Box& box() const { return box_; }
+
+ private:
+  friend class ImplicitField;
+  FieldBlock(const FieldModel& model, PreparedMetaballs metaballs, const Box& box)
+      : model_(&model), metaballs_(std::move(metaballs)), box_(box) {}
+
+  const FieldModel* model_;
+  PreparedMetaballs metaballs_;
+  Box box_;
+};
+
+class ImplicitField {
+ public:
+  // Expects a recipe that validation accepts. Throws InputError when it has no body.
+  explicit ImplicitField(const Recipe& recipe);
+
+  double value(const Vec3d& p) const;
+  bool inside(const Vec3d& p) const { return value(p) > 0.0; }
+  // Of F, pointing inwards. Analytic for a bare body; with layers, central differences over gradient_step().
+  Vec3d gradient(const Vec3d& p) const;
+  // 2^-11 of the longest side of bounds(), in length units.
+  double gradient_step() const;
+
+  // Holds the whole surface, within about 1/64 of its longest side; empty where the body is.
+  Box bounds() const;
+  // |sum of layer heights| never exceeds this, in length units.
+  double height_bound() const;
+
+  FieldBlock gather(const Box& box) const;
+
+ private:
+  std::shared_ptr<const FieldModel> model_;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,48 @@
+// Recipes that several tests of synthesis share.
+#pragma once
+
+#include <cmath>
+
+#include "numerics/hash_random.h"
+#include "recipe/recipe.h"
+
+namespace astrolith::testing {
+
+inline Recipe sphere_recipe(double radius, const Vec3d& center = {}) {
+  Recipe recipe;
+  recipe.body = MetaballBody{};
+  recipe.body->spheres = {{center, radius}};
+  return recipe;
+}
+
+// A potato of overlapping spheres about 1 long, as a fit makes it: a few large ones and many small near the
+// rim.
+inline Recipe potato_recipe(int num_spheres, std::uint64_t seed, double sharpness = 3.0) {
+  CounterRandom random(seed);
+  Recipe recipe;
+  recipe.seed = seed;
+  recipe.body = MetaballBody{};
+  recipe.body->blend_exponent = sharpness;
+  for (int i = 0; i < num_spheres; ++i) {
+    const double share = (i + 1.0) / num_spheres;
+    const double radius = 0.28 * std::pow(1.0 - 0.85 * share, 1.5) + 0.02;
+    Vec3d direction{random.normal(), random.normal(), random.normal()};
+    direction = normalized(direction);
+    const double reach = std::pow(random.uniform(), 0.4);
+    recipe.body->spheres.push_back(
+        {{direction.x * (0.55 - radius) * reach, direction.y * (0.36 - radius) * reach,
+          direction.z * (0.33 - radius) * reach},
+         radius});
+  }
+  return recipe;
+}
+
+inline FractalLayer fractal_layer(double amplitude, double frequency, int octaves) {
+  FractalLayer layer;
+  layer.amplitude = amplitude;
+  layer.frequency = frequency;
+  layer.octaves = octaves;
+  return layer;
+}
+
+}  // namespace astrolith::testing

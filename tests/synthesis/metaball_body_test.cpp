@@ -1,0 +1,131 @@
+#include "synthesis/metaball_body.h"
+
+#include <array>
+
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+using testing::potato_recipe;
+
+struct PointValue {
+  float distance, gx, gy, gz;
+};
+
+PointValue evaluate_one(const PreparedMetaballs& metaballs, const Vec3d& p) {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  PointValue v{};
+  evaluate_metaballs(metaballs, 1, &x, &y, &z, &v.distance, &v.gx, &v.gy, &v.gz);
+  return v;
+}
+
+TEST(MetaballBody, IsoValueOnlyScalesTheField) {
+  // m >= T is the same body as m/T >= 1: for one kernel T = e^-c moves the surface to q = 1 + c/b.
+  MetaballBody body = *testing::sphere_recipe(2.0).body;
+  body.blend_exponent = 4.0;
+  body.iso_value = std::exp(-3.0);
+  const PointValue v = evaluate_one(prepare_metaballs(body), {4.0, 0.0, 0.0});
+  EXPECT_NEAR(v.distance, 0.0f, 1e-5f);
+  EXPECT_LT(v.gx, 0.0f);
+}
+
+TEST(MetaballBody, DistanceGradientIsTheDerivativeOfTheDistance) {
+  const PreparedMetaballs metaballs = prepare_metaballs(*potato_recipe(60, 3).body);
+  CounterRandom random(5);
+  const double h = 2e-3;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d p{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
+    if (std::fabs(evaluate_one(metaballs, p).distance) > 0.05f) continue;
+    const auto slope = [&](const Vec3d& d) {
+      return (static_cast<double>(evaluate_one(metaballs, p + d).distance) -
+              static_cast<double>(evaluate_one(metaballs, p - d).distance)) /
+             (2 * h);
+    };
+    const Vec3d expected{slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
+    const Vec3d actual = distance_gradient(metaballs, p);
+    EXPECT_LT(norm(actual - expected), 0.02) << i;
+    EXPECT_NEAR(norm(actual), 1.0, 0.5) << i;
+  }
+}
+
+TEST(MetaballBody, SpheresBeyondTheirSupportChangeNoBit) {
+  MetaballBody body = *potato_recipe(120, 9, 2.0).body;
+  body.cutoff_radii = 2.0;
+  const PreparedMetaballs all = prepare_metaballs(body);
+  CounterRandom random(1);
+  std::size_t dropped = 0;
+  for (int k = 0; k < 200; ++k) {
+    Box box;
+    box.extend({random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)});
+    box.extend(box.min + Vec3d{0.05, 0.03, 0.02});
+    const PreparedMetaballs near = metaballs_reaching(all, box);
+    dropped += all.spheres.size() - near.spheres.size();
+    for (int i = 0; i < 20; ++i) {
+      const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
+                    random.uniform(box.min.z, box.max.z)};
+      const PointValue a = evaluate_one(all, p), b = evaluate_one(near, p);
+      ASSERT_EQ(math::bits_of(a.distance), math::bits_of(b.distance));
+      ASSERT_EQ(math::bits_of(a.gx), math::bits_of(b.gx));
+    }
+  }
+  EXPECT_GT(dropped, 5000u);
+}
+
+TEST(MetaballBody, ManyPointsGiveTheBitsOfOne) {
+  const PreparedMetaballs metaballs = prepare_metaballs(*potato_recipe(40, 2).body);
+  constexpr int n = 133;  // no multiple of any vector width
+  std::array<float, n> x, y, z, s, gx, gy, gz;
+  CounterRandom random(8);
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = static_cast<float>(random.uniform(-0.6, 0.6));
+    y[i] = static_cast<float>(random.uniform(-0.4, 0.4));
+    z[i] = static_cast<float>(random.uniform(-0.4, 0.4));
+  }
+  evaluate_metaballs(metaballs, n, x.data(), y.data(), z.data(), s.data(), gx.data(), gy.data(), gz.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    const PointValue one = evaluate_one(metaballs, {x[i], y[i], z[i]});
+    ASSERT_EQ(math::bits_of(one.distance), math::bits_of(s[i]));
+    ASSERT_EQ(math::bits_of(one.gz), math::bits_of(gz[i]));
+  }
+}
+
+TEST(MetaballBody, SharpAndTinyBodiesStayFinite) {
+  MetaballBody body;
+  body.blend_exponent = 80.0;
+  body.spheres = {{{0, 0, 0}, 1e-3}, {{0, 0, 0}, 1e-3}, {{2e-4, 0, 0}, 1e-3}};
+  const PointValue v = evaluate_one(prepare_metaballs(body), {1e-4, 0, 0});
+  EXPECT_TRUE(std::isfinite(v.distance));
+  EXPECT_GT(v.distance, 0.0f);
+  EXPECT_TRUE(std::isfinite(v.gx));
+}
+
+TEST(MetaballBody, IntervalsHoldEveryValue) {
+  CounterRandom random(4);
+  for (int k = 0; k < 3000; ++k) {
+    MetaballBody body =
+        *potato_recipe(1 + k % 50, static_cast<std::uint64_t>(k), random.uniform(0.5, 10.0)).body;
+    body.cutoff_radii = random.uniform(1.1, 5.0);
+    const PreparedMetaballs metaballs = prepare_metaballs(body);
+    Box box;
+    box.extend({random.uniform(-0.8, 0.8), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
+    const double size = std::pow(10.0, random.uniform(-3.0, -0.3));
+    box.extend(box.min + Vec3d{size, size * random.uniform(), size * random.uniform()});
+    const MetaballInterval bound = bound_metaballs(metaballs_reaching(metaballs, box), box);
+    const double floor = metaballs.parameters.gradient_floor;
+    for (int i = 0; i < 40; ++i) {
+      const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
+                    random.uniform(box.min.z, box.max.z)};
+      const PointValue v = evaluate_one(metaballs, p);
+      const double gradient =
+          std::sqrt(double{v.gx} * v.gx + double{v.gy} * v.gy + double{v.gz} * v.gz + floor);
+      const double level = double{v.distance} * gradient;
+      ASSERT_LE(gradient, bound.gradient_max);
+      ASSERT_GE(level, bound.level_min);
+      ASSERT_LE(level, bound.level_max);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace astrolith
