@@ -20,6 +20,8 @@ namespace astrolith {
 namespace {
 
 std::atomic<int> g_interrupts{0};
+// True while the cursor stands at the end of an unfinished progress bar.
+std::atomic<bool> g_bar_open{false};
 
 void on_interrupt(int signal_number) {
   if (g_interrupts.fetch_add(1) > 0) {
@@ -28,10 +30,22 @@ void on_interrupt(int signal_number) {
   }
 }
 
-// Messages of libraries may hold line breaks; the promise is one line.
+// Messages may quote libraries and file names, with line breaks and terminal controls in them; the promise is
+// one line of text.
 std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, ' ');
   return text;
+}
+
+void end_bar() {
+  if (g_bar_open.exchange(false)) std::fputc('\n', stderr);
+}
+
+// Below an unfinished bar, if there is one. A closed stderr is no reason to fail.
+void print_line(const std::string& text) {
+  end_bar();
+  std::fputs((text + "\n").c_str(), stderr);
 }
 
 std::string bar(double fraction) {
@@ -43,7 +57,9 @@ std::string bar(double fraction) {
 
 void write_summary(const std::string& file_name, const nlohmann::ordered_json& summary) {
   OutputFile file(file_name);
-  const std::string text = summary.dump(2) + "\n";
+  // File names need not be UTF-8.
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  const std::string text = summary.dump(2, ' ', false, replace) + "\n";
   file.write(text.data(), text.size());
   file.commit();
 }
@@ -68,31 +84,38 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    fmt::print(stderr, "{}: {}; see {} --help\n", name_, one_line(e.what()), name_);
+    print_line(fmt::format("{}: {}; see {} --help", name_, one_line(e.what()), name_));
     return 2;
   }
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   const ThreadLimit limit(threads);
-  const auto start = std::chrono::steady_clock::now();
   try {
-    work();
-    if (!summary_file.empty()) {
-      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      if (!summary.contains("seconds")) summary["seconds"] = seconds.count();
-      write_summary(summary_file, summary);
-    }
+    timed(work);
+    end_bar();
     return 0;
   } catch (const InputError& e) {
-    fmt::print(stderr, "{}: {}\n", name_, one_line(e.what()));
+    print_line(fmt::format("{}: {}", name_, one_line(e.what())));
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "{}: out of memory; try a smaller resolution or fewer samples\n", name_);
+    print_line(fmt::format("{}: out of memory; try a smaller resolution or fewer samples", name_));
     return 1;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "{}: {}\n", name_, one_line(e.what()));
+    print_line(fmt::format("{}: {}", name_, one_line(e.what())));
     return 1;
   }
+}
+
+void Program::timed(const std::function<void()>& work) {
+  // A summary that cannot be written should not be found out after an hour's work.
+  if (!summary_file.empty()) OutputFile probe(summary_file);
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  if (summary_file.empty()) return;
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  if (!summary.contains("seconds")) summary["seconds"] = seconds.count();
+  if (interrupted()) summary["interrupted"] = true;
+  write_summary(summary_file, summary);
 }
 
 Progress Program::progress(std::string stage) const {
@@ -103,14 +126,14 @@ Progress Program::progress(std::string stage) const {
   const bool draw = !quiet && ::isatty(STDERR_FILENO) != 0;
   return [draw, stage = std::move(stage), state = std::make_shared<State>()](double fraction,
                                                                              std::string_view words) {
-    if (draw) {
-      const std::chrono::duration<double> now = std::chrono::steady_clock::now() - state->started;
-      if (fraction >= 1.0 || now.count() - state->shown_at > 0.1) {
-        state->shown_at = now.count();
-        fmt::print(stderr, "\r{:<10} [{}] {:3.0f} % {:5.1f} s  {}\x1b[K{}", stage, bar(fraction),
-                   100.0 * fraction, now.count(), words, fraction >= 1.0 ? "\n" : "");
-        std::fflush(stderr);
-      }
+    const std::chrono::duration<double> now = std::chrono::steady_clock::now() - state->started;
+    if (draw && (fraction >= 1.0 || now.count() - state->shown_at > 0.1)) {
+      state->shown_at = now.count();
+      const std::string line =
+          fmt::format("\r{:<10} [{}] {:3.0f} % {:5.1f} s  {}\x1b[K{}", stage, bar(fraction), 100.0 * fraction,
+                      now.count(), words, fraction >= 1.0 ? "\n" : "");
+      std::fputs(line.c_str(), stderr);
+      g_bar_open = fraction < 1.0;
     }
     return !interrupted();
   };
@@ -119,14 +142,14 @@ Progress Program::progress(std::string stage) const {
 bool Program::interrupted() { return g_interrupts.load() > 0; }
 
 void Program::say(const std::string& line) const {
-  if (!quiet) fmt::print(stderr, "{}\n", line);
+  if (!quiet) print_line(line);
 }
 
 std::string Program::tool() const { return name_ + " " + ASTROLITH_VERSION; }
 
 std::vector<std::pair<std::string, std::string>> Program::given_options() const {
-  static const std::vector<std::string> kNoEffect{"output", "threads",  "quiet", "summary",
-                                                  "report", "spectrum", "help",  "version"};
+  static const std::vector<std::string> kNoEffect{"output",   "threads",    "quiet", "summary", "report",
+                                                  "spectrum", "checkpoint", "help",  "version"};
   std::vector<std::pair<std::string, std::string>> given;
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || option->get_positional()) continue;

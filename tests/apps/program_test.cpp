@@ -1,0 +1,124 @@
+// What all programs share, with small pieces of work in place of a program's own.
+#include "apps/program.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "numerics/errors.h"
+#include "numerics/output_file.h"
+
+namespace astrolith {
+namespace {
+
+int status_of(std::vector<std::string> arguments, const std::function<void(Program&)>& work) {
+  Program program("tool", "A program for tests.");
+  arguments.insert(arguments.begin(), "tool");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  return program.run(static_cast<int>(argv.size()), argv.data(), [&] { work(program); });
+}
+
+struct Outcome {
+  int status;
+  std::string errors;
+};
+
+Outcome run(const std::vector<std::string>& arguments, const std::function<void(Program&)>& work) {
+  ::testing::internal::CaptureStderr();
+  const int status = status_of(arguments, work);
+  return {status, ::testing::internal::GetCapturedStderr()};
+}
+
+std::filesystem::path temporary(const std::string& name) {
+  return std::filesystem::temp_directory_path() / (name + std::to_string(::getpid()));
+}
+
+TEST(Program, StatusSaysWhoseFaultItWas) {
+  EXPECT_EQ(run({}, [](Program&) {}).status, 0);
+  EXPECT_EQ(run({}, [](Program&) { throw InputError("a.obj: bad; mend it"); }).status, 2);
+  EXPECT_EQ(run({}, [](Program&) { throw WorkError("disk full"); }).status, 1);
+  EXPECT_EQ(run({}, [](Program&) { throw std::bad_alloc(); }).status, 1);
+  EXPECT_EQ(run({"--unknown"}, [](Program&) { FAIL(); }).status, 2);
+  EXPECT_EQ(run({"--threads", "-1"}, [](Program&) { FAIL(); }).status, 2);
+  EXPECT_EQ(run({"--seed", "9007199254740992"}, [](Program&) { FAIL(); }).status, 2);
+}
+
+TEST(Program, AnErrorIsOneLineOfText) {
+  EXPECT_EQ(run({}, [](Program&) { throw InputError("a\nb\x1b[31m.obj: bad\r\n"); }).errors,
+            "tool: a b [31m.obj: bad  \n");
+  const std::string errors = run({"--unknown"}, [](Program&) {}).errors;
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
+  EXPECT_NE(errors.find("--unknown"), std::string::npos);
+}
+
+TEST(Program, NothingIsDrawnInAPipe) {
+  EXPECT_EQ(run({}, [](Program& p) { p.progress("fit")(0.5, "half"); }).errors, "");
+  EXPECT_EQ(run({}, [](Program& p) { p.say("done"); }).errors, "done\n");
+  EXPECT_EQ(run({"--quiet"}, [](Program& p) { p.say("done"); }).errors, "");
+}
+
+TEST(Program, SummaryIsWrittenWhenTheWorkIsDone) {
+  const auto file = temporary("astrolith_summary_");
+  const auto fill = [](Program& p) { p.summary["name"] = "caf\xe9.png"; };  // Latin-1, not UTF-8
+  EXPECT_EQ(run({"--summary", file.string()}, fill).status, 0);
+  const auto summary = nlohmann::json::parse(std::ifstream(file));
+  EXPECT_EQ(summary.at("name"), "caf\xef\xbf\xbd.png");
+  EXPECT_GE(summary.at("seconds").get<double>(), 0.0);
+  EXPECT_FALSE(summary.contains("interrupted"));
+  std::filesystem::remove(file);
+
+  EXPECT_EQ(run({"--summary", file.string()}, [](Program&) { throw WorkError("no"); }).status, 1);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(Program, AnUnwritableSummaryIsFoundOutBeforeTheWork) {
+  bool worked = false;
+  const auto outcome = run({"--summary", "/nonexistent/s.json"}, [&](Program&) { worked = true; });
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.errors.find("/nonexistent/s.json"), std::string::npos);
+  EXPECT_FALSE(worked);
+}
+
+TEST(Program, GivenOptionsAreThoseThatChangeTheResult) {
+  run({"--seed", "7", "--threads", "2", "--quiet"}, [](Program& p) {
+    const auto given = p.given_options();
+    ASSERT_EQ(given.size(), 1u);
+    EXPECT_EQ(given[0], std::make_pair(std::string("seed"), std::string("7")));
+  });
+}
+
+// In a child process, since a signal marks the process for good.
+TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
+  const auto file = temporary("astrolith_interrupted_");
+  const auto work = [](Program& p) {
+    const Progress progress = p.progress("fit");
+    if (!progress(0.1, "")) std::exit(10);
+    std::raise(SIGINT);
+    if (progress(0.2, "")) std::exit(11);
+  };
+  EXPECT_EXIT(std::exit(status_of({"--summary", file.string()}, work)), ::testing::ExitedWithCode(0), "");
+  EXPECT_TRUE(nlohmann::json::parse(std::ifstream(file)).at("interrupted").get<bool>());
+  std::filesystem::remove(file);
+}
+
+TEST(ProgramDeathTest, ASecondCtrlCEndsAtOnce) {
+  const auto work = [](Program&) {
+    std::raise(SIGINT);
+    std::raise(SIGINT);
+  };
+  EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGINT), "");
+}
+
+TEST(ProgramDeathTest, AClosedStderrIsNoReasonToCrash) {
+  const auto work = [](Program&) {
+    ::close(STDERR_FILENO);
+    throw InputError("a.obj: bad; mend it");
+  };
+  EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(2), "");
+}
+
+}  // namespace
+}  // namespace astrolith
