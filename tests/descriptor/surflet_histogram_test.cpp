@@ -1,0 +1,152 @@
+#include "descriptor/surflet_histogram.h"
+
+#include <limits>
+#include <numeric>
+
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "tests/descriptor/surflets.h"
+
+namespace astrolith {
+namespace {
+
+using namespace testing;
+
+SurfletHistogram histogram_of(const SurfaceSamples& s) { return surflet_histogram(s.points, s.normals); }
+
+std::uint64_t total(const SurfletHistogram& h) {
+  return std::accumulate(h.counts.begin(), h.counts.end(), std::uint64_t{0});
+}
+
+// Half the sum of |differences|: pairs that changed their bin.
+double moved(const SurfletHistogram& a, const SurfletHistogram& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.counts.size(); ++i) {
+    sum += std::fabs(static_cast<double>(a.counts[i]) - static_cast<double>(b.counts[i]));
+  }
+  return sum / 2;
+}
+
+// Every vector width, run and chunk edge against one pair at a time.
+TEST(SurfletHistogram, EqualsOnePairAtATime) {
+  for (int n : {0, 1, 2, 3, 15, 16, 17, 63, 64, 65, 511, 512, 513, 700}) {
+    SurfaceSamples s = random_surflets(n, 3);
+    // Corners of a box centred on 0 whose diagonal is 1: positions need no scaling, so no rounding intrudes.
+    for (Vec3d& p : s.points) p = 0.5 * (p - Vec3d{0.5, 0.5, 0.5});
+    if (n >= 2) {
+      s.points[0] = {-0.3, -0.4, 0};
+      s.points[1] = {0.3, 0.4, 0};
+      for (Vec3d& p : s.points) p.z = std::clamp(p.z, -0.125, 0.125);
+      s.points[0].z = s.points[1].z = 0;
+    }
+    const SurfletHistogram h = histogram_of(s);
+    ASSERT_EQ(total(h), static_cast<std::uint64_t>(n) * static_cast<std::uint64_t>(std::max(n - 1, 0)) / 2);
+    ASSERT_EQ(h.pairs, total(h));
+    const auto surflet = [&](std::size_t i) {
+      const Vec3d p = (1 / h.max_distance) * s.points[i], m = normalized(s.normals[i]);
+      return Surflet{{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                     {static_cast<float>(m.x), static_cast<float>(m.y), static_cast<float>(m.z)}};
+    };
+    SurfletHistogram expected;
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        ++expected.counts[static_cast<std::size_t>(surflet_bin(surflet(i), surflet(j)))];
+      }
+    }
+    // The box of n points need not be centred exactly on 0: a pair in a hundred thousand may lie on a border.
+    ASSERT_LE(moved(h, expected), 1e-5 * static_cast<double>(h.pairs) + (n > 500 ? 2 : 0)) << n;
+  }
+}
+
+// Up to rounding, which moves the few pairs that lie on a bin's border.
+TEST(SurfletHistogram, MovingTurningAndScalingChangeNothing) {
+  const SurfaceSamples s = random_surflets(800, 1);
+  const SurfletHistogram before = histogram_of(s);
+  SurfaceSamples t = s;
+  for (Vec3d& p : t.points) p = 1234.5 * rotated(0.5, {0.5, -0.5, 0.5}, p) + Vec3d{1e5, -2e5, 3e4};
+  for (Vec3d& n : t.normals) n = 3.0 * rotated(0.5, {0.5, -0.5, 0.5}, n);
+  EXPECT_LT(moved(before, histogram_of(t)), 3e-5 * static_cast<double>(before.pairs));
+  const double c = std::cos(0.3), q = std::sin(0.3) / std::sqrt(3.0);
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    t.points[i] = rotated(c, {q, q, q}, s.points[i]);
+    t.normals[i] = rotated(c, {q, q, q}, s.normals[i]);
+  }
+  EXPECT_LT(moved(before, histogram_of(t)), 3e-5 * static_cast<double>(before.pairs));
+}
+
+TEST(SurfletHistogram, OrderAndThreadsChangeNothing) {
+  const SurfaceSamples s = random_surflets(1500, 5);
+  SurfletHistogram one;
+  {
+    const ThreadLimit limit(1);
+    one = histogram_of(s);
+  }
+  SurfaceSamples shuffled = s;
+  CounterRandom random(6);
+  for (std::size_t i = s.points.size() - 1; i > 0; --i) {
+    const std::size_t k = random.below(i + 1);
+    std::swap(shuffled.points[i], shuffled.points[k]);
+    std::swap(shuffled.normals[i], shuffled.normals[k]);
+  }
+  const ThreadLimit limit(4);
+  EXPECT_EQ(histogram_of(s).counts, one.counts);
+  EXPECT_EQ(histogram_of(shuffled).counts, one.counts);
+}
+
+// On a sphere a pair at angle theta has alpha = theta, beta = 0, gamma = -sin(theta/2), delta = sin(theta/2),
+// and delta^2 is uniform in [0, 1].
+TEST(SurfletHistogram, SphereAgainstQuadrature) {
+  SurfaceSamples s;
+  const int half = 1500;
+  for (int k = 0; k < half; ++k) {  // a golden spiral, and each point's antipode, so that the diameter is 2
+    const double z = 1 - (k + 0.5) / half, phi = k * kPi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    s.points.push_back({r * std::cos(phi), r * std::sin(phi), z});
+    s.points.push_back(-s.points.back());
+  }
+  s.normals = s.points;
+  const auto f = histogram_of(s).frequencies();
+  std::vector<double> expected(kSurfletBins, 0.0);
+  const int steps = 200000;
+  for (int k = 0; k < steps; ++k) {
+    const double delta = std::sqrt((k + 0.5) / steps), theta = 2 * std::asin(delta);
+    const int a = static_cast<int>((theta / kPi + 1) / 2 * 5), g = static_cast<int>((1 - delta) / 2 * 5);
+    expected[static_cast<std::size_t>(((a * 5 + 2) * 5 + g) * 5 + static_cast<int>(delta * 5))] +=
+        1.0 / steps;
+  }
+  for (std::size_t b = 0; b < f.size(); ++b) ASSERT_NEAR(f[b], expected[b], 1e-3) << b;
+}
+
+TEST(SurfletHistogram, TellsShapesApartAndSamplingsNot) {
+  const auto sampled = [](const TriangleMesh& mesh, std::uint64_t seed) {
+    return histogram_of(sample_poisson_disk(mesh, 2000, seed));
+  };
+  const auto torus_a = sampled(torus(1, 0.4), 1), torus_b = sampled(torus(1, 0.4), 2);
+  EXPECT_GT(similarity(torus_a, torus_b), 0.96);
+  EXPECT_LT(similarity(torus_a, sampled(icosphere(4), 1)), 0.7);
+  EXPECT_DOUBLE_EQ(similarity(torus_a, torus_a), 1);
+}
+
+TEST(SurfletHistogram, SimilarityByHand) {
+  const std::vector<double> f = {1, 0, 0}, g = {0, 1, 0}, h = {0.5, 0.5, 0};
+  EXPECT_DOUBLE_EQ(histogram_similarity(f, g), 0);
+  EXPECT_DOUBLE_EQ(histogram_similarity(f, h), 1 - std::sqrt(0.5 / 1.5));
+  EXPECT_DOUBLE_EQ(histogram_similarity(std::vector<double>(3), std::vector<double>(3)), 1);
+  EXPECT_THROW(histogram_similarity(f, std::vector<double>(2)), InputError);
+}
+
+TEST(SurfletHistogram, CoincidentPointsHaveABin) {
+  const std::vector<Vec3d> points(10, Vec3d{1, 2, 3}), normals(10, Vec3d{0, 0, 1});
+  EXPECT_EQ(surflet_histogram(points, normals).counts[((2 * 5 + 2) * 5 + 2) * 5], 45u);
+}
+
+TEST(SurfletHistogram, WrongInput) {
+  const std::vector<Vec3d> two(2), three(3);
+  EXPECT_THROW(surflet_histogram(two, three), InputError);
+  std::vector<Vec3d> bad(2);
+  bad[1].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(surflet_histogram(bad, two), InputError);
+  EXPECT_THROW(surflet_histogram(two, bad), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith
