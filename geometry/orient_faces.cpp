@@ -1,34 +1,12 @@
-#include <algorithm>
-#include <cstdint>
+#include "geometry/orient_faces.h"
 
-#include "geometry/weld.h"
+#include <cstdint>
+#include <utility>
+
+#include "geometry/mesh_edges_internal.h"
 
 namespace astrolith {
 namespace {
-
-// One side of a face, its ends sorted; forward when the face runs from the lower vertex to the higher.
-struct Side {
-  std::uint32_t low, high, face;
-  bool forward;
-
-  bool same_edge(const Side& o) const { return low == o.low && high == o.high; }
-};
-
-std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles[f][k], b = triangles[f][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), f, a < b});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    if (a.low != b.low) return a.low < b.low;
-    return a.high != b.high ? a.high < b.high : a.face < b.face;
-  });
-  return sides;
-}
 
 // For each face and side the neighbour across it, or none, and whether the two are wound alike.
 struct Neighbour {
@@ -37,19 +15,14 @@ struct Neighbour {
   bool alike = true;
 };
 
-std::vector<std::array<Neighbour, 3>> neighbours(const std::vector<Triangle>& triangles) {
-  std::vector<std::array<Neighbour, 3>> result(triangles.size());
-  std::vector<std::uint8_t> used(triangles.size(), 0);
-  const auto link = [&](const Side& from, const Side& to) {
-    result[from.face][used[from.face]++] = {to.face, from.forward != to.forward};
-  };
-  const std::vector<Side> sides = sorted_sides(triangles);
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
-    if (end - begin != 2) continue;
-    link(sides[begin], sides[begin + 1]);
-    link(sides[begin + 1], sides[begin]);
-  }
+std::vector<std::array<Neighbour, 3>> neighbours(const TriangleMesh& mesh) {
+  std::vector<std::array<Neighbour, 3>> result(mesh.triangles.size());
+  for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
+    if (edge.size() != 2) return;
+    const bool alike = edge[0].forward != edge[1].forward;
+    result[edge[0].triangle][edge[0].corner] = {edge[1].triangle, alike};
+    result[edge[1].triangle][edge[1].corner] = {edge[0].triangle, alike};
+  });
   return result;
 }
 
@@ -81,7 +54,7 @@ double wind_alike(const TriangleMesh& mesh, const std::vector<std::array<Neighbo
 }  // namespace
 
 TriangleMesh orient_faces(TriangleMesh mesh) {
-  const auto adjacent = neighbours(mesh.triangles);
+  const auto adjacent = neighbours(mesh);
   // An open part has a volume only with respect to a point: the box's middle.
   const Vec3d origin = mesh.bounds().center();
   std::vector<std::uint8_t> visited(mesh.triangles.size(), 0), flipped(mesh.triangles.size(), 0);

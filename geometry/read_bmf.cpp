@@ -1,7 +1,10 @@
 // BMF, the bodies of OpenUniverse: parts of a flag, a texture's name, a material, vertices and faces, little
 // endian. Vertices are repeated along texture seams, and every triangle stands twice, once in each winding.
+#include <algorithm>
+
 #include "geometry/byte_reader_internal.h"
 #include "geometry/mesh_file_internal.h"
+#include "geometry/orient_faces.h"
 #include "geometry/weld.h"
 
 namespace astrolith {

@@ -3,12 +3,13 @@
 //
 // Which edges are shared is taken from the coordinates of whole edges, not of single vertices: neighbouring
 // vertices that fell together in a printed file stay two.
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "geometry/mesh_edges_internal.h"
 #include "geometry/mesh_file_internal.h"
+#include "geometry/orient_faces.h"
 #include "geometry/text_scanner_internal.h"
-#include "geometry/weld.h"
 
 namespace astrolith {
 namespace {
@@ -77,28 +78,10 @@ EdgeMatch match_edge(const CubeGrid& grid, const std::vector<Vec3d>& points, std
   return best;
 }
 
-// Joins indices into classes named by their lowest member.
-class Classes {
- public:
-  explicit Classes(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-Classes join_edges(const MeshFile& file, const CubeGrid& grid, const TriangleMesh& stored) {
+DisjointSets join_edges(const MeshFile& file, const CubeGrid& grid, const TriangleMesh& stored) {
   // Files print at least five digits; partners differ by their rounding at most.
   const double tolerance = 1e-4 * stored.bounds().diagonal();
-  Classes classes(stored.vertices.size());
+  DisjointSets classes(stored.vertices.size());
   for (std::uint32_t edge = 0; edge < kEdges; ++edge) {
     const EdgeMatch match = match_edge(grid, stored.vertices, edge);
     if (!(match.distance <= tolerance)) {
@@ -106,7 +89,7 @@ Classes join_edges(const MeshFile& file, const CubeGrid& grid, const TriangleMes
                 "an ICQ's six faces must close; fetch it again");
     }
     for (std::uint32_t k = 0; k <= grid.q(); ++k) {
-      classes.join(grid.on_edge(edge, k), grid.on_edge(match.edge, match.reversed ? grid.q() - k : k));
+      classes.unite(grid.on_edge(edge, k), grid.on_edge(match.edge, match.reversed ? grid.q() - k : k));
     }
   }
   return classes;
@@ -138,7 +121,7 @@ void append_quads(const CubeGrid& grid, TriangleMesh& mesh) {
   }
 }
 
-TriangleMesh merged(const TriangleMesh& stored, Classes& classes) {
+TriangleMesh merged(const TriangleMesh& stored, DisjointSets& classes) {
   TriangleMesh mesh;
   std::vector<std::uint32_t> new_from_stored(stored.vertices.size());
   for (std::uint32_t i = 0; i < stored.vertices.size(); ++i) {
@@ -182,7 +165,7 @@ TriangleMesh read_icq(const MeshFile& file) {
     stored.vertices.push_back(scan.point());
   }
   append_quads(grid, stored);
-  Classes classes = join_edges(file, grid, stored);
+  DisjointSets classes = join_edges(file, grid, stored);
   TriangleMesh mesh = merged(stored, classes);
   if (mesh.vertices.size() != grid.num_unique()) {
     file.fail("",

@@ -16,8 +16,8 @@ std::uint64_t hash_cell_of(const Vec3d& cell) {
   return mix_bits_64(h ^ std::bit_cast<std::uint64_t>(cell.z));
 }
 
-// Kept vertices by grid cell. Cells are as wide as the radius, so that the 27 around a point hold all within
-// reach; radius 0 makes every coordinate triple its own cell.
+// Kept vertices by grid cell. Cells are a little wider than the radius, so that the 27 around a point hold
+// all within reach however its cell was rounded; radius 0 makes every coordinate triple its own cell.
 class VertexGrid {
  public:
   VertexGrid(const TriangleMesh& mesh, double radius)
@@ -46,7 +46,7 @@ class VertexGrid {
   // Whole numbers as doubles: no tolerance is small enough to overflow them. Adding zero makes -0 and 0 one.
   Vec3d cell_of(const Vec3d& p) const {
     if (radius_ == 0.0) return p + Vec3d{0.0, 0.0, 0.0};
-    const Vec3d q = (p - origin_) * (1.0 / radius_);
+    const Vec3d q = (p - origin_) * (0.999 / radius_);
     return {std::floor(q.x), std::floor(q.y), std::floor(q.z)};
   }
 

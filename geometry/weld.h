@@ -16,9 +16,4 @@ TriangleMesh weld_vertices(TriangleMesh mesh, double tolerance);
 // in the same winding or in the other. Vertices stay.
 TriangleMesh drop_degenerate_and_repeated_faces(TriangleMesh mesh);
 
-// Winds neighbouring faces alike, then each connected part so that its own volume is positive (a cavity's
-// wall is a part of its own and comes out wound like a body). Faces are neighbours across edges that exactly
-// two faces share. Throws nothing; a one-sided surface keeps a seam.
-TriangleMesh orient_faces(TriangleMesh mesh);
-
 }  // namespace astrolith

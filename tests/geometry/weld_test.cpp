@@ -1,0 +1,94 @@
+#include "geometry/weld.h"
+
+#include <stdexcept>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/hash_random.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith {
+namespace {
+
+using namespace testing;
+
+// Every triangle with corners of its own, moved by up to noise.
+TriangleMesh soup(const TriangleMesh& mesh, double noise = 0.0) {
+  TriangleMesh result;
+  CounterRandom random(1);
+  for (const Triangle& t : mesh.triangles) {
+    const auto n = static_cast<std::uint32_t>(result.vertices.size());
+    for (const std::uint32_t index : t) {
+      const Vec3d shift{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+      result.vertices.push_back(mesh.vertices[index] + noise / std::sqrt(3.0) * shift);
+    }
+    result.triangles.push_back({n, n + 1, n + 2});
+  }
+  return result;
+}
+
+TEST(Weld, ExactUndoesASoup) {
+  const TriangleMesh mesh = icosphere(3, 2, {5, 6, 7});
+  const TriangleMesh welded = weld_vertices(soup(mesh), 0);
+  EXPECT_EQ(welded.vertices.size(), mesh.vertices.size());
+  EXPECT_TRUE(analyze_topology(welded).closed);
+  EXPECT_DOUBLE_EQ(volume(welded), volume(mesh));
+}
+
+TEST(Weld, ToleranceIsAFractionOfTheDiagonal) {
+  const TriangleMesh mesh = icosphere(3, 1000);
+  const TriangleMesh noisy = soup(mesh, 1e-5 * mesh.bounds().diagonal());
+  EXPECT_GT(weld_vertices(noisy, 0).vertices.size(), mesh.vertices.size());
+  EXPECT_GT(weld_vertices(noisy, 1e-6).vertices.size(), mesh.vertices.size());
+  // Two copies of a vertex lie at most twice the noise apart.
+  EXPECT_EQ(weld_vertices(noisy, 2.1e-5).vertices.size(), mesh.vertices.size());
+  EXPECT_TRUE(analyze_topology(weld_vertices(noisy, 2.1e-5)).closed);
+}
+
+// Pairs straddle cell borders wherever they fall; the brute-force answer is the same rule without a grid.
+TEST(Weld, AgreesWithBruteForce) {
+  CounterRandom random(7);
+  TriangleMesh mesh;
+  for (int i = 0; i < 600; ++i)
+    mesh.vertices.push_back({random.uniform(), random.uniform(), random.uniform()});
+  const double tolerance = 0.04, reach = tolerance * mesh.bounds().diagonal();
+  std::vector<Vec3d> kept;
+  for (const Vec3d& p : mesh.vertices) {
+    bool near = false;
+    for (const Vec3d& q : kept) near = near || norm(p - q) <= reach;
+    if (!near) kept.push_back(p);
+  }
+  EXPECT_LT(kept.size(), 500u);
+  EXPECT_TRUE(weld_vertices(mesh, tolerance).vertices == kept);
+}
+
+TEST(Weld, FirstOccurrenceStaysWithItsNormal) {
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}, {0, 1, 0}}, {{0, 1, 3}, {2, 3, 1}}, {}};
+  mesh.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
+  const TriangleMesh welded = weld_vertices(mesh, 0);
+  EXPECT_EQ(welded.vertices.size(), 3u);  // zero and minus zero are one place
+  EXPECT_TRUE((welded.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 1}}));
+  EXPECT_TRUE((welded.normals == std::vector<Vec3d>{{0, 0, 1}, {0, 1, 0}, {0, 0, -1}}));
+}
+
+TEST(Weld, HardInputs) {
+  EXPECT_TRUE(weld_vertices({}, 0).vertices.empty());
+  EXPECT_TRUE(weld_vertices({}, 1e-3).vertices.empty());
+  const TriangleMesh point{{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}, {}};
+  EXPECT_EQ(weld_vertices(point, 1e-3).vertices.size(), 1u);
+  EXPECT_EQ(weld_vertices(icosphere(2), 1e-300).vertices.size(), icosphere(2).vertices.size());
+  EXPECT_THROW(weld_vertices(point, -1), std::invalid_argument);
+  EXPECT_THROW(weld_vertices(point, std::nan("")), std::invalid_argument);
+}
+
+TEST(DropFaces, DegenerateRepeatedAndReversed) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                          {{0, 1, 2}, {1, 1, 3}, {1, 2, 0}, {0, 2, 1}, {0, 3, 1}, {3, 2, 3}},
+                          {}};
+  const TriangleMesh clean = drop_degenerate_and_repeated_faces(mesh);
+  EXPECT_TRUE((clean.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 3, 1}}));
+  EXPECT_EQ(clean.vertices.size(), 4u);
+}
+
+}  // namespace
+}  // namespace astrolith
