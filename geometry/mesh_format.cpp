@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <span>
 
@@ -72,17 +71,12 @@ bool is_binary_stl(std::string_view bytes) {
   return bytes.size() == 84 + std::uint64_t{50} * count;
 }
 
-bool is_number(std::string_view word) {
-  double value = 0.0;
-  return std::from_chars(word.data(), word.data() + word.size(), value).ptr == word.data() + word.size();
-}
-
 // The numbers on the next filled line; 0 when it holds anything else.
 int count_numbers(TextScanner& scan) {
   if (!scan.next_filled_line()) return 0;
   int count = 0;
   while (!scan.line_done()) {
-    if (!is_number(scan.word())) return 0;
+    if (!parse_number(scan.word())) return 0;
     ++count;
   }
   return count;
@@ -116,7 +110,7 @@ Format sniff(const MeshFile& file) {
   const std::string_view bytes = file.bytes;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
   if (is_binary_stl(bytes)) return Format::stl_binary;
-  if (bytes.starts_with("solid") && bytes.find("facet") != bytes.npos) return Format::stl_ascii;
+  if (bytes.starts_with("solid")) return Format::stl_ascii;
   for (const Signature& other : kOtherFiles) {
     if (bytes.starts_with(other.start)) return Format::other;
   }

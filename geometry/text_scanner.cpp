@@ -14,18 +14,31 @@ void drop_plus(std::string_view& word) {
 }
 
 // Fortran writes 1.5D+03 for 1.5e+03.
-double parse_fortran(std::string_view word, bool& whole) {
+std::optional<double> parse_fortran(std::string_view word) {
   char copy[64];
-  whole = false;
-  if (word.size() > sizeof copy) return 0.0;
+  if (word.size() > sizeof copy) return {};
   for (std::size_t i = 0; i < word.size(); ++i) copy[i] = word[i] == 'D' || word[i] == 'd' ? 'e' : word[i];
   double value = 0.0;
   const auto [end, error] = std::from_chars(copy, copy + word.size(), value);
-  whole = error == std::errc() && end == copy + word.size();
+  if (error != std::errc() || end != copy + word.size()) return {};
   return value;
 }
 
 }  // namespace
+
+std::optional<double> parse_number(std::string_view word) {
+  drop_plus(word);
+  const char* const word_end = word.data() + word.size();
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word_end, value);
+  if (error == std::errc::invalid_argument) return {};
+  if (end != word_end) return parse_fortran(word);
+  if (error == std::errc::result_out_of_range) {
+    const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
+    return tiny ? 0.0 : HUGE_VAL;
+  }
+  return value;
+}
 
 bool TextScanner::next_line() {
   if (rest_.empty()) return false;
@@ -69,22 +82,10 @@ std::string_view TextScanner::word_anywhere() {
 
 double TextScanner::to_number(std::string_view word, std::string_view what) const {
   if (word.empty()) fail(std::string(what) + " is missing", "complete the line");
-  drop_plus(word);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  bool whole = end == word.data() + word.size();
-  if (error == std::errc::result_out_of_range) {
-    // Too small for a double is zero; too large is caught as not finite.
-    const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
-    value = tiny ? 0.0 : HUGE_VAL;
-  } else if (error == std::errc() && !whole) {
-    value = parse_fortran(word, whole);
-  }
-  if (error == std::errc::invalid_argument || !whole) {
-    fail(std::string(what) + " is " + quoted(word) + ", not a number", "correct the line");
-  }
-  if (!std::isfinite(value)) fail(std::string(what) + " is " + quoted(word), "give finite numbers");
-  return value;
+  const std::optional<double> value = parse_number(word);
+  if (!value) fail(std::string(what) + " is " + quoted(word) + ", not a number", "correct the line");
+  if (!std::isfinite(*value)) fail(std::string(what) + " is " + quoted(word), "give finite numbers");
+  return *value;
 }
 
 std::int64_t TextScanner::to_integer(std::string_view word, std::string_view what) const {

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "geometry/mesh_file_internal.h"
 
 namespace astrolith {
+
+// The number that the whole word spells, Fortran's 1.5D+03 included; infinite when it is too large for a
+// double, nothing when it spells none. The words nan and inf are numbers here.
+std::optional<double> parse_number(std::string_view word);
 
 //   TextScanner scan(file);
 //   while (scan.next_line()) { if (scan.word() == "v") x = scan.number("x"); }
@@ -29,7 +34,7 @@ class TextScanner {
   // True when the rest of the line is a comment.
   bool at_comment(char comment = '#') { return !line_done() && line_.front() == comment; }
 
-  // The next word of the line as a finite number; what names it in messages. Fortran's D exponents are read.
+  // The next word of the line as a finite number; what names it in messages.
   double number(std::string_view what) { return to_number(word(), what); }
   std::int64_t integer(std::string_view what) { return to_integer(word(), what); }
   Vec3d point();

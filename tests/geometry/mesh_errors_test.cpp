@@ -43,7 +43,7 @@ TEST_F(MeshErrors, NoFileNoMesh) {
   EXPECT_NE(complaint(folder.path()).find("folder"), std::string::npos);
   EXPECT_NE(complaint("/dev/zero").find("plain file"), std::string::npos);
   expect("a.obj", "", "empty");
-  expect("a.stl", "\n", "'endsolid'");
+  expect("a.stl", "\n", "the file ends where the header");
   expect("a.xyz", "hello world\n", "neither name nor content");
 }
 
@@ -61,8 +61,10 @@ TEST_F(MeshErrors, Obj) {
   expect("a.obj", "v 1e999 0 0\nf 1 1 1\n", "line 1: x is '1e999'");
   expect("a.obj", "v 1e19 0 0\nf 1 1 1\n", "vertex 1: a coordinate");
   expect("a.obj", "v 0 0 1.2.3\nf 1 1 1\n", "line 1: z is '1.2.3'");
-  expect("a.obj", "v \xff\xfe\x01 0 0\nf 1 1 1\n", "line 1: x is '???'");
-  expect("a.obj", "v " + std::string(100000, '7') + "x 0 0\n", "line 1: x is '7777");
+  expect("a.obj", "v \xff\xfe\x01 0 0\nf 1 1 1\n", "line 1: x is '?\?\?'");
+  std::string long_word = "v x";
+  long_word.resize(100000, '7');
+  expect("a.obj", long_word + " 0 0\n", "line 1: x is 'x777");
 }
 
 TEST_F(MeshErrors, PlyHeader) {
@@ -98,7 +100,6 @@ TEST_F(MeshErrors, PlyBody) {
   expect("a.ply", ply("binary_little_endian", "1", "1", std::string(11, '\0')), "bytes follow");
   const std::string vertex(12, '\0');
   expect("a.ply", ply("binary_little_endian", "1", "1", vertex + "\xff"), "255 list entries");
-  expect("a.ply", ply("binary_little_endian", "1", "1", "\x01\x02\x03\xff" + vertex.substr(4)), "no faces");
   expect("a.ply", ply("binary_big_endian", "1", "1", "\x7f\x80\x01\x01" + vertex.substr(4) + "\3"),
          "x is not a finite");
 }
