@@ -16,6 +16,26 @@ if(ASTROLITH_ESTIMATION)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
 endif()
+
+# CUDA is used where it is found, and never needed. Sanitizers do not see GPU code, so they build without.
+option(ASTROLITH_CUDA "Build the GPU code where a CUDA compiler is found" ON)
+if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE)
+  include(CheckLanguage)
+  check_language(CUDA)
+endif()
+if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE AND CMAKE_CUDA_COMPILER)
+  if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+    # Machine code for Turing, Ampere and Hopper, and the newest as PTX for what comes after.
+    set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 90)
+  endif()
+  enable_language(CUDA)
+  # CMake 3.25 does not know that nvcc has C++20.
+  set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+  set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+  find_package(CUDAToolkit REQUIRED)
+  set(ASTROLITH_HAS_CUDA ON)
+endif()
+
 if(ASTROLITH_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)

@@ -49,7 +49,8 @@ DeviceStatus probe_device() {
     status.compute_capability = 10 * properties.major + properties.minor;
     status.memory_bytes = properties.totalGlobalMem;
     status.usable = device_agrees_with_host();
-    if (!status.usable) status.reason = "the device computes other bits than the CPU; was this built for another GPU?";
+    if (!status.usable)
+      status.reason = "the device computes other bits than the CPU; was this built for another GPU?";
   } catch (const WorkError& e) {
     status.reason = e.what();
   }

@@ -29,7 +29,8 @@ class DeviceBuffer {
   }
   explicit DeviceBuffer(std::span<const T> host) : DeviceBuffer(host.size()) {
     if (count_ != 0) {
-      check_cuda(cudaMemcpy(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice), "copying to the device");
+      check_cuda(cudaMemcpy(data_, host.data(), host.size_bytes(), cudaMemcpyHostToDevice),
+                 "copying to the device");
     }
   }
   DeviceBuffer(DeviceBuffer&& other) noexcept
@@ -41,7 +42,8 @@ class DeviceBuffer {
   // host must hold size() elements.
   void download(std::span<T> host) const {
     if (count_ != 0) {
-      check_cuda(cudaMemcpy(host.data(), data_, count_ * sizeof(T), cudaMemcpyDeviceToHost), "copying from the device");
+      check_cuda(cudaMemcpy(host.data(), data_, count_ * sizeof(T), cudaMemcpyDeviceToHost),
+                 "copying from the device");
     }
   }
   T* data() { return data_; }
