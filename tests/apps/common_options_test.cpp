@@ -1,0 +1,45 @@
+// What every program answers in the same way.
+#include "tests/apps/program_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::Outcome;
+using testing::run_program;
+
+class EveryProgram : public ::testing::TestWithParam<const char*> {
+ protected:
+  std::string name() const { return std::filesystem::path(GetParam()).filename(); }
+};
+
+TEST_P(EveryProgram, HelpStatesTheOptions) {
+  const Outcome outcome = run_program(GetParam(), {"--help"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.errors, "");
+  for (const char* option : {"--seed", "--threads", "--quiet", "--summary", "--version", "--output"}) {
+    EXPECT_NE(outcome.output.find(option), std::string::npos) << option;
+  }
+}
+
+TEST_P(EveryProgram, VersionIsOneLine) {
+  const Outcome outcome = run_program(GetParam(), {"--version"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.output.rfind(name() + " ", 0), 0u) << outcome.output;
+  EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
+}
+
+TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
+  const testing::WorkFolder folder;
+  const std::string output = (folder / "out").string();
+  testing::expect_refusal(folder, GetParam(), {}, "required");
+  testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--no-such-option"}, "--no-such-option");
+  testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--threads", "many"}, "--threads");
+  testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--seed", "-1"}, "--seed");
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram, ::testing::Values(ASTROLITH_PROGRAMS), [](const auto& info) {
+  return std::filesystem::path(info.param).filename().string();
+});
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,87 @@
+// fit_gabor, run as a user runs it.
+#include <nlohmann/json.hpp>
+
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+#include "tests/apps/inputs.h"
+#include "tests/apps/program_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::expect_refusal;
+using testing::run_program;
+using testing::text_of;
+using testing::WorkFolder;
+
+const std::string kFitGabor = ASTROLITH_FIT_GABOR;
+
+class FitGabor : public ::testing::Test {
+ protected:
+  std::string fit(const std::string& output, std::vector<std::string> more) {
+    const std::string file = (folder_ / output).string();
+    std::vector<std::string> arguments{folder_.write("rock.png", testing::noise_png(64)), "-o", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::Outcome outcome = run_program(kFitGabor, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(file);
+  }
+  void expect_image_refused(const std::string& name, const std::string& content) {
+    const std::string file = folder_.write(name, content);
+    expect_refusal(folder_, kFitGabor, {file, "-o", (folder_ / "out.json").string()}, name);
+  }
+
+  WorkFolder folder_;
+};
+
+TEST_F(FitGabor, WritesARecipeOfOneLayer) {
+  fit("rock.json", {});
+  const Recipe recipe = read_recipe(folder_ / "rock.json");
+  EXPECT_FALSE(recipe.body.has_value());
+  ASSERT_EQ(recipe.layers.size(), 1u);
+  EXPECT_FALSE(std::get<GaborLayer>(recipe.layers[0]).lobes.empty());
+  EXPECT_EQ(recipe.provenance.input_name, "rock.png");
+  EXPECT_EQ(recipe.provenance.input_sha256, sha256_of_file(folder_ / "rock.png"));
+}
+
+TEST_F(FitGabor, SameBytesForAnyThreadCount) {
+  EXPECT_EQ(fit("one.json", {"--threads", "1"}), fit("two.json", {"--threads", "2"}));
+}
+
+TEST_F(FitGabor, SummaryHoldsTheFigures) {
+  fit("rock.json", {"--summary", (folder_ / "s.json").string()});
+  const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
+  for (const char* field : {"lobes", "relative_duality_gap", "spectrum_distance", "variance_ratio",
+                            "gaussianity", "iterations", "seconds"}) {
+    ASSERT_TRUE(summary.contains(field)) << field;
+    EXPECT_TRUE(summary[field].is_number()) << field;
+  }
+  EXPECT_GE(summary["relative_duality_gap"].get<double>(), 0.0);
+  EXPECT_NEAR(summary["variance_ratio"].get<double>(), 1.0, 0.02);
+}
+
+TEST_F(FitGabor, BadImagesAreRefused) {
+  expect_image_refused("text.png", "this is not an image\n");
+  expect_image_refused("empty.png", "");
+  expect_image_refused("one.png", testing::png(1, 1, {128}));
+  expect_image_refused("row.png", testing::png(64, 1, std::vector<std::uint8_t>(64, 3)));
+  expect_image_refused("constant.png", testing::png(64, 64, std::vector<std::uint8_t>(64 * 64, 77)));
+  const std::string whole = testing::noise_png(64);
+  expect_image_refused("cut.png", whole.substr(0, whole.size() / 2));
+}
+
+TEST_F(FitGabor, BadFilesAreRefused) {
+  const std::string image = folder_.write("rock.png", testing::noise_png(64));
+  std::filesystem::create_directory(folder_ / "folder");
+  const auto refuse = [&](const std::string& input, const std::filesystem::path& output,
+                          const std::string& culprit) {
+    expect_refusal(folder_, kFitGabor, {input, "-o", output.string()}, culprit);
+  };
+  refuse((folder_ / "absent.png").string(), folder_ / "out.json", "absent.png");
+  refuse((folder_ / "folder").string(), folder_ / "out.json", "folder");
+  refuse(image, folder_ / "absent" / "out.json", "out.json");
+  refuse(image, folder_ / "folder", "folder");
+}
+
+}  // namespace
+}  // namespace astrolith

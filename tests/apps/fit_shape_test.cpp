@@ -1,0 +1,110 @@
+// fit_shape, run as a user runs it.
+#include <nlohmann/json.hpp>
+
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+#include "tests/apps/inputs.h"
+#include "tests/apps/program_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::expect_refusal;
+using testing::run_program;
+using testing::text_of;
+using testing::WorkFolder;
+
+const std::string kFitShape = ASTROLITH_FIT_SHAPE;
+
+class FitShape : public ::testing::Test {
+ protected:
+  std::string fit(const std::string& output, std::vector<std::string> more) {
+    const std::string file = (folder_ / output).string();
+    std::vector<std::string> arguments{
+        folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24)),
+        "-o",
+        file,
+        "--spheres",
+        "12",
+        "--population",
+        "4",
+        "--generations",
+        "2",
+        "--points",
+        "400"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::Outcome outcome = run_program(kFitShape, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(file);
+  }
+  void expect_mesh_refused(const std::string& name, const std::string& content) {
+    const std::string file = folder_.write(name, content);
+    expect_refusal(folder_, kFitShape, {file, "-o", (folder_ / "out.json").string(), "--spheres", "4"}, name);
+  }
+
+  WorkFolder folder_;
+};
+
+TEST_F(FitShape, WritesARecipeWithABody) {
+  fit("egg.json", {});
+  const Recipe recipe = read_recipe(folder_ / "egg.json");
+  ASSERT_TRUE(recipe.body.has_value());
+  EXPECT_LE(recipe.body->spheres.size(), 12u);
+  EXPECT_EQ(recipe.provenance.input_name, "egg.obj");
+  EXPECT_EQ(recipe.provenance.input_sha256, sha256_of_file(folder_ / "egg.obj"));
+}
+
+TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {
+  const std::string one = fit("one.json", {"--threads", "1", "--seed", "3"});
+  EXPECT_EQ(one, fit("two.json", {"--threads", "2", "--seed", "3"}));
+  const Recipe a = parse_recipe(one, "one.json"),
+               b = parse_recipe(fit("other.json", {"--seed", "4"}), "other.json");
+  EXPECT_NE(a.body->spheres.at(0).radius, b.body->spheres.at(0).radius);
+}
+
+TEST_F(FitShape, SummaryHoldsTheFigures) {
+  fit("egg.json", {"--summary", (folder_ / "s.json").string()});
+  const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
+  for (const char* field : {"spheres", "similarity", "mean_distance", "p99_distance", "max_distance",
+                            "volume_ratio", "evaluations", "seconds"}) {
+    ASSERT_TRUE(summary.contains(field)) << field;
+    EXPECT_TRUE(summary[field].is_number()) << field;
+  }
+  // Fractions of the bounding-box diagonal.
+  EXPECT_LT(summary["mean_distance"].get<double>(), 0.02);
+  EXPECT_LE(summary["mean_distance"].get<double>(), summary["p99_distance"].get<double>());
+  EXPECT_LE(summary["p99_distance"].get<double>(), summary["max_distance"].get<double>());
+  EXPECT_NEAR(summary["volume_ratio"].get<double>(), 1.0, 0.05);
+}
+
+TEST_F(FitShape, BadMeshesAreRefused) {
+  const std::string vertices = testing::kTetrahedron.substr(0, testing::kTetrahedron.find('f'));
+  expect_mesh_refused("cut.ply", testing::truncated_ply());
+  expect_mesh_refused("index.obj", testing::kTetrahedron + "f 1 2 5\n");
+  expect_mesh_refused("open.obj", vertices + "f 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  expect_mesh_refused("points.obj", vertices);
+  expect_mesh_refused("nan.obj", "v nan 0 0\n" + testing::kTetrahedron);
+  expect_mesh_refused("empty.stl", "");
+  expect_mesh_refused("text.ply", "this is not a mesh\n");
+  expect_mesh_refused("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
+}
+
+TEST_F(FitShape, BadFilesAreRefused) {
+  const std::string mesh = folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
+  std::filesystem::create_directory(folder_ / "folder");
+  const auto refuse = [&](const std::string& input, const std::filesystem::path& output,
+                          const std::string& culprit) {
+    expect_refusal(folder_, kFitShape, {input, "-o", output.string(), "--spheres", "4"}, culprit);
+  };
+  refuse((folder_ / "absent.obj").string(), folder_ / "out.json", "absent.obj");
+  refuse((folder_ / "folder").string(), folder_ / "out.json", "folder");
+  refuse(mesh, folder_ / "absent" / "out.json", "out.json");
+  refuse(mesh, folder_ / "folder", "folder");
+  expect_refusal(folder_, kFitShape, {mesh, "-o", (folder_ / "o.json").string(), "--spheres", "0"},
+                 "--spheres");
+  expect_refusal(folder_, kFitShape, {mesh, "-o", (folder_ / "o.json").string(), "--optimizer", "magic"},
+                 "--optimizer");
+}
+
+}  // namespace
+}  // namespace astrolith

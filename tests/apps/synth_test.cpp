@@ -1,0 +1,149 @@
+// synth, run as a user runs it.
+#include <nlohmann/json.hpp>
+
+#include "geometry/mesh_io.h"
+#include "geometry/mesh_topology.h"
+#include "recipe/sha256.h"
+#include "tests/apps/program_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::expect_refusal;
+using testing::run_program;
+using testing::text_of;
+using testing::WorkFolder;
+
+const std::string kSynth = ASTROLITH_SYNTH;
+
+const std::string kTwoSpheres = R"({"format_version": 1, "length_unit": "km",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
+  "layers": [{"type": "simplex", "amplitude": 0.05, "frequency": 2, "octaves": 4}]})";
+
+const std::string kTexture = R"({"format_version": 1, "length_unit": "m",
+  "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.002, "lobes": [[4, 0.125, -0.25, 1]]}]})";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+class Synth : public ::testing::Test {
+ protected:
+  // Runs with --resolution 32 and returns the bytes of the output.
+  std::string synthesise(const std::string& output, std::vector<std::string> more) {
+    const std::string file = (folder_ / output).string();
+    std::vector<std::string> arguments{folder_.write("r.json", kTwoSpheres), "-o", file, "--resolution",
+                                       "32"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::Outcome outcome = run_program(kSynth, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(file);
+  }
+  void expect_recipe_refused(const std::string& recipe, const std::string& culprit) {
+    const std::string file = folder_.write("bad.json", recipe);
+    expect_refusal(folder_, kSynth, {file, "-o", (folder_ / "out.ply").string(), "--resolution", "16"},
+                   "bad.json: " + culprit);
+  }
+
+  WorkFolder folder_;
+};
+
+TEST_F(Synth, MeshIsClosedAndManifold) {
+  synthesise("out.ply", {});
+  const MeshTopology topology = analyze_topology(read_mesh(folder_ / "out.ply"));
+  EXPECT_TRUE(topology.closed);
+  EXPECT_TRUE(topology.manifold);
+  EXPECT_EQ(topology.components, 1);
+}
+
+TEST_F(Synth, EveryFormatHoldsTheSameMesh) {
+  synthesise("out.ply", {});
+  const TriangleMesh ply = read_mesh(folder_ / "out.ply");
+  for (const char* name : {"out.obj", "out.stl"}) {
+    synthesise(name, {});
+    EXPECT_EQ(read_mesh(folder_ / name).triangles.size(), ply.triangles.size()) << name;
+  }
+  EXPECT_EQ(synthesise("out.glb", {}).substr(0, 4), "glTF");
+}
+
+TEST_F(Synth, SameBytesForAnyThreadCount) {
+  const std::string one = synthesise("one.ply", {"--threads", "1"});
+  EXPECT_GT(one.size(), 10000u);
+  EXPECT_TRUE(one == synthesise("two.ply", {"--threads", "2"}));
+  EXPECT_TRUE(one == synthesise("eight.ply", {"--threads", "8"}));
+}
+
+TEST_F(Synth, SeedChangesTheMesh) {
+  const std::string mesh = synthesise("a.ply", {"--seed", "5"});
+  EXPECT_TRUE(mesh == synthesise("b.ply", {"--seed", "5"}));
+  EXPECT_FALSE(mesh == synthesise("c.ply", {"--seed", "6"}));
+}
+
+TEST_F(Synth, SummaryHoldsTheFigures) {
+  synthesise("out.ply", {"--summary", (folder_ / "s.json").string()});
+  const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
+  for (const char* field : {"vertices", "triangles", "closed", "manifold", "genus", "evaluations", "seconds",
+                            "peak_bytes", "sha256"}) {
+    EXPECT_TRUE(summary.contains(field)) << field;
+  }
+  const TriangleMesh mesh = read_mesh(folder_ / "out.ply");
+  EXPECT_EQ(summary["vertices"], mesh.vertices.size());
+  EXPECT_EQ(summary["triangles"], mesh.triangles.size());
+  EXPECT_EQ(summary["closed"], true);
+  EXPECT_EQ(summary["genus"], analyze_topology(mesh).genus);
+  EXPECT_EQ(summary["sha256"], sha256_of_file(folder_ / "out.ply"));
+}
+
+TEST_F(Synth, BadRecipesAreRefused) {
+  expect_recipe_refused(replaced(kTwoSpheres, "amplitude", "amplitud"), "layers[0].amplitud: unknown field");
+  expect_recipe_refused(replaced(kTwoSpheres, "0.75", "-0.75"), "body.spheres[1].radius");
+  expect_recipe_refused(replaced(kTwoSpheres, "]]}", "]}"), "line 2, column");
+  expect_recipe_refused(replaced(kTwoSpheres, "0.05", "NaN"), "line 3, column");
+  expect_recipe_refused("", "line 1, column 1");
+  expect_recipe_refused(kTexture, "");  // no body to mesh
+}
+
+TEST_F(Synth, BadFilesAreRefused) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  std::filesystem::create_directory(folder_ / "folder.ply");
+  const auto refuse = [&](const std::string& input, const std::string& output, const std::string& culprit) {
+    expect_refusal(folder_, kSynth, {input, "-o", output, "--resolution", "16"}, culprit);
+  };
+  refuse((folder_ / "absent.json").string(), (folder_ / "out.ply").string(), "absent.json");
+  refuse(folder_.write("x.json", "\x89PNG\r\n\x1a\n"), (folder_ / "out.ply").string(), "x.json");
+  refuse(recipe, (folder_ / "absent" / "out.ply").string(), "out.ply");
+  refuse(recipe, (folder_ / "folder.ply").string(), "folder.ply");
+  refuse(recipe, (folder_ / "out.xyz").string(), "out.xyz");
+}
+
+TEST_F(Synth, ReadOnlyFoldersAreRefused) {
+  if (::geteuid() == 0) GTEST_SKIP() << "the superuser may write everywhere";
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  std::filesystem::create_directory(folder_ / "locked");
+  std::filesystem::permissions(folder_ / "locked", std::filesystem::perms{0555});
+  expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "locked" / "out.ply").string()}, "out.ply");
+}
+
+TEST_F(Synth, TextureIsDeterministicAndRefusesNonsense) {
+  const std::string recipe = folder_.write("t.json", kTexture);
+  const auto texture = [&](const std::string& name, const std::string& threads) {
+    const std::string file = (folder_ / name).string();
+    const testing::Outcome outcome =
+        run_program(kSynth, {recipe, "--texture", "96x64", "-o", file, "--threads", threads});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(file);
+  };
+  const std::string one = texture("one.png", "1");
+  EXPECT_GT(one.size(), 1000u);
+  EXPECT_TRUE(one == texture("two.png", "2"));
+  EXPECT_GT(texture("height.tif", "1").size(), 96u * 64u * 4u);
+  const std::string output = (folder_ / "x.png").string();
+  for (const char* size : {"96", "0x64", "96x-1", "ax64", "1000000x1000000"}) {
+    expect_refusal(folder_, kSynth, {recipe, "--texture", size, "-o", output}, "texture");
+  }
+  expect_refusal(folder_, kSynth, {folder_.write("r.json", kTwoSpheres), "--texture", "8x8", "-o", output},
+                 "r.json");
+}
+
+}  // namespace
+}  // namespace astrolith
