@@ -24,6 +24,9 @@ struct TriangleSide {
 
 inline bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
+// Throws InputError for a triangle that names a vertex which does not exist.
+void check_indices(const TriangleMesh& mesh);
+
 // Sides of all triangles that name three different vertices, sorted by edge, then triangle.
 std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh);
 

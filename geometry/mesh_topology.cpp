@@ -10,16 +10,6 @@
 namespace astrolith {
 namespace {
 
-void check_indices(const TriangleMesh& mesh) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      if (v < mesh.vertices.size()) continue;
-      throw InputError("mesh: triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
-                       std::to_string(mesh.vertices.size()) + "; repair the file's faces");
-    }
-  }
-}
-
 bool runs_both_ways_equally(std::span<const TriangleSide> edge) {
   return 2 * std::count_if(edge.begin(), edge.end(), [](const TriangleSide& s) { return s.forward; }) ==
          static_cast<std::ptrdiff_t>(edge.size());
@@ -78,6 +68,16 @@ std::int64_t count_components(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+void check_indices(const TriangleMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (v < mesh.vertices.size()) continue;
+      throw InputError("mesh: triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                       std::to_string(mesh.vertices.size()) + "; repair the file's faces");
+    }
+  }
+}
 
 std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh) {
   std::vector<TriangleSide> sides;

@@ -29,11 +29,7 @@ void check(const TriangleMesh& mesh) {
   for (const Vec3d& p : mesh.vertices) {
     if (!std::isfinite(squared_norm(p))) throw InputError("mesh: a vertex is not finite; repair the file");
   }
-  for (const Triangle& t : mesh.triangles) {
-    if (*std::max_element(t.begin(), t.end()) >= mesh.vertices.size()) {
-      throw InputError("mesh: a triangle names a vertex that does not exist; repair the file's faces");
-    }
-  }
+  check_indices(mesh);
 }
 
 void check_embree(RTCDevice device) {
