@@ -1,0 +1,45 @@
+#include "synthesis/lay_on_base.h"
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+// Base units per unit of the details.
+double unit_ratio(const Recipe& details, const std::string& details_name, const Recipe& base,
+                  const std::string& base_name) {
+  const std::string &from = details.length_unit, &to = base.length_unit;
+  if (from == to) return 1.0;
+  if (from == "m" && to == "km") return 1e-3;
+  if (from == "km" && to == "m") return 1e3;
+  throw InputError(details_name + ": length_unit: \"" + from + "\" has no physical scale on " + base_name +
+                   ", which is in \"" + to + "\"; state length_unit \"m\" or \"km\" and the lengths in it");
+}
+
+Layer rescaled(FractalLayer layer, double ratio) {
+  layer.amplitude *= ratio;
+  layer.frequency /= ratio;
+  layer.bias *= ratio;
+  return layer;
+}
+
+Layer rescaled(GaborLayer layer, double ratio) {
+  layer.pixel_size *= ratio;
+  layer.height_rms *= ratio;
+  return layer;
+}
+
+}  // namespace
+
+Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,
+                   const std::string& base_name) {
+  if (!base.body) throw InputError(base_name + ": body: absent; give a recipe with a body as the base");
+  const double ratio = unit_ratio(details, details_name, base, base_name);
+  Recipe result = base;
+  for (const Layer& layer : details.layers) {
+    result.layers.push_back(std::visit([ratio](const auto& l) { return rescaled(l, ratio); }, layer));
+  }
+  return result;
+}
+
+}  // namespace astrolith

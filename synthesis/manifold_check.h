@@ -1,0 +1,53 @@
+// Verifies, while a mesh streams past, that it is a closed oriented 2-manifold: the triangles around every
+// vertex must form one directed cycle. Memory is a window of two batches and four bytes a vertex.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/mesh_sink.h"
+
+namespace astrolith {
+
+struct ManifoldReport {
+  std::int64_t vertices = 0;
+  std::int64_t triangles = 0;
+  std::int64_t open_vertices = 0;          // on a boundary, or where orientations disagree
+  std::int64_t non_manifold_vertices = 0;  // several cycles round them, an edge of three or more, or nothing
+  std::int64_t late_triangles = 0;         // named a vertex that had left the window: not verified
+  std::int64_t components = 0;             // pieces that share no vertex
+  std::int64_t genus = -1;                 // summed over components; -1 where it has no meaning
+
+  bool closed() const { return triangles > 0 && open_vertices == 0 && late_triangles == 0; }
+  bool manifold() const { return triangles > 0 && non_manifold_vertices == 0 && late_triangles == 0; }
+};
+
+// Expects what mesh_field promises: triangles that follow a call of add_vertices name vertices of that call
+// and the one before. Any mesh in one call of each is such a stream.
+class ManifoldCheck : public MeshSink {
+ public:
+  void add_vertices(std::span<const MeshVertex> vertices) override;
+  void add_triangles(std::span<const Triangle> triangles) override;
+
+  // Settles what is still in the window; call once, at the end.
+  ManifoldReport finish();
+
+ private:
+  // One triangle seen from its vertex: the directed edge opposite to it.
+  struct Corner {
+    std::uint32_t vertex, from, to;
+  };
+
+  void settle(std::vector<Corner>& corners, std::uint32_t first, std::uint32_t end);
+  std::uint32_t root(std::uint32_t vertex);
+  void unite(std::uint32_t a, std::uint32_t b);
+
+  std::uint32_t window_first_ = 0;      // first vertex of the batch before the last
+  std::uint32_t batch_first_ = 0;       // first vertex of the last batch
+  std::vector<Corner> window_, batch_;  // corners at vertices of these two
+  std::vector<std::uint32_t> parent_;   // union-find over vertices
+  ManifoldReport report_;
+};
+
+}  // namespace astrolith
