@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "numerics/errors.h"
 
@@ -18,11 +19,18 @@ namespace astrolith {
 //   file.commit();                      // without this the destructor leaves nothing behind
 class OutputFile {
  public:
-  // Throws InputError when the folder does not exist or cannot be written.
+  // Throws InputError when the folder does not exist or cannot be written, or when the target exists and is
+  // no regular file.
   explicit OutputFile(const std::filesystem::path& target)
       : target_(target), temporary_(target.string() + ".tmp" + std::to_string(::getpid())) {
-    if (std::filesystem::is_directory(target_)) {
+    std::error_code unused;  // what cannot be looked at cannot be opened either
+    const std::filesystem::file_status status = std::filesystem::status(target_, unused);
+    if (std::filesystem::is_directory(status)) {
       throw InputError(target_.string() + ": is a folder; give the name of a file");
+    }
+    // A rename would put a file in the place of the device.
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+      throw InputError(target_.string() + ": is a device or pipe; give the name of a file");
     }
     file_ = std::fopen(temporary_.c_str(), "wb");
     if (file_ == nullptr) {

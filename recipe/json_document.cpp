@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -101,7 +102,8 @@ class TreeBuilder : public nlohmann::json_sax<json> {
 
 std::string read_json_text(const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
-  if (std::filesystem::is_directory(file)) refuse("is a folder; give the name of a recipe file");
+  std::error_code unused;  // what cannot be looked at cannot be opened either
+  if (std::filesystem::is_directory(file, unused)) refuse("is a folder; give the name of a recipe file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!stream) refuse(fmt::format("cannot open ({}); check the name", std::strerror(errno)));
   std::string text;

@@ -1,5 +1,7 @@
 #include "numerics/output_file.h"
 
+#include <sys/stat.h>
+
 #include <fstream>
 #include <iterator>
 
@@ -32,6 +34,13 @@ TEST_F(OutputFileTest, LeavesNothingWithoutCommit) {
 TEST_F(OutputFileTest, AMissingFolderIsTheUsersError) {
   EXPECT_THROW(OutputFile(folder / "none" / "c.txt"), InputError);
   EXPECT_THROW(OutputFile{folder}, InputError);
+  EXPECT_THROW(OutputFile(folder / std::string(5000, 'x')), InputError);
+}
+
+TEST_F(OutputFileTest, DevicesAndPipesAreNotReplaced) {
+  EXPECT_THROW(OutputFile("/dev/null"), InputError);
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(OutputFile(folder / "pipe"), InputError);
 }
 
 }  // namespace

@@ -190,6 +190,7 @@ TEST(RecipeJson, Files) {
   EXPECT_EQ(recipe_to_json(read_recipe(folder / "r.json")), recipe_to_json(recipe));
   EXPECT_THROW(read_recipe(folder / "absent.json"), InputError);
   EXPECT_THROW(read_recipe(folder), InputError);
+  EXPECT_THROW(read_recipe(folder / std::string(5000, 'x')), InputError);
   EXPECT_THROW(write_recipe(recipe, folder / "absent" / "r.json"), InputError);
   std::filesystem::remove_all(folder);
 }
