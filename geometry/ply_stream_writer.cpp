@@ -20,14 +20,15 @@ std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std
   for (const std::string& line : info_lines(info)) header += "comment " + line + "\n";
   const std::string vertices = std::to_string(num_vertices);
   const std::string triangles = std::to_string(num_triangles);
+  constexpr std::size_t kLongestCounts = 40;  // two 64-bit numbers
+  // With the other comments: OpenMesh loses its place over one behind the last property.
+  header += "comment " + std::string(kLongestCounts - vertices.size() - triangles.size(), '.') + "\n";
   header += "element vertex " + vertices + "\n";
   for (const char* name : {"x", "y", "z"}) header += std::string("property float ") + name + "\n";
   if (with_normals) {
     for (const char* name : {"nx", "ny", "nz"}) header += std::string("property float ") + name + "\n";
   }
   header += "element face " + triangles + "\nproperty list uchar uint vertex_indices\n";
-  constexpr std::size_t kLongestCounts = 40;  // two 64-bit numbers
-  header += "comment " + std::string(kLongestCounts - vertices.size() - triangles.size(), '.') + "\n";
   return header + "end_header\n";
 }
 
