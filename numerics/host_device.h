@@ -3,8 +3,11 @@
 
 #ifdef __CUDACC__
 #define ASTROLITH_HD __host__ __device__
+#define ASTROLITH_KERNEL __host__ __device__ __forceinline__
 #else
 #define ASTROLITH_HD
+// For per-point functions so long that the compiler would rather call them: a call keeps a loop scalar.
+#define ASTROLITH_KERNEL inline __attribute__((always_inline))
 #endif
 
 // A loop marked with ASTROLITH_SIMD_CLONES is compiled for baseline x86-64, AVX2 and AVX-512, and the

@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "synthesis/fractal_noise.h"
+#include "synthesis/gabor_surface_noise.h"
 #include "synthesis/metaball_body.h"
 
 namespace astrolith {
 
-using HeightLayer = std::variant<FractalNoise>;
+using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise>;
 
 struct FieldModel {
   PreparedMetaballs metaballs;

@@ -12,21 +12,68 @@ static_assert(BlockField<ImplicitField>);
 
 namespace {
 
-// Points evaluated together: enough to fill vectors, few enough that all arrays stay in the first cache.
-constexpr int kBatch = 256;
+// Points evaluated together: a block of 9^3 samples and some, on the stack.
+constexpr int kBatch = 1024;
 
 struct Batch {
+  int n;
+  const float *x, *y, *z;
   std::array<float, kBatch> distance, gx, gy, gz, height;
   std::array<float, 3 * kBatch> scratch;
 };
 
+// First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
+// normal. Steps end at `longest_step`: no point of the surface is farther from the base than that.
+ASTROLITH_SIMD_CLONES void project(int n, const float* __restrict p, const float* __restrict gradient,
+                                   const float* __restrict divisor, const float* __restrict distance,
+                                   float longest_step, float* __restrict projected) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const float step = math::clamp(distance[i], -longest_step, longest_step);
+    projected[i] = math::fma(-step, gradient[i] / divisor[i], p[i]);
+  }
+}
+
+ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, const float* __restrict gy,
+                                            const float* __restrict gz, float floor,
+                                            float* __restrict length) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    length[i] = math::sqrt(math::fma(gx[i], gx[i], math::fma(gy[i], gy[i], gz[i] * gz[i])) + floor);
+  }
+}
+
+void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
+  noise.evaluate(b.n, b.x, b.y, b.z, b.height.data(), b.scratch.data());
+}
+
+void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
+  // `height` holds the gradient's length until the heights replace it.
+  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.metaballs.parameters.gradient_floor,
+                   b.height.data());
+  const float longest_step = static_cast<float>(model.height_bound);
+  float* const projected = b.scratch.data();
+  const auto along = [&](const float* p, const std::array<float, kBatch>& g, float* out) {
+    project(b.n, p, g.data(), b.height.data(), b.distance.data(), longest_step, out);
+  };
+  along(b.x, b.gx, projected);
+  along(b.y, b.gy, projected + kBatch);
+  along(b.z, b.gz, projected + 2 * kBatch);
+  noise.evaluate(model.metaballs, b.n, projected, projected + kBatch, projected + 2 * kBatch,
+                 b.height.data());
+}
+
 void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const float* x,
                     const float* y, const float* z, float* value) {
   Batch b;
+  b.n = n;
+  b.x = x;
+  b.y = y;
+  b.z = z;
   evaluate_metaballs(metaballs, n, x, y, z, b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
   std::copy_n(b.distance.data(), n, value);
   for (const HeightLayer& layer : model.layers) {
-    std::get<FractalNoise>(layer).evaluate(n, x, y, z, b.height.data(), b.scratch.data());
+    std::visit([&](const auto& noise) { layer_heights(model, noise, b); }, layer);
     for (int i = 0; i < n; ++i) value[i] += b.height[static_cast<std::size_t>(i)];
   }
 }
@@ -92,6 +139,8 @@ std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const Box& domain)
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     if (const auto* fractal = std::get_if<FractalLayer>(&recipe.layers[i])) {
       layers.emplace_back(FractalNoise(*fractal, recipe.seed, static_cast<int>(i), domain));
+    } else if (const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i])) {
+      layers.emplace_back(GaborSurfaceNoise(*gabor, recipe.seed, static_cast<int>(i), domain));
     }
   }
   return layers;

@@ -47,7 +47,7 @@ struct MetaballSums {
 };
 
 template <typename T>
-ASTROLITH_HD inline void accumulate_metaball(const MetaballParameters<T>& body,
+ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body,
                                              const MetaballSphere<T>& sphere, const Vec3<T>& p,
                                              MetaballSums<T>& sums) {
   using math::exp;
@@ -72,7 +72,7 @@ struct SurfaceDistance {
 };
 
 template <typename T>
-ASTROLITH_HD inline SurfaceDistance<T> metaball_distance(const MetaballParameters<T>& body,
+ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T>& body,
                                                          const MetaballSums<T>& sums) {
   const T total = sums.kernel + T(kKernelFloor);
   const T log_field = math::log(total) * body.inverse_m - body.log_iso;

@@ -15,14 +15,14 @@ namespace astrolith {
 inline constexpr float kSimplexScale = 76.8f;
 
 // Of three integers multiplied into `sum` already: enough mixing for the top bits to choose a gradient.
-ASTROLITH_HD inline std::uint32_t lattice_hash(std::uint32_t sum) {
+ASTROLITH_KERNEL std::uint32_t lattice_hash(std::uint32_t sum) {
   sum = (sum ^ (sum >> 16)) * 0x7feb352du;
   return (sum ^ (sum >> 15)) * 0x846ca68bu;
 }
 
 // (1/2 - r^2)^4 gradient.(x, y, z), zero beyond r^2 = 1/2, where neighbouring cells begin: a larger radius
 // would make the noise jump. The gradient is one of the twelve edge directions of a cube (Perlin 2002).
-ASTROLITH_HD inline float simplex_corner(std::uint32_t hash, float x, float y, float z) {
+ASTROLITH_KERNEL float simplex_corner(std::uint32_t hash, float x, float y, float z) {
   const float fade = math::max(0.5f - math::fma(x, x, math::fma(y, y, z * z)), 0.0f);
   const std::uint32_t g = hash >> 28;
   const float u = g < 8 ? x : y;
@@ -34,7 +34,7 @@ ASTROLITH_HD inline float simplex_corner(std::uint32_t hash, float x, float y, f
 }
 
 // In [-1, 1], zero mean, about one feature a unit length; |x|, |y|, |z| <= 2^20.
-ASTROLITH_HD inline float simplex_noise(float x, float y, float z, std::uint32_t seed) {
+ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t seed) {
   constexpr float kUnskew = 1.0f / 6.0f;
   const float skew = (x + y + z) * (1.0f / 3.0f);
   const float i = math::floor(x + skew), j = math::floor(y + skew), k = math::floor(z + skew);

@@ -1,0 +1,56 @@
+// A Gabor layer as surface noise on a metaball body, ready for evaluation over many points.
+//
+// Impulses lie in a grid of cells in space, so many in each cell. Every impulse carries the tangent frame of
+// the body's level set through it, and its kernel fades with the distance along its own normal
+// (gabor_kernel.h): the noise is C1 wherever points move, whatever the frames do from impulse to impulse. On
+// a flat patch it has the spectrum of the lobes, and the layer's variance exactly. First tangent axis: east,
+// about +z; second: south, so that a patch seen from outside with north up shows the texture upright.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "recipe/recipe.h"
+#include "synthesis/gabor_bands.h"
+#include "synthesis/gabor_kernel.h"
+#include "synthesis/metaball_body.h"
+
+namespace astrolith {
+
+class GaborSurfaceNoise {
+ public:
+  // Points outside `domain` are moved to its border; bands so fine that float
+  // coordinates within it could not tell neighbouring cells apart (above 2^20 cells from the origin) are left
+  // out.
+  GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
+
+  // height[i] at points *on* the body's surface, in length units, 0 on average, standard deviation
+  // layer.height_rms.
+  void evaluate(const PreparedMetaballs& body, int n, const float* x, const float* y, const float* z,
+                float* height) const;
+
+  // 6 times the standard deviation, where heights are cut.
+  double height_bound() const { return static_cast<double>(clip_); }
+
+ private:
+  struct Band {
+    GaborBand band;
+    std::uint32_t seed;
+    float a;      // cycles per length unit
+    float cell;   // side, length units
+    float reach;  // of a kernel from its impulse, length units
+    int impulses_per_cell;
+    float amplitude;  // length units
+  };
+  struct Points;
+
+  void add_band(const Band& band, const PreparedMetaballs& body, Points& points, int begin, int end) const;
+  void add_group(const Band& band, const PreparedMetaballs& body, Points& points, int begin, int end,
+                 const Box& box) const;
+
+  Vec3f domain_min_, domain_max_;
+  std::vector<Band> bands_;
+  float clip_;
+};
+
+}  // namespace astrolith
