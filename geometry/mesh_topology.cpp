@@ -1,6 +1,7 @@
 #include "geometry/mesh_topology.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <tuple>
 
@@ -94,6 +95,24 @@ std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
   return sides;
+}
+
+std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh) {
+  constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
+  DisjointSets pieces(mesh.vertices.size());
+  for (const Triangle& t : mesh.triangles) {
+    pieces.unite(t[0], t[1]);
+    pieces.unite(t[0], t[2]);
+  }
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kUnseen), components;
+  components.reserve(mesh.triangles.size());
+  std::uint32_t next = 0;
+  for (const Triangle& t : mesh.triangles) {
+    std::uint32_t& component = number[pieces.find(t[0])];
+    if (component == kUnseen) component = next++;
+    components.push_back(component);
+  }
+  return components;
 }
 
 MeshTopology analyze_topology(const TriangleMesh& mesh) {

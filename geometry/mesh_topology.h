@@ -27,4 +27,8 @@ struct MeshTopology {
 // Indices must be below the number of vertices (InputError). Time O(F log F).
 MeshTopology analyze_topology(const TriangleMesh& mesh);
 
+// (#F) the component each triangle belongs to, numbered from 0 in the order of their first triangles.
+// Indices must be in range.
+std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh);
+
 }  // namespace astrolith

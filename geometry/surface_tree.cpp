@@ -11,7 +11,9 @@
 
 #include "geometry/closest_on_triangle.h"
 #include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_measure.h"
 #include "geometry/mesh_normals.h"
+#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -52,6 +54,12 @@ std::vector<Vec3d> side_normals(const TriangleMesh& mesh, const std::vector<Vec3
 
 }  // namespace
 
+// A component that may overlap another.
+struct SurfaceTree::Body {
+  Box box;
+  SurfaceTree tree;
+};
+
 struct SurfaceTree::State {
   TriangleMesh mesh;
   std::vector<Vec3d> faces, sides, corners;  // unit pseudo-normals, (#F), (3 #F), (#V)
@@ -59,6 +67,7 @@ struct SurfaceTree::State {
   double scale = 1;
   Device device;
   Scene scene;
+  std::vector<Body> bodies;  // of the components whose boxes meet another's
 
   Vec3d scaled(const Vec3d& p) const { return scale * (p - center); }
   ClosestOnTriangle on_triangle(const Vec3d& p, std::uint32_t t) const {
@@ -74,6 +83,40 @@ struct SurfaceTree::State {
 };
 
 namespace {
+
+// Overlaps are looked for among at most so many components: each pair is compared, each gets a tree.
+constexpr std::size_t kMaxBodies = 64;
+
+bool overlap(const Box& a, const Box& b) {
+  return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
+         a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
+
+// The components as meshes of their own when their number is 2 to kMaxBodies and all are wound outwards;
+// none otherwise.
+std::vector<TriangleMesh> separate_bodies(const TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
+  if (count < 2 || count > kMaxBodies) return {};
+  std::vector<TriangleMesh> bodies(count);
+  std::vector<std::uint32_t> renumbered(mesh.vertices.size(), std::numeric_limits<std::uint32_t>::max());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    TriangleMesh& body = bodies[component[t]];
+    Triangle triangle = mesh.triangles[t];
+    for (std::uint32_t& v : triangle) {
+      std::uint32_t& own = renumbered[v];
+      if (own == std::numeric_limits<std::uint32_t>::max()) {
+        own = static_cast<std::uint32_t>(body.vertices.size());
+        body.vertices.push_back(mesh.vertices[v]);
+      }
+      v = own;
+    }
+    body.triangles.push_back(triangle);
+  }
+  const bool outwards =
+      std::all_of(bodies.begin(), bodies.end(), [](const TriangleMesh& body) { return volume(body) > 0; });
+  return outwards ? bodies : std::vector<TriangleMesh>();
+}
 
 // Beyond this many radii from the mesh single precision could not tell its boxes apart.
 constexpr double kFarInRadii = 1e5;
@@ -138,6 +181,15 @@ SurfaceTree::SurfaceTree(const TriangleMesh& mesh) : state_(std::make_unique<Sta
   state_->center = box.center();
   state_->scale = box.diagonal() > 0 ? 2 / box.diagonal() : 1;
   state_->build_scene();
+  const std::vector<TriangleMesh> bodies = separate_bodies(mesh);
+  for (const TriangleMesh& body : bodies) {
+    const auto meets = [&](const TriangleMesh& other) {
+      return &other != &body && overlap(body.bounds(), other.bounds());
+    };
+    if (std::any_of(bodies.begin(), bodies.end(), meets)) {
+      state_->bodies.push_back({body.bounds(), SurfaceTree(body)});
+    }
+  }
 }
 
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
@@ -175,7 +227,12 @@ ClosestPoint SurfaceTree::closest(const Vec3d& p) const {
 
 double SurfaceTree::signed_distance(const Vec3d& p) const {
   const ClosestPoint nearest = closest(p);
-  return dot(p - nearest.point, nearest.normal) > 0 ? -nearest.distance : nearest.distance;
+  double distance = dot(p - nearest.point, nearest.normal) > 0 ? -nearest.distance : nearest.distance;
+  // Inside the union is inside any of them; a body that p is outside of can only offer less.
+  for (const Body& body : state_->bodies) {
+    if (overlap(body.box, {p, p})) distance = std::max(distance, body.tree.signed_distance(p));
+  }
+  return distance;
 }
 
 }  // namespace astrolith

@@ -34,12 +34,16 @@ class SurfaceTree {
   // p must be finite.
   ClosestPoint closest(const Vec3d& p) const;
 
-  // Positive inside, zero on the surface, negative outside, for a closed and oriented mesh of any number of
-  // components whose vertices are welded; sign by the pseudo-normal, which is right at edges and vertices too
-  // (Baerentzen and Aanaes 2005).
+  // Positive inside, zero on the surface, negative outside, for closed, oriented and welded meshes; sign by
+  // the pseudo-normal, which is right at edges and vertices too (Baerentzen and Aanaes 2005). Components that
+  // overlap count as their union (a contact binary whose lobes reach into one another), up to 64 of them, all
+  // wound outwards; walls buried in another component then bound nothing, and the distance inside the overlap
+  // is the one to the farther component's wall, never too large. Where a cavity's wall is wound inwards,
+  // components must not overlap.
   double signed_distance(const Vec3d& p) const;
 
  private:
+  struct Body;
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -79,6 +79,13 @@ TEST(MeshTopology, DegenerateTrianglesChangeNothingElse) {
   EXPECT_EQ(t.genus, 0);
 }
 
+TEST(MeshTopology, ComponentsOfTriangles) {
+  TriangleMesh mesh = joined(tetrahedron(), joined(octahedron(), tetrahedron()));
+  std::swap(mesh.triangles[0], mesh.triangles[4]);
+  const auto c = triangle_components(mesh);
+  EXPECT_EQ(c, (std::vector<std::uint32_t>{0, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 2, 2, 2, 2}));
+}
+
 TEST(MeshTopology, EmptyMeshAndWrongIndex) {
   const MeshTopology t = analyze_topology({});
   EXPECT_FALSE(t.closed || t.manifold);

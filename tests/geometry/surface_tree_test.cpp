@@ -109,6 +109,27 @@ TEST(SurfaceTree, SphereAndSeveralComponents) {
   EXPECT_NEAR(pair.signed_distance({0, 0, 0}), -0.5, 5e-3);
 }
 
+// The lobes of a contact binary reach into one another; a pebble lies wholly inside the second.
+TEST(SurfaceTree, OverlappingComponentsCountAsTheirUnion) {
+  const TriangleMesh mesh = joined(two_spheres(4, 1, 1.4), icosphere(3, 0.2, {1, 0.2, 0}));
+  const SurfaceTree tree(mesh);
+  CounterRandom random(12);
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3d p = random_in_cube(random, 2);
+    const double depth = 1 - std::min(norm(p - Vec3d{-0.7, 0, 0}), norm(p - Vec3d{0.7, 0, 0}));
+    const double d = tree.signed_distance(p);
+    ASSERT_NEAR(d, depth, 6e-3);
+  }
+}
+
+// A cavity: its wall is wound the other way, and inside it is outside.
+TEST(SurfaceTree, HollowBody) {
+  const SurfaceTree tree(joined(icosphere(4), reversed(icosphere(4, 0.5))));
+  EXPECT_NEAR(tree.signed_distance({0, 0, 0}), -0.5, 5e-3);
+  EXPECT_NEAR(tree.signed_distance({0, 0.6, 0}), 0.1, 5e-3);
+  EXPECT_NEAR(tree.signed_distance({0, 0, 1.5}), -0.5, 5e-3);
+}
+
 TEST(SurfaceTree, NormalPointsOutwards) {
   const SurfaceTree tree(icosphere(4));
   const Vec3d p{0.3, 0.4, 0.5};
