@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "recipe/recipe.h"
+#include "recipe/recipe_json.h"
 #include "synthesis/metaballs.h"
 
 namespace astrolith {
@@ -37,9 +38,9 @@ inline MetaballParameters<double> evaluation_parameters(const MetaballModel& mod
   return {model.sharpness, model.sharpness, 1.0 / model.sharpness, 0.0, cutoff * cutoff, floor * floor};
 }
 
-// The thesis's parameters for the model, rounded to float: what the recipe holds is what synthesis evaluates.
+// The thesis's parameters for the model, rounded as the recipe stores them.
 inline MetaballBody metaball_body(const MetaballModel& model) {
-  const auto rounded = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  const auto rounded = round_to_seven_digits;
   MetaballBody body;
   body.blend_exponent = rounded(model.sharpness);
   body.cutoff_radii = rounded(cutoff_radii(model.sharpness));

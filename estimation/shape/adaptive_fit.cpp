@@ -1,0 +1,118 @@
+#include "estimation/shape/adaptive_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "estimation/shape/fit_check.h"
+#include "estimation/shape/sphere_growth.h"
+
+namespace astrolith {
+namespace {
+
+// A sphere that holds less than this share of the kernel sum everywhere is idle.
+constexpr double kIdleShare = 0.02;
+
+// Surfaces further than this from the target, as a fraction of the diagonal, are strays to be mended.
+constexpr double kStrayDistance = 0.015;
+constexpr int kRepairs = 3;
+constexpr int kRepairResolution = 96;
+
+class AdaptiveFit {
+ public:
+  AdaptiveFit(const TargetBody& target, const MetaballModel& start, const SurfaceSamples& samples,
+              const FitPoints& containment, const AdaptiveFitOptions& options, const Progress& progress)
+      : target_(target), samples_(samples), points_(containment), options_(options), progress_(progress) {
+    points_.on_surface = samples.points;
+    refinement_.loss_scale = options.loss_scale;
+    refinement_.containment_weight = options.containment_weight;
+    summary_.model = start;
+    total_iterations_ =
+        options.first_iterations + (options.rounds - 1) * options.round_iterations + options.last_iterations;
+  }
+
+  AdaptiveFitSummary run() {
+    step(options_.first_iterations);
+    for (int round = 0; round < options_.rounds && !done(); ++round) {
+      grow(options_.rounds - round);
+      step(round + 1 < options_.rounds ? options_.round_iterations : options_.last_iterations);
+    }
+    for (int repair = 0; repair < kRepairs && !summary_.interrupted; ++repair) {
+      if (!mend()) break;
+    }
+    return std::move(summary_);
+  }
+
+ private:
+  bool done() const {
+    return summary_.interrupted || summary_.convergence.back().mean_distance <= options_.tolerance;
+  }
+
+  void step(int iterations) {
+    refinement_.max_iterations = iterations;
+    const RefinementSummary refined =
+        refine(summary_.model, points_, refinement_, [&](double part, std::string_view) {
+          return report(progress_, std::min(1.0, (spent_ + part * iterations) / total_iterations_), words_);
+        });
+    spent_ += iterations;
+    summary_.model = refined.model;
+    summary_.interrupted = refined.interrupted;
+    iterations_ += refined.iterations;
+    note();
+  }
+
+  void note() {
+    double sum = 0.0;
+    for (const double s : model_distances(summary_.model, samples_.points)) sum += std::abs(s);
+    const double mean = sum / static_cast<double>(samples_.points.size());
+    summary_.convergence.push_back({iterations_, static_cast<int>(summary_.model.spheres.size()), mean});
+    char words[64];
+    std::snprintf(words, sizeof words, "%zu spheres, mean distance %.4f %%", summary_.model.spheres.size(),
+                  100.0 * mean);
+    words_ = words;
+  }
+
+  void grow(int rounds_left) {
+    std::vector<Sphere>& spheres = summary_.model.spheres;
+    remove_idle_spheres(summary_.model, points_, kIdleShare);
+    const int missing = options_.spheres - static_cast<int>(spheres.size());
+    const int count = (missing + rounds_left - 1) / rounds_left;
+    const std::vector<Sphere> grown =
+        spheres_for_largest_errors(summary_.model, samples_, target_.area, options_.spheres, count);
+    spheres.insert(spheres.end(), grown.begin(), grown.end());
+  }
+
+  // True when strays were found: they become containment points and the model is refined once more.
+  bool mend() {
+    const FitCheck check = check_fit(target_, metaball_body(summary_.model), kRepairResolution, 100, 1);
+    const FitPoints strays = stray_points(target_, check.mesh, kStrayDistance);
+    if (strays.inside.empty() && strays.outside.empty()) return false;
+    points_.inside.insert(points_.inside.end(), strays.inside.begin(), strays.inside.end());
+    points_.outside.insert(points_.outside.end(), strays.outside.begin(), strays.outside.end());
+    spent_ -= options_.round_iterations;
+    step(options_.round_iterations);
+    return true;
+  }
+
+  const TargetBody& target_;
+  const SurfaceSamples& samples_;
+  FitPoints points_;
+  const AdaptiveFitOptions& options_;
+  const Progress& progress_;
+  RefinementOptions refinement_;
+  AdaptiveFitSummary summary_;
+  std::string words_ = "starting";
+  int total_iterations_ = 0;
+  int iterations_ = 0;
+  double spent_ = 0.0;
+};
+
+}  // namespace
+
+AdaptiveFitSummary fit_adaptively(const TargetBody& target, const MetaballModel& start,
+                                  const SurfaceSamples& samples, const FitPoints& containment,
+                                  const AdaptiveFitOptions& options, const Progress& progress) {
+  return AdaptiveFit(target, start, samples, containment, options, progress).run();
+}
+
+}  // namespace astrolith

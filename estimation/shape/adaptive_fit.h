@@ -1,0 +1,42 @@
+// From a coarse model to the budget of spheres: refine, remove what is idle, add where the error is largest,
+// and again; then refine to the end and mend what no sample saw.
+#pragma once
+
+#include <vector>
+
+#include "estimation/shape/refinement.h"
+#include "estimation/shape/target_body.h"
+#include "geometry/mesh_sampling.h"
+
+namespace astrolith {
+
+struct AdaptiveFitOptions {
+  int spheres = 200;          // the budget, > 0
+  int rounds = 6;             // of growth, > 0
+  int first_iterations = 24;  // of the refinement before the first round
+  int round_iterations = 12;  // after each round
+  int last_iterations = 80;   // after the last
+  double tolerance = 0.0;     // stops growing at this mean |s| over the samples, fraction of the diagonal
+  double loss_scale = 1e-3;   // fraction of the diagonal
+  double containment_weight = 0.02;
+};
+
+struct ConvergencePoint {
+  int iterations = 0;  // of Levenberg and Marquardt so far
+  int spheres = 0;
+  double mean_distance = 0.0;  // mean |s| over the samples
+};
+
+struct AdaptiveFitSummary {
+  MetaballModel model;
+  std::vector<ConvergencePoint> convergence;
+  bool interrupted = false;  // progress asked to stop; the model is the best so far
+};
+
+// `samples` are points and smooth normals of the target's surface; `containment` holds points inside and
+// outside of it and is extended by what the repair finds.
+AdaptiveFitSummary fit_adaptively(const TargetBody& target, const MetaballModel& start,
+                                  const SurfaceSamples& samples, const FitPoints& containment,
+                                  const AdaptiveFitOptions& options, const Progress& progress = {});
+
+}  // namespace astrolith

@@ -1,0 +1,135 @@
+#include "estimation/shape/shape_fit.h"
+
+#include <algorithm>
+
+#include "descriptor/surflet_histogram.h"
+#include "estimation/shape/blend_search.h"
+#include "estimation/shape/sphere_packing.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+// Share of the budget that the packing's spheres may take; the rest grows where the error is.
+constexpr double kBaseShare = 0.5;
+
+constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
+constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
+constexpr std::int64_t kCheckSamples = 100000;     // of each surface in the final distances
+constexpr int kCheckResolution = 256;
+
+// Points inside and outside: this many, this deep (fraction of the diagonal).
+constexpr int kContainmentPoints = 2000;
+constexpr double kContainmentDepth = 0.015;
+
+// Independent random streams of one seed.
+enum Stream : std::uint64_t {
+  kSurface = 1,
+  kContainment,
+  kSearch,
+  kFreshTarget,
+  kFreshFit,
+  kFreshAgain,
+  kDistances
+};
+
+std::uint64_t stream_seed(std::uint64_t seed, Stream stream) { return 1000003u * seed + stream; }
+
+void check_options(const ShapeFitOptions& options) {
+  if (options.spheres < 1 || options.spheres > 10000) throw InputError("--spheres: give 1 to 10000");
+  if (options.points < 100 || options.points > 10000000) throw InputError("--points: give 100 to 10000000");
+  if (options.population < 1 || options.generations < 1) {
+    throw InputError("--population and --generations: give at least 1");
+  }
+  if (!(options.tolerance >= 0.0))
+    throw InputError("--tolerance: give a fraction of the diagonal, at least 0");
+}
+
+Packing pack(const TargetBody& target, const ShapeFitOptions& options, const Progress& progress) {
+  PackingOptions packing;
+  packing.max_spheres = std::max(1, static_cast<int>(kBaseShare * options.spheres));
+  packing.seed = options.seed;
+  Packing result = pack_spheres(target.mesh, target.tree, packing, progress);
+  if (result.spheres.empty()) throw InputError("no sphere fits inside the body; give a solid body");
+  return result;
+}
+
+BlendSearchSummary search(const TargetBody& target, const Packing& packing, const ShapeFitOptions& options,
+                          const Progress& progress) {
+  BlendSearchOptions search_options;
+  search_options.max_spheres = static_cast<int>(packing.spheres.size());
+  search_options.optimize.algorithm = options.optimizer;
+  search_options.optimize.population = options.population;
+  search_options.optimize.max_evaluations = std::int64_t{options.population} * options.generations;
+  search_options.optimize.seed = options.seed;
+  const SurfaceSamples samples =
+      sample_poisson_disk(target.mesh, kSearchSamples, stream_seed(options.seed, kSearch));
+  return search_blend(packing.spheres, samples, search_options, progress);
+}
+
+AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& start,
+                                const ShapeFitOptions& options, const Progress& progress) {
+  const SurfaceSamples samples = sample_surface(
+      target.mesh, options.points, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
+  FitPoints containment;
+  add_containment_points(target, kContainmentDepth, kContainmentPoints,
+                         stream_seed(options.seed, kContainment), containment);
+  AdaptiveFitOptions adaptive;
+  adaptive.spheres = options.spheres;
+  adaptive.tolerance = options.tolerance;
+  return fit_adaptively(target, start, samples, containment, adaptive, progress);
+}
+
+MetaballBody body_in_file_frame(const MetaballModel& model, const TargetBody& target) {
+  MetaballModel moved = model;
+  for (Sphere& s : moved.spheres) {
+    s.center = target.center + target.diagonal * s.center;
+    s.radius *= target.diagonal;
+  }
+  return metaball_body(moved);
+}
+
+// The body as the recipe states it, rounding included, in the target's frame.
+MetaballBody body_in_target_frame(MetaballBody body, const TargetBody& target) {
+  for (Sphere& s : body.spheres) {
+    s.center = (s.center - target.center) * (1.0 / target.diagonal);
+    s.radius /= target.diagonal;
+  }
+  return body;
+}
+
+SurfletHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
+  const SurfaceSamples samples = sample_poisson_disk(mesh, kSimilaritySamples, seed);
+  return surflet_histogram(samples.points, samples.normals);
+}
+
+void measure(const TargetBody& target, std::uint64_t seed, ShapeFitResult& result) {
+  result.check = check_fit(target, body_in_target_frame(result.body, target), kCheckResolution, kCheckSamples,
+                           stream_seed(seed, kDistances));
+  const SurfletHistogram wanted = fresh_histogram(target.mesh, stream_seed(seed, kFreshTarget));
+  result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));
+  result.similarity_floor = similarity(wanted, fresh_histogram(target.mesh, stream_seed(seed, kFreshAgain)));
+}
+
+}  // namespace
+
+ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& options,
+                         const StageProgress& progress) {
+  check_options(options);
+  ShapeFitResult result;
+  const Packing packing = pack(target, options, progress("pack"));
+  const BlendSearchSummary base = search(target, packing, options, progress("search"));
+  AdaptiveFitSummary fit = refine_model(target, base.model, options, progress("refine"));
+  result.body = body_in_file_frame(fit.model, target);
+  result.filling_rate = packing.filling_rate;
+  result.base_similarity = base.similarity;
+  result.base_spheres = static_cast<int>(base.model.spheres.size());
+  result.evaluations = base.optimization.evaluations;
+  result.search_history = base.optimization.history;
+  result.convergence = std::move(fit.convergence);
+  result.interrupted = packing.interrupted || fit.interrupted;
+  measure(target, options.seed, result);
+  return result;
+}
+
+}  // namespace astrolith

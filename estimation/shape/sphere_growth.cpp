@@ -1,0 +1,142 @@
+#include "estimation/shape/sphere_growth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "estimation/shape/point_clusters.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::size_t kPointsPerCluster = 32;
+
+// Kernel sum at the surface is 1; a new sphere adds this much there.
+constexpr double kStartShare = 0.25;
+
+// Calls visit(point index, neighbours) for all points, in parallel over clusters of them.
+template <typename Visit>
+void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3d>& points,
+                              const Visit& visit) {
+  const double cutoff = cutoff_radii(model.sharpness);
+  const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
+  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
+    const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];
+    std::vector<std::int32_t> neighbours;
+    for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+      const Sphere& s = model.spheres[i];
+      if (norm(s.center - cluster.center) < cluster.radius + cutoff * s.radius) {
+        neighbours.push_back(static_cast<std::int32_t>(i));
+      }
+    }
+    for (const std::int32_t i : cluster.points) visit(static_cast<std::size_t>(i), neighbours);
+  });
+}
+
+MetaballSphere<double> kernel_of(const Sphere& s) { return {s.center, 1.0 / (s.radius * s.radius)}; }
+
+// Mean |s| of the samples within `radius` of sample i.
+std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::vector<double>& distances,
+                                 double radius) {
+  std::vector<double> errors(points.size());
+  const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
+  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
+    const PointCluster& own = clusters[static_cast<std::size_t>(c)];
+    std::vector<std::size_t> near;
+    for (const PointCluster& other : clusters) {
+      if (norm(own.center - other.center) > own.radius + other.radius + radius) continue;
+      for (const std::int32_t i : other.points) near.push_back(static_cast<std::size_t>(i));
+    }
+    for (const std::int32_t i : own.points) {
+      double sum = 0.0;
+      int count = 0;
+      for (const std::size_t j : near) {
+        if (squared_norm(points[j] - points[static_cast<std::size_t>(i)]) > radius * radius) continue;
+        sum += std::abs(distances[j]);
+        ++count;
+      }
+      errors[static_cast<std::size_t>(i)] = sum / count;
+    }
+  });
+  return errors;
+}
+
+}  // namespace
+
+std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points) {
+  const std::vector<Vec3d> all(points.begin(), points.end());
+  std::vector<double> distances(all.size());
+  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  for_each_with_neighbours(model, all, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
+    MetaballSums<double> sums;
+    for (const std::int32_t i : neighbours) {
+      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), all[p], sums);
+    }
+    distances[p] = metaball_distance(parameters, sums).distance;
+  });
+  return distances;
+}
+
+std::vector<Sphere> spheres_for_largest_errors(const MetaballModel& model, const SurfaceSamples& samples,
+                                               double area, int budget, int count) {
+  const double patch =
+      std::sqrt(area / (std::numbers::pi * budget));  // radius of a disk of one sphere's area
+  const std::vector<double> errors =
+      patch_errors(samples.points, model_distances(model, samples.points), patch);
+  std::vector<std::size_t> order(errors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return errors[i] > errors[j]; });
+
+  // Depth at which the new kernel is kStartShare on the surface: kappa (1 - depth^2 / r^2) = log share.
+  const double depth = patch * std::sqrt(1.0 - std::log(kStartShare) / model.sharpness);
+  std::vector<Sphere> grown;
+  std::vector<Vec3d> taken;
+  for (const std::size_t i : order) {
+    if (grown.size() >= static_cast<std::size_t>(count)) break;
+    const Vec3d& p = samples.points[i];
+    const bool free = std::none_of(taken.begin(), taken.end(),
+                                   [&](const Vec3d& q) { return squared_norm(p - q) < 4.0 * patch * patch; });
+    if (!free) continue;
+    taken.push_back(p);
+    grown.push_back({p - samples.normals[i] * depth, patch});
+  }
+  return grown;
+}
+
+int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double share) {
+  std::vector<Vec3d> all = points.on_surface;
+  all.insert(all.end(), points.inside.begin(), points.inside.end());
+  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  // Which spheres hold their share at a point: a list a point, merged afterwards.
+  std::vector<std::vector<std::int32_t>> busy_at(all.size());
+  for_each_with_neighbours(model, all, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
+    std::vector<double> kernels;
+    double total = double{kKernelFloor};
+    for (const std::int32_t i : neighbours) {
+      MetaballSums<double> own;
+      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), all[p], own);
+      kernels.push_back(own.kernel);
+      total += own.kernel;
+    }
+    for (std::size_t j = 0; j < neighbours.size(); ++j) {
+      if (kernels[j] >= share * total) busy_at[p].push_back(neighbours[j]);
+    }
+  });
+  std::vector<bool> busy(model.spheres.size(), false);
+  for (const auto& list : busy_at) {
+    for (const std::int32_t i : list) busy[static_cast<std::size_t>(i)] = true;
+  }
+  std::vector<Sphere> kept;
+  for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+    if (busy[i]) kept.push_back(model.spheres[i]);
+  }
+  if (kept.empty()) return 0;
+  const int removed = static_cast<int>(model.spheres.size() - kept.size());
+  model.spheres = std::move(kept);
+  return removed;
+}
+
+}  // namespace astrolith

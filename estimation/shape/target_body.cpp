@@ -1,0 +1,144 @@
+#include "estimation/shape/target_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/weld.h"
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// A body with less than this share of its diagonal's cube is a sheet or a thread: no sphere fits inside.
+constexpr double kSmallestVolume = 1e-6;
+
+TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> new_of_old(mesh.vertices.size(), kUnused);
+  TriangleMesh compact;
+  for (const Triangle& triangle : mesh.triangles) {
+    Triangle renumbered{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& index = new_of_old[triangle[k]];
+      if (index == kUnused) {
+        index = static_cast<std::uint32_t>(compact.vertices.size());
+        compact.vertices.push_back(mesh.vertices[triangle[k]]);
+      }
+      renumbered[k] = index;
+    }
+    compact.triangles.push_back(renumbered);
+  }
+  return compact;
+}
+
+TriangleMesh welded(TriangleMesh mesh, std::vector<std::string>& remarks) {
+  const std::size_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
+  mesh = drop_degenerate_and_repeated_faces(weld_vertices(std::move(mesh), 0.0));
+  mesh = without_unused_vertices(mesh);
+  if (mesh.vertices.size() < vertices) {
+    remarks.push_back(std::to_string(vertices - mesh.vertices.size()) +
+                      " repeated or unused vertices merged");
+  }
+  if (mesh.triangles.size() < triangles) {
+    remarks.push_back(std::to_string(triangles - mesh.triangles.size()) + " empty or repeated faces dropped");
+  }
+  return mesh;
+}
+
+void turn_inside_out(TriangleMesh& mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+// Checks what cannot be mended, and orients the faces.
+MeshTopology require_closed_body(TriangleMesh& mesh, const std::string& name,
+                                 std::vector<std::string>& remarks) {
+  MeshTopology topology = analyze_topology(mesh);
+  if (!topology.closed) {
+    throw InputError(name + ": mesh is open (" + std::to_string(topology.boundary_edges) +
+                     " edges with one face); close the holes first");
+  }
+  if (topology.non_manifold_edges > 0) {
+    throw InputError(name + ": mesh is not manifold (" + std::to_string(topology.non_manifold_edges) +
+                     " edges with more than two faces); remove inner walls first");
+  }
+  if (!topology.oriented) {
+    mesh = orient_faces(std::move(mesh));
+    topology = analyze_topology(mesh);
+    if (!topology.oriented)
+      throw InputError(name + ": mesh is one-sided; a body has an inside and an outside");
+    remarks.push_back("faces looked both ways; turned outwards");
+  }
+  if (volume(mesh) < 0.0) {
+    turn_inside_out(mesh);
+    remarks.push_back("mesh was inside out; faces turned outwards");
+  }
+  return topology;
+}
+
+void move_to_body_frame(TriangleMesh& mesh, const Vec3d& center, double diagonal) {
+  for (Vec3d& p : mesh.vertices) p = (p - center) * (1.0 / diagonal);
+}
+
+}  // namespace
+
+TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
+  std::vector<std::string> remarks;
+  mesh.normals.clear();
+  mesh = welded(std::move(mesh), remarks);
+  if (mesh.triangles.empty()) throw InputError(name + ": no face with an area; give a closed mesh");
+  const Box box = mesh.bounds();
+  const double diagonal = box.diagonal();
+  if (!(diagonal > 1e-9 && diagonal < 1e9)) {
+    throw InputError(name + ": bounding-box diagonal " + std::to_string(diagonal) +
+                     " is out of range; scale the mesh to metres or kilometres");
+  }
+  const MeshTopology topology = require_closed_body(mesh, name, remarks);
+  move_to_body_frame(mesh, box.center(), diagonal);
+  const double body_volume = volume(mesh);
+  if (body_volume < kSmallestVolume) {
+    throw InputError(name + ": mesh encloses no volume to speak of; give a solid body, not a sheet");
+  }
+  SurfaceTree tree(mesh);
+  const double area = surface_area(mesh);
+  return {std::move(mesh),     std::move(tree), area,     body_volume,
+          topology.components, box.center(),    diagonal, std::move(remarks)};
+}
+
+void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,
+                            FitPoints& points) {
+  constexpr int kAttempts = 200;
+  constexpr double kBoxScale = 1.3;
+  const Box box = target.mesh.bounds();
+  const auto search = [&](std::int64_t i, double sign, Vec3d& found) {
+    CounterRandom random(seed, static_cast<std::uint64_t>(2 * i + (sign > 0.0 ? 1 : 0)));
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const double x = random.uniform() - 0.5, y = random.uniform() - 0.5, z = random.uniform() - 0.5;
+      const Vec3d e = box.extent() * kBoxScale;
+      found = box.center() + Vec3d{x * e.x, y * e.y, z * e.z};
+      if (sign * target.tree.signed_distance(found) > depth) return true;
+    }
+    return false;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<Vec3d> candidates(static_cast<std::size_t>(count));
+    std::vector<char> ok(candidates.size());
+    parallel_for(
+        0, count,
+        [&](std::int64_t i) {
+          const auto k = static_cast<std::size_t>(i);
+          ok[k] = search(i, sign, candidates[k]) ? 1 : 0;
+        },
+        16);
+    std::vector<Vec3d>& list = sign > 0.0 ? points.inside : points.outside;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      if (ok[k] != 0) list.push_back(candidates[k]);
+    }
+  }
+}
+
+}  // namespace astrolith
