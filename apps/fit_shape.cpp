@@ -1,0 +1,170 @@
+// fit_shape: a closed mesh becomes a recipe of metaballs.
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "apps/program.h"
+#include "estimation/shape/fit_report.h"
+#include "estimation/shape/shape_fit.h"
+#include "geometry/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/output_file.h"
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+
+namespace astrolith {
+namespace {
+
+struct Arguments {
+  std::string mesh, output, report;
+  std::string optimizer = "pso";
+  std::string unit = "km";
+  double time_limit = 0.0;  // seconds; 0 = none
+  ShapeFitOptions fit;
+};
+
+// Asks a stage to stop when its share of the time is over.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double seconds) : seconds_(seconds) {}
+
+  Progress guard(Progress progress, const std::string& stage) {
+    if (seconds_ <= 0.0) return progress;
+    const double share = stage == "pack" ? 0.15 : stage == "search" ? 0.3 : 1.0;
+    return [this, share, progress = std::move(progress)](double fraction, std::string_view words) {
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+      const bool over = spent.count() > share * seconds_;
+      reached_ = reached_ || over;
+      return progress(fraction, words) && !over;
+    };
+  }
+  bool reached() const { return reached_; }
+
+ private:
+  double seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::atomic<bool> reached_{false};
+};
+
+void add_options(Program& program, Arguments& arguments) {
+  CLI::App& app = program.app;
+  app.add_option("mesh", arguments.mesh, "closed mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf")
+      ->required()
+      ->option_text("MESH");
+  app.add_option("-o,--output", arguments.output, "the recipe to write")
+      ->required()
+      ->option_text("RECIPE.json");
+  app.add_option("--spheres", arguments.fit.spheres, "metaballs at most")->check(CLI::Range(1, 10000));
+  app.add_option("--points", arguments.fit.points, "samples of the surface that the refinement sees")
+      ->check(CLI::Range(std::int64_t{100}, std::int64_t{10000000}));
+  app.add_option("--optimizer", arguments.optimizer, "of the global parameters, on the shape histogram")
+      ->check(CLI::IsMember({"pso", "crs2", "isres", "esch", "sbplx"}));
+  app.add_option("--population", arguments.fit.population, "of the optimizer")->check(CLI::Range(1, 10000));
+  app.add_option("--generations", arguments.fit.generations,
+                 "of the optimizer: population x generations evaluations")
+      ->check(CLI::Range(1, 100000));
+  app.add_option(
+         "--tolerance", arguments.fit.tolerance,
+         "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option(
+         "--time-limit", arguments.time_limit,
+         "seconds after which the best so far is written; 0 = none. The result then depends on the machine")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--unit", arguments.unit, "length unit of the mesh's coordinates: its file does not say")
+      ->check(CLI::IsMember({"km", "m"}));
+  app.add_option("--report", arguments.report,
+                 "write pictures of target, fit, distances and convergence here")
+      ->option_text("DIR");
+}
+
+// Fractions of the bounding-box diagonal, except counts and ratios.
+std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  return {{"max_distance", d.max},
+          {"mean_distance", d.mean},
+          {"p99_distance", d.p99},
+          {"similarity", fit.similarity},
+          {"similarity_floor", fit.similarity_floor},
+          {"volume_ratio", fit.check.volume_ratio}};
+}
+
+Recipe recipe_of(const Program& program, const Arguments& arguments, const ShapeFitResult& fit) {
+  Recipe recipe;
+  recipe.length_unit = arguments.unit;
+  recipe.seed = program.seed;
+  recipe.provenance.tool = program.tool();
+  recipe.provenance.input_name = std::filesystem::path(arguments.mesh).filename().string();
+  recipe.provenance.input_sha256 = sha256_of_file(arguments.mesh);
+  recipe.provenance.options = program.given_options();
+  for (auto [name, value] : achieved(fit)) {
+    recipe.provenance.achieved.emplace_back(name, round_to_seven_digits(value));
+  }
+  recipe.body = fit.body;
+  return recipe;
+}
+
+void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
+  nlohmann::ordered_json& summary = program.summary;
+  summary["spheres"] = fit.body.spheres.size();
+  for (const auto& [name, value] : achieved(fit)) summary[name] = value;
+  summary["closed"] = fit.check.topology.closed;
+  summary["manifold"] = fit.check.topology.manifold;
+  summary["components"] = fit.check.topology.components;
+  summary["genus"] = fit.check.topology.genus;
+  summary["filling_rate"] = fit.filling_rate;
+  summary["base_spheres"] = fit.base_spheres;
+  summary["base_similarity"] = fit.base_similarity;
+  summary["sharpness"] = fit.body.blend_exponent * fit.body.a;
+  summary["evaluations"] = fit.evaluations;
+  summary["stopped_early"] = stopped;
+}
+
+void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  char line[200];
+  std::snprintf(
+      line, sizeof line,
+      "%zu metaballs: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the diagonal; similarity %.2f %% "
+      "(two samplings of the target: %.2f %%)",
+      fit.body.spheres.size(), 100 * d.mean, 100 * d.p99, 100 * d.max, 100 * fit.similarity,
+      100 * fit.similarity_floor);
+  program.say(line);
+  if (fit.check.topology.components != target.components) {
+    program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +
+                std::to_string(target.components) + "; give it more --spheres");
+  }
+}
+
+void run(Program& program, Arguments& arguments) {
+  // Before minutes of work: can the results be written at all?
+  { const OutputFile probe(arguments.output); }
+  if (!arguments.report.empty()) prepare_report_folder(arguments.report);
+  arguments.fit.seed = program.seed;
+  arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
+  const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
+  for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
+
+  TimeLimit limit(arguments.time_limit);
+  const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
+    return limit.guard(program.progress(stage), stage);
+  });
+  if (Program::interrupted()) program.say("stopped by Ctrl-C: this is the best so far");
+  if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
+  write_recipe(recipe_of(program, arguments, fit), arguments.output);
+  if (!arguments.report.empty()) write_fit_report(target, fit, arguments.report);
+  summarize(program, fit, Program::interrupted() || limit.reached());
+  say_result(program, target, fit);
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program("fit_shape", "Fits metaballs to a closed mesh and writes them as a recipe.");
+  astrolith::Arguments arguments;
+  astrolith::add_options(program, arguments);
+  return program.run(argc, argv, [&] { astrolith::run(program, arguments); });
+}

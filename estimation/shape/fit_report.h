@@ -1,0 +1,21 @@
+// Pictures of a fit: target and fit side by side, how far they lie apart, and how the fit got there.
+#pragma once
+
+#include <filesystem>
+
+#include "estimation/shape/shape_fit.h"
+#include "estimation/shape/target_body.h"
+
+namespace astrolith {
+
+// Makes the folder if needed. Throws InputError when that is impossible.
+void prepare_report_folder(const std::filesystem::path& folder);
+
+// Writes into the folder:
+//   target_and_fit.png   the two bodies in the same light, from four sides each
+//   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
+//   convergence.png      mean distance (logarithmic) against iterations of the refinement
+void write_fit_report(const TargetBody& target, const ShapeFitResult& fit,
+                      const std::filesystem::path& folder);
+
+}  // namespace astrolith
