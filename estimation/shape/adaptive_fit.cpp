@@ -13,6 +13,9 @@ namespace {
 // A sphere that holds less than this share of the kernel sum everywhere is idle.
 constexpr double kIdleShare = 0.02;
 
+// Centres may stick out of the target this far (fraction of the diagonal) before their sphere is taken away.
+constexpr double kOutsideMargin = 0.002;
+
 // Surfaces further than this from the target, as a fraction of the diagonal, are strays to be mended.
 constexpr double kStrayDistance = 0.015;
 constexpr int kRepairs = 3;
@@ -26,6 +29,7 @@ class AdaptiveFit {
     points_.on_surface = samples.points;
     refinement_.loss_scale = options.loss_scale;
     refinement_.containment_weight = options.containment_weight;
+    refinement_.keep_centers_inside = &target.tree;
     summary_.model = start;
     total_iterations_ =
         options.first_iterations + (options.rounds - 1) * options.round_iterations + options.last_iterations;
@@ -74,6 +78,7 @@ class AdaptiveFit {
 
   void grow(int rounds_left) {
     std::vector<Sphere>& spheres = summary_.model.spheres;
+    remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
     remove_idle_spheres(summary_.model, points_, kIdleShare);
     const int missing = options_.spheres - static_cast<int>(spheres.size());
     const int count = (missing + rounds_left - 1) / rounds_left;
@@ -82,13 +87,16 @@ class AdaptiveFit {
     spheres.insert(spheres.end(), grown.begin(), grown.end());
   }
 
-  // True when strays were found: they become containment points and the model is refined once more.
+  // Looks for islands, cavities and bridges; true when there were any. Islands lose their spheres, the rest
+  // becomes containment points, and the model is refined once more.
   bool mend() {
+    const int islands = remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
     const FitCheck check = check_fit(target_, metaball_body(summary_.model), kRepairResolution, 100, 1);
     const FitPoints strays = stray_points(target_, check.mesh, kStrayDistance);
-    if (strays.inside.empty() && strays.outside.empty()) return false;
+    if (islands == 0 && strays.inside.empty() && strays.outside.empty()) return false;
     points_.inside.insert(points_.inside.end(), strays.inside.begin(), strays.inside.end());
     points_.outside.insert(points_.outside.end(), strays.outside.begin(), strays.outside.end());
+    if (islands > 0) grow(1);
     spent_ -= options_.round_iterations;
     step(options_.round_iterations);
     return true;

@@ -25,6 +25,9 @@ constexpr double kSupportSlack = 1.15;
 // region.
 constexpr double kSmallestTrustRegion = 1e-6;
 
+// Centres are asked to lie this part of their radius inside the target.
+constexpr double kCenterDepth = 0.05;
+
 enum class Condition { on_surface, inside, outside };
 
 // One group of near points: its residuals and their derivatives by the spheres that reach it.
@@ -197,6 +200,37 @@ class BlockCost : public ceres::CostFunction {
   const Block& block_;
 };
 
+// weight * max(0, r / 20 - d(c)) for one sphere's parameter block (centre, log radius).
+class CenterInside : public ceres::SizedCostFunction<1, 4> {
+ public:
+  CenterInside(const SurfaceTree& target, double weight) : target_(target), weight_(weight) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const double* p = parameters[0];
+    const Vec3d center{p[0], p[1], p[2]};
+    if (!std::isfinite(squared_norm(center))) return false;
+    const ClosestPoint closest = target_.closest(center);
+    const double sign = dot(center - closest.point, closest.normal) > 0.0 ? -1.0 : 1.0;
+    const double depth = kCenterDepth * std::exp(p[3]);
+    const double lack = depth - sign * closest.distance;
+    residuals[0] = weight_ * std::max(0.0, lack);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    // The signed distance's gradient points inwards, from the nearest point or towards it.
+    const Vec3d inward =
+        closest.distance > 0.0 ? (center - closest.point) * (sign / closest.distance) : -closest.normal;
+    const double active = lack > 0.0 ? weight_ : 0.0;
+    jacobians[0][0] = -active * inward.x;
+    jacobians[0][1] = -active * inward.y;
+    jacobians[0][2] = -active * inward.z;
+    jacobians[0][3] = active * depth;
+    return true;
+  }
+
+ private:
+  const SurfaceTree& target_;
+  double weight_;
+};
+
 class ProgressCallback : public ceres::IterationCallback {
  public:
   explicit ProgressCallback(const std::function<bool(int, double)>& go_on) : go_on_(go_on) {}
@@ -235,6 +269,12 @@ ceres::Solver::Summary solve_round(Parameters& parameters, const FitPoints& poin
     }
     blocks.push_back(&parameters.log_sharpness);
     problem.AddResidualBlock(new BlockCost(block), nullptr, blocks);
+  }
+  if (options.keep_centers_inside != nullptr) {
+    for (SphereDerivatives& sphere : parameters.spheres) {
+      problem.AddResidualBlock(new CenterInside(*options.keep_centers_inside, options.center_weight), nullptr,
+                               sphere.data());
+    }
   }
   ProgressCallback callback(go_on);
   ceres::Solver::Options ceres_options = solver_options(iterations);

@@ -4,13 +4,16 @@
 // Residuals, in length units:
 //   on the surface   phi(s(p)),  phi^2 = 2 c^2 (sqrt(1 + s^2 / c^2) - 1)   pseudo-Huber: bad vertices pull
 //   little inside, outside  weight * max(0, margin - L(p)),  weight * max(0, margin + L(p))
-// The second kind keeps cavities and islands away: a surface that no sample lies on costs nothing otherwise.
+//   of every centre      center_weight * max(0, r_i / 20 - d(c_i)),  d the target's signed distance
+// The second and third kind keep cavities and islands away: a surface that no sample lies on costs nothing
+// otherwise. Every centre is inside the model, so one outside the target is an island or a spike.
 // Sums run in a fixed order, so that the result is the same for every thread count.
 #pragma once
 
 #include <vector>
 
 #include "estimation/shape/metaball_model.h"
+#include "geometry/surface_tree.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
@@ -22,12 +25,14 @@ struct FitPoints {
 };
 
 struct RefinementOptions {
-  int max_iterations = 30;           // of Levenberg and Marquardt, all rounds together, > 0
-  int iterations_per_round = 6;      // before the lists of neighbours are made anew, > 0
-  double loss_scale = 0.0;           // c, length units, > 0
-  double containment_weight = 0.0;   // length units, >= 0
-  double containment_margin = 0.05;  // of the level L, which is 1 at a lone centre
-  double relative_decrease = 1e-4;   // stops when a round lowers the cost by less than this part
+  int max_iterations = 30;                           // of Levenberg and Marquardt, all rounds together, > 0
+  int iterations_per_round = 6;                      // before the lists of neighbours are made anew, > 0
+  double loss_scale = 0.0;                           // c, length units, > 0
+  double containment_weight = 0.0;                   // length units, >= 0
+  const SurfaceTree* keep_centers_inside = nullptr;  // the target, or null: centres may leave it
+  double center_weight = 0.2;                        // firmer ones hold up the whole fit
+  double containment_margin = 0.05;                  // of the level L, which is 1 at a lone centre
+  double relative_decrease = 1e-4;  // stops when a round lowers the cost by less than this part
 };
 
 struct RefinementSummary {

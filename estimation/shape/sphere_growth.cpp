@@ -63,6 +63,18 @@ std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::ve
   return errors;
 }
 
+// Returns how many spheres went; none, should all be unwanted.
+int keep_only(MetaballModel& model, const std::vector<bool>& wanted) {
+  std::vector<Sphere> kept;
+  for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+    if (wanted[i]) kept.push_back(model.spheres[i]);
+  }
+  if (kept.empty()) return 0;
+  const auto removed = static_cast<int>(model.spheres.size() - kept.size());
+  model.spheres = std::move(kept);
+  return removed;
+}
+
 }  // namespace
 
 std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points) {
@@ -129,14 +141,13 @@ int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double sh
   for (const auto& list : busy_at) {
     for (const std::int32_t i : list) busy[static_cast<std::size_t>(i)] = true;
   }
-  std::vector<Sphere> kept;
-  for (std::size_t i = 0; i < model.spheres.size(); ++i) {
-    if (busy[i]) kept.push_back(model.spheres[i]);
-  }
-  if (kept.empty()) return 0;
-  const int removed = static_cast<int>(model.spheres.size() - kept.size());
-  model.spheres = std::move(kept);
-  return removed;
+  return keep_only(model, busy);
+}
+
+int remove_outside_spheres(MetaballModel& model, const SurfaceTree& target, double margin) {
+  std::vector<bool> inside;
+  for (const Sphere& s : model.spheres) inside.push_back(target.signed_distance(s.center) >= -margin);
+  return keep_only(model, inside);
 }
 
 }  // namespace astrolith

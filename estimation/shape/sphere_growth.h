@@ -23,4 +23,8 @@ std::vector<Sphere> spheres_for_largest_errors(const MetaballModel& model, const
 // At least one sphere stays.
 int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double share);
 
+// Removes the spheres whose centre lies outside the target by more than `margin`; returns how many. The
+// refinement pushes out what it cannot use, and there such a sphere is an island. At least one sphere stays.
+int remove_outside_spheres(MetaballModel& model, const SurfaceTree& target, double margin);
+
 }  // namespace astrolith

@@ -19,10 +19,10 @@
 namespace astrolith {
 
 struct PackingOptions {
-  int max_spheres = 200;           // > 0
-  int prototypes_per_sphere = 10;  // > 0
-  int climb_steps = 60;            // of one prototype, > 0
-  double smallest_radius = 1e-4;   // as a fraction of the bounding-box diagonal, > 0
+  int max_spheres = 200;          // > 0
+  int prototypes_per_sphere = 5;  // > 0
+  int climb_steps = 30;           // of one prototype, > 0
+  double smallest_radius = 1e-4;  // as a fraction of the bounding-box diagonal, > 0
   std::uint64_t seed = 1;
 };
 

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/orient_faces.h"
 #include "geometry/weld.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
