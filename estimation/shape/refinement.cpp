@@ -37,24 +37,33 @@ struct Block {
   std::vector<std::int32_t> neighbours;
   std::vector<double> residuals;             // (#points)
   std::vector<SphereDerivatives> by_sphere;  // (#points x #neighbours)
-  std::vector<double> by_log_sharpness;      // (#points)
+  std::vector<double> by_sharpness;          // (#points)
 };
 
-// The model as Ceres's parameter blocks: centre and log radius a sphere, and the log of the sharpness.
+// The model as Ceres's parameter blocks: centre and log radius a sphere, and t for the sharpness, which
+//   log kappa = middle + half tanh(t / half)
+// keeps between limits: a lone sphere has the same surface at every kappa, and nothing else would hold it.
 struct Parameters {
-  explicit Parameters(const MetaballModel& model) : log_sharpness(std::log(model.sharpness)) {
+  explicit Parameters(const MetaballModel& model) {
+    const double part = (std::log(model.sharpness) - kMiddle) / kHalf;
+    sharpness = kHalf * std::atanh(std::clamp(part, -0.99, 0.99));
     for (const Sphere& s : model.spheres) {
       spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
     }
   }
   MetaballModel model() const {
-    MetaballModel m{std::exp(log_sharpness), {}};
+    MetaballModel m{std::exp(kMiddle + kHalf * std::tanh(sharpness / kHalf)), {}};
     for (const auto& s : spheres) m.spheres.push_back({{s[0], s[1], s[2]}, std::exp(s[3])});
     return m;
   }
+  // d log kappa / dt
+  double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / kHalf), 2); }
+
+  static constexpr double kMiddle = 1.0986122886681098;  // log 3
+  static constexpr double kHalf = 2.3025850929940457;    // log 10: kappa between 0.3 and 30
 
   std::vector<SphereDerivatives> spheres;
-  double log_sharpness;
+  double sharpness = 0.0;  // t
 };
 
 struct Scaled {
@@ -118,7 +127,7 @@ class Evaluation : public ceres::EvaluationCallback {
         }
       }
       block.residuals.resize(block.points.size());
-      block.by_log_sharpness.resize(block.points.size());
+      block.by_sharpness.resize(block.points.size());
       block.by_sphere.resize(block.points.size() * block.neighbours.size());
     });
   }
@@ -137,7 +146,7 @@ class Evaluation : public ceres::EvaluationCallback {
       for (SphereDerivatives& d : row) {
         for (double& x : d) x *= scaled.derivative;
       }
-      block.by_log_sharpness[j] *= scaled.derivative;
+      block.by_sharpness[j] *= scaled.derivative * parameters_.sharpness_slope();
     }
   }
 
@@ -145,7 +154,7 @@ class Evaluation : public ceres::EvaluationCallback {
                            const MetaballParameters<double>& evaluation,
                            std::span<SphereDerivatives> row) const {
     const double s = distance_with_derivatives(model, evaluation, block.neighbours, block.points[j], row,
-                                               &block.by_log_sharpness[j]);
+                                               &block.by_sharpness[j]);
     return pseudo_huber(s, options_.loss_scale);
   }
 
@@ -153,7 +162,7 @@ class Evaluation : public ceres::EvaluationCallback {
                                const MetaballParameters<double>& evaluation,
                                std::span<SphereDerivatives> row) const {
     const double level = level_with_derivatives(model, evaluation, block.neighbours, block.points[j], row,
-                                                &block.by_log_sharpness[j]);
+                                                &block.by_sharpness[j]);
     const double sign = block.condition == Condition::inside ? -1.0 : 1.0;
     const double lack = options_.containment_margin + sign * level;
     if (!(lack > 0.0)) return {0.0, 0.0};
@@ -167,7 +176,7 @@ class Evaluation : public ceres::EvaluationCallback {
   bool derivatives_are_current_ = false;
 };
 
-// Hands one evaluated block to Ceres. Parameter blocks: the neighbours (4 each), then the log sharpness (1).
+// Hands one evaluated block to Ceres. Parameter blocks: the neighbours (4 each), then the sharpness (1).
 class BlockCost : public ceres::CostFunction {
  public:
   explicit BlockCost(const Block& block) : block_(block) {
@@ -191,7 +200,7 @@ class BlockCost : public ceres::CostFunction {
       }
     }
     if (jacobians[n] != nullptr) {
-      std::copy(block_.by_log_sharpness.begin(), block_.by_log_sharpness.end(), jacobians[n]);
+      std::copy(block_.by_sharpness.begin(), block_.by_sharpness.end(), jacobians[n]);
     }
     return true;
   }
@@ -267,7 +276,7 @@ ceres::Solver::Summary solve_round(Parameters& parameters, const FitPoints& poin
     for (const std::int32_t i : block.neighbours) {
       blocks.push_back(parameters.spheres[static_cast<std::size_t>(i)].data());
     }
-    blocks.push_back(&parameters.log_sharpness);
+    blocks.push_back(&parameters.sharpness);
     problem.AddResidualBlock(new BlockCost(block), nullptr, blocks);
   }
   if (options.keep_centers_inside != nullptr) {
@@ -282,7 +291,6 @@ ceres::Solver::Summary solve_round(Parameters& parameters, const FitPoints& poin
   ceres_options.callbacks.push_back(&callback);
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, &problem, &summary);
-  if (summary.termination_type == ceres::FAILURE) throw WorkError("refinement: " + summary.message);
   return summary;
 }
 
@@ -303,6 +311,10 @@ RefinementSummary refine(const MetaballModel& start, const FitPoints& points,
     const int iterations = std::min(options.iterations_per_round, options.max_iterations - result.iterations);
     const ceres::Solver::Summary summary =
         solve_round(parameters, points, options, iterations, trust_region, go_on);
+    if (summary.termination_type == ceres::FAILURE) {
+      if (first) throw WorkError("refinement: " + summary.message);
+      break;  // the parameters are still those of the last good round
+    }
     if (first) result.initial_cost = summary.initial_cost;
     result.final_cost = summary.final_cost;
     result.iterations += std::max<int>(1, static_cast<int>(summary.iterations.size()) - 1);

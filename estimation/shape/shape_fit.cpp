@@ -15,8 +15,6 @@ constexpr double kBaseShare = 0.5;
 
 constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
-constexpr std::int64_t kCheckSamples = 100000;     // of each surface in the final distances
-constexpr int kCheckResolution = 256;
 
 // Points inside and outside: this many, this deep (fraction of the diagonal).
 constexpr int kContainmentPoints = 2000;
@@ -103,9 +101,10 @@ SurfletHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
   return surflet_histogram(samples.points, samples.normals);
 }
 
-void measure(const TargetBody& target, std::uint64_t seed, ShapeFitResult& result) {
-  result.check = check_fit(target, body_in_target_frame(result.body, target), kCheckResolution, kCheckSamples,
-                           stream_seed(seed, kDistances));
+void measure(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
+  const std::uint64_t seed = options.seed;
+  result.check = check_fit(target, body_in_target_frame(result.body, target), options.check_resolution,
+                           options.check_samples, stream_seed(seed, kDistances));
   const SurfletHistogram wanted = fresh_histogram(target.mesh, stream_seed(seed, kFreshTarget));
   result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));
   result.similarity_floor = similarity(wanted, fresh_histogram(target.mesh, stream_seed(seed, kFreshAgain)));
@@ -128,7 +127,7 @@ ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& option
   result.search_history = base.optimization.history;
   result.convergence = std::move(fit.convergence);
   result.interrupted = packing.interrupted || fit.interrupted;
-  measure(target, options.seed, result);
+  measure(target, options, result);
   return result;
 }
 

@@ -19,8 +19,10 @@ struct ShapeFitOptions {
   std::int64_t points = 15000;  // of the target's surface that the refinement sees, >= 100
   double tolerance = 0.0;  // no more spheres are added below this mean distance, fraction of the diagonal
   OptimizerAlgorithm optimizer = OptimizerAlgorithm::pso;
-  int population = 20;   // of the optimiser
-  int generations = 20;  // of the optimiser: population * generations evaluations
+  int population = 20;                  // of the optimiser
+  int generations = 20;                 // of the optimiser: population * generations evaluations
+  int check_resolution = 256;           // cells along the longest side of the mesh that is measured
+  std::int64_t check_samples = 100000;  // fresh points of each surface in the final distances
   std::uint64_t seed = 1;
 };
 

@@ -147,8 +147,11 @@ class Packer {
     while (!queue_.empty()) {
       if (queue_.top().clearance < smallest) return false;
       if (queue_.top().known == spheres_.size()) {
-        spheres_.push_back({queue_.top().position, queue_.top().clearance});
+        Prototype winner = queue_.top();
         queue_.pop();
+        // Only winners are worth a second climb, which settles them in their node.
+        climb(winner);
+        spheres_.push_back({winner.position, winner.clearance});
         return true;
       }
       update_head();

@@ -1,0 +1,101 @@
+#include "estimation/shape/shape_fit.h"
+
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/implicit_field.h"
+#include "synthesis/mesher.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith {
+namespace {
+
+TriangleMesh mesh_of(const MetaballBody& body, int resolution) {
+  Recipe recipe;
+  recipe.body = body;
+  const ImplicitField field(recipe);
+  MeshCollector collector;
+  mesh_field(field, field.bounds(), resolution, collector);
+  return std::move(collector.mesh);
+}
+
+ShapeFitOptions quick(int spheres) {
+  ShapeFitOptions options;
+  options.spheres = spheres;
+  options.points = 1500;
+  options.population = 8;
+  options.generations = 4;
+  options.check_resolution = 64;
+  options.check_samples = 5000;
+  return options;
+}
+
+TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
+  const TargetBody target = prepare_target(testing::icosphere(4, 2.0, {5, 6, 7}), "sphere");
+  const ShapeFitResult fit = fit_shape(target, quick(1));
+  ASSERT_EQ(fit.body.spheres.size(), 1u);
+  EXPECT_NEAR(fit.body.spheres[0].radius, 2.0, 0.01);
+  EXPECT_NEAR(norm(fit.body.spheres[0].center - Vec3d{5, 6, 7}), 0.0, 0.01);
+  EXPECT_NEAR(fit.check.volume_ratio, 1.0, 0.01);
+  EXPECT_LT(fit.check.distance.mean, 2e-3);
+}
+
+TEST(ShapeFit, RecoversABodyOfThreeMetaballs) {
+  MetaballBody truth;
+  truth.blend_exponent = 2.5;
+  truth.spheres = {{{-0.9, 0, 0}, 0.9}, {{0.5, 0.2, 0}, 1.0}, {{1.3, 0.5, 0.3}, 0.6}};
+  const TargetBody target = prepare_target(mesh_of(truth, 64), "three");
+  const ShapeFitResult fit = fit_shape(target, quick(16));
+  EXPECT_LT(fit.check.distance.mean, 5e-4);
+  EXPECT_LT(fit.check.distance.p99, 3e-3);
+  EXPECT_NEAR(fit.check.volume_ratio, 1.0, 2e-3);
+  EXPECT_TRUE(fit.check.topology.closed && fit.check.topology.manifold);
+  EXPECT_EQ(fit.check.topology.components, 1);
+  EXPECT_GT(fit.similarity, 0.95 * fit.similarity_floor);
+}
+
+TEST(ShapeFit, KeepsTwoBodiesApart) {
+  const TargetBody target = prepare_target(testing::two_spheres(3, 1.0, 2.6), "pair");
+  const ShapeFitResult fit = fit_shape(target, quick(8));
+  EXPECT_EQ(fit.check.topology.components, 2);
+  EXPECT_LT(fit.check.distance.mean, 3e-3);
+}
+
+TEST(ShapeFit, SameBodyForOneAndTwoThreads) {
+  const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
+  std::vector<MetaballBody> bodies;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    bodies.push_back(fit_shape(target, quick(12)).body);
+  }
+  EXPECT_EQ(bodies[0].blend_exponent, bodies[1].blend_exponent);
+  ASSERT_EQ(bodies[0].spheres.size(), bodies[1].spheres.size());
+  for (std::size_t i = 0; i < bodies[0].spheres.size(); ++i) {
+    EXPECT_EQ(bodies[0].spheres[i].center, bodies[1].spheres[i].center);
+    EXPECT_EQ(bodies[0].spheres[i].radius, bodies[1].spheres[i].radius);
+  }
+}
+
+TEST(ShapeFit, StopsWhenAskedWithABodyAllTheSame) {
+  const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
+  const ShapeFitResult fit = fit_shape(target, quick(12), [](const std::string& stage) -> Progress {
+    if (stage != "refine") return {};
+    return [](double, std::string_view) { return false; };
+  });
+  EXPECT_TRUE(fit.interrupted);
+  EXPECT_FALSE(fit.body.spheres.empty());
+}
+
+TEST(ShapeFit, ToleranceEndsTheGrowth) {
+  const TargetBody target = prepare_target(testing::icosphere(3), "sphere");
+  ShapeFitOptions options = quick(40);
+  options.tolerance = 0.01;
+  EXPECT_LT(fit_shape(target, options).body.spheres.size(), 40u);
+}
+
+TEST(ShapeFit, RefusesOptionsOutOfRange) {
+  const TargetBody target = prepare_target(testing::icosphere(2), "sphere");
+  EXPECT_THROW(fit_shape(target, quick(0)), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith

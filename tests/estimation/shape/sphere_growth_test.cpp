@@ -1,0 +1,48 @@
+#include "estimation/shape/sphere_growth.h"
+
+#include "estimation/shape/isosurface_projection.h"
+#include "geometry/mesh_measure.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith {
+namespace {
+
+TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {
+  // A unit sphere with a bump at +x, modelled by a unit sphere.
+  TriangleMesh mesh = testing::icosphere(4);
+  for (Vec3d& p : mesh.vertices) {
+    if (p.x > 0.9) p = p * 1.15;
+  }
+  const MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
+  const SurfaceSamples samples = sample_surface(mesh, 2000, 1, SampleNormals::interpolated);
+  const std::vector<Sphere> grown = spheres_for_largest_errors(model, samples, surface_area(mesh), 20, 1);
+  ASSERT_EQ(grown.size(), 1u);
+  EXPECT_GT(normalized(grown[0].center).x, 0.9);
+  EXPECT_LT(norm(grown[0].center), 1.0);
+}
+
+TEST(SphereGrowth, IdleAndOutsideSpheresGo) {
+  const TriangleMesh mesh = testing::icosphere(3);
+  FitPoints points;
+  points.on_surface = sample_surface(mesh, 500, 1).points;
+  MetaballModel model{6.0, {{{0, 0, 0}, 1.0}, {{0.1, 0, 0}, 0.05}, {{3, 0, 0}, 0.2}}};
+  EXPECT_EQ(remove_outside_spheres(model, SurfaceTree(mesh), 0.01), 1);
+  EXPECT_EQ(remove_idle_spheres(model, points, 0.02), 1);
+  ASSERT_EQ(model.spheres.size(), 1u);
+  EXPECT_EQ(model.spheres[0].radius, 1.0);
+  EXPECT_EQ(remove_outside_spheres(model, SurfaceTree(testing::icosphere(3, 1.0, {9, 9, 9})), 0.01), 0)
+      << "the last sphere stays";
+}
+
+TEST(IsosurfaceProjection, ArrivesOnASphereWithItsNormals) {
+  const MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
+  const std::vector<Vec3d> points{{1.2, 0, 0}, {0, 0.7, 0}, {0.5, 0.5, 0.5}};
+  const SurfaceSamples projected = project_onto_isosurface(model, points, 8);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(norm(projected.points[i]), 1.0, 1e-6);
+    EXPECT_NEAR(norm(projected.normals[i] - normalized(points[i])), 0.0, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace astrolith
