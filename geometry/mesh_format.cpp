@@ -48,9 +48,8 @@ constexpr Signature kOtherFiles[] = {
     {"PK\x03\x04", "a zip archive"},
     {"\x1f\x8b", "a gzip archive"},
     {"BZh", "a bzip2 archive"},
-    {"\xfd"
-     "7zXZ",
-     "an xz archive"},
+    {"\xfd\x37zXZ", "an xz archive"},
+    {"II*", "a TIFF picture"},
     {"%PDF", "a PDF"},
     {"<", "HTML or XML"},
     {"{", "JSON"},
@@ -138,7 +137,7 @@ std::string describe(const MeshFile& file, Format seen) {
   for (const Signature& other : kOtherFiles) {
     if (seen == Format::other && file.bytes.starts_with(other.start)) return other.name;
   }
-  return std::string("a ") + entry(seen).name + " file";
+  return entry(seen).name;
 }
 
 }  // namespace

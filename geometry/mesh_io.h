@@ -9,15 +9,17 @@
 namespace astrolith {
 
 // Reads a mesh; the extension and the content must agree on the format:
-//   .obj               Wavefront: polygons, v/vt/vn triples, negative indices (texture and normals are
-//   ignored) .ply               ascii, binary little and big endian; unit vertex normals are kept .stl ascii
-//   and binary; corners at the same coordinates become one vertex .off               OFF, with or without
-//   colours and normals .tab .plt .txt     PDS plate model: "n", rows "i x y z", "m", rows "i a b c"; or rows
-//   "v x y z", "f a b c" .icq .txt .tab     Gaskell's implicitly connected quadrilaterals; the faces' edges
-//   are merged .bmf               bodies of OpenUniverse, in kilometres; welded, one winding of each triangle
-// An unknown extension is decided by the content. Polygons become fans. Lengths stay in the file's unit.
-// The mesh has finite coordinates below 1e18, at least one face and every index in range; it need not be
-// closed. Throws InputError ("FILE: line 7: what is wrong; what to do") and bounds its memory by the file's
+//  - .obj: Wavefront; polygons, v/vt/vn corners, negative indices; texture and normals are passed over
+//  - .ply: ascii, binary little and big endian; unit vertex normals are kept
+//  - .stl: ascii and binary; corners at the same coordinates become one vertex
+//  - .off: with or without colours and normals
+//  - .tab .plt .txt: PDS plate model of rows "i x y z" and "i a b c", or "v x y z" and "f a b c"
+//  - .icq (or .tab .plt .txt): Gaskell's implicitly connected quadrilaterals; the faces' edges are merged
+//  - .bmf: bodies of OpenUniverse, in kilometres; welded, one winding of each triangle
+// Another extension is decided by the content. Polygons become fans. Lengths stay in the file's unit.
+//
+// The mesh has coordinates of at most 1e18, at least one face and every index in range; it need not be
+// closed. Throws InputError ("FILE: line 7: what is wrong; what to do"). Memory is bounded by the file's
 // size, whatever the file declares.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 

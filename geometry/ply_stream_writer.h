@@ -31,7 +31,7 @@ class PlyStreamWriter : public MeshSink {
   void add_vertices(std::span<const MeshVertex> vertices) override;
   void add_triangles(std::span<const Triangle> triangles) override;
 
-  // Appends the triangles, states the counts and gives the file its name.
+  // Appends the triangles, states the counts and gives the file its name. Called once.
   void finish();
 
   std::uint64_t num_vertices() const { return num_vertices_; }

@@ -18,7 +18,10 @@ std::optional<double> parse_number(std::string_view word);
 //   while (scan.next_line()) { if (scan.word() == "v") x = scan.number("x"); }
 class TextScanner {
  public:
-  explicit TextScanner(const MeshFile& file) : file_(file), rest_(file.bytes) {}
+  // A byte order mark at the start of the file is passed over.
+  explicit TextScanner(const MeshFile& file) : file_(file), rest_(file.bytes) {
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+  }
 
   // Goes to the next line; false at the end of the file. A carriage return before the line feed is dropped.
   bool next_line();

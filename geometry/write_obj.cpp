@@ -39,6 +39,7 @@ void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   OutputFile out(file);
   BufferedOutput buffer(out);
   for (const std::string& text : info_lines(info)) buffer.append("# " + text + "\n");
+  buffer.append("# axes: z up; import into Blender with forward axis Y, up axis Z\n");
   std::string line;
   const auto put = [&] {
     buffer.append(line);

@@ -131,8 +131,8 @@ TEST_F(MeshErrors, StlOffPlateIcqBmf) {
 }
 
 TEST_F(MeshErrors, NameAndContentDisagree) {
-  expect("a.ply", kBoxes + "f 1 2 3\n", "looks like a Wavefront OBJ file");
-  expect("a.obj", "OFF\n3 1 0\n", "looks like a OFF file");
+  expect("a.ply", kBoxes + "f 1 2 3\n", "looks like Wavefront OBJ");
+  expect("a.obj", "OFF\n3 1 0\n", "looks like OFF");
   expect("a.obj", "\x89PNG\r\n", "a PNG picture");
   expect("a.obj", "<html>", "HTML");
   expect("a.tab", "PK\x03\x04", "a zip archive");

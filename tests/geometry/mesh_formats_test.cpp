@@ -46,6 +46,12 @@ TEST_F(MeshFormats, ObjForwardReference) {
   EXPECT_EQ(read("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles.size(), 1u);
 }
 
+// Editors put a byte order mark before the first vertex; losing that line would shift every index.
+TEST_F(MeshFormats, ByteOrderMarkIsPassedOver) {
+  const std::string obj = "v 5 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_TRUE(read("a.obj", "\xef\xbb\xbf" + obj).vertices == read("b.obj", obj).vertices);
+}
+
 TEST_F(MeshFormats, PlyAsciiWithUnknownPropertiesAndElements) {
   const TriangleMesh mesh =
       read("a.ply",

@@ -2,9 +2,11 @@
 
 #include <stdexcept>
 
+#include "geometry/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/hash_random.h"
+#include "tests/support/data.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {
@@ -69,6 +71,17 @@ TEST(Weld, FirstOccurrenceStaysWithItsNormal) {
   EXPECT_EQ(welded.vertices.size(), 3u);  // zero and minus zero are one place
   EXPECT_TRUE((welded.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 1}}));
   EXPECT_TRUE((welded.normals == std::vector<Vec3d>{{0, 0, 1}, {0, 1, 0}, {0, 0, -1}}));
+}
+
+// A published model whose poles and date line are stored twice, with rounding between the copies.
+TEST(Weld, ClosesIdasPoles) {
+  const auto file = shared_shape("ida_thomas_32k_DEFECT_open_poles.ply");
+  ASTROLITH_SKIP_WITHOUT(file);
+  const TriangleMesh open = read_mesh(file);
+  EXPECT_EQ(analyze_topology(open).boundary_edges, 720);
+  const MeshTopology welded = analyze_topology(weld_vertices(open, 1e-6));
+  EXPECT_TRUE(welded.closed && welded.manifold && welded.oriented);
+  EXPECT_EQ(welded.genus, 0);
 }
 
 TEST(Weld, HardInputs) {
