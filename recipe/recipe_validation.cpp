@@ -12,11 +12,12 @@ namespace {
 
 void expect_range(double value, const Place& place, double low, double high) {
   if (value >= low && value <= high) return;  // false for NaN
-  place.fail(fmt::format("must be from {} to {}, is {}", low, high, value));
+  place.fail(fmt::format("must be from {} to {}, is {}; give a value in that range", low, high, value));
 }
 void expect_integer(int value, const Place& place, int low, int high) {
   if (value >= low && value <= high) return;
-  place.fail(fmt::format("must be an integer from {} to {}, is {}", low, high, value));
+  place.fail(
+      fmt::format("must be an integer from {} to {}, is {}; give one in that range", low, high, value));
 }
 void expect_number(double value, const Place& place) { expect_range(value, place, -kMaxNumber, kMaxNumber); }
 void expect_not_negative(double value, const Place& place) { expect_range(value, place, 0.0, kMaxNumber); }
@@ -25,7 +26,7 @@ void expect_positive(double value, const Place& place) {
 }
 void expect_above_one(double value, const Place& place, double high) {
   if (value > 1.0 && value <= high) return;
-  place.fail(fmt::format("must be above 1 and at most {}, is {}", high, value));
+  place.fail(fmt::format("must be above 1 and at most {}, is {}; give a value in that range", high, value));
 }
 void expect_vector(const Vec3d& v, const Place& place) {
   expect_number(v.x, place.field("x"));

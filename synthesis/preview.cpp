@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kFilled = 0.92;  // share of a tile that the largest view spans
 constexpr Vec3s kBackground{0.0030f, 0.0034f, 0.0048f};
-constexpr Vec3s kNeutralAlbedo{0.62f, 0.60f, 0.575f};
+constexpr Vec3s kNeutralAlbedo{0.58f, 0.56f, 0.535f};
 // Start of secondary rays above the surface, in radii of the body: above the rounding errors of a hit.
 constexpr float kLift = 2e-5f;
 // Share of Lommel and Seeliger's law in the reflectance (McEwen 1991): full moons look flat, rocks less so.
-constexpr float kLunarShare = 0.55f;
+constexpr float kLunarShare = 0.35f;
 
 Vec3s to_float(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -151,7 +151,7 @@ class Painter {
     const Vec3s albedo =
         options_.vertex_colors.empty() ? kNeutralAlbedo : interpolate(options_.vertex_colors, hit);
     const float sun = sunlight(camera, start, normal, to_viewer, random);
-    return albedo * (sun + sky_light(start, normal, random));
+    return albedo * (sun + sky_light(start, normal, to_viewer, random));
   }
 
   float sunlight(const Camera& camera, const Vec3s& start, const Vec3s& normal, const Vec3s& to_viewer,
@@ -168,14 +168,17 @@ class Painter {
     return kLunarShare * 2.0f * incidence / (incidence + emission) + (1.0f - kLunarShare) * incidence;
   }
 
-  // Light of an even sky that one cosine-weighted ray finds open, so that hollows look hollow.
-  float sky_light(const Vec3s& start, const Vec3s& normal, RayRandom& random) const {
+  // Light of a sky brightest behind the viewer, which one cosine-weighted ray finds open or not: in the
+  // shadows, slopes stay legible and hollows look hollow.
+  float sky_light(const Vec3s& start, const Vec3s& normal, const Vec3s& to_viewer, RayRandom& random) const {
     if (options_.fill_light <= 0.0) return 0.0f;
     const auto [dx, dy] = disk_point(random);
     const float dz = math::sqrt(std::max(0.0f, 1.0f - dx * dx - dy * dy));
     const Tangents tangents(normal);
     const Vec3s towards = normalized(dx * tangents.first + dy * tangents.second + dz * normal);
-    return scene_.occluded(start, towards) ? 0.0f : static_cast<float>(options_.fill_light);
+    if (scene_.occluded(start, towards)) return 0.0f;
+    const float facing = std::max(0.0f, dot(normal, to_viewer));
+    return static_cast<float>(options_.fill_light) * (0.25f + 0.75f * facing * facing);
   }
 
   const TriangleMesh& mesh_;

@@ -1,0 +1,279 @@
+// synth: a recipe becomes a closed mesh, a picture of it, or the height map of its Gabor layer.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/program.h"
+#include "geometry/mesh_io.h"
+#include "geometry/mesh_sink.h"
+#include "geometry/ply_stream_writer.h"
+#include "numerics/errors.h"
+#include "numerics/output_file.h"
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+#include "synthesis/gabor_texture.h"
+#include "synthesis/image_file.h"
+#include "synthesis/implicit_field.h"
+#include "synthesis/lay_on_base.h"
+#include "synthesis/manifold_check.h"
+#include "synthesis/mesher.h"
+#include "synthesis/preview.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  fs::path recipe;
+  fs::path base;
+  fs::path output;
+  fs::path preview;
+  std::string texture;  // "1024x1024"
+  int resolution = 256;
+};
+
+// 16-bit textures map this many standard deviations either way to [0, 65535].
+constexpr double kTextureRange = 4.0;
+constexpr int kMaxTextureSide = 16384;
+
+void declare_options(Program& program, Options& options) {
+  program.app.add_option("recipe", options.recipe, "the recipe, a JSON file")->required();
+  program.app
+      .add_option("-o,--output", options.output,
+                  "the mesh: .ply (binary, streamed), .obj, .stl or .glb, in the recipe's length unit; with "
+                  "--texture .png or .tif")
+      ->required();
+  program.app
+      .add_option("--resolution", options.resolution, "cells along the body's longest side, border included")
+      ->check(CLI::Range(kMinResolution, kMaxResolution));
+  program.app
+      .add_option("--base", options.base,
+                  "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
+                  "convert")
+      ->option_text("BODY.json");
+  program.app
+      .add_option("--preview", options.preview,
+                  "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
+      ->option_text("FILE.png");
+  program.app
+      .add_option("--texture", options.texture,
+                  "the height of the recipe's first Gabor layer on a plane of WxH pixels: .tif holds heights "
+                  "as 32-bit floats, .png maps -4 to +4 standard deviations to 0 to 65535")
+      ->option_text("WxH");
+  program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");
+}
+
+// Throws InputError when a file could not be written, before the work rather than after.
+void require_writable(const fs::path& file) { const OutputFile probe(file); }
+
+void require_extension(const fs::path& file, std::initializer_list<const char*> extensions) {
+  std::string wanted;
+  for (const char* extension : extensions) {
+    if (file.extension() == extension) return;
+    wanted += (wanted.empty() ? "" : " or ") + std::string(extension);
+  }
+  throw InputError(file.string() + ": name the file with the extension " + wanted);
+}
+
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
+}
+
+void summarize_output(Program& program, const fs::path& output) {
+  program.summary["peak_bytes"] = peak_bytes();
+  program.summary["sha256"] = sha256_of_file(output);
+}
+
+// --texture ------------------------------------------------------------------------------------------------
+
+struct TextureSize {
+  int width, height;
+};
+
+TextureSize parse_size(const std::string& text) {
+  TextureSize size{};
+  char cross = 0, rest = 0;
+  const int fields = std::sscanf(text.c_str(), "%6d%c%6d%c", &size.width, &cross, &size.height, &rest);
+  const auto fits = [](int side) { return side >= 1 && side <= kMaxTextureSide; };
+  if (fields != 3 || (cross != 'x' && cross != 'X') || !fits(size.width) || !fits(size.height)) {
+    throw InputError("--texture: \"" + text + "\" is not a size; write WxH with sides of 1 to " +
+                     std::to_string(kMaxTextureSide) + ", such as 1024x1024");
+  }
+  return size;
+}
+
+GaborLayer first_gabor_layer(const Recipe& recipe, const Options& options) {
+  for (const Layer& layer : recipe.layers) {
+    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) return *gabor;
+  }
+  throw InputError(options.recipe.string() +
+                   ": layers: hold no Gabor layer, which --texture draws; fit one with fit_gabor");
+}
+
+std::vector<std::uint16_t> to_16_bits(const std::vector<float>& heights, double rms) {
+  std::vector<std::uint16_t> grey;
+  grey.reserve(heights.size());
+  for (const float height : heights) {
+    const double t = std::clamp(0.5 + 0.5 * height / (kTextureRange * rms), 0.0, 1.0);
+    grey.push_back(static_cast<std::uint16_t>(std::lround(65535.0 * t)));
+  }
+  return grey;
+}
+
+void make_texture(Program& program, const Options& options, const Recipe& recipe) {
+  require_extension(options.output, {".png", ".tif", ".tiff"});
+  require_writable(options.output);
+  const TextureSize size = parse_size(options.texture);
+  GaborLayer layer = first_gabor_layer(recipe, options);
+  // A recipe that does not say how high its rock is still has a texture: in units of its own deviation.
+  const bool has_height = layer.height_rms > 0.0;
+  if (!has_height) layer.height_rms = 1.0;
+  const std::vector<float> heights =
+      synthesize_texture(layer, size.width, size.height, recipe.seed, program.progress("texture"));
+  if (Program::interrupted()) throw WorkError("stopped before the texture was complete");
+  const bool is_png = options.output.extension() == ".png";
+  if (is_png) {
+    write_png16_grey(to_16_bits(heights, layer.height_rms), size.width, size.height, options.output);
+  } else {
+    write_tiff_float(heights, size.width, size.height, options.output);
+  }
+  program.summary["width"] = size.width;
+  program.summary["height"] = size.height;
+  program.summary["height_unit"] = has_height ? recipe.length_unit : "standard deviations";
+  program.summary["height_rms"] = layer.height_rms;
+  if (is_png) {
+    program.summary["height_at_0"] = -kTextureRange * layer.height_rms;
+    program.summary["height_at_65535"] = kTextureRange * layer.height_rms;
+  }
+  summarize_output(program, options.output);
+  program.say(options.output.string() + ": height of a Gabor layer, " + options.texture + " pixels");
+}
+
+// The mesh -------------------------------------------------------------------------------------------------
+
+// Passes everything on to several sinks.
+class SinkList : public MeshSink {
+ public:
+  void add(MeshSink& sink) { sinks_.push_back(&sink); }
+  void add_vertices(std::span<const MeshVertex> vertices) override {
+    for (MeshSink* sink : sinks_) sink->add_vertices(vertices);
+  }
+  void add_triangles(std::span<const Triangle> triangles) override {
+    for (MeshSink* sink : sinks_) sink->add_triangles(triangles);
+  }
+
+ private:
+  std::vector<MeshSink*> sinks_;
+};
+
+// The mesh as a promise: closed and manifold, or no file at all.
+void require_closed_manifold(const ManifoldReport& report, const Options& options) {
+  if (report.triangles == 0) {
+    throw WorkError(options.recipe.string() + ": the recipe's surface is empty at this resolution; raise it");
+  }
+  if (!report.closed() || !report.manifold()) {
+    throw WorkError("the mesh is not a closed manifold (" + std::to_string(report.open_vertices) +
+                    " open and " + std::to_string(report.non_manifold_vertices) +
+                    " non-manifold vertices); nothing was written");
+  }
+}
+
+void summarize_mesh(Program& program, const MeshStatistics& statistics, const ManifoldReport& report) {
+  program.summary["vertices"] = report.vertices;
+  program.summary["triangles"] = report.triangles;
+  program.summary["closed"] = report.closed();
+  program.summary["manifold"] = report.manifold();
+  program.summary["genus"] = report.genus;
+  program.summary["components"] = report.components;
+  program.summary["evaluations"] = statistics.evaluations;
+  program.summary["cell"] = statistics.step;
+  program.summary["active_blocks"] = statistics.active_blocks;
+  program.summary["total_blocks"] = statistics.total_blocks;
+}
+
+void make_preview(const Program& program, const Options& options, const TriangleMesh& mesh) {
+  PreviewOptions preview;
+  preview.seed = program.seed;
+  write_png8_rgb(render_preview(mesh, preview, program.progress("preview")), options.preview);
+}
+
+void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
+  check_mesh_extension(options.output);
+  require_writable(options.output);
+  if (!options.preview.empty()) {
+    require_extension(options.preview, {".png"});
+    require_writable(options.preview);
+  }
+  const MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool()};
+  const bool streamed = options.output.extension() == ".ply";
+  const ImplicitField field(recipe);
+
+  ManifoldCheck check;
+  MeshCollector collector;
+  SinkList sinks;
+  sinks.add(check);
+  if (!streamed || !options.preview.empty()) sinks.add(collector);
+  std::unique_ptr<PlyStreamWriter> writer;
+  if (streamed) sinks.add(*(writer = std::make_unique<PlyStreamWriter>(options.output, info)));
+  const MeshStatistics statistics =
+      mesh_field(field, field.bounds(), options.resolution, sinks, program.progress("mesh"));
+  const ManifoldReport report = check.finish();
+  require_closed_manifold(report, options);
+
+  if (streamed) {
+    writer->finish();
+  } else {
+    write_mesh(collector.mesh, options.output, info);
+  }
+  if (!options.preview.empty()) make_preview(program, options, collector.mesh);
+  summarize_mesh(program, statistics, report);
+  summarize_output(program, options.output);
+  program.say(options.output.string() + ": " + std::to_string(report.triangles) +
+              " triangles, closed, manifold, genus " + std::to_string(report.genus) + ", " +
+              std::to_string(report.components) + (report.components == 1 ? " component" : " components"));
+}
+
+Recipe read_input(const Program& program, const Options& options) {
+  Recipe recipe = read_recipe(options.recipe);
+  if (!options.base.empty()) {
+    recipe = lay_on_base(recipe, options.recipe.string(), read_recipe(options.base), options.base.string());
+  }
+  if (program.app.get_option("--seed")->count() > 0) recipe.seed = program.seed;
+  return recipe;
+}
+
+void synthesize(Program& program, const Options& options) {
+  const Recipe recipe = read_input(program, options);
+  if (!options.texture.empty()) {
+    if (!options.preview.empty()) throw InputError("--preview: draws a mesh; leave out --texture");
+    return make_texture(program, options, recipe);
+  }
+  if (!recipe.body) {
+    throw InputError(options.recipe.string() +
+                     ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
+                     "with --texture WxH");
+  }
+  make_mesh(program, options, recipe);
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program(
+      "synth", "Turns a recipe into a closed 2-manifold mesh, or its Gabor layer into a height map.");
+  astrolith::Options options;
+  astrolith::declare_options(program, options);
+  return program.run(argc, argv, [&] { astrolith::synthesize(program, options); });
+}
