@@ -37,9 +37,11 @@ TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
   testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--seed", "-1"}, "--seed");
 }
 
-INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram, ::testing::Values(ASTROLITH_PROGRAMS), [](const auto& info) {
-  return std::filesystem::path(info.param).filename().string();
-});
+std::string file_name(const ::testing::TestParamInfo<const char*>& program) {
+  return std::filesystem::path(program.param).filename();
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram, ::testing::Values(ASTROLITH_PROGRAMS), file_name);
 
 }  // namespace
 }  // namespace astrolith
