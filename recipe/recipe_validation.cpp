@@ -12,7 +12,7 @@ namespace {
 
 void expect_range(double value, const Place& place, double low, double high) {
   if (value >= low && value <= high) return;  // false for NaN
-  place.fail(fmt::format("must be from {} to {}, is {}; give a value in that range", low, high, value));
+  place.fail(fmt::format("must be from {:g} to {:g}, is {}; give a value in that range", low, high, value));
 }
 void expect_integer(int value, const Place& place, int low, int high) {
   if (value >= low && value <= high) return;
@@ -22,11 +22,13 @@ void expect_integer(int value, const Place& place, int low, int high) {
 void expect_number(double value, const Place& place) { expect_range(value, place, -kMaxNumber, kMaxNumber); }
 void expect_not_negative(double value, const Place& place) { expect_range(value, place, 0.0, kMaxNumber); }
 void expect_positive(double value, const Place& place) {
-  expect_range(value, place, kMinPositive, kMaxNumber);
+  if (value >= kMinPositive && value <= kMaxNumber) return;
+  place.fail(fmt::format("must be above 0 (from {:g} to {:g}), is {}; give a value in that range",
+                         kMinPositive, kMaxNumber, value));
 }
 void expect_above_one(double value, const Place& place, double high) {
   if (value > 1.0 && value <= high) return;
-  place.fail(fmt::format("must be above 1 and at most {}, is {}; give a value in that range", high, value));
+  place.fail(fmt::format("must be above 1 and at most {:g}, is {}; give a value in that range", high, value));
 }
 void expect_vector(const Vec3d& v, const Place& place) {
   expect_number(v.x, place.field("x"));

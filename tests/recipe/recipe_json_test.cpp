@@ -170,6 +170,20 @@ TEST(RecipeJson, TruncatedTextIsAnError) {
   for (std::size_t n = 0; n <= text.size(); ++n) EXPECT_NE(error_of(text.substr(0, n)), "no error") << n;
 }
 
+// Up to four bytes changed at random: a recipe or one line of error, nothing else.
+TEST(RecipeJson, DamagedTextIsReadOrRefused) {
+  CounterRandom random(21);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = testing::kCompleteRecipe;
+    for (int k = 0; k <= i % 4; ++k) text[random.below(text.size())] = static_cast<char>(random.below(256));
+    const std::string error = error_of(text);
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    if (error != "no error") ++refused;
+  }
+  EXPECT_GT(refused, 1500);
+}
+
 TEST(RecipeJson, InvalidRecipesAreNotWritten) {
   Recipe recipe = parse_recipe(testing::kCompleteRecipe, "r");
   recipe.body->spheres[0].radius = std::numeric_limits<double>::quiet_NaN();
