@@ -48,4 +48,9 @@ double largest_penalty(const GaborDictionary& dictionary, std::span<const double
 BasisPursuitResult solve_fista(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
                                const Progress& progress = {});
 
+// Working set: solves the problem exactly on a few atoms, lets the certificate name the atoms that violate
+// optimality most, adds them, drops those at zero, repeats. `start`, if not empty, is a first guess of x.
+BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
+                                     const Progress& progress = {}, std::span<const double> start = {});
+
 }  // namespace astrolith

@@ -69,8 +69,11 @@ double DualityCertificate::check(std::span<const double> r, std::span<const doub
     throw WorkError(
         "basis pursuit: the duality gap is negative; the dictionary's transposed product is wrong");
   }
-  if (primal_ <= 0.0) return 0.0;
-  return std::max(0.0, (primal_ - best_dual_) / primal_);
+  return relative_gap_of(primal_);
+}
+
+double DualityCertificate::relative_gap_of(double primal) const {
+  return primal <= 0.0 ? 0.0 : std::max(0.0, (primal - best_dual_) / primal);
 }
 
 }  // namespace astrolith

@@ -23,6 +23,9 @@ class DualityCertificate {
   // >= 0; throws WorkError where it is negative by more than rounding: then something is wrong.
   double check(std::span<const double> r, std::span<const double> correlations, double sum_x);
 
+  // The same for an earlier P(x), against the best bound known now.
+  double relative_gap_of(double primal) const;
+
   double primal() const { return primal_; }        // of the last check
   double best_dual() const { return best_dual_; }  // of all checks; at least 0, the value at theta = 0
 

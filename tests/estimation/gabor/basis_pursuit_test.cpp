@@ -75,6 +75,10 @@ BasisPursuitResult fista(const BasisPursuitProblem& p, const BasisPursuitOptions
   return solve_fista(p, o);
 }
 
+BasisPursuitResult working_set(const BasisPursuitProblem& p, const BasisPursuitOptions& o) {
+  return solve_working_set(p, o);
+}
+
 class BasisPursuitTest : public ::testing::TestWithParam<Solver> {};
 
 TEST_P(BasisPursuitTest, AgreesWithADenseSolverAndItsCertificateIsTrue) {
@@ -126,7 +130,7 @@ TEST_P(BasisPursuitTest, AdversarialTargetsKeepTheGapNonNegative) {
   EXPECT_TRUE(zero.reached);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, BasisPursuitTest, ::testing::Values(&fista));
+INSTANTIATE_TEST_SUITE_P(Solvers, BasisPursuitTest, ::testing::Values(&fista, &working_set));
 
 // With the residual pointing away from the target the scaled dual's factor would be negative; an unclipped
 // certificate then claims a bound above the minimum.
