@@ -99,6 +99,8 @@ void GaborDictionary::add_band(int bandwidth) {
   const int last_x = (width() - 1) / 2 / stride_x * stride_x;
   for (int ky = 0; 2 * ky < height(); ky += stride_y) {
     for (int kx = ky == 0 ? 0 : -last_x; kx <= last_x; kx += stride_x) {
+      // The mean of an image hides frequency 0: a lobe narrower than a bin there would be all guess.
+      if (kx == 0 && ky == 0 && std::min(deviation_x, deviation_y) < 1.0) continue;
       atoms_.push_back({bandwidth, kx, ky});
     }
   }

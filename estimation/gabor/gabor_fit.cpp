@@ -1,0 +1,113 @@
+#include "estimation/gabor/gabor_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "estimation/gabor/lobe_selection.h"
+#include "estimation/gabor/spectrum_distance.h"
+#include "numerics/errors.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+constexpr int kWidestBandwidth = 2;
+
+void require_texture(const GreyImage& exemplar, const std::string& name) {
+  if (std::min(exemplar.width, exemplar.height) < kSmallestExemplarSide) {
+    throw InputError(fmt::format("{}: {} x {} pixels are too few for a spectrum; give at least {} x {}", name,
+                                 exemplar.width, exemplar.height, kSmallestExemplarSide,
+                                 kSmallestExemplarSide));
+  }
+  const auto [low, high] = std::minmax_element(exemplar.values.begin(), exemplar.values.end());
+  if (*high - *low <= 1e-9 * std::max(std::abs(*high), std::abs(*low))) {
+    throw InputError(name + ": all pixels have the same value; give an image with texture");
+  }
+}
+
+double mean_of(const GreyImage& image) {
+  double sum = 0.0;
+  for (const double v : image.values) sum += v;
+  return sum / static_cast<double>(image.values.size());
+}
+
+// Rows weighted by 1 / sqrt(S) turn a small error of the spectrum into twice the error of its square root,
+// the quantity of the optimal-transport distance. Frequency 0 holds no data.
+std::vector<double> row_weights(const PowerSpectrum& estimate, SpectrumTarget target) {
+  std::vector<double> weight(estimate.power.size(), 1.0);
+  if (target == SpectrumTarget::kSmoothed) {
+    const double floor = 1e-6 * estimate.variance();
+    for (std::size_t i = 1; i < weight.size(); ++i) weight[i] = 1.0 / std::sqrt(estimate.power[i] + floor);
+  }
+  weight[0] = 0.0;
+  return weight;
+}
+
+std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, const Progress& progress) {
+  const PowerSpectrum& target = fit.estimate.spectrum;
+  // Dividing by the variance keeps numbers near one, whatever the exemplar's unit.
+  const double unit = target.variance();
+  PowerSpectrum scaled = target;
+  for (double& p : scaled.power) p /= unit;
+  const GaborDictionary dictionary(target.width, target.height, kWidestBandwidth,
+                                   narrowest_bandwidth(target.width, target.height),
+                                   row_weights(scaled, options.target));
+  BasisPursuitProblem problem{dictionary, std::move(scaled.power), 0.0};
+  for (std::size_t i = 0; i < problem.target.size(); ++i) problem.target[i] *= dictionary.weight()[i];
+  problem.penalty = options.penalty_ratio * largest_penalty(dictionary, problem.target);
+  BasisPursuitOptions pursuit;
+  pursuit.relative_gap = options.relative_gap;
+  fit.pursuit = options.solver == PursuitSolver::kFista ? solve_fista(problem, pursuit, progress)
+                                                        : solve_working_set(problem, pursuit, progress);
+  std::vector<SpectralLobe> lobes = lobes_of(dictionary, fit.pursuit.x);
+  for (SpectralLobe& lobe : lobes) lobe.height *= unit;
+  fit.pursuit.x = {};
+  return lobes;
+}
+
+// Heights become variances; what the fit kept of the exemplar's variance is stretched to all of it.
+std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, GaborFit& fit) {
+  const PowerSpectrum& grid = fit.periodogram;
+  std::vector<GaborLobe> result;
+  double total = 0.0;
+  for (const SpectralLobe& lobe : lobes) {
+    const double variance = lobe_variance(lobe, grid.width, grid.height);
+    total += variance;
+    result.push_back(
+        {lobe.bandwidth, round_to_seven_digits(lobe.x), round_to_seven_digits(lobe.y), variance});
+  }
+  const double wanted = fit.exemplar_rms * fit.exemplar_rms;
+  fit.variance_before_scaling = total / wanted;
+  for (GaborLobe& lobe : result) lobe.variance = round_to_seven_digits(lobe.variance * wanted / total);
+  std::stable_sort(result.begin(), result.end(),
+                   [](const GaborLobe& a, const GaborLobe& b) { return a.variance > b.variance; });
+  return result;
+}
+
+}  // namespace
+
+GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
+                         const Progress& progress) {
+  require_texture(exemplar, name);
+  GaborFit fit;
+  fit.exemplar_mean = mean_of(exemplar);
+  fit.periodogram = exemplar_periodogram(exemplar, options.largest_side);
+  fit.exemplar_rms = std::sqrt(fit.periodogram.variance());
+  if (!(fit.exemplar_rms > 0.0))
+    throw InputError(name + ": holds a ramp and no texture; give an image with texture");
+  fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram)
+                                                             : SpectrumEstimate{fit.periodogram, {}};
+  std::vector<SpectralLobe> lobes = pursue(fit, options, progress);
+  fit.pursuit_lobes = static_cast<int>(lobes.size());
+  lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, options.max_lobes);
+  if (lobes.empty()) throw WorkError(name + ": no lobe was found; try a smaller penalty");
+  fit.lobes = to_layer_lobes(lobes, fit);
+  fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);
+  fit.spectrum_distance = optimal_transport_distance(fit.fitted, fit.estimate.spectrum);
+  return fit;
+}
+
+}  // namespace astrolith

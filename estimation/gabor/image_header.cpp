@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+#include <tiffio.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include "estimation/gabor/image_header_internal.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+using Bytes = std::array<unsigned char, 24>;
+
+std::uint32_t big_endian(const unsigned char* p, int bytes) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < bytes; ++i) value = value << 8 | p[i];
+  return value;
+}
+
+// Bytes 16 to 23 of a PNG are width and height of its first chunk, IHDR.
+ImageHeader png_header(const Bytes& start) {
+  return {"PNG", big_endian(start.data() + 16, 4), big_endian(start.data() + 20, 4)};
+}
+
+// A JPEG is a chain of segments FF, marker, length; the frame header (C0 to CF but for C4, C8 and CC) holds
+// the size.
+ImageHeader jpeg_header(std::ifstream& in, const std::string& name) {
+  in.seekg(2);
+  for (int segment = 0; segment < 10000; ++segment) {
+    unsigned char head[9] = {};
+    if (!in.read(reinterpret_cast<char*>(head), 4) || head[0] != 0xff) break;
+    if (head[1] == 0xff) {  // fill bytes may stand before a marker
+      in.seekg(-3, std::ios::cur);
+      continue;
+    }
+    const bool frame =
+        head[1] >= 0xc0 && head[1] <= 0xcf && head[1] != 0xc4 && head[1] != 0xc8 && head[1] != 0xcc;
+    if (frame && in.read(reinterpret_cast<char*>(head) + 4, 5)) {
+      return {"JPEG", big_endian(head + 7, 2), big_endian(head + 5, 2)};
+    }
+    const std::uint32_t length = big_endian(head + 2, 2);
+    if (frame || length < 2) break;
+    in.seekg(length - 2, std::ios::cur);
+  }
+  throw InputError(name + ": JPEG without a frame header; the file is damaged, save it again");
+}
+
+ImageHeader tiff_header(const std::string& name) {
+  // libtiff prints on its own unless told not to.
+  TIFFSetErrorHandler(nullptr);
+  TIFFSetWarningHandler(nullptr);
+  TIFF* tiff = TIFFOpen(name.c_str(), "r");
+  if (tiff == nullptr) throw InputError(name + ": TIFF cannot be opened; the file is damaged, save it again");
+  ImageHeader header{"TIFF"};
+  TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &header.width);
+  TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &header.height);
+  header.more_pages = TIFFLastDirectory(tiff) == 0;
+  TIFFClose(tiff);
+  return header;
+}
+
+}  // namespace
+
+ImageHeader read_image_header(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::ifstream in(file, std::ios::binary);
+  if (!in || std::filesystem::is_directory(file)) {
+    throw InputError(name + ": cannot be read; give the name of a PNG, JPEG or TIFF image");
+  }
+  Bytes start{};
+  in.read(reinterpret_cast<char*>(start.data()), start.size());
+  const bool whole = in.gcount() == static_cast<std::streamsize>(start.size());
+  in.clear();
+  if (whole && std::memcmp(start.data(), "\x89PNG\r\n\x1a\n", 8) == 0) return png_header(start);
+  if (whole && std::memcmp(start.data(), "\xff\xd8\xff", 3) == 0) return jpeg_header(in, name);
+  const bool tiff = std::memcmp(start.data(), "II*\0", 4) == 0 ||
+                    std::memcmp(start.data(), "MM\0*", 4) == 0 ||
+                    std::memcmp(start.data(), "II+\0", 4) == 0 || std::memcmp(start.data(), "MM\0+", 4) == 0;
+  if (whole && tiff) return tiff_header(name);
+  throw InputError(name + ": its first bytes are not those of a PNG, JPEG or TIFF image; convert it to one");
+}
+
+}  // namespace astrolith

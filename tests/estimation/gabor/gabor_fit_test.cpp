@@ -1,0 +1,123 @@
+#include "estimation/gabor/gabor_fit.h"
+
+#include <cmath>
+
+#include "estimation/gabor/image_reader.h"
+#include "estimation/gabor/spectrum_distance.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "tests/estimation/gabor/known_spectrum.h"
+#include "tests/support/data.h"
+
+namespace astrolith {
+namespace {
+
+double total_variance(const std::vector<GaborLobe>& lobes) {
+  double sum = 0.0;
+  for (const GaborLobe& lobe : lobes) sum += lobe.variance;
+  return sum;
+}
+
+// The reference estimator of Galerne et al. is 0.284 away at its best, texton noise 0.193.
+TEST(GaborFit, RecoversAKnownSpectrumFromOneRealisation) {
+  const PowerSpectrum truth = testing::four_lobe_spectrum();
+  constexpr int kSeeds = 4;
+  double distance = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const GreyImage exemplar = testing::realisation_of(truth, static_cast<std::uint64_t>(seed));
+    const GaborFit fit = fit_gabor_lobes(exemplar, "exemplar", {});
+    EXPECT_LE(fit.lobes.size(), 80u);
+    EXPECT_LE(fit.pursuit.relative_gap, 1e-2);
+    for (const GapSample& sample : fit.pursuit.history) EXPECT_GE(sample.relative_gap, 0.0);
+    distance += optimal_transport_distance(fit.fitted, truth) / kSeeds;
+  }
+  EXPECT_LT(distance, 0.15);
+}
+
+TEST(GaborFit, KeepsTheVarianceOfTheExemplar) {
+  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 9);
+  for (const SpectrumTarget target : {SpectrumTarget::kSmoothed, SpectrumTarget::kPeriodogram}) {
+    GaborFitOptions options;
+    options.target = target;
+    options.max_lobes = 40;
+    const GaborFit fit = fit_gabor_lobes(exemplar, "exemplar", options);
+    EXPECT_LE(fit.lobes.size(), 40u);
+    EXPECT_NEAR(total_variance(fit.lobes), fit.exemplar_rms * fit.exemplar_rms, 1e-5 * fit.exemplar_rms);
+    EXPECT_NEAR(fit.fitted.variance(), fit.periodogram.variance(), 0.01 * fit.periodogram.variance());
+    if (target == SpectrumTarget::kSmoothed) {
+      EXPECT_NEAR(fit.variance_before_scaling, 1.0, 0.05);
+    }
+  }
+}
+
+// Units cancel: an exemplar in other units or with another mean gives the same lobes, variances scaled.
+TEST(GaborFit, ScalesWithTheExemplar) {
+  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 10);
+  GreyImage other = exemplar;
+  for (double& v : other.values) v = 1e6 + 1024.0 * v;
+  const GaborFit a = fit_gabor_lobes(exemplar, "a", {});
+  const GaborFit b = fit_gabor_lobes(other, "b", {});
+  ASSERT_EQ(a.lobes.size(), b.lobes.size());
+  for (std::size_t i = 0; i < a.lobes.size(); ++i) {
+    EXPECT_EQ(a.lobes[i].bandwidth, b.lobes[i].bandwidth);
+    EXPECT_NEAR(a.lobes[i].variance * 1024.0 * 1024.0, b.lobes[i].variance, 1e-3 * b.lobes[i].variance);
+  }
+}
+
+TEST(GaborFit, BothSolversFindTheSameSpectrum) {
+  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 11);
+  GreyImage small{48, 40, {}};
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 48; ++x) small.values.push_back(exemplar.at(x, y));
+  }
+  GaborFitOptions options;
+  options.relative_gap = 1e-5;
+  const GaborFit a = fit_gabor_lobes(small, "small", options);
+  options.solver = PursuitSolver::kFista;
+  const GaborFit b = fit_gabor_lobes(small, "small", options);
+  EXPECT_NEAR(a.pursuit.primal, b.pursuit.primal, 2e-5 * a.pursuit.primal);
+  EXPECT_LT(optimal_transport_distance(a.fitted, b.fitted), 0.02);
+}
+
+TEST(GaborFit, ThreadsDoNotChangeABit) {
+  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 12);
+  const auto fit_with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return fit_gabor_lobes(exemplar, "exemplar", {}).fitted.power;
+  };
+  EXPECT_EQ(fit_with(1), fit_with(4));
+}
+
+TEST(GaborFit, RefusesWhatHasNoTexture) {
+  EXPECT_THROW(fit_gabor_lobes({1, 1, {0.5}}, "dot.png", {}), InputError);
+  EXPECT_THROW(fit_gabor_lobes({64, 31, std::vector<double>(64 * 31, 0.5)}, "strip.png", {}), InputError);
+  EXPECT_THROW(fit_gabor_lobes({64, 64, std::vector<double>(64 * 64, 0.5)}, "flat.png", {}), InputError);
+}
+
+// One bright pixel, a pure cosine, a checkerboard: no texture anyone photographs, and no crash.
+TEST(GaborFit, SurvivesDegenerateTextures) {
+  std::vector<GreyImage> images(3, GreyImage{33, 40, std::vector<double>(33 * 40, 0.0)});
+  images[0].values[400] = 1.0;
+  for (std::size_t i = 0; i < images[1].values.size(); ++i) {
+    images[1].values[i] = std::cos(2.0 * 3.14159265358979 * 4.0 * static_cast<double>(i % 33) / 33.0);
+    images[2].values[i] = static_cast<double>((i % 33 + i / 33) % 2);
+  }
+  for (const GreyImage& image : images) {
+    const GaborFit fit = fit_gabor_lobes(image, "degenerate", {});
+    EXPECT_GE(fit.lobes.size(), 1u);
+    EXPECT_NEAR(total_variance(fit.lobes), fit.exemplar_rms * fit.exemplar_rms, 1e-5);
+  }
+}
+
+TEST(GaborFit, Gravel) {
+  const auto file = testing::shared_texture("gravel_skimage_512.png");
+  ASTROLITH_SKIP_WITHOUT(file);
+  const GaborFit fit = fit_gabor_lobes(read_grey_image(file).image, "gravel", {});
+  EXPECT_LE(fit.pursuit.relative_gap, 1e-2);
+  EXPECT_LE(fit.lobes.size(), 80u);
+  EXPECT_LT(fit.spectrum_distance, 0.06);
+  EXPECT_NEAR(fit.variance_before_scaling, 1.0, 0.02);
+}
+
+}  // namespace
+}  // namespace astrolith

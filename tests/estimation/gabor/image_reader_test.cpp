@@ -1,0 +1,117 @@
+#include "estimation/gabor/image_reader.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <limits>
+
+#include "numerics/errors.h"
+#include "synthesis/image_file.h"
+#include "tests/support/data.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageReaderTest : public ::testing::Test {
+ protected:
+  ImageReaderTest() { fs::create_directories(folder); }
+  ~ImageReaderTest() override { fs::remove_all(folder); }
+
+  fs::path write_text(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return folder / name;
+  }
+  static std::string error_of(const fs::path& file) {
+    try {
+      read_grey_image(file);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  fs::path folder = fs::temp_directory_path() / ("astrolith_images_" + std::to_string(::getpid()));
+};
+
+TEST_F(ImageReaderTest, FullScaleOfIntegersIsOne) {
+  const std::vector<std::uint8_t> bytes{0, 51, 102, 255};
+  write_png8_grey(bytes, 2, 2, folder / "a.png");
+  const std::vector<std::uint16_t> words{0, 13107, 26214, 65535};
+  write_png16_grey(words, 2, 2, folder / "b.png");
+  for (const char* name : {"a.png", "b.png"}) {
+    const GreyImage image = read_grey_image(folder / name).image;
+    ASSERT_EQ(image.values.size(), 4u);
+    EXPECT_EQ(image.width, 2);
+    const double expected[] = {0.0, 0.2, 0.4, 1.0};
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(image.values[i], expected[i]) << name;
+  }
+}
+
+TEST_F(ImageReaderTest, FloatsStayAsTheyAre) {
+  const std::vector<float> values{-3.5f, 0.0f, 1e-3f, 1200.0f, 7.0f, 8.0f};
+  write_tiff_float(values, 3, 2, folder / "h.tif");
+  const GreyImage image = read_grey_image(folder / "h.tif").image;
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(image.values[i], static_cast<double>(values[i]));
+}
+
+TEST_F(ImageReaderTest, ColoursBecomeLuma) {
+  write_png8_rgb({3, 1, {255, 0, 0, 0, 255, 0, 0, 0, 255}}, folder / "c.png");
+  const ImageFile file = read_grey_image(folder / "c.png");
+  EXPECT_DOUBLE_EQ(file.image.values[0], 0.2126);
+  EXPECT_DOUBLE_EQ(file.image.values[1], 0.7152);
+  EXPECT_DOUBLE_EQ(file.image.values[2], 0.0722);
+  EXPECT_EQ(file.remarks.size(), 1u);
+}
+
+TEST_F(ImageReaderTest, NamesTheFileAndTheRemedy) {
+  EXPECT_NE(error_of(folder / "missing.png").find("missing.png: cannot be read"), std::string::npos);
+  EXPECT_NE(error_of(folder).find("cannot be read"), std::string::npos);
+  EXPECT_NE(error_of(write_text("text.png", "this is no picture, it is a line of text")).find("first bytes"),
+            std::string::npos);
+  EXPECT_NE(error_of(write_text("empty.png", "")).find("first bytes"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
+  std::vector<std::uint8_t> grey(64 * 64);
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint8_t>(i * 37 % 251);
+  write_png8_grey(grey, 64, 64, folder / "whole.png");
+  std::ifstream in(folder / "whole.png", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_NE(error_of(write_text("cut.png", bytes.substr(0, 60))).find("cut.png"), std::string::npos);
+  EXPECT_NE(
+      error_of(write_text("cut.jpg", std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10) + std::string(30, 'x')))
+          .find("cut.jpg"),
+      std::string::npos);
+  EXPECT_NE(error_of(write_text("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
+                .find("cut.tif"),
+            std::string::npos);
+}
+
+// The header alone decides: nothing is allocated for a size that is refused.
+TEST_F(ImageReaderTest, HugeImagesAreRefusedBeforeDecoding) {
+  const std::string header = std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) +
+                             std::string("\0\0\x4e\x20\0\0\x4e\x20\x08\0\0\0\0", 13) + std::string(8, '\0');
+  const std::string error = error_of(write_text("huge.png", header));
+  EXPECT_NE(error.find("20000 x 20000"), std::string::npos) << error;
+  EXPECT_NE(error.find("GB"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, ValuesThatAreNotFiniteAreErrors) {
+  std::vector<float> values(40 * 40, 1.0f);
+  values[3 * 40 + 7] = std::numeric_limits<float>::quiet_NaN();
+  write_tiff_float(values, 40, 40, folder / "nan.tif");
+  EXPECT_NE(error_of(folder / "nan.tif").find("pixel (7, 3)"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, ReadsARealPalette) {
+  const fs::path file = testing::shared_texture("sand_height_cc0textures_1024.png");
+  ASTROLITH_SKIP_WITHOUT(file);
+  const GreyImage image = read_grey_image(file).image;
+  EXPECT_EQ(image.values.size(),
+            static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+}
+
+}  // namespace
+}  // namespace astrolith
