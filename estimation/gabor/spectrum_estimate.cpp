@@ -31,46 +31,6 @@ std::vector<double> radii(const PowerSpectrum& s) {
   return radius;
 }
 
-// The mean power at every |f|: averages over rings a quarter of an octave wide, joined by straight lines in
-// log-log. Rock spectra fall by orders of magnitude within a few bins; divided by this they are nearly flat,
-// and smoothing does not carry power from the peak at the centre outwards.
-std::vector<double> radial_profile(const PowerSpectrum& data, const std::vector<double>& radius,
-                                   double floor) {
-  constexpr double kRingsPerOctave = 4.0;
-  constexpr double kFewestBins = 4.0;
-  const auto ring_of = [](double r) { return kRingsPerOctave * std::log2(std::max(r, 0.5) / 0.5); };
-  const auto rings = static_cast<std::size_t>(ring_of(*std::max_element(radius.begin(), radius.end()))) + 1;
-  std::vector<double> power(rings, 0.0), position(rings, 0.0), count(rings, 0.0);
-  for (std::size_t i = 1; i < data.power.size(); ++i) {
-    // The highest frequencies of even sizes have one sign only, and filters often empty them.
-    const auto w = static_cast<std::size_t>(data.width);
-    const auto h = static_cast<std::size_t>(data.height);
-    if (2 * (i % w) == w || 2 * (i / w) == h) continue;
-    const auto ring = static_cast<std::size_t>(ring_of(radius[i]));
-    power[ring] += data.power[i];
-    position[ring] += ring_of(radius[i]);
-    count[ring] += 1.0;
-  }
-  std::vector<std::pair<double, double>> knots;  // position, log power
-  for (std::size_t k = 0; k < rings; ++k) {
-    if (count[k] > 0.0)
-      knots.emplace_back(position[k] / count[k], std::log(std::max(power[k] / count[k], floor)));
-  }
-  std::vector<double> profile(data.power.size());
-  for (std::size_t i = 0; i < profile.size(); ++i) {
-    const double at = ring_of(radius[i]);
-    const auto next = std::upper_bound(knots.begin(), knots.end(), std::pair{at, 1e300});
-    if (next == knots.begin() || next == knots.end()) {
-      profile[i] = std::exp(next == knots.begin() ? knots.front().second : knots.back().second);
-      continue;
-    }
-    const auto previous = std::prev(next);
-    const double t = (at - previous->first) / (next->first - previous->first);
-    profile[i] = std::exp(std::lerp(previous->second, next->second, t));
-  }
-  return profile;
-}
-
 // A periodic Gaussian kernel with unit sum, and what smoothing with it gives.
 struct SmoothedGrid {
   std::vector<double> kernel_x, kernel_y;
@@ -149,16 +109,13 @@ double octave_position(double radius, std::size_t octaves) {
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram) {
   const FourierTransform fourier(periodogram.width, periodogram.height);
   const std::vector<double> radius = radii(periodogram);
-  const std::vector<double> profile = radial_profile(periodogram, radius, 1e-12 * periodogram.variance());
-  PowerSpectrum flat = periodogram;
-  for (std::size_t i = 0; i < flat.power.size(); ++i) flat.power[i] /= profile[i];
-  constexpr double floor = 1e-9;  // of the flattened data, whose mean is about 1
+  const double floor = 1e-12 * periodogram.variance();
   std::vector<SmoothedGrid> smoothed(kKernels);
   std::vector<std::vector<double>> scores(kKernels);
   parallel_for(0, static_cast<std::int64_t>(kKernels), [&](std::int64_t k) {
     const auto i = static_cast<std::size_t>(k);
-    smoothed[i] = smooth(flat, fourier, kDeviations[i]);
-    scores[i] = octave_scores(flat, smoothed[i], radius, floor);
+    smoothed[i] = smooth(periodogram, fourier, kDeviations[i]);
+    scores[i] = octave_scores(periodogram, smoothed[i], radius, floor);
   });
 
   SpectrumEstimate estimate{periodogram, {}};
