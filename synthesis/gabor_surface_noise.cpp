@@ -15,9 +15,12 @@ constexpr double kLargestCell =
 const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborReach} +
                                       double{kGaborSlabReach} * double{kGaborSlabReach});
 
-// Groups of points are split until they are no longer than this many kernel reaches: larger groups share
-// the work of drawing impulses, smaller ones waste fewer kernel evaluations on points out of reach.
-constexpr double kGroupReaches = 0.7;
+// Sizes of groups of points, in kernel reaches. Impulses and their frames are drawn for a large group, of
+// bounded size so that memory is, and handed down to halves of it, each keeping what reaches it: small groups
+// waste fewer kernel evaluations on points out of reach.
+constexpr double kDrawingReaches = 4.0;
+constexpr double kSmallestReaches = 0.4;
+constexpr int kSmallestGroup = 16;  // points: a vector of the widest machine
 
 ASTROLITH_SIMD_CLONES void add_impulses(const GaborImpulse* impulses, std::size_t num_impulses,
                                         float amplitude, int n, const float* __restrict x,
@@ -85,6 +88,11 @@ double squared_distance(const Box& box, const Vec3f& p) {
                             gap(box.min.z, box.max.z, double{p.z})});
 }
 
+double longest_side(const Box& box) {
+  const Vec3d e = box.extent();
+  return std::max({e.x, e.y, e.z});
+}
+
 Vec3f to_float(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
@@ -110,13 +118,17 @@ struct GaborSurfaceNoise::Points {
     for (int i = begin; i < end; ++i) box.extend({coordinate(0, i), coordinate(1, i), coordinate(2, i)});
     return box;
   }
-  // Moves points below `border` to the front; returns where the others begin.
-  int partition(int begin, int end, int axis, double border) {
+  // Moves the points of one half of their box to the front; returns where the others begin, or `begin` when
+  // all points are in one place.
+  int halve(int begin, int end, const Box& box) {
+    const Vec3d e = box.extent(), c = box.center();
+    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+    const double border = axis == 0 ? c.x : axis == 1 ? c.y : c.z;
     int middle = begin;
     for (int i = begin; i < end; ++i) {
       if (coordinate(axis, i) < border) swap(i, middle++);
     }
-    return middle;
+    return middle == end ? begin : middle;
   }
 };
 
@@ -164,20 +176,6 @@ void GaborSurfaceNoise::evaluate(const PreparedMetaballs& body, int n, const flo
   }
 }
 
-void GaborSurfaceNoise::add_band(const Band& band, const PreparedMetaballs& body, Points& points, int begin,
-                                 int end) const {
-  const Box box = points.bounds(begin, end);
-  const Vec3d e = box.extent();
-  const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-  const double longest = axis == 0 ? e.x : axis == 1 ? e.y : e.z;
-  if (!(longest > kGroupReaches * double{band.reach})) return add_group(band, body, points, begin, end, box);
-  const Vec3d c = box.center();
-  const int middle = points.partition(begin, end, axis, axis == 0 ? c.x : axis == 1 ? c.y : c.z);
-  if (middle == begin || middle == end) return add_group(band, body, points, begin, end, box);
-  add_band(band, body, points, begin, middle);
-  add_band(band, body, points, middle, end);
-}
-
 namespace {
 
 // Impulses of the cells around the box, in the order of the cells, whose supports may touch it.
@@ -223,30 +221,67 @@ GaborImpulse make_impulse(const Band& band, const Vec3f& p, const Vec3f& inward,
           unit_float(hash_append(hash, 3))};
 }
 
-}  // namespace
-
-void GaborSurfaceNoise::add_group(const Band& band, const PreparedMetaballs& body, Points& points, int begin,
-                                  int end, const Box& box) const {
+// All impulses that reach the box, in the order of their cells.
+template <typename Band>
+std::vector<GaborImpulse> draw_impulses(const Band& band, const PreparedMetaballs& body, const Box& box) {
   const Candidates found = draw_candidates(band, box);
   const auto n = found.x.size();
-  if (n == 0) return;
-  Box reach;
-  for (std::size_t i = 0; i < n; ++i)
-    reach.extend({double{found.x[i]}, double{found.y[i]}, double{found.z[i]}});
-  std::vector<float> distance(n), gx(n), gy(n), gz(n);
-  evaluate_metaballs(metaballs_reaching(body, reach), static_cast<int>(n), found.x.data(), found.y.data(),
-                     found.z.data(), distance.data(), gx.data(), gy.data(), gz.data());
-
-  const Vec3d center = box.center(), half = 0.5 * box.extent();
-  std::vector<GaborImpulse> impulses;
+  Box around;
   for (std::size_t i = 0; i < n; ++i) {
-    const GaborImpulse impulse =
-        make_impulse(band, {found.x[i], found.y[i], found.z[i]}, {gx[i], gy[i], gz[i]}, found.hash[i]);
-    if (reaches(impulse, center, half)) impulses.push_back(impulse);
+    around.extend({double{found.x[i]}, double{found.y[i]}, double{found.z[i]}});
   }
-  const auto first = static_cast<std::size_t>(begin);
-  add_impulses(impulses.data(), impulses.size(), band.amplitude, end - begin, &points.x[first],
-               &points.y[first], &points.z[first], &points.height[first]);
+  std::vector<float> distance(n), gx(n), gy(n), gz(n);
+  evaluate_metaballs(metaballs_reaching(body, around), static_cast<int>(n), found.x.data(), found.y.data(),
+                     found.z.data(), distance.data(), gx.data(), gy.data(), gz.data());
+  std::vector<GaborImpulse> impulses;
+  impulses.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    impulses.push_back(
+        make_impulse(band, {found.x[i], found.y[i], found.z[i]}, {gx[i], gy[i], gz[i]}, found.hash[i]));
+  }
+  return impulses;
+}
+
+std::vector<GaborImpulse> reaching(const std::vector<GaborImpulse>& impulses, const Box& box) {
+  const Vec3d center = box.center(), half = 0.5 * box.extent();
+  std::vector<GaborImpulse> kept;
+  for (const GaborImpulse& impulse : impulses) {
+    if (reaches(impulse, center, half)) kept.push_back(impulse);
+  }
+  return kept;
+}
+
+}  // namespace
+
+void GaborSurfaceNoise::add_band(const Band& band, const PreparedMetaballs& body, Points& points, int begin,
+                                 int end) const {
+  if (begin == end) return;
+  const Box box = points.bounds(begin, end);
+  const int middle =
+      longest_side(box) > kDrawingReaches * double{band.reach} ? points.halve(begin, end, box) : begin;
+  if (middle == begin) {
+    add_group(band, draw_impulses(band, body, box), points, begin, end);
+  } else {
+    add_band(band, body, points, begin, middle);
+    add_band(band, body, points, middle, end);
+  }
+}
+
+void GaborSurfaceNoise::add_group(const Band& band, const std::vector<GaborImpulse>& impulses, Points& points,
+                                  int begin, int end) const {
+  const Box box = points.bounds(begin, end);
+  const std::vector<GaborImpulse> near = reaching(impulses, box);
+  const bool divisible =
+      end - begin > kSmallestGroup && longest_side(box) > kSmallestReaches * double{band.reach};
+  const int middle = divisible ? points.halve(begin, end, box) : begin;
+  if (middle == begin) {
+    const auto first = static_cast<std::size_t>(begin);
+    add_impulses(near.data(), near.size(), band.amplitude, end - begin, &points.x[first], &points.y[first],
+                 &points.z[first], &points.height[first]);
+  } else {
+    add_group(band, near, points, begin, middle);
+    add_group(band, near, points, middle, end);
+  }
 }
 
 }  // namespace astrolith

@@ -45,8 +45,8 @@ class GaborSurfaceNoise {
   struct Points;
 
   void add_band(const Band& band, const PreparedMetaballs& body, Points& points, int begin, int end) const;
-  void add_group(const Band& band, const PreparedMetaballs& body, Points& points, int begin, int end,
-                 const Box& box) const;
+  void add_group(const Band& band, const std::vector<GaborImpulse>& impulses, Points& points, int begin,
+                 int end) const;
 
   Vec3f domain_min_, domain_max_;
   std::vector<Band> bands_;
