@@ -18,7 +18,7 @@ constexpr double kOutsideMargin = 0.002;
 
 // Surfaces further than this from the target, as a fraction of the diagonal, are strays to be mended.
 constexpr double kStrayDistance = 0.015;
-constexpr int kRepairs = 3;
+constexpr int kRepairs = 4;
 constexpr int kRepairResolution = 96;
 
 class AdaptiveFit {
@@ -29,7 +29,6 @@ class AdaptiveFit {
     points_.on_surface = samples.points;
     refinement_.loss_scale = options.loss_scale;
     refinement_.containment_weight = options.containment_weight;
-    refinement_.keep_centers_inside = &target.tree;
     summary_.model = start;
     total_iterations_ =
         options.first_iterations + (options.rounds - 1) * options.round_iterations + options.last_iterations;
@@ -41,9 +40,12 @@ class AdaptiveFit {
       grow(options_.rounds - round);
       step(round + 1 < options_.rounds ? options_.round_iterations : options_.last_iterations);
     }
+    // Not before: held at the surface from the start, spheres that want out stop the whole fit (measured).
+    refinement_.keep_centers_inside = &target_.tree;
     for (int repair = 0; repair < kRepairs && !summary_.interrupted; ++repair) {
       if (!mend()) break;
     }
+    if (remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin) > 0) note();
     return std::move(summary_);
   }
 
@@ -96,7 +98,6 @@ class AdaptiveFit {
     if (islands == 0 && strays.inside.empty() && strays.outside.empty()) return false;
     points_.inside.insert(points_.inside.end(), strays.inside.begin(), strays.inside.end());
     points_.outside.insert(points_.outside.end(), strays.outside.begin(), strays.outside.end());
-    if (islands > 0) grow(1);
     spent_ -= options_.round_iterations;
     step(options_.round_iterations);
     return true;
