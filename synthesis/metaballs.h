@@ -47,9 +47,8 @@ struct MetaballSums {
 };
 
 template <typename T>
-ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body,
-                                             const MetaballSphere<T>& sphere, const Vec3<T>& p,
-                                             MetaballSums<T>& sums) {
+ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+                                          const Vec3<T>& p, MetaballSums<T>& sums) {
   using math::exp;
   const T dx = p.x - sphere.center.x;
   const T dy = p.y - sphere.center.y;
@@ -73,7 +72,7 @@ struct SurfaceDistance {
 
 template <typename T>
 ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T>& body,
-                                                         const MetaballSums<T>& sums) {
+                                                      const MetaballSums<T>& sums) {
   const T total = sums.kernel + T(kKernelFloor);
   const T log_field = math::log(total) * body.inverse_m - body.log_iso;
   const T factor = T(-2) * body.m_b * body.inverse_m / total;
