@@ -102,7 +102,8 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
                                                              : SpectrumEstimate{fit.periodogram, {}};
   std::vector<SpectralLobe> lobes = pursue(fit, options, progress);
   fit.pursuit_lobes = static_cast<int>(lobes.size());
-  lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, options.max_lobes);
+  lobes = select_lobes(std::move(lobes), fit.estimate.spectrum,
+                       row_weights(fit.estimate.spectrum, options.target), options.max_lobes);
   if (lobes.empty()) throw WorkError(name + ": no lobe was found; try a smaller penalty");
   fit.lobes = to_layer_lobes(lobes, fit);
   fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);

@@ -49,15 +49,14 @@ struct HeightFit {
   }
 };
 
-HeightFit set_up(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum) {
+HeightFit set_up(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
+                 const std::vector<double>& weight) {
   HeightFit fit;
   const auto n = static_cast<Eigen::Index>(lobes.size());
   std::vector<double> metric(spectrum.power.size());
   std::vector<double> weighted(spectrum.power.size());
-  const double floor =
-      1e-6 * spectrum.variance();  // far below it nothing is seen, and weights must stay finite
-  for (std::size_t i = 1; i < metric.size(); ++i) {
-    metric[i] = 1.0 / (spectrum.power[i] + floor);
+  for (std::size_t i = 0; i < metric.size(); ++i) {
+    metric[i] = weight[i] * weight[i];
     weighted[i] = metric[i] * spectrum.power[i];
   }
   std::vector<LobeProfile> profiles;
@@ -124,8 +123,8 @@ std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std:
 }
 
 std::vector<SpectralLobe> select_lobes(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
-                                       int max_lobes) {
-  HeightFit fit = set_up(std::move(lobes), spectrum);
+                                       const std::vector<double>& weight, int max_lobes) {
+  HeightFit fit = set_up(std::move(lobes), spectrum, weight);
   fit.solve_and_drop_zeros();
   if (fit.x.size() > max_lobes) {
     fit.keep(most_needed(fit, max_lobes));

@@ -20,12 +20,11 @@ struct SpectralLobe {
 std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std::vector<double>& x);
 
 // Refits the heights to the spectrum without the penalty, which had pulled them down (debiasing):
-// non-negative least squares of (model - spectrum) / sqrt(spectrum). For a small difference this is twice the
-// difference of the square roots, whose norm is the optimal-transport distance. Then removes, one at a time,
-// the lobe whose removal raises that sum least, all others refitted, until at most max_lobes are left.
-// Neighbours that stand in for each other go first.
+// non-negative least squares of weight * (model - spectrum), weight as in the dictionary. Then removes, one
+// at a time, the lobe whose removal raises that sum least, all others refitted, until at most max_lobes are
+// left. Neighbours that stand in for each other go first.
 std::vector<SpectralLobe> select_lobes(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
-                                       int max_lobes);
+                                       const std::vector<double>& weight, int max_lobes);
 
 // What a lobe adds to the variance of a texture: its mean over the grid, frequency 0 included.
 double lobe_variance(const SpectralLobe& lobe, int width, int height);

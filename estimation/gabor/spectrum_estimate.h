@@ -19,11 +19,10 @@ struct SpectrumEstimate {
 };
 
 // The periodogram of a Gaussian texture is its spectrum times exponential speckle, so the spectrum is
-// estimated by averaging over neighbouring frequencies. How wide, the
-// data decide: in each octave the Gaussian kernel is chosen that predicts every bin best from its neighbours
-// without itself, by Whittle's log likelihood sum log S + I / S (leave-one-out cross-validation). Peaks
-// beside frequency 0 thus stay narrow where flat regions are smoothed widely. Frequency 0 holds no data and
-// is left out.
+// estimated by averaging over neighbouring frequencies. How wide, the data decide: in each octave the
+// Gaussian kernel is chosen that predicts every bin best from its neighbours without itself, by Whittle's log
+// likelihood sum log S + I / S (leave-one-out cross-validation). Peaks thus stay narrow where flat regions
+// are smoothed widely. Frequency 0 holds no data and is left out.
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram);
 
 }  // namespace astrolith

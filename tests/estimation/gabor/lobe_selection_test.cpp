@@ -11,6 +11,8 @@ std::vector<SpectralLobe> three_lobes() {
   return {{4, 0.1, 0.05, 3.0}, {3, -0.2, 0.25, 1.0}, {5, 0.3, 0.0, 0.4}};
 }
 
+const std::vector<double> evenly(64 * 64, 1.0);
+
 PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int height) {
   std::vector<GaborLobe> layer;
   for (const SpectralLobe& lobe : lobes) {
@@ -37,7 +39,7 @@ TEST(SelectLobes, TakesAwayTheShrinkageOfThePenalty) {
   const PowerSpectrum truth = sum_of(three_lobes(), 64, 64);
   std::vector<SpectralLobe> shrunk = three_lobes();
   for (SpectralLobe& lobe : shrunk) lobe.height *= 0.6;
-  const std::vector<SpectralLobe> refitted = select_lobes(shrunk, truth, 80);
+  const std::vector<SpectralLobe> refitted = select_lobes(shrunk, truth, evenly, 80);
   ASSERT_EQ(refitted.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(refitted[i].height, three_lobes()[i].height, 1e-3);
 }
@@ -46,7 +48,7 @@ TEST(SelectLobes, RemovesTheOneThatMattersLeast) {
   std::vector<SpectralLobe> lobes = three_lobes();
   lobes.push_back({5, -0.1, 0.35, 1e-3});
   const PowerSpectrum truth = sum_of(lobes, 64, 64);
-  const std::vector<SpectralLobe> kept = select_lobes(lobes, truth, 3);
+  const std::vector<SpectralLobe> kept = select_lobes(lobes, truth, evenly, 3);
   ASSERT_EQ(kept.size(), 3u);
   for (const SpectralLobe& lobe : kept) EXPECT_GT(lobe.height, 0.1);
 }
@@ -56,7 +58,7 @@ TEST(SelectLobes, MergesNeighbours) {
   std::vector<SpectralLobe> lobes = three_lobes();
   lobes.push_back({4, 0.1 + 0.1 * lobe_deviation(4), 0.05, 1.5});
   const PowerSpectrum truth = sum_of(lobes, 64, 64);
-  const std::vector<SpectralLobe> kept = select_lobes(lobes, truth, 3);
+  const std::vector<SpectralLobe> kept = select_lobes(lobes, truth, evenly, 3);
   ASSERT_EQ(kept.size(), 3u);
   EXPECT_LT(optimal_transport_distance(sum_of(kept, 64, 64), truth), 0.05);
 }
