@@ -5,7 +5,9 @@
 # fma, and no errno or trap bookkeeping, which would keep loops from vectorising without changing a value.
 add_library(astrolith_compile_rules INTERFACE)
 target_compile_options(astrolith_compile_rules INTERFACE
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-ffp-contract=off;-fno-math-errno;-fno-trapping-math>)
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-ffp-contract=off;-fno-math-errno;-fno-trapping-math>
+  # g++ 12.2 drops the rounding of double(float(x)) when it vectorises such statements pairwise.
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>)
 if(ASTROLITH_SANITIZE)
   target_compile_options(astrolith_compile_rules INTERFACE
     -fsanitize=${ASTROLITH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
