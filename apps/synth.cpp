@@ -218,6 +218,10 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
   const MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool()};
   const bool streamed = options.output.extension() == ".ply";
   const ImplicitField field(recipe);
+  if (field.bounds().empty()) {
+    const fs::path& file = options.base.empty() ? options.recipe : options.base;
+    throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
+  }
 
   ManifoldCheck check;
   MeshCollector collector;

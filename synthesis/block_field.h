@@ -3,6 +3,7 @@
 #pragma once
 
 #include <concepts>
+#include <limits>
 #include <span>
 
 #include "numerics/vec3.h"
@@ -13,15 +14,20 @@ namespace astrolith {
 // F <= 0, the second F > 0. kMixed promises nothing.
 enum class BlockContent { kOutside, kInside, kMixed };
 
+// The accuracy band of a caller who needs F everywhere.
+inline constexpr float kExactEverywhere = std::numeric_limits<float>::infinity();
+
 // A field narrowed to a box. A point's value must have the same bits whichever boxes led to the block: what
 // has been dropped would have added exactly nothing.
 template <class Block>
 concept FieldBlockLike = requires(const Block& block, const Box& child, std::span<const float> coordinates,
-                                  std::span<float> values) {
+                                  std::span<float> values, float band) {
   { block.content() } -> std::same_as<BlockContent>;
   { block.restricted_to(child) } -> std::convertible_to<Block>;
-  // Positive inside the body; coordinates of as many points as there are values, all in the block's box.
-  block.evaluate(coordinates, coordinates, coordinates, values);
+  // F, positive inside the body; coordinates of as many points as there are values, all in the block's box.
+  // Where |F| > band, any value of the same sign beyond the band does; which one depends on the point and the
+  // band alone.
+  block.evaluate(coordinates, coordinates, coordinates, values, band);
 };
 
 template <class Field>

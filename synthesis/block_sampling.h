@@ -18,9 +18,9 @@ struct PointBatch {
     z.push_back(pz);
   }
   template <FieldBlockLike Block>
-  void evaluate(const Block& field) {
+  void evaluate(const Block& field, float band = kExactEverywhere) {
     value.resize(x.size());
-    if (!x.empty()) field.evaluate(x, y, z, value);
+    if (!x.empty()) field.evaluate(x, y, z, value, band);
   }
 
   std::vector<float> x, y, z, value;
@@ -28,6 +28,10 @@ struct PointBatch {
 
 // Samples beyond the grid, in blocks that stick out of it, and all samples before they are known.
 inline constexpr float kOutsideGrid = -1.0f;
+
+// In steps of the grid. Farther from the surface only signs matter: F changes by about its argument's change,
+// so no edge of one step between samples of different sign starts there.
+inline constexpr double kSampleBand = 2.0;
 
 // Evaluates the samples whose owner is the block itself or no active block; returns how many. Throws
 // WorkError when a sample on the grid's border is inside.
@@ -53,7 +57,7 @@ std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block
       }
     }
   }
-  batch.evaluate(field);
+  batch.evaluate(field, static_cast<float>(kSampleBand * grid.samples.step));
   for (std::size_t i = 0; i < slots.size(); ++i) {
     block.values[slots[i]] = batch.value[i];
     at_border = at_border || (on_border[i] && batch.value[i] > 0.0f);

@@ -15,10 +15,10 @@ namespace {
 // Points evaluated together: a block of 9^3 samples and some, on the stack.
 constexpr int kBatch = 1024;
 
+// Points, s and grad L there, and a layer's heights.
 struct Batch {
-  int n;
-  const float *x, *y, *z;
-  std::array<float, kBatch> distance, gx, gy, gz, height;
+  int n = 0;
+  std::array<float, kBatch> x, y, z, distance, gx, gy, gz, height;
   std::array<float, 3 * kBatch> scratch;
 };
 
@@ -44,7 +44,7 @@ ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, c
 }
 
 void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x, b.y, b.z, b.height.data(), b.scratch.data());
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data(), b.scratch.data());
 }
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
@@ -53,8 +53,8 @@ void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batc
                    b.height.data());
   const float longest_step = static_cast<float>(model.height_bound);
   float* const projected = b.scratch.data();
-  const auto along = [&](const float* p, const std::array<float, kBatch>& g, float* out) {
-    project(b.n, p, g.data(), b.height.data(), b.distance.data(), longest_step, out);
+  const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
+    project(b.n, p.data(), g.data(), b.height.data(), b.distance.data(), longest_step, out);
   };
   along(b.x, b.gx, projected);
   along(b.y, b.gy, projected + kBatch);
@@ -63,18 +63,35 @@ void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batc
                  b.height.data());
 }
 
+// Keeps the points whose F the heights may bring into the band; returns where they were.
+int keep_near_surface(float reach, Batch& b, std::array<int, kBatch>& origin) {
+  int kept = 0;
+  for (int i = 0; i < b.n; ++i) {
+    const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(kept);
+    if (std::fabs(b.distance[from]) > reach) continue;
+    for (auto* a : {&b.x, &b.y, &b.z, &b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
+    origin[to] = i;
+    ++kept;
+  }
+  return kept;
+}
+
 void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const float* x,
-                    const float* y, const float* z, float* value) {
+                    const float* y, const float* z, float band, float* value) {
   Batch b;
-  b.n = n;
-  b.x = x;
-  b.y = y;
-  b.z = z;
+  std::copy_n(x, n, b.x.data());
+  std::copy_n(y, n, b.y.data());
+  std::copy_n(z, n, b.z.data());
   evaluate_metaballs(metaballs, n, x, y, z, b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
   std::copy_n(b.distance.data(), n, value);
+  if (model.layers.empty()) return;
+  std::array<int, kBatch> origin;
+  b.n = n;
+  b.n = keep_near_surface(static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band, b, origin);
+  if (b.n == 0) return;
   for (const HeightLayer& layer : model.layers) {
     std::visit([&](const auto& noise) { layer_heights(model, noise, b); }, layer);
-    for (int i = 0; i < n; ++i) value[i] += b.height[static_cast<std::size_t>(i)];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.height[i];
   }
 }
 
@@ -155,10 +172,10 @@ FieldBlock FieldBlock::restricted_to(const Box& child) const {
 }
 
 void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                          std::span<float> value) const {
+                          std::span<float> value, float band) const {
   for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
     const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
-    evaluate_batch(*model_, metaballs_, n, &x[begin], &y[begin], &z[begin], &value[begin]);
+    evaluate_batch(*model_, metaballs_, n, &x[begin], &y[begin], &z[begin], band, &value[begin]);
   }
 }
 
@@ -179,7 +196,7 @@ ImplicitField::ImplicitField(const Recipe& recipe) {
 double ImplicitField::value(const Vec3d& p) const {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
-  evaluate_batch(*model_, model_->metaballs, 1, &x, &y, &z, &f);
+  evaluate_batch(*model_, model_->metaballs, 1, &x, &y, &z, kExactEverywhere, &f);
   return static_cast<double>(f);
 }
 

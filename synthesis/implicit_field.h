@@ -34,9 +34,10 @@ class FieldBlock {
   // For a box within this one. Cheaper than gathering from the field, and the same block.
   FieldBlock restricted_to(const Box& child) const;
 
-  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size.
+  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size. Where the bare body's
+  // |s| > height_bound() + band, no height can bring F into the band (length units) and value[i] = s.
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                std::span<float> value) const;
+                std::span<float> value, float band = kExactEverywhere) const;
 
   const Box& box() const { return box_; }
 

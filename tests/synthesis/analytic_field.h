@@ -27,7 +27,7 @@ class AnalyticField {
     }
     Block restricted_to(const Box& child) const { return Block(*field_, child); }
     void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                  std::span<float> value) const {
+                  std::span<float> value, float /*band*/) const {
       for (std::size_t i = 0; i < value.size(); ++i) {
         value[i] = static_cast<float>(field_->function_({x[i], y[i], z[i]}));
       }

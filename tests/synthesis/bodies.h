@@ -45,4 +45,13 @@ inline FractalLayer fractal_layer(double amplitude, double frequency, int octave
   return layer;
 }
 
+// Two bands: kernels of two and of eight pixels.
+inline GaborLayer gabor_layer(double pixel_size, double height_rms) {
+  GaborLayer layer;
+  layer.pixel_size = pixel_size;
+  layer.height_rms = height_rms;
+  layer.lobes = {{1, 0.2, 0.1, 1.0}, {3, -0.05, 0.1, 2.0}};
+  return layer;
+}
+
 }  // namespace astrolith::testing

@@ -11,6 +11,7 @@ namespace astrolith {
 namespace {
 
 using testing::fractal_layer;
+using testing::gabor_layer;
 using testing::potato_recipe;
 using testing::sphere_recipe;
 
@@ -125,6 +126,34 @@ TEST(FieldBlock, GivesTheBitsOfTheField) {
   }
 }
 
+TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
+  Recipe recipe = potato_recipe(40, 6);
+  recipe.layers = {fractal_layer(0.01, 5.0, 3), gabor_layer(0.02, 0.002)};
+  const ImplicitField field(recipe);
+  const Box box = field.bounds();
+  const FieldBlock block = field.gather(box);
+  CounterRandom random(8);
+  std::vector<float> x, y, z, exact(3000), coarse(3000);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const Vec3d p = random_point(random, box);
+    x.push_back(static_cast<float>(p.x));
+    y.push_back(static_cast<float>(p.y));
+    z.push_back(static_cast<float>(p.z));
+  }
+  constexpr float kBand = 0.01f;
+  block.evaluate(x, y, z, exact);
+  block.evaluate(x, y, z, coarse, kBand);
+  int different = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    if (exact[i] == coarse[i]) continue;
+    ++different;
+    ASSERT_GT(std::fabs(exact[i]), kBand);
+    ASSERT_GT(std::fabs(coarse[i]), kBand);
+    ASSERT_EQ(exact[i] > 0.0f, coarse[i] > 0.0f);
+  }
+  EXPECT_GT(different, 1000);
+}
+
 // Proofs are proofs: no box that is called outside or inside holds a point of the other kind.
 TEST(FieldBlock, ContentIsNeverWrong) {
   CounterRandom random(10);
@@ -133,6 +162,7 @@ TEST(FieldBlock, ContentIsNeverWrong) {
     Recipe recipe = potato_recipe(1 + k % 90, static_cast<std::uint64_t>(k), random.uniform(0.7, 12.0));
     recipe.body->cutoff_radii = random.uniform(1.2, 5.0);
     if (k % 2) recipe.layers = {fractal_layer(std::pow(10.0, random.uniform(-3.0, -1.0)), 4.0, 1 + k % 8)};
+    if (k % 5 == 0) recipe.layers.push_back(gabor_layer(0.02, std::pow(10.0, random.uniform(-3.5, -2.0))));
     const ImplicitField field(recipe);
     if (field.bounds().empty()) continue;
     for (int b = 0; b < 40; ++b) {
