@@ -10,6 +10,7 @@
 #include "estimation/gabor/gaussianity.h"
 #include "estimation/gabor/image_reader.h"
 #include "estimation/gabor/npy_file.h"
+#include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
 #include "synthesis/gabor_texture.h"
@@ -40,7 +41,8 @@ void add_options(Program& program, Options& o) {
   app.add_option(
          "--mm-per-px", o.mm_per_px,
          "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->default_str("");
   app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
       ->check(CLI::IsMember({"m", "km"}));
   app.add_option(
@@ -48,7 +50,8 @@ void add_options(Program& program, Options& o) {
          "standard deviation of the layer's height in the recipe's length unit. Brightness is not height: "
          "without this the layer has the image's own contrast (full scale = 1), which is a height only if "
          "the image is a height map in that unit")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->default_str("");
   app.add_option(
          "--spectrum-estimate", o.target,
          "what the lobes are fitted to: smoothed (the periodogram smoothed as far as cross-validation "
@@ -62,10 +65,12 @@ void add_options(Program& program, Options& o) {
   app.add_option("--gap", o.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
       ->check(CLI::Range(1e-8, 0.5));
   app.add_option("--report", o.report_folder,
-                 "folder for pictures: exemplar, synthesis, both spectra, lobes, gap");
+                 "folder for pictures: exemplar, synthesis, both spectra, lobes, gap")
+      ->option_text("DIR");
   app.add_option("--spectrum", o.spectrum_file,
                  "write the fitted power spectrum on the image's DFT grid (.npy, float64, frequency 0 first, "
-                 "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024");
+                 "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024")
+      ->option_text("FILE.npy");
 }
 
 GaborLayer make_layer(const Options& o, const GaborFit& fit) {
@@ -140,6 +145,8 @@ std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, 
 void work(Program& program, Options o) {
   o.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
   o.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
+  require_writable(o.output);
+  if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
   const ImageFile file = read_grey_image(o.image);
   for (const std::string& remark : file.remarks) program.say(o.image + ": " + remark);
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 
+#include "apps/help_formatter.h"
 #include "apps/version.h"
 #include "numerics/errors.h"
 #include "numerics/output_file.h"
@@ -68,6 +69,7 @@ void write_summary(const std::string& file_name, const nlohmann::ordered_json& s
 
 Program::Program(std::string name, std::string description)
     : app(std::move(description), name), name_(std::move(name)) {
+  app.formatter(std::make_shared<HelpFormatter>());
   app.option_defaults()->always_capture_default();
   app.set_version_flag("--version", tool());
   app.add_option("--seed", seed,
@@ -108,7 +110,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
 
 void Program::timed(const std::function<void()>& work) {
   // A summary that cannot be written should not be found out after an hour's work.
-  if (!summary_file.empty()) OutputFile probe(summary_file);
+  if (!summary_file.empty()) require_writable(summary_file);
   const auto start = std::chrono::steady_clock::now();
   work();
   if (summary_file.empty()) return;

@@ -72,9 +72,6 @@ void declare_options(Program& program, Options& options) {
   program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");
 }
 
-// Throws InputError when a file could not be written, before the work rather than after.
-void require_writable(const fs::path& file) { const OutputFile probe(file); }
-
 void require_extension(const fs::path& file, std::initializer_list<const char*> extensions) {
   std::string wanted;
   for (const char* extension : extensions) {

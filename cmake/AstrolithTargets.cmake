@@ -62,5 +62,5 @@ function(astrolith_test name)
   target_precompile_headers(${name}_tests PRIVATE <gtest/gtest.h>)
   target_compile_definitions(${name}_tests PRIVATE
     ASTROLITH_SHARED_DATA="${ASTROLITH_SHARED_DATA}" ASTROLITH_PACKAGE_DATA="${ASTROLITH_PACKAGE_DATA}")
-  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
 endfunction()
