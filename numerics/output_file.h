@@ -74,7 +74,8 @@ class OutputFile {
   bool committed_ = false;
 };
 
-// Throws InputError when the file could not be written: to be called before long work rather than found after.
+// Throws InputError when the file could not be written: to be called before long work rather than found
+// after.
 inline void require_writable(const std::filesystem::path& target) { const OutputFile probe(target); }
 
 }  // namespace astrolith
