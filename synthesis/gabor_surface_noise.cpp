@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "numerics/hash_random.h"
+#include <limits>
 
 namespace astrolith {
 namespace {
@@ -11,14 +10,22 @@ namespace {
 constexpr double kLargestCell =
     1048576.0;  // 2^20 cells from the origin: floats hold three bits within a cell
 
+// On a flat patch an impulse beyond 1/a from the surface reaches none of it. Kernels that are small beside
+// the body, to which it is nearly flat, leave out those beyond 1.5/a; s is true to first order only, so that
+// large ones keep all.
+constexpr double kSmallKernel = 1.0 / 128.0;  // 1/a over the domain's longest side
+constexpr double kFarthestReach = 1.5;        // in units of 1/a
+
 // From an impulse to the corner of its support, in units of 1/a.
 const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborReach} +
                                       double{kGaborSlabReach} * double{kGaborSlabReach});
 
-// Sizes of groups of points, in kernel reaches. Impulses and their frames are drawn for a large group, of
-// bounded size so that memory is, and handed down to halves of it, each keeping what reaches it: small groups
-// waste fewer kernel evaluations on points out of reach.
-constexpr double kDrawingReaches = 4.0;
+// Impulses are drawn for a group of points of bounded size, so that memory is. Where many points share the
+// impulses of a cell, loops over points add them: impulses are handed down to halves of the group, each
+// keeping what reaches it, since small groups waste fewer kernel evaluations on points out of reach (sizes in
+// kernel reaches). Where few do, loops over the impulses of cells do. Either gives the same bits.
+constexpr std::int64_t kMostCells = 1 << 17;
+constexpr double kDensePoints = 24.0;
 constexpr double kSmallestReaches = 0.4;
 constexpr int kSmallestGroup = 16;  // points: a vector of the widest machine
 
@@ -35,40 +42,6 @@ ASTROLITH_SIMD_CLONES void add_impulses(const GaborImpulse* impulses, std::size_
   }
 }
 
-// Impulses before their frames are known.
-struct Candidates {
-  std::vector<float> x, y, z;
-  std::vector<std::uint32_t> hash;
-
-  void add(const Vec3f& p, std::uint32_t h) {
-    x.push_back(p.x);
-    y.push_back(p.y);
-    z.push_back(p.z);
-    hash.push_back(h);
-  }
-};
-
-Vec3f point_in_cell(std::uint32_t hash, int cx, int cy, int cz, float cell) {
-  return {(static_cast<float>(cx) + unit_float(hash_append(hash, 0))) * cell,
-          (static_cast<float>(cy) + unit_float(hash_append(hash, 1))) * cell,
-          (static_cast<float>(cz) + unit_float(hash_append(hash, 2))) * cell};
-}
-
-struct Frame {
-  Vec3f u, v, n;
-};
-
-// East, south and outward for a body whose field grows along `inward`; where the normal is within a degree of
-// the z axis, x takes the place of east. Any unit vectors do where there is no gradient.
-Frame tangent_frame(const Vec3f& inward) {
-  const float length = math::sqrt(dot(inward, inward));
-  const Vec3f n = length > 1e-18f ? inward * (-1.0f / length) : Vec3f{0.0f, 0.0f, 1.0f};
-  const bool polar = n.x * n.x + n.y * n.y < 3e-4f;
-  const Vec3f east = polar ? Vec3f{1.0f - n.x * n.x, -n.x * n.y, -n.x * n.z} : Vec3f{-n.y, n.x, 0.0f};
-  const Vec3f u = east * (1.0f / math::sqrt(dot(east, east)));
-  return {u, cross(u, n), n};
-}
-
 // Whether a kernel reaches the box, by the box's extents along the kernel's axes; never wrongly says no.
 bool reaches(const GaborImpulse& k, const Vec3d& center, const Vec3d& half) {
   constexpr double kSlack = 1.0 + 1e-3;
@@ -80,12 +53,6 @@ bool reaches(const GaborImpulse& k, const Vec3d& center, const Vec3d& half) {
   return !far(double{k.ux}, double{k.uy}, double{k.uz}, double{kGaborReach}) &&
          !far(double{k.vx}, double{k.vy}, double{k.vz}, double{kGaborReach}) &&
          !far(double{k.nx}, double{k.ny}, double{k.nz}, double{kGaborSlabReach});
-}
-
-double squared_distance(const Box& box, const Vec3f& p) {
-  const auto gap = [](double lo, double hi, double c) { return std::max({lo - c, c - hi, 0.0}); };
-  return squared_norm(Vec3d{gap(box.min.x, box.max.x, double{p.x}), gap(box.min.y, box.max.y, double{p.y}),
-                            gap(box.min.z, box.max.z, double{p.z})});
 }
 
 double longest_side(const Box& box) {
@@ -152,8 +119,12 @@ GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed
     const double density = count / std::pow(kGaborSpaceCell, 3);
     const double amplitude = layer.height_rms * std::sqrt(2.0 * band.variance_share / (density * energy));
     const std::uint32_t band_seed = gabor_band_seed(seed, layer_index, band.bandwidth);
+    const double farthest_impulse = 1.0 / a < kSmallKernel * longest_side(domain)
+                                        ? kFarthestReach / a
+                                        : std::numeric_limits<double>::infinity();
     bands_.push_back({std::move(band), band_seed, static_cast<float>(a), static_cast<float>(cell),
-                      static_cast<float>(kCornerReach / a), count, static_cast<float>(amplitude)});
+                      static_cast<float>(kCornerReach / a), count, static_cast<float>(amplitude),
+                      static_cast<float>(farthest_impulse)});
   }
 }
 
@@ -170,77 +141,13 @@ void GaborSurfaceNoise::evaluate(const PreparedMetaballs& body, int n, const flo
   points.z = clamped(z, domain_min_.z, domain_max_.z);
   points.height.assign(static_cast<std::size_t>(n), 0.0f);
   for (int i = 0; i < n; ++i) points.index.push_back(i);
-  for (const Band& band : bands_) add_band(band, body, points, 0, n);
+  for (const SurfaceBand& band : bands_) add_band(band, body, points, 0, n);
   for (std::size_t i = 0; i < points.index.size(); ++i) {
     height[points.index[i]] = math::clamp(points.height[i], -clip_, clip_);
   }
 }
 
 namespace {
-
-// Impulses of the cells around the box, in the order of the cells, whose supports may touch it.
-template <typename Band>
-Candidates draw_candidates(const Band& band, const Box& box) {
-  Candidates found;
-  const double reach = double{band.reach} * (1.0 + 1e-3), cell = band.cell;
-  const auto cell_of = [cell](double c) { return static_cast<int>(std::floor(c / cell)); };
-  for (int cz = cell_of(box.min.z - reach); cz <= cell_of(box.max.z + reach); ++cz) {
-    for (int cy = cell_of(box.min.y - reach); cy <= cell_of(box.max.y + reach); ++cy) {
-      for (int cx = cell_of(box.min.x - reach); cx <= cell_of(box.max.x + reach); ++cx) {
-        const std::uint32_t cell_hash = hash_cell(band.seed, cx, cy, cz);
-        for (int j = 0; j < band.impulses_per_cell; ++j) {
-          const std::uint32_t hash = hash_append(cell_hash, static_cast<std::uint32_t>(j));
-          const Vec3f p = point_in_cell(hash, cx, cy, cz, band.cell);
-          if (squared_distance(box, p) <= reach * reach) found.add(p, hash);
-        }
-      }
-    }
-  }
-  return found;
-}
-
-template <typename Band>
-GaborImpulse make_impulse(const Band& band, const Vec3f& p, const Vec3f& inward, std::uint32_t hash) {
-  const Frame f = tangent_frame(inward);
-  const GaborBand::Lobe& lobe = band.band.draw(unit_float(hash_append(hash, 4)));
-  const float a = band.a;
-  return {p.x,
-          p.y,
-          p.z,
-          a * f.u.x,
-          a * f.u.y,
-          a * f.u.z,
-          a * f.v.x,
-          a * f.v.y,
-          a * f.v.z,
-          a * f.n.x,
-          a * f.n.y,
-          a * f.n.z,
-          lobe.frequency_x,
-          lobe.frequency_y,
-          unit_float(hash_append(hash, 3))};
-}
-
-// All impulses that reach the box, in the order of their cells.
-template <typename Band>
-std::vector<GaborImpulse> draw_impulses(const Band& band, const PreparedMetaballs& body, const Box& box) {
-  const Candidates found = draw_candidates(band, box);
-  const auto n = found.x.size();
-  Box around;
-  for (std::size_t i = 0; i < n; ++i) {
-    around.extend({double{found.x[i]}, double{found.y[i]}, double{found.z[i]}});
-  }
-  std::vector<float> distance(n), gx(n), gy(n), gz(n);
-  evaluate_metaballs(metaballs_reaching(body, around), static_cast<int>(n), found.x.data(), found.y.data(),
-                     found.z.data(), distance.data(), gx.data(), gy.data(), gz.data());
-  std::vector<GaborImpulse> impulses;
-  impulses.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    impulses.push_back(
-        make_impulse(band, {found.x[i], found.y[i], found.z[i]}, {gx[i], gy[i], gz[i]}, found.hash[i]));
-  }
-  return impulses;
-}
 
 std::vector<GaborImpulse> reaching(const std::vector<GaborImpulse>& impulses, const Box& box) {
   const Vec3d center = box.center(), half = 0.5 * box.extent();
@@ -253,22 +160,27 @@ std::vector<GaborImpulse> reaching(const std::vector<GaborImpulse>& impulses, co
 
 }  // namespace
 
-void GaborSurfaceNoise::add_band(const Band& band, const PreparedMetaballs& body, Points& points, int begin,
-                                 int end) const {
+void GaborSurfaceNoise::add_band(const SurfaceBand& band, const PreparedMetaballs& body, Points& points,
+                                 int begin, int end) const {
   if (begin == end) return;
   const Box box = points.bounds(begin, end);
-  const int middle =
-      longest_side(box) > kDrawingReaches * double{band.reach} ? points.halve(begin, end, box) : begin;
-  if (middle == begin) {
-    add_group(band, draw_impulses(band, body, box), points, begin, end);
-  } else {
+  const int middle = cells_around(band, box).cells() > kMostCells ? points.halve(begin, end, box) : begin;
+  if (middle != begin) {
     add_band(band, body, points, begin, middle);
     add_band(band, body, points, middle, end);
+    return;
+  }
+  const auto first = static_cast<std::size_t>(begin);
+  const GaborImpulses impulses(band, body, end - begin, &points.x[first], &points.y[first], &points.z[first]);
+  if (impulses.points_per_cell() < kDensePoints) {
+    impulses.add_by_cells(&points.height[first]);
+  } else {
+    add_group(band, impulses.all(), points, begin, end);
   }
 }
 
-void GaborSurfaceNoise::add_group(const Band& band, const std::vector<GaborImpulse>& impulses, Points& points,
-                                  int begin, int end) const {
+void GaborSurfaceNoise::add_group(const SurfaceBand& band, const std::vector<GaborImpulse>& impulses,
+                                  Points& points, int begin, int end) const {
   const Box box = points.bounds(begin, end);
   const std::vector<GaborImpulse> near = reaching(impulses, box);
   const bool divisible =

@@ -1,8 +1,8 @@
 // A Gabor layer as surface noise on a metaball body, ready for evaluation over many points.
 //
-// Impulses lie in a grid of cells in space, so many in each cell. Every impulse carries the tangent frame of
-// the body's level set through it, and its kernel fades with the distance along its own normal
-// (gabor_kernel.h): the noise is C1 wherever points move, whatever the frames do from impulse to impulse. On
+// Impulses lie in a grid of cells in space, so many in each cell. Every cell has the tangent frame of the
+// body's level set through its centre, and a kernel fades with the distance along its cell's normal
+// (gabor_kernel.h): the noise is C1 wherever points move, whatever the frames do from cell to cell. On
 // a flat patch it has the spectrum of the lobes, and the layer's variance exactly. First tangent axis: east,
 // about +z; second: south, so that a patch seen from outside with north up shows the texture upright.
 #pragma once
@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "recipe/recipe.h"
-#include "synthesis/gabor_bands.h"
-#include "synthesis/gabor_kernel.h"
+#include "synthesis/gabor_impulses.h"
 #include "synthesis/metaball_body.h"
 
 namespace astrolith {
@@ -33,23 +32,15 @@ class GaborSurfaceNoise {
   double height_bound() const { return static_cast<double>(clip_); }
 
  private:
-  struct Band {
-    GaborBand band;
-    std::uint32_t seed;
-    float a;      // cycles per length unit
-    float cell;   // side, length units
-    float reach;  // of a kernel from its impulse, length units
-    int impulses_per_cell;
-    float amplitude;  // length units
-  };
   struct Points;
 
-  void add_band(const Band& band, const PreparedMetaballs& body, Points& points, int begin, int end) const;
-  void add_group(const Band& band, const std::vector<GaborImpulse>& impulses, Points& points, int begin,
-                 int end) const;
+  void add_band(const SurfaceBand& band, const PreparedMetaballs& body, Points& points, int begin,
+                int end) const;
+  void add_group(const SurfaceBand& band, const std::vector<GaborImpulse>& impulses, Points& points,
+                 int begin, int end) const;
 
   Vec3f domain_min_, domain_max_;
-  std::vector<Band> bands_;
+  std::vector<SurfaceBand> bands_;
   float clip_;
 };
 
