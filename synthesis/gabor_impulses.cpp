@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "numerics/hash_random.h"
 
@@ -28,14 +29,19 @@ Vec3f cell_center(const std::array<int, 3>& c, float cell) {
           (static_cast<float>(c[2]) + 0.5f) * cell};
 }
 
+// Ten bits of a hash place an impulse along each axis, to a thousandth of a cell.
 Vec3f point_in_cell(std::uint32_t hash, const std::array<int, 3>& c, float cell) {
-  return {(static_cast<float>(c[0]) + unit_float(hash_append(hash, 0))) * cell,
-          (static_cast<float>(c[1]) + unit_float(hash_append(hash, 1))) * cell,
-          (static_cast<float>(c[2]) + unit_float(hash_append(hash, 2))) * cell};
+  const auto at = [&](std::size_t axis, int shift) {
+    const std::uint32_t bits = (hash >> shift) & 1023u;
+    return (static_cast<float>(c[axis]) + (static_cast<float>(bits) + 0.5f) * 0x1p-10f) * cell;
+  };
+  return {at(0, 2), at(1, 12), at(2, 22)};
 }
 
 GaborImpulse make_impulse(const SurfaceBand& band, const Vec3f& p, const Frame& f, std::uint32_t hash) {
-  const GaborBand::Lobe& lobe = band.band.draw(unit_float(hash_append(hash, 4)));
+  // Sixteen bits choose the lobe, sixteen the phase.
+  const std::uint32_t bits = hash_append(hash, 0);
+  const GaborBand::Lobe& lobe = band.band.draw(static_cast<float>(bits >> 16) * 0x1p-16f);
   const float a = band.a;
   return {p.x,
           p.y,
@@ -51,7 +57,34 @@ GaborImpulse make_impulse(const SurfaceBand& band, const Vec3f& p, const Frame& 
           a * f.n.z,
           lobe.frequency_x,
           lobe.frequency_y,
-          unit_float(hash_append(hash, 3))};
+          static_cast<float>(bits & 0xffffu) * 0x1p-16f};
+}
+
+// The cells of a box widened by `reach` and some slack for rounding.
+CellRange cells_within(const Box& box, const Vec3d& reach, double cell) {
+  constexpr double kSlack = 1.0 + 1e-3;
+  const auto cell_of = [cell](double c) { return static_cast<int>(std::floor(c / cell)); };
+  return {{cell_of(box.min.x - kSlack * reach.x), cell_of(box.min.y - kSlack * reach.y),
+           cell_of(box.min.z - kSlack * reach.z)},
+          {cell_of(box.max.x + kSlack * reach.x), cell_of(box.max.y + kSlack * reach.y),
+           cell_of(box.max.z + kSlack * reach.z)}};
+}
+
+CellRange common(CellRange a, const CellRange& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    a.first[axis] = std::max(a.first[axis], b.first[axis]);
+    a.last[axis] = std::min(a.last[axis], b.last[axis]);
+  }
+  return a;
+}
+
+// Half the extents along x, y and z of a kernel's support, a box along its frame.
+Vec3d half_extents(const GaborImpulse& k, double a) {
+  const auto along = [a](float u, float v, float n) {
+    const double tangential = std::fabs(double{u}) + std::fabs(double{v});
+    return (double{kGaborReach} * tangential + double{kGaborSlabReach} * std::fabs(double{n})) / (a * a);
+  };
+  return {along(k.ux, k.vx, k.nx), along(k.uy, k.vy, k.ny), along(k.uz, k.vz, k.nz)};
 }
 
 // The impulses of one cell, whose centre is `height` outside the surface.
@@ -69,11 +102,39 @@ void draw_cell(const SurfaceBand& band, const std::array<int, 3>& c, float heigh
   }
 }
 
-// kernel[i] = impulse begin + i at one point.
-ASTROLITH_SIMD_CLONES void kernels_at_point(const GaborImpulse* __restrict impulses, int n, float x, float y,
-                                            float z, float* __restrict kernel) {
+// kernel[i] = impulse i at one point; `impulses` holds one array of `stride` floats for each member.
+ASTROLITH_SIMD_CLONES void kernels_at_point(const float* __restrict impulses, std::size_t stride, int n,
+                                            float x, float y, float z, float* __restrict kernel) {
+  const float* const m = impulses;
+  const std::size_t s = stride;
 #pragma omp simd
-  for (int i = 0; i < n; ++i) kernel[i] = gabor_kernel(impulses[i], x, y, z);
+  for (int i = 0; i < n; ++i) {
+    const GaborImpulse impulse{m[i],          m[s + i],      m[2 * s + i],  m[3 * s + i],  m[4 * s + i],
+                               m[5 * s + i],  m[6 * s + i],  m[7 * s + i],  m[8 * s + i],  m[9 * s + i],
+                               m[10 * s + i], m[11 * s + i], m[12 * s + i], m[13 * s + i], m[14 * s + i]};
+    kernel[i] = gabor_kernel(impulse, x, y, z);
+  }
+}
+
+// One after the other, as a loop over impulses adds them.
+ASTROLITH_SIMD_CLONES float sum_kernels(const float* kernel, std::size_t n, float amplitude, float height) {
+  for (std::size_t k = 0; k < n; ++k) height = math::fma(amplitude, kernel[k], height);
+  return height;
+}
+
+constexpr std::size_t kMembers = sizeof(GaborImpulse) / sizeof(float);
+static_assert(kMembers == 15);
+
+// Transposed: an array for each member.
+std::vector<float> arrays_of(const std::vector<GaborImpulse>& impulses) {
+  const std::size_t n = impulses.size();
+  std::vector<float> arrays(kMembers * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::array<float, kMembers> members;
+    std::memcpy(members.data(), &impulses[i], sizeof members);
+    for (std::size_t k = 0; k < kMembers; ++k) arrays[k * n + i] = members[k];
+  }
+  return arrays;
 }
 
 // Centres of cells and the body's field there.
@@ -100,10 +161,7 @@ struct Centers {
 }  // namespace
 
 CellRange cells_around(const SurfaceBand& band, const Box& box) {
-  const double reach = double{band.reach} * (1.0 + 1e-3), cell = band.cell;
-  const auto cell_of = [cell](double c) { return static_cast<int>(std::floor(c / cell)); };
-  return {{cell_of(box.min.x - reach), cell_of(box.min.y - reach), cell_of(box.min.z - reach)},
-          {cell_of(box.max.x + reach), cell_of(box.max.y + reach), cell_of(box.max.z + reach)}};
+  return cells_within(box, Vec3d{1, 1, 1} * double{band.reach}, double{band.cell});
 }
 
 GaborImpulses::GaborImpulses(const SurfaceBand& band, const PreparedMetaballs& body, int n, const float* x,
@@ -168,22 +226,35 @@ double GaborImpulses::points_per_cell() const {
   return visits / static_cast<double>(std::max<std::int64_t>(marked_, 1));
 }
 
+Vec3d GaborImpulses::largest_half_extents() const {
+  Vec3d largest;
+  for (const GaborImpulse& impulse : impulses_) {
+    const Vec3d e = half_extents(impulse, double{band_.a});
+    largest = {std::max(largest.x, e.x), std::max(largest.y, e.y), std::max(largest.z, e.z)};
+  }
+  return largest;
+}
+
 void GaborImpulses::add_by_cells(float* height) const {
+  const Vec3d reach = largest_half_extents();
+  const std::vector<float> arrays = arrays_of(impulses_);
   std::vector<float> kernel(impulses_.size());
   for (int i = 0; i < n_; ++i) {
-    const CellRange& r = around_[static_cast<std::size_t>(i)];
+    const Vec3d p{double{x_[i]}, double{y_[i]}, double{z_[i]}};
+    const CellRange r =
+        common(cells_within(Box{p, p}, reach, double{band_.cell}), around_[static_cast<std::size_t>(i)]);
     std::size_t count = 0;
     for (int cz = r.first[2]; cz <= r.last[2]; ++cz) {
       for (int cy = r.first[1]; cy <= r.last[1]; ++cy) {
         const std::size_t first = row(cy, cz) + static_cast<std::size_t>(r.first[0] - range_.first[0]);
         const std::uint32_t begin = start_[first], end = start_[first + static_cast<std::size_t>(r.size(0))];
         if (begin == end) continue;
-        kernels_at_point(&impulses_[begin], static_cast<int>(end - begin), x_[i], y_[i], z_[i],
+        kernels_at_point(&arrays[begin], impulses_.size(), static_cast<int>(end - begin), x_[i], y_[i], z_[i],
                          &kernel[count]);
         count += end - begin;
       }
     }
-    for (std::size_t k = 0; k < count; ++k) height[i] = math::fma(band_.amplitude, kernel[k], height[i]);
+    height[i] = sum_kernels(kernel.data(), count, band_.amplitude, height[i]);
   }
 }
 

@@ -55,6 +55,7 @@ class GaborImpulses {
  private:
   void mark_cells();
   void draw_cells(const PreparedMetaballs& body);
+  Vec3d largest_half_extents() const;
   std::size_t row(int cy, int cz) const;  // where a row of cells along x begins
 
   const SurfaceBand& band_;

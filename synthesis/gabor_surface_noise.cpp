@@ -11,10 +11,10 @@ constexpr double kLargestCell =
     1048576.0;  // 2^20 cells from the origin: floats hold three bits within a cell
 
 // On a flat patch an impulse beyond 1/a from the surface reaches none of it. Kernels that are small beside
-// the body, to which it is nearly flat, leave out those beyond 1.5/a; s is true to first order only, so that
+// the body, to which it is nearly flat, leave out those beyond 1.25/a; s is true to first order only, so that
 // large ones keep all.
 constexpr double kSmallKernel = 1.0 / 128.0;  // 1/a over the domain's longest side
-constexpr double kFarthestReach = 1.5;        // in units of 1/a
+constexpr double kFarthestReach = 1.25;       // in units of 1/a
 
 // From an impulse to the corner of its support, in units of 1/a.
 const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborReach} +
@@ -25,9 +25,9 @@ const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborR
 // keeping what reaches it, since small groups waste fewer kernel evaluations on points out of reach (sizes in
 // kernel reaches). Where few do, loops over the impulses of cells do. Either gives the same bits.
 constexpr std::int64_t kMostCells = 1 << 17;
-constexpr double kDensePoints = 24.0;
+constexpr double kDensePoints = 32.0;
 constexpr double kSmallestReaches = 0.4;
-constexpr int kSmallestGroup = 16;  // points: a vector of the widest machine
+constexpr int kSmallestGroup = 32;  // points: two vectors of the widest machine
 
 ASTROLITH_SIMD_CLONES void add_impulses(const GaborImpulse* impulses, std::size_t num_impulses,
                                         float amplitude, int n, const float* __restrict x,

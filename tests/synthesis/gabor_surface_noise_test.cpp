@@ -113,6 +113,27 @@ TEST(GaborSurfaceNoise, HowPointsAreGroupedChangesNoBit) {
   }
 }
 
+TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
+  // Half of the points lie close together, so that many share an impulse; kernels from 1/400 to 1/10 of the
+  // body.
+  Recipe recipe = potato_recipe(60, 5);
+  recipe.layers = {layer_of({{1, 0.1, 0.2, 1.0}, {3, 0.1, 0.1, 1.0}, {6, -0.01, 0.02, 2.0}}, 0.002, 0.004)};
+  const ImplicitField field(recipe);
+  CounterRandom random(3);
+  const Vec3d center = field.bounds().center();
+  std::vector<float> x, y, z, value(600);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const double size = i % 2 ? 0.01 : 0.2;
+    x.push_back(static_cast<float>(field.bounds().max.x - 0.05 + random.uniform(-size, size)));
+    y.push_back(static_cast<float>(center.y + random.uniform(-size, size)));
+    z.push_back(static_cast<float>(center.z + random.uniform(-size, size)));
+  }
+  field.gather(field.bounds()).evaluate(x, y, z, value);
+  for (std::size_t i = 0; i < value.size(); i += 3) {
+    ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
+  }
+}
+
 TEST(GaborSurfaceNoise, HeightsAreConstantAlongTheNormal) {
   Recipe recipe = sphere_recipe(1.0);
   recipe.layers = {layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
