@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "estimation/shape/fit_check.h"
 #include "estimation/shape/sphere_growth.h"
@@ -19,7 +20,8 @@ constexpr double kOutsideMargin = 0.002;
 // Surfaces further than this from the target, as a fraction of the diagonal, are strays to be mended.
 constexpr double kStrayDistance = 0.015;
 constexpr int kRepairs = 4;
-constexpr int kRepairResolution = 96;
+constexpr int kRepairResolution = 128;
+constexpr std::int64_t kRepairSamples = 20000;
 
 class AdaptiveFit {
  public:
@@ -37,15 +39,10 @@ class AdaptiveFit {
   AdaptiveFitSummary run() {
     step(options_.first_iterations);
     for (int round = 0; round < options_.rounds && !done(); ++round) {
-      grow(options_.rounds - round);
+      grow(options_.spheres, options_.rounds - round);
       step(round + 1 < options_.rounds ? options_.round_iterations : options_.last_iterations);
     }
-    // Not before: held at the surface from the start, spheres that want out stop the whole fit (measured).
-    refinement_.keep_centers_inside = &target_.tree;
-    for (int repair = 0; repair < kRepairs && !summary_.interrupted; ++repair) {
-      if (!mend()) break;
-    }
-    if (remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin) > 0) note();
+    finish();
     return std::move(summary_);
   }
 
@@ -78,29 +75,66 @@ class AdaptiveFit {
     words_ = words;
   }
 
-  void grow(int rounds_left) {
+  // Adds this round's share of what is missing up to `wanted` spheres.
+  void grow(int wanted, int rounds_left) {
     std::vector<Sphere>& spheres = summary_.model.spheres;
     remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
     remove_idle_spheres(summary_.model, points_, kIdleShare);
-    const int missing = options_.spheres - static_cast<int>(spheres.size());
+    const int missing = wanted - static_cast<int>(spheres.size());
     const int count = (missing + rounds_left - 1) / rounds_left;
     const std::vector<Sphere> grown =
         spheres_for_largest_errors(summary_.model, samples_, target_.area, options_.spheres, count);
     spheres.insert(spheres.end(), grown.begin(), grown.end());
   }
 
-  // Looks for islands, cavities and bridges; true when there were any. Islands lose their spheres, the rest
-  // becomes containment points, and the model is refined once more.
-  bool mend() {
-    const int islands = remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
-    const FitCheck check = check_fit(target_, metaball_body(summary_.model), kRepairResolution, 100, 1);
+  // Looks for islands, cavities and bridges, and mends them: islands lose their spheres, which grow anew
+  // elsewhere, strays become containment points, and the model is refined once more. The best model measured
+  // is the one that stays.
+  void finish() {
+    MetaballModel best;
+    Merit best_merit;
+    const auto wanted = static_cast<int>(summary_.model.spheres.size());
+    for (int repair = 0;; ++repair) {
+      remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
+      const FitCheck check =
+          check_fit(target_, metaball_body(summary_.model), kRepairResolution, kRepairSamples, 1);
+      const Merit merit = merit_of(check);
+      if (repair == 0 || merit < best_merit) {
+        best_merit = merit;
+        best = summary_.model;
+      }
+      const bool complete = static_cast<int>(summary_.model.spheres.size()) == wanted;
+      const bool clean = collect_strays(check);
+      if ((clean && complete) || summary_.interrupted || repair == kRepairs) break;
+      // Not before: held at the surface from the start, spheres that want out stop the whole fit (measured).
+      refinement_.keep_centers_inside = &target_.tree;
+      grow(wanted, 1);
+      spent_ -= options_.round_iterations;
+      step(options_.round_iterations);
+    }
+    summary_.model = std::move(best);
+    note();
+  }
+
+  // Fewer parts too many or missing come first, then the mean distance.
+  struct Merit {
+    std::int64_t wrong_components = 0;
+    double mean_distance = 0.0;
+    bool operator<(const Merit& other) const {
+      return std::tie(wrong_components, mean_distance) <
+             std::tie(other.wrong_components, other.mean_distance);
+    }
+  };
+  Merit merit_of(const FitCheck& check) const {
+    return {std::abs(check.topology.components - target_.components), check.distance.mean};
+  }
+
+  // True when there were none.
+  bool collect_strays(const FitCheck& check) {
     const FitPoints strays = stray_points(target_, check.mesh, kStrayDistance);
-    if (islands == 0 && strays.inside.empty() && strays.outside.empty()) return false;
     points_.inside.insert(points_.inside.end(), strays.inside.begin(), strays.inside.end());
     points_.outside.insert(points_.outside.end(), strays.outside.begin(), strays.outside.end());
-    spent_ -= options_.round_iterations;
-    step(options_.round_iterations);
-    return true;
+    return strays.inside.empty() && strays.outside.empty();
   }
 
   const TargetBody& target_;

@@ -2,11 +2,13 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <iterator>
 
 #include "estimation/shape/field_derivatives.h"
+#include "estimation/shape/model_evaluation_internal.h"
 #include "estimation/shape/point_clusters.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
@@ -18,8 +20,12 @@ namespace {
 // that reach only some of the points.
 constexpr std::size_t kPointsPerBlock = 24;
 
-// Spheres may move and grow this part of their support before the lists of neighbours are made anew.
+// Derivatives are taken by the spheres that may reach a block after they moved or grew by this part of their
+// support; the residuals themselves see every sphere in reach.
 constexpr double kSupportSlack = 1.15;
+
+// Containment points are left out of a round when their condition holds by more than this level.
+constexpr double kIdleLevel = 0.05;
 
 // A round without any step that lowers the cost ends the refinement only below this radius of the trust
 // region.
@@ -34,7 +40,7 @@ enum class Condition { on_surface, inside, outside };
 struct Block {
   Condition condition;
   std::vector<Vec3d> points;
-  std::vector<std::int32_t> neighbours;
+  std::vector<std::int32_t> neighbours;      // spheres with derivatives, ascending
   std::vector<double> residuals;             // (#points)
   std::vector<SphereDerivatives> by_sphere;  // (#points x #neighbours)
   std::vector<double> by_sharpness;          // (#points)
@@ -86,8 +92,8 @@ class Evaluation : public ceres::EvaluationCallback {
       : options_(options), parameters_(parameters) {
     add_blocks(points.on_surface, Condition::on_surface);
     if (options.containment_weight > 0.0) {
-      add_blocks(points.inside, Condition::inside);
-      add_blocks(points.outside, Condition::outside);
+      add_blocks(active(points.inside, Condition::inside), Condition::inside);
+      add_blocks(active(points.outside, Condition::outside), Condition::outside);
     }
     find_neighbours();
   }
@@ -98,7 +104,7 @@ class Evaluation : public ceres::EvaluationCallback {
     const MetaballModel model = parameters_.model();
     const MetaballParameters<double> evaluation = evaluation_parameters(model);
     parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
-      evaluate(blocks_[static_cast<std::size_t>(b)], model, evaluation, with_derivatives);
+      evaluate(static_cast<std::size_t>(b), model, evaluation, with_derivatives);
     });
   }
 
@@ -114,37 +120,53 @@ class Evaluation : public ceres::EvaluationCallback {
     }
   }
 
+  // Points whose condition nearly fails, or fails: the others would only fill the normal equations with
+  // zeros.
+  std::vector<Vec3d> active(const std::vector<Vec3d>& points, Condition condition) const {
+    const std::vector<double> levels = model_levels(parameters_.model(), points);
+    const double sign = condition == Condition::inside ? -1.0 : 1.0;
+    std::vector<Vec3d> kept;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (options_.containment_margin + sign * levels[i] > -kIdleLevel) kept.push_back(points[i]);
+    }
+    return kept;
+  }
+
   void find_neighbours() {
     const MetaballModel model = parameters_.model();
-    const double cutoff = kSupportSlack * cutoff_radii(model.sharpness);
+    const double reach = kSupportSlack * cutoff_radii(model.sharpness);
     parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
       Block& block = blocks_[static_cast<std::size_t>(b)];
-      const PointCluster& cluster = reach_[static_cast<std::size_t>(b)];
-      for (std::size_t i = 0; i < model.spheres.size(); ++i) {
-        const Sphere& s = model.spheres[i];
-        if (norm(s.center - cluster.center) < cluster.radius + cutoff * s.radius) {
-          block.neighbours.push_back(static_cast<std::int32_t>(i));
-        }
-      }
+      block.neighbours = spheres_within(model, reach_[static_cast<std::size_t>(b)], reach);
       block.residuals.resize(block.points.size());
       block.by_sharpness.resize(block.points.size());
       block.by_sphere.resize(block.points.size() * block.neighbours.size());
     });
   }
 
-  void evaluate(Block& block, const MetaballModel& model, const MetaballParameters<double>& evaluation,
-                bool with_derivatives) const {
+  // Neighbours of the block first, then the other spheres whose support reaches it now.
+  std::vector<std::int32_t> contributors(std::size_t b, const MetaballModel& model, double cutoff) const {
+    std::vector<std::int32_t> all = blocks_[b].neighbours;
+    const std::vector<std::int32_t> within = spheres_within(model, reach_[b], cutoff);
+    std::set_difference(within.begin(), within.end(), blocks_[b].neighbours.begin(),
+                        blocks_[b].neighbours.end(), std::back_inserter(all));
+    return all;
+  }
+
+  void evaluate(std::size_t b, const MetaballModel& model, const MetaballParameters<double>& evaluation,
+                bool with_derivatives) {
+    Block& block = blocks_[b];
+    const std::vector<std::int32_t> spheres = contributors(b, model, std::sqrt(evaluation.cutoff_squared));
+    std::vector<SphereDerivatives> row(with_derivatives ? spheres.size() : 0);
     const std::size_t n = block.neighbours.size();
     for (std::size_t j = 0; j < block.points.size(); ++j) {
-      const std::span<SphereDerivatives> row =
-          with_derivatives ? std::span(block.by_sphere).subspan(j * n, n) : std::span<SphereDerivatives>();
       const Scaled scaled = block.condition == Condition::on_surface
-                                ? surface_condition(block, j, model, evaluation, row)
-                                : containment_condition(block, j, model, evaluation, row);
+                                ? surface_condition(block, j, model, evaluation, spheres, row)
+                                : containment_condition(block, j, model, evaluation, spheres, row);
       block.residuals[j] = scaled.value;
       if (!with_derivatives) continue;
-      for (SphereDerivatives& d : row) {
-        for (double& x : d) x *= scaled.derivative;
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < 4; ++k) block.by_sphere[j * n + i][k] = row[i][k] * scaled.derivative;
       }
       block.by_sharpness[j] *= scaled.derivative * parameters_.sharpness_slope();
     }
@@ -152,17 +174,18 @@ class Evaluation : public ceres::EvaluationCallback {
 
   Scaled surface_condition(Block& block, std::size_t j, const MetaballModel& model,
                            const MetaballParameters<double>& evaluation,
-                           std::span<SphereDerivatives> row) const {
-    const double s = distance_with_derivatives(model, evaluation, block.neighbours, block.points[j], row,
-                                               &block.by_sharpness[j]);
+                           std::span<const std::int32_t> spheres, std::span<SphereDerivatives> row) const {
+    const double s =
+        distance_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
     return pseudo_huber(s, options_.loss_scale);
   }
 
   Scaled containment_condition(Block& block, std::size_t j, const MetaballModel& model,
                                const MetaballParameters<double>& evaluation,
+                               std::span<const std::int32_t> spheres,
                                std::span<SphereDerivatives> row) const {
-    const double level = level_with_derivatives(model, evaluation, block.neighbours, block.points[j], row,
-                                                &block.by_sharpness[j]);
+    const double level =
+        level_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
     const double sign = block.condition == Condition::inside ? -1.0 : 1.0;
     const double lack = options_.containment_margin + sign * level;
     if (!(lack > 0.0)) return {0.0, 0.0};

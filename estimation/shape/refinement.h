@@ -31,7 +31,7 @@ struct RefinementOptions {
   double containment_weight = 0.0;                   // length units, >= 0
   const SurfaceTree* keep_centers_inside = nullptr;  // the target, or null: centres may leave it
   double center_weight = 1.0;
-  double containment_margin = 0.05;  // of the level L, which is 1 at a lone centre
+  double containment_margin = 0.02;  // of the level L, which is 1 at a lone centre
   double relative_decrease = 1e-4;   // stops when a round lowers the cost by less than this part
 };
 

@@ -20,6 +20,11 @@ constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final 
 constexpr int kContainmentPoints = 2000;
 constexpr double kContainmentDepth = 0.015;
 
+// Shells of points near the surface, at these distances from it (fractions of the diagonal): near enough to
+// one another that no island of a few hundredths fits between.
+constexpr double kShells[] = {0.008, 0.016, 0.032};
+constexpr int kShellPoints = 4000;
+
 // Independent random streams of one seed.
 enum Stream : std::uint64_t {
   kSurface = 1,
@@ -28,7 +33,8 @@ enum Stream : std::uint64_t {
   kFreshTarget,
   kFreshFit,
   kFreshAgain,
-  kDistances
+  kDistances,
+  kShellsAround
 };
 
 std::uint64_t stream_seed(std::uint64_t seed, Stream stream) { return 1000003u * seed + stream; }
@@ -72,6 +78,9 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
   FitPoints containment;
   add_containment_points(target, kContainmentDepth, kContainmentPoints,
                          stream_seed(options.seed, kContainment), containment);
+  for (const double distance : kShells) {
+    add_shell_points(target, distance, kShellPoints, stream_seed(options.seed, kShellsAround), containment);
+  }
   AdaptiveFitOptions adaptive;
   adaptive.spheres = options.spheres;
   adaptive.tolerance = options.tolerance;

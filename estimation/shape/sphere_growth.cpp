@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "estimation/shape/model_evaluation_internal.h"
 #include "estimation/shape/point_clusters.h"
 #include "numerics/parallel_for.h"
 
@@ -13,27 +14,9 @@ namespace {
 
 constexpr std::size_t kPointsPerCluster = 32;
 
-// Kernel sum at the surface is 1; a new sphere adds this much there.
-constexpr double kStartShare = 0.25;
-
-// Calls visit(point index, neighbours) for all points, in parallel over clusters of them.
-template <typename Visit>
-void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3d>& points,
-                              const Visit& visit) {
-  const double cutoff = cutoff_radii(model.sharpness);
-  const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
-  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
-    const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];
-    std::vector<std::int32_t> neighbours;
-    for (std::size_t i = 0; i < model.spheres.size(); ++i) {
-      const Sphere& s = model.spheres[i];
-      if (norm(s.center - cluster.center) < cluster.radius + cutoff * s.radius) {
-        neighbours.push_back(static_cast<std::int32_t>(i));
-      }
-    }
-    for (const std::int32_t i : cluster.points) visit(static_cast<std::size_t>(i), neighbours);
-  });
-}
+// Kernel sum at the surface is 1; a new sphere adds this much there. A larger share makes a bump that is
+// larger than the error it is to mend, where kernels are soft (kappa near 1).
+constexpr double kStartShare = 0.02;
 
 MetaballSphere<double> kernel_of(const Sphere& s) { return {s.center, 1.0 / (s.radius * s.radius)}; }
 
@@ -76,6 +59,19 @@ int keep_only(MetaballModel& model, const std::vector<bool>& wanted) {
 }
 
 }  // namespace
+
+std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points) {
+  std::vector<double> levels(points.size());
+  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
+    MetaballSums<double> sums;
+    for (const std::int32_t i : neighbours) {
+      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), points[p], sums);
+    }
+    levels[p] = std::log(sums.kernel + double{kKernelFloor}) / model.sharpness;
+  });
+  return levels;
+}
 
 std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points) {
   const std::vector<Vec3d> all(points.begin(), points.end());

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/mesh_measure.h"
+#include "geometry/mesh_sampling.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/orient_faces.h"
 #include "geometry/weld.h"
@@ -139,6 +140,29 @@ void add_containment_points(const TargetBody& target, double depth, int count, s
     for (std::size_t k = 0; k < candidates.size(); ++k) {
       if (ok[k] != 0) list.push_back(candidates[k]);
     }
+  }
+}
+
+void add_shell_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
+                      FitPoints& points) {
+  // Where the surface bends back the offset point lies nearer than this part of the distance, or across.
+  constexpr double kSurelyAway = 0.7;
+  const SurfaceSamples samples = sample_surface(target.mesh, count, seed, SampleNormals::interpolated);
+  std::vector<Vec3d> inner(samples.points.size()), outer(samples.points.size());
+  std::vector<char> inner_ok(inner.size()), outer_ok(outer.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(inner.size()),
+      [&](std::int64_t k) {
+        const auto i = static_cast<std::size_t>(k);
+        inner[i] = samples.points[i] - samples.normals[i] * distance;
+        outer[i] = samples.points[i] + samples.normals[i] * distance;
+        inner_ok[i] = target.tree.signed_distance(inner[i]) > kSurelyAway * distance ? 1 : 0;
+        outer_ok[i] = target.tree.signed_distance(outer[i]) < -kSurelyAway * distance ? 1 : 0;
+      },
+      16);
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    if (inner_ok[i] != 0) points.inside.push_back(inner[i]);
+    if (outer_ok[i] != 0) points.outside.push_back(outer[i]);
   }
 }
 

@@ -33,4 +33,9 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name);
 void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,
                             FitPoints& points);
 
+// Points about `distance` above and below random places of the surface, up to `count` of each: where the
+// islands and cavities of a fit begin.
+void add_shell_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
+                      FitPoints& points);
+
 }  // namespace astrolith

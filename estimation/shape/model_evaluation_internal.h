@@ -1,0 +1,45 @@
+// A metaball model evaluated at many points, near ones together so that they share their list of spheres.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "estimation/shape/metaball_model.h"
+#include "estimation/shape/point_clusters.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+
+// Indices, ascending, of the spheres within `reach` of their own radii of the cluster.
+inline std::vector<std::int32_t> spheres_within(const MetaballModel& model, const PointCluster& cluster,
+                                                double reach) {
+  std::vector<std::int32_t> found;
+  for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+    const Sphere& s = model.spheres[i];
+    const double distance = cluster.radius + reach * s.radius;
+    if (squared_norm(s.center - cluster.center) < distance * distance) {
+      found.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  return found;
+}
+
+// Calls visit(point index, indices of the spheres whose support may reach it) for all points, in parallel.
+template <typename Visit>
+void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3d>& points,
+                              const Visit& visit) {
+  constexpr std::size_t kPointsPerCluster = 32;
+  const double cutoff = cutoff_radii(model.sharpness);
+  const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
+  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
+    const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];
+    const std::vector<std::int32_t> neighbours = spheres_within(model, cluster, cutoff);
+    for (const std::int32_t i : cluster.points) visit(static_cast<std::size_t>(i), neighbours);
+  });
+}
+
+// L(p), the level of every point: 0 on the surface, positive inside.  (#points)
+std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points);
+
+}  // namespace astrolith
