@@ -29,8 +29,9 @@ struct PointBatch {
 // Samples beyond the grid, in blocks that stick out of it, and all samples before they are known.
 inline constexpr float kOutsideGrid = -1.0f;
 
-// In steps of the grid. Farther from the surface only signs matter: F changes by about its argument's change,
-// so no edge of one step between samples of different sign starts there.
+// In steps of the grid. Along an edge a distance changes by about a step, so both ends of an edge that the
+// surface crosses lie within the band. Where a field is steeper an end may lie beyond: its sign still is
+// right, and the vertex stays on its edge.
 inline constexpr double kSampleBand = 2.0;
 
 // Evaluates the samples whose owner is the block itself or no active block; returns how many. Throws

@@ -31,7 +31,7 @@ std::vector<GaborBand> gabor_bands(const GaborLayer& layer);
 // heights need a bound.
 inline constexpr double kGaborClip = 6.0;
 
-// The hash from which the impulses of a cell are drawn, then impulse by impulse, number by number.
+// The hash from which those of cells follow, then those of the impulses in each.
 std::uint32_t gabor_band_seed(std::uint64_t seed, int layer_index, int bandwidth);
 
 }  // namespace astrolith

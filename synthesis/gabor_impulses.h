@@ -30,8 +30,6 @@ struct CellRange {
   std::array<int, 3> first, last;
 
   int size(std::size_t axis) const { return last[axis] - first[axis] + 1; }
-  // Ranges reach a kernel farther than their points: those of distant points may overflow nothing, because
-  // cells number at most 2^20 from the origin.
   std::int64_t cells() const { return std::int64_t{size(0)} * size(1) * size(2); }
 };
 

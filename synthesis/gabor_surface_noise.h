@@ -18,9 +18,8 @@ namespace astrolith {
 
 class GaborSurfaceNoise {
  public:
-  // Points outside `domain` are moved to its border; bands so fine that float
-  // coordinates within it could not tell neighbouring cells apart (above 2^20 cells from the origin) are left
-  // out.
+  // Points outside `domain` are moved to its border; bands so fine that float coordinates within it could not
+  // tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
   GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
 
   // height[i] at points *on* the body's surface, in length units, 0 on average, standard deviation

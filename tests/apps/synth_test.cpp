@@ -56,6 +56,11 @@ TEST_F(Synth, MeshIsClosedAndManifold) {
   EXPECT_EQ(topology.components, 1);
 }
 
+TEST_F(Synth, ABodyThatTheIsoValueErasesIsAnInputError) {
+  expect_recipe_refused(replaced(kTwoSpheres, "\"spheres\"", "\"iso_value\": 100, \"spheres\""),
+                        "body.iso_value");
+}
+
 TEST_F(Synth, EveryFormatHoldsTheSameMesh) {
   synthesise("out.ply", {});
   const TriangleMesh ply = read_mesh(folder_ / "out.ply");
