@@ -140,7 +140,7 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
 
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
-  { const OutputFile probe(arguments.output); }
+  require_writable(arguments.output);
   if (!arguments.report.empty()) prepare_report_folder(arguments.report);
   arguments.fit.seed = program.seed;
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
@@ -156,6 +156,8 @@ void run(Program& program, Arguments& arguments) {
   write_recipe(recipe_of(program, arguments, fit), arguments.output);
   if (!arguments.report.empty()) write_fit_report(target, fit, arguments.report);
   summarize(program, fit, Program::interrupted() || limit.reached());
+  program.summary["diagonal"] = target.diagonal;  // what the distances are fractions of
+  program.summary["length_unit"] = arguments.unit;
   say_result(program, target, fit);
 }
 
