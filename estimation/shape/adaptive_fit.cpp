@@ -20,7 +20,6 @@ constexpr double kOutsideMargin = 0.002;
 // Surfaces further than this from the target, as a fraction of the diagonal, are strays to be mended.
 constexpr double kStrayDistance = 0.015;
 constexpr int kRepairs = 4;
-constexpr int kRepairResolution = 128;
 constexpr std::int64_t kRepairSamples = 20000;
 
 class AdaptiveFit {
@@ -33,15 +32,19 @@ class AdaptiveFit {
     refinement_.containment_weight = options.containment_weight;
     summary_.model = start;
     total_iterations_ =
-        options.first_iterations + (options.rounds - 1) * options.round_iterations + options.last_iterations;
+        options.first_iterations + options.rounds * options.round_iterations + options.last_iterations;
   }
 
   AdaptiveFitSummary run() {
+    // Far from the surface, s itself gets stuck wherever a few samples see no slope (measured on necks).
+    refinement_.freeze_slopes = true;
     step(options_.first_iterations);
     for (int round = 0; round < options_.rounds && !done(); ++round) {
       grow(options_.spheres, options_.rounds - round);
-      step(round + 1 < options_.rounds ? options_.round_iterations : options_.last_iterations);
+      step(options_.round_iterations);
     }
+    refinement_.freeze_slopes = false;
+    if (!done()) step(options_.last_iterations);
     finish();
     return std::move(summary_);
   }
@@ -97,7 +100,7 @@ class AdaptiveFit {
     for (int repair = 0;; ++repair) {
       remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
       const FitCheck check =
-          check_fit(target_, metaball_body(summary_.model), kRepairResolution, kRepairSamples, 1);
+          check_fit(target_, metaball_body(summary_.model), options_.repair_resolution, kRepairSamples, 1);
       const Merit merit = merit_of(check);
       if (repair == 0 || merit < best_merit) {
         best_merit = merit;

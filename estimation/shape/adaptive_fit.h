@@ -15,10 +15,11 @@ struct AdaptiveFitOptions {
   int rounds = 6;             // of growth, > 0
   int first_iterations = 24;  // of the refinement before the first round
   int round_iterations = 12;  // after each round
-  int last_iterations = 80;   // after the last
+  int last_iterations = 70;   // at the end
   double tolerance = 0.0;     // stops growing at this mean |s| over the samples, fraction of the diagonal
   double loss_scale = 1e-3;   // fraction of the diagonal
   double containment_weight = 0.02;
+  int repair_resolution = 128;  // cells along the longest side of the mesh in which islands are looked for
 };
 
 struct ConvergencePoint {

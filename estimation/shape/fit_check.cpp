@@ -17,7 +17,7 @@ FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resol
   FitCheck check{std::move(collector.mesh), {}, {}, 0.0};
   check.topology = analyze_topology(check.mesh);
   check.distance =
-      surface_distance(target.mesh, target.tree, check.mesh, SurfaceTree(check.mesh), samples, seed);
+      surface_distance(target.surface, target.tree, check.mesh, SurfaceTree(check.mesh), samples, seed);
   check.volume_ratio = volume(check.mesh) / target.volume;
   return check;
 }

@@ -24,6 +24,9 @@ constexpr std::size_t kPointsPerBlock = 24;
 // support; the residuals themselves see every sphere in reach.
 constexpr double kSupportSlack = 1.15;
 
+// |grad L| counts as at least this over the largest radius: a lone sphere has twice that on its surface.
+constexpr double kSmallestSlope = 1.0;
+
 // Containment points are left out of a round when their condition holds by more than this level.
 constexpr double kIdleLevel = 0.05;
 
@@ -44,6 +47,7 @@ struct Block {
   std::vector<double> residuals;             // (#points)
   std::vector<SphereDerivatives> by_sphere;  // (#points x #neighbours)
   std::vector<double> by_sharpness;          // (#points)
+  std::vector<double> slopes;                // (#points) |grad L| at the round's start, on the surface
 };
 
 // The model as Ceres's parameter blocks: centre and log radius a sphere, and t for the sharpness, which
@@ -96,6 +100,7 @@ class Evaluation : public ceres::EvaluationCallback {
       add_blocks(active(points.outside, Condition::outside), Condition::outside);
     }
     find_neighbours();
+    if (options.freeze_slopes) find_slopes();
   }
 
   void PrepareForEvaluation(bool with_derivatives, bool new_point) override {
@@ -113,7 +118,7 @@ class Evaluation : public ceres::EvaluationCallback {
  private:
   void add_blocks(const std::vector<Vec3d>& points, Condition condition) {
     for (const PointCluster& cluster : cluster_points(points, kPointsPerBlock)) {
-      Block block{condition, {}, {}, {}, {}, {}};
+      Block block{condition, {}, {}, {}, {}, {}, {}};
       for (const std::int32_t i : cluster.points) block.points.push_back(points[static_cast<std::size_t>(i)]);
       blocks_.push_back(std::move(block));
       reach_.push_back(cluster);
@@ -175,9 +180,36 @@ class Evaluation : public ceres::EvaluationCallback {
   Scaled surface_condition(Block& block, std::size_t j, const MetaballModel& model,
                            const MetaballParameters<double>& evaluation,
                            std::span<const std::int32_t> spheres, std::span<SphereDerivatives> row) const {
-    const double s =
-        distance_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
-    return pseudo_huber(s, options_.loss_scale);
+    if (!options_.freeze_slopes) {
+      const double s =
+          distance_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
+      return pseudo_huber(s, options_.loss_scale);
+    }
+    const double level =
+        level_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
+    const Scaled scaled = pseudo_huber(level / block.slopes[j], options_.loss_scale);
+    return {scaled.value, scaled.derivative / block.slopes[j]};
+  }
+
+  // Frozen for a round: s = L / |grad L| is far from linear where the slope nearly vanishes, in necks and
+  // between lobes, and a few such samples would shrink the steps of all. On the surface both are the same.
+  void find_slopes() {
+    const MetaballModel model = parameters_.model();
+    const MetaballParameters<double> evaluation = evaluation_parameters(model);
+    const double smallest = kSmallestSlope / largest_radius(model.spheres);
+    parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
+      Block& block = blocks_[static_cast<std::size_t>(b)];
+      if (block.condition != Condition::on_surface) return;
+      for (const Vec3d& p : block.points) {
+        MetaballSums<double> sums;
+        for (const std::int32_t i : block.neighbours) {
+          const Sphere& s = model.spheres[static_cast<std::size_t>(i)];
+          accumulate_metaball(evaluation, MetaballSphere<double>{s.center, 1.0 / (s.radius * s.radius)}, p,
+                              sums);
+        }
+        block.slopes.push_back(std::max(norm(metaball_distance(evaluation, sums).log_gradient), smallest));
+      }
+    });
   }
 
   Scaled containment_condition(Block& block, std::size_t j, const MetaballModel& model,

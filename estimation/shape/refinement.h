@@ -31,6 +31,9 @@ struct RefinementOptions {
   double containment_weight = 0.0;                   // length units, >= 0
   const SurfaceTree* keep_centers_inside = nullptr;  // the target, or null: centres may leave it
   double center_weight = 1.0;
+  // Takes L / N for s on the surface, with N = |grad L| as it was when the lists of neighbours were made:
+  // nearly linear, where s is wild in necks and between lobes, but blind to how N changes with the spheres.
+  bool freeze_slopes = false;
   double containment_margin = 0.02;  // of the level L, which is 1 at a lone centre
   double relative_decrease = 1e-4;   // stops when a round lowers the cost by less than this part
 };

@@ -23,7 +23,7 @@ constexpr double kContainmentDepth = 0.015;
 // Shells of points near the surface, at these distances from it (fractions of the diagonal): near enough to
 // one another that no island of a few hundredths fits between.
 constexpr double kShells[] = {0.008, 0.016, 0.032};
-constexpr int kShellPoints = 4000;
+constexpr double kShellShare = 0.25;  // of the number of surface samples, each
 
 // Independent random streams of one seed.
 enum Stream : std::uint64_t {
@@ -67,23 +67,25 @@ BlendSearchSummary search(const TargetBody& target, const Packing& packing, cons
   search_options.optimize.max_evaluations = std::int64_t{options.population} * options.generations;
   search_options.optimize.seed = options.seed;
   const SurfaceSamples samples =
-      sample_poisson_disk(target.mesh, kSearchSamples, stream_seed(options.seed, kSearch));
+      sample_poisson_disk(target.surface, kSearchSamples, stream_seed(options.seed, kSearch));
   return search_blend(packing.spheres, samples, search_options, progress);
 }
 
 AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& start,
                                 const ShapeFitOptions& options, const Progress& progress) {
   const SurfaceSamples samples = sample_surface(
-      target.mesh, options.points, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
+      target.surface, options.points, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
   FitPoints containment;
   add_containment_points(target, kContainmentDepth, kContainmentPoints,
                          stream_seed(options.seed, kContainment), containment);
   for (const double distance : kShells) {
-    add_shell_points(target, distance, kShellPoints, stream_seed(options.seed, kShellsAround), containment);
+    add_shell_points(target, distance, static_cast<int>(kShellShare * static_cast<double>(options.points)),
+                     stream_seed(options.seed, kShellsAround), containment);
   }
   AdaptiveFitOptions adaptive;
   adaptive.spheres = options.spheres;
   adaptive.tolerance = options.tolerance;
+  adaptive.repair_resolution = std::max(16, options.check_resolution / 2);
   return fit_adaptively(target, start, samples, containment, adaptive, progress);
 }
 
@@ -114,9 +116,10 @@ void measure(const TargetBody& target, const ShapeFitOptions& options, ShapeFitR
   const std::uint64_t seed = options.seed;
   result.check = check_fit(target, body_in_target_frame(result.body, target), options.check_resolution,
                            options.check_samples, stream_seed(seed, kDistances));
-  const SurfletHistogram wanted = fresh_histogram(target.mesh, stream_seed(seed, kFreshTarget));
+  const SurfletHistogram wanted = fresh_histogram(target.surface, stream_seed(seed, kFreshTarget));
   result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));
-  result.similarity_floor = similarity(wanted, fresh_histogram(target.mesh, stream_seed(seed, kFreshAgain)));
+  result.similarity_floor =
+      similarity(wanted, fresh_histogram(target.surface, stream_seed(seed, kFreshAgain)));
 }
 
 }  // namespace

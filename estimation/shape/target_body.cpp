@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimation/shape/outer_surface.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_sampling.h"
 #include "geometry/mesh_topology.h"
@@ -18,6 +19,9 @@ namespace {
 
 // A body with less than this share of its diagonal's cube is a sheet or a thread: no sphere fits inside.
 constexpr double kSmallestVolume = 1e-6;
+
+// Faces deeper than this part of the diagonal inside another part of the body are no surface of it.
+constexpr double kBuriedDepth = 1e-5;
 
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
@@ -57,8 +61,7 @@ void turn_inside_out(TriangleMesh& mesh) {
 }
 
 // Checks what cannot be mended, and orients the faces.
-MeshTopology require_closed_body(TriangleMesh& mesh, const std::string& name,
-                                 std::vector<std::string>& remarks) {
+void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vector<std::string>& remarks) {
   MeshTopology topology = analyze_topology(mesh);
   if (!topology.closed) {
     throw InputError(name + ": mesh is open (" + std::to_string(topology.boundary_edges) +
@@ -79,7 +82,6 @@ MeshTopology require_closed_body(TriangleMesh& mesh, const std::string& name,
     turn_inside_out(mesh);
     remarks.push_back("mesh was inside out; faces turned outwards");
   }
-  return topology;
 }
 
 void move_to_body_frame(TriangleMesh& mesh, const Vec3d& center, double diagonal) {
@@ -99,16 +101,21 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
     throw InputError(name + ": bounding-box diagonal " + std::to_string(diagonal) +
                      " is out of range; scale the mesh to metres or kilometres");
   }
-  const MeshTopology topology = require_closed_body(mesh, name, remarks);
+  require_closed_body(mesh, name, remarks);
   move_to_body_frame(mesh, box.center(), diagonal);
   const double body_volume = volume(mesh);
   if (body_volume < kSmallestVolume) {
     throw InputError(name + ": mesh encloses no volume to speak of; give a solid body, not a sheet");
   }
   SurfaceTree tree(mesh);
-  const double area = surface_area(mesh);
-  return {std::move(mesh),     std::move(tree), area,     body_volume,
-          topology.components, box.center(),    diagonal, std::move(remarks)};
+  OuterSurface outer = outer_surface(mesh, tree, kBuriedDepth);
+  if (outer.mesh.triangles.size() < mesh.triangles.size()) {
+    remarks.push_back("parts overlap; their union is fitted, walls inside it are left out (" +
+                      std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
+  }
+  const double area = surface_area(outer.mesh);
+  return {std::move(mesh), std::move(tree), std::move(outer.mesh), area, body_volume, outer.parts,
+          box.center(),    diagonal,        std::move(remarks)};
 }
 
 void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,
@@ -147,7 +154,7 @@ void add_shell_points(const TargetBody& target, double distance, int count, std:
                       FitPoints& points) {
   // Where the surface bends back the offset point lies nearer than this part of the distance, or across.
   constexpr double kSurelyAway = 0.7;
-  const SurfaceSamples samples = sample_surface(target.mesh, count, seed, SampleNormals::interpolated);
+  const SurfaceSamples samples = sample_surface(target.surface, count, seed, SampleNormals::interpolated);
   std::vector<Vec3d> inner(samples.points.size()), outer(samples.points.size());
   std::vector<char> inner_ok(inner.size()), outer_ok(outer.size());
   parallel_for(

@@ -13,11 +13,12 @@
 namespace astrolith {
 
 struct TargetBody {
-  TriangleMesh mesh;  // closed, manifold edges, oriented, positive volume; diagonal 1, centred on the box
-  SurfaceTree tree;   // of mesh
-  double area;        // of mesh
-  double volume;      // of mesh, > 0
-  std::int64_t components;
+  TriangleMesh mesh;     // closed, manifold edges, oriented, positive volume; diagonal 1, centred on the box
+  SurfaceTree tree;      // of mesh
+  TriangleMesh surface;  // mesh without walls that are buried where parts overlap: what a fit can follow
+  double area;           // of surface
+  double volume;         // of mesh, > 0; overlaps count twice
+  std::int64_t components;  // of the union of the parts
   // p_in_file = center + diagonal * p_in_body, in the file's unit.
   Vec3d center;
   double diagonal;

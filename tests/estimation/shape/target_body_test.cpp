@@ -60,6 +60,17 @@ TEST(TargetBody, RefusesWhatIsNoBody) {
   EXPECT_NE(error_of(tiny).find("out of range"), std::string::npos);
 }
 
+TEST(TargetBody, OverlappingPartsBecomeTheirUnion) {
+  const TargetBody apart = prepare_target(testing::two_spheres(3, 1.0, 2.6), "apart");
+  EXPECT_EQ(apart.components, 2);
+  EXPECT_EQ(apart.surface.triangles.size(), apart.mesh.triangles.size());
+  // Two unit spheres one radius apart: each loses the cap of height 1/2, a quarter of its area.
+  const TargetBody joined = prepare_target(testing::two_spheres(4, 1.0, 1.0), "joined");
+  EXPECT_EQ(joined.components, 1);
+  EXPECT_EQ(joined.remarks.size(), 1u);
+  EXPECT_NEAR(joined.area * joined.diagonal * joined.diagonal, 2 * 0.75 * 4 * std::numbers::pi, 0.15);
+}
+
 TEST(TargetBody, ContainmentPointsAreAsDeepAsAsked) {
   const TargetBody target = prepare_target(testing::torus(1.0, 0.3), "torus.obj");
   FitPoints points;

@@ -1,0 +1,84 @@
+#include "estimation/shape/outer_surface.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// As many as SurfaceTree takes the union of.
+constexpr std::size_t kMaxParts = 64;
+
+struct Part {
+  TriangleMesh mesh;  // all vertices of the whole, its own triangles
+  std::vector<Vec3d> vertices;
+};
+
+std::vector<Part> separate(const TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
+  if (count > kMaxParts) return {};
+  std::vector<Part> parts(count);
+  for (Part& part : parts) part.mesh.vertices = mesh.vertices;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    Part& part = parts[component[t]];
+    part.mesh.triangles.push_back(mesh.triangles[t]);
+    for (const std::uint32_t v : mesh.triangles[t]) part.vertices.push_back(mesh.vertices[v]);
+  }
+  return parts;
+}
+
+bool reaches_into(const Part& part, const SurfaceTree& other) {
+  return std::any_of(part.vertices.begin(), part.vertices.end(),
+                     [&](const Vec3d& p) { return other.signed_distance(p) > 0.0; });
+}
+
+std::int64_t parts_of_union(const std::vector<Part>& parts) {
+  std::vector<std::size_t> group(parts.size());
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    const SurfaceTree tree(parts[b].mesh);
+    for (std::size_t a = 0; a < parts.size(); ++a) {
+      if (group[a] != group[b] && reaches_into(parts[a], tree))
+        std::replace(group.begin(), group.end(), group[a], group[b]);
+    }
+  }
+  std::sort(group.begin(), group.end());
+  return std::unique(group.begin(), group.end()) - group.begin();
+}
+
+TriangleMesh without_buried(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
+  std::vector<char> buried(mesh.triangles.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(buried.size()),
+      [&](std::int64_t t) {
+        const Triangle& v = mesh.triangles[static_cast<std::size_t>(t)];
+        const Vec3d centroid =
+            (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) * (1.0 / 3.0);
+        buried[static_cast<std::size_t>(t)] = tree.signed_distance(centroid) > depth ? 1 : 0;
+      },
+      64);
+  TriangleMesh outer{mesh.vertices, {}, {}};
+  for (std::size_t t = 0; t < buried.size(); ++t) {
+    if (buried[t] == 0) outer.triangles.push_back(mesh.triangles[t]);
+  }
+  return outer;
+}
+
+}  // namespace
+
+OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
+  const std::vector<Part> parts = separate(mesh);
+  const bool solid =
+      std::all_of(parts.begin(), parts.end(), [](const Part& part) { return volume(part.mesh) > 0.0; });
+  if (parts.size() < 2 || !solid) return {mesh, analyze_topology(mesh).components};
+  return {without_buried(mesh, tree, depth), parts_of_union(parts)};
+}
+
+}  // namespace astrolith
