@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <tuple>
+#include <utility>
 
 #include "estimation/shape/fit_check.h"
 #include "estimation/shape/sphere_growth.h"
@@ -24,20 +25,41 @@ constexpr std::int64_t kRepairSamples = 20000;
 
 class AdaptiveFit {
  public:
-  AdaptiveFit(const TargetBody& target, const MetaballModel& start, const SurfaceSamples& samples,
-              const FitPoints& containment, const AdaptiveFitOptions& options, const Progress& progress)
+  AdaptiveFit(const TargetBody& target, const SurfaceSamples& samples, const FitPoints& containment,
+              const AdaptiveFitOptions& options, const Progress& progress)
       : target_(target), samples_(samples), points_(containment), options_(options), progress_(progress) {
     points_.on_surface = samples.points;
     refinement_.loss_scale = options.loss_scale;
     refinement_.containment_weight = options.containment_weight;
-    summary_.model = start;
     total_iterations_ =
-        options.first_iterations + options.rounds * options.round_iterations + options.last_iterations;
+        2 * (options.first_iterations + options.rounds * options.round_iterations) + options.last_iterations;
   }
 
-  AdaptiveFitSummary run() {
-    // Far from the surface, s itself gets stuck wherever a few samples see no slope (measured on necks).
-    refinement_.freeze_slopes = true;
+  // Neither way up wins on every body: with exact distances a few samples without slope, at necks, can stop
+  // the whole fit, and with frozen slopes it ends a little less close. So both are gone, and the closer one
+  // is mended.
+  AdaptiveFitSummary run(const MetaballModel& start) {
+    grow_to_budget(start, false);
+    if (!done()) {
+      AdaptiveFitSummary exact = std::exchange(summary_, {});
+      grow_to_budget(start, true);
+      if (mean_distance(exact) <= mean_distance(summary_)) {
+        exact.interrupted = summary_.interrupted;
+        summary_ = std::move(exact);
+      }
+    }
+    finish();
+    return std::move(summary_);
+  }
+
+ private:
+  static double mean_distance(const AdaptiveFitSummary& fit) { return fit.convergence.back().mean_distance; }
+
+  bool done() const { return summary_.interrupted || mean_distance(summary_) <= options_.tolerance; }
+
+  void grow_to_budget(const MetaballModel& start, bool freeze_slopes) {
+    summary_.model = start;
+    refinement_.freeze_slopes = freeze_slopes;
     step(options_.first_iterations);
     for (int round = 0; round < options_.rounds && !done(); ++round) {
       grow(options_.spheres, options_.rounds - round);
@@ -45,13 +67,6 @@ class AdaptiveFit {
     }
     refinement_.freeze_slopes = false;
     if (!done()) step(options_.last_iterations);
-    finish();
-    return std::move(summary_);
-  }
-
- private:
-  bool done() const {
-    return summary_.interrupted || summary_.convergence.back().mean_distance <= options_.tolerance;
   }
 
   void step(int iterations) {
@@ -63,15 +78,17 @@ class AdaptiveFit {
     spent_ += iterations;
     summary_.model = refined.model;
     summary_.interrupted = refined.interrupted;
-    iterations_ += refined.iterations;
-    note();
+    note(refined.iterations);
   }
 
-  void note() {
+  // Adds a point to the convergence, so many iterations after the last.
+  void note(int iterations) {
     double sum = 0.0;
     for (const double s : model_distances(summary_.model, samples_.points)) sum += std::abs(s);
     const double mean = sum / static_cast<double>(samples_.points.size());
-    summary_.convergence.push_back({iterations_, static_cast<int>(summary_.model.spheres.size()), mean});
+    const int before = summary_.convergence.empty() ? 0 : summary_.convergence.back().iterations;
+    summary_.convergence.push_back(
+        {before + iterations, static_cast<int>(summary_.model.spheres.size()), mean});
     char words[64];
     std::snprintf(words, sizeof words, "%zu spheres, mean distance %.4f %%", summary_.model.spheres.size(),
                   100.0 * mean);
@@ -116,7 +133,7 @@ class AdaptiveFit {
       step(options_.round_iterations);
     }
     summary_.model = std::move(best);
-    note();
+    note(0);
   }
 
   // Fewer parts too many or missing come first, then the mean distance.
@@ -149,7 +166,6 @@ class AdaptiveFit {
   AdaptiveFitSummary summary_;
   std::string words_ = "starting";
   int total_iterations_ = 0;
-  int iterations_ = 0;
   double spent_ = 0.0;
 };
 
@@ -158,7 +174,7 @@ class AdaptiveFit {
 AdaptiveFitSummary fit_adaptively(const TargetBody& target, const MetaballModel& start,
                                   const SurfaceSamples& samples, const FitPoints& containment,
                                   const AdaptiveFitOptions& options, const Progress& progress) {
-  return AdaptiveFit(target, start, samples, containment, options, progress).run();
+  return AdaptiveFit(target, samples, containment, options, progress).run(start);
 }
 
 }  // namespace astrolith
