@@ -115,15 +115,13 @@ Recipe make_recipe(const Program& program, const Options& o, const GaborFit& fit
   return recipe;
 }
 
-void summarize(const GaborFit& fit, const Gaussianity& gaussianity, double synthesized_ratio,
-               Program& program) {
+void summarize(const GaborFit& fit, const Gaussianity& gaussianity, Program& program) {
   auto& s = program.summary;
   s["lobes"] = fit.lobes.size();
   s["relative_duality_gap"] = fit.pursuit.relative_gap;
   s["spectrum_distance"] = fit.spectrum_distance;
   s["variance_ratio"] = lobe_variance_ratio(fit);
   s["variance_ratio_before_scaling"] = fit.variance_before_scaling;
-  s["variance_ratio_synthesized"] = synthesized_ratio;
   s["gaussianity"] = gaussianity.p_value;
   s["gaussianity_details"] = {{"plausible", gaussianity.plausible},
                               {"skewness", gaussianity.skewness},
@@ -143,23 +141,30 @@ std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, 
 }
 
 void work(Program& program, Options o) {
+  require_other_file(o.output, o.image);
   o.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
   o.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
   require_writable(o.output);
   if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
+  if (!o.report_folder.empty()) make_output_folder(o.report_folder);
   const ImageFile file = read_grey_image(o.image);
   for (const std::string& remark : file.remarks) program.say(o.image + ": " + remark);
 
   const GaborFit fit = fit_gabor_lobes(file.image, o.image, o.fit, program.progress("pursuit"));
   const Gaussianity gaussianity = test_gaussianity(file.image, program.seed);
   const Recipe recipe = make_recipe(program, o, fit);
+  write_recipe(recipe, o.output);
+  if (Program::interrupted()) {
+    program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
+    return summarize(fit, gaussianity, program);
+  }
   const std::vector<float> synthesis =
       synthesize_like(file.image, std::get<GaborLayer>(recipe.layers.front()), program);
-  write_recipe(recipe, o.output);
   if (!o.spectrum_file.empty())
     write_npy(fit.fitted.power, fit.fitted.height, fit.fitted.width, o.spectrum_file);
   if (!o.report_folder.empty()) write_gabor_report(file.image, synthesis, fit, o.report_folder);
-  summarize(fit, gaussianity, variance_of(synthesis), program);
+  summarize(fit, gaussianity, program);
+  program.summary["variance_ratio_synthesized"] = variance_of(synthesis);
   program.say(fmt::format(
       "{} lobes, certified relative duality gap {:.1e}, distance {:.3f} from the estimated spectrum",
       fit.lobes.size(), fit.pursuit.relative_gap, fit.spectrum_distance));

@@ -36,7 +36,8 @@ class TimeLimit {
     return [this, share, progress = std::move(progress)](double fraction, std::string_view words) {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
       const bool over = spent.count() > share * seconds_;
-      reached_ = reached_ || over;
+      // Of the earlier stages only their shares are over: that is no early stop.
+      reached_ = reached_ || (over && share == 1.0);
       return progress(fraction, words) && !over;
     };
   }
@@ -140,8 +141,9 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
 
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
+  require_other_file(arguments.output, arguments.mesh);
   require_writable(arguments.output);
-  if (!arguments.report.empty()) prepare_report_folder(arguments.report);
+  if (!arguments.report.empty()) make_output_folder(arguments.report);
   arguments.fit.seed = program.seed;
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
   const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);

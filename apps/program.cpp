@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -65,6 +66,18 @@ void write_summary(const std::string& file_name, const nlohmann::ordered_json& s
   file.commit();
 }
 
+// Name of an option whose number is NaN or infinite, which CLI11's ranges let through; empty when there is
+// none.
+std::string option_not_finite(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
+    for (const std::string& text : option->results()) {
+      if (!std::isfinite(std::strtod(text.c_str(), nullptr))) return option->get_lnames().front();
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 Program::Program(std::string name, std::string description)
@@ -87,6 +100,10 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
     print_line(fmt::format("{}: {}; see {} --help", name_, one_line(e.what()), name_));
+    return 2;
+  }
+  if (const std::string wrong = option_not_finite(app); !wrong.empty()) {
+    print_line(fmt::format("{}: --{}: must be a finite number; see {} --help", name_, wrong, name_));
     return 2;
   }
   std::signal(SIGINT, on_interrupt);

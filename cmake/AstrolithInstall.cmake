@@ -30,7 +30,7 @@ foreach(folder IN LISTS header_folders)
   install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/astrolith
     FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
 endforeach()
-install(FILES recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith)
+install(FILES LICENSE recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith)
 
 configure_package_config_file(cmake/astrolithConfig.cmake.in ${PROJECT_BINARY_DIR}/astrolithConfig.cmake
   INSTALL_DESTINATION ${package_folder})

@@ -78,4 +78,21 @@ class OutputFile {
 // after.
 inline void require_writable(const std::filesystem::path& target) { const OutputFile probe(target); }
 
+// Throws InputError when writing the output would destroy the input.
+inline void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input) {
+  std::error_code none;  // files that do not exist are not the same
+  if (std::filesystem::equivalent(output, input, none)) {
+    throw InputError(output.string() + ": is the input itself; give the output another name");
+  }
+}
+
+// For outputs of several files. Throws InputError when the folder is not there and cannot be made.
+inline void make_output_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw InputError(folder.string() + ": cannot make this folder; choose a place that is writable");
+  }
+}
+
 }  // namespace astrolith

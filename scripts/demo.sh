@@ -5,6 +5,7 @@
 set -euo pipefail
 mesh=${1:+$(realpath "$1")}
 cd "$(dirname "$0")/.."
+export LC_ALL=C
 
 scripts/setup.sh
 scripts/fetch_data.sh

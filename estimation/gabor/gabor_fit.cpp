@@ -68,6 +68,9 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   return lobes;
 }
 
+// Below this a lobe's variance, a part of the square, could leave a recipe's range.
+constexpr double kSmallestContrast = 1e-4;
+
 // Heights become variances; what the fit kept of the exemplar's variance is stretched to all of it.
 std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, GaborFit& fit) {
   const PowerSpectrum& grid = fit.periodogram;
@@ -96,8 +99,9 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
   fit.exemplar_mean = mean_of(exemplar);
   fit.periodogram = exemplar_periodogram(exemplar, options.largest_side);
   fit.exemplar_rms = std::sqrt(fit.periodogram.variance());
-  if (!(fit.exemplar_rms > 0.0))
-    throw InputError(name + ": holds a ramp and no texture; give an image with texture");
+  if (!(fit.exemplar_rms > kSmallestContrast))
+    throw InputError(name +
+                     ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
   fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram)
                                                              : SpectrumEstimate{fit.periodogram, {}};
   std::vector<SpectralLobe> lobes = pursue(fit, options, progress);

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "estimation/gabor/fourier_transform.h"
-#include "numerics/errors.h"
+#include "numerics/output_file.h"
 #include "synthesis/colormap.h"
 #include "synthesis/image_file.h"
 
@@ -137,20 +137,11 @@ void place_panel(const cv::Mat& panel, int column, int row, const std::string& c
   write_text(sheet, caption, {x, y - 10});
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(folder.string() + ": the folder cannot be made (" + error.message() +
-                     "); choose another");
-  }
-}
-
 }  // namespace
 
 void write_gabor_report(const GreyImage& exemplar, std::span<const float> synthesis, const GaborFit& fit,
                         const std::filesystem::path& folder) {
-  make_folder(folder);
+  make_output_folder(folder);
   std::vector<std::uint8_t> photo = tones(std::span<const double>(exemplar.values));
   std::vector<std::uint8_t> noise = tones(synthesis);
   const PowerSpectrum& estimate = fit.estimate.spectrum;

@@ -128,6 +128,7 @@ std::string sentence_for(const Gaussianity& g) {
                        g.excess_kurtosis > 0.0 ? "common" : "rare", g.excess_kurtosis);
   }
   if (g.variance_spread > 2.0) why += fmt::format(" detail sits in places ({:.1f} x);", g.variance_spread);
+  if (why.empty()) why = " its values spread beyond what can be tested;";
   why.back() = '.';
   return "The photo is no Gaussian texture:" + why + " The noise keeps its spectrum, and not its shapes.";
 }

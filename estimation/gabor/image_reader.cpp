@@ -66,6 +66,9 @@ double full_scale(const cv::Mat& mat, const std::string& name) {
   }
 }
 
+// Float images hold anything; beyond this a value is a "no data" mark or in a unit too small.
+constexpr double kLargestValue = 1e5;
+
 GreyImage to_grey(const cv::Mat& mat, const std::string& name) {
   const double scale = 1.0 / full_scale(mat, name);
   const int channels = mat.channels();
@@ -78,9 +81,11 @@ GreyImage to_grey(const cv::Mat& mat, const std::string& name) {
     for (int x = 0; x < mat.cols; ++x, p += channels) {
       // OpenCV orders channels blue, green, red, alpha.
       const double value = channels >= 3 ? 0.0722 * p[0] + 0.7152 * p[1] + 0.2126 * p[2] : p[0];
-      if (!std::isfinite(value)) {
+      if (!(std::abs(value) <= kLargestValue)) {
         throw InputError(
-            fmt::format("{}: pixel ({}, {}): the value is not finite; fill such pixels first", name, x, y));
+            fmt::format("{}: pixel ({}, {}): the value {} is not finite or beyond {:g}; fill such "
+                        "pixels (no data?) or rescale the image",
+                        name, x, y, value, kLargestValue));
       }
       image.values.push_back(value);
     }

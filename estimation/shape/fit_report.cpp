@@ -1,11 +1,13 @@
 #include "estimation/shape/fit_report.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "estimation/shape/convergence_plot.h"
-#include "numerics/errors.h"
+#include "estimation/shape/picture_label.h"
+#include "numerics/output_file.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/colormap.h"
 #include "synthesis/image_file.h"
@@ -48,30 +50,40 @@ std::vector<double> vertex_distances(const TargetBody& target, const TriangleMes
   return distances;
 }
 
+std::string percent(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f %%", 100.0 * fraction);
+  return text;
+}
+
+RgbImage target_and_fit(const TargetBody& target, const ShapeFitResult& fit) {
+  RgbImage left = render_preview(target.mesh, small_preview());
+  RgbImage right = render_preview(fit.check.mesh, small_preview());
+  draw_label(left, "target", 14, 24);
+  draw_label(right,
+             std::to_string(fit.body.spheres.size()) + " metaballs, mean distance " +
+                 percent(fit.check.distance.mean) + " of the diagonal",
+             14, 24);
+  return side_by_side(left, right);
+}
+
 RgbImage distance_map(const TargetBody& target, const ShapeFitResult& fit) {
   PreviewOptions options = small_preview();
   options.vertex_colors = sequential_colors(vertex_distances(target, fit.check.mesh), 0.0,
                                             std::max(fit.check.distance.p99, 1e-9));
   options.fill_light = 0.5;  // colours are to be read in the shadows too
-  return render_preview(fit.check.mesh, options);
+  RgbImage map = render_preview(fit.check.mesh, options);
+  draw_label(map, "distance from the fit to the target, of the diagonal", 14, 24);
+  draw_color_scale(map, "0", percent(fit.check.distance.p99));
+  return map;
 }
 
 }  // namespace
 
-void prepare_report_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(folder.string() + ": cannot make this folder; choose a place that is writable");
-  }
-}
-
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit,
                       const std::filesystem::path& folder) {
-  prepare_report_folder(folder);
-  write_png8_rgb(side_by_side(render_preview(target.mesh, small_preview()),
-                              render_preview(fit.check.mesh, small_preview())),
-                 folder / "target_and_fit.png");
+  make_output_folder(folder);
+  write_png8_rgb(target_and_fit(target, fit), folder / "target_and_fit.png");
   write_png8_rgb(distance_map(target, fit), folder / "distance_map.png");
   if (!fit.convergence.empty()) write_png8_rgb(plot_convergence(fit.convergence), folder / "convergence.png");
 }

@@ -8,10 +8,7 @@
 
 namespace astrolith {
 
-// Makes the folder if needed. Throws InputError when that is impossible.
-void prepare_report_folder(const std::filesystem::path& folder);
-
-// Writes into the folder:
+// Writes into the folder, which is made if need be:
 //   target_and_fit.png   the two bodies in the same light, from four sides each
 //   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
 //   convergence.png      mean distance (logarithmic) against iterations of the refinement

@@ -45,8 +45,9 @@ std::int64_t parts_of_union(const std::vector<Part>& parts) {
   for (std::size_t b = 0; b < parts.size(); ++b) {
     const SurfaceTree tree(parts[b].mesh);
     for (std::size_t a = 0; a < parts.size(); ++a) {
-      if (group[a] != group[b] && reaches_into(parts[a], tree))
-        std::replace(group.begin(), group.end(), group[a], group[b]);
+      // Copies: std::replace would see the group change under its references.
+      const std::size_t from = group[a], to = group[b];
+      if (from != to && reaches_into(parts[a], tree)) std::replace(group.begin(), group.end(), from, to);
     }
   }
   std::sort(group.begin(), group.end());

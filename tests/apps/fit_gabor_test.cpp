@@ -5,6 +5,7 @@
 #include "recipe/sha256.h"
 #include "tests/apps/inputs.h"
 #include "tests/apps/program_runner.h"
+#include "tests/support/data.h"
 
 namespace astrolith {
 namespace {
@@ -58,6 +59,34 @@ TEST_F(FitGabor, SummaryHoldsTheFigures) {
   }
   EXPECT_GE(summary["relative_duality_gap"].get<double>(), 0.0);
   EXPECT_NEAR(summary["variance_ratio"].get<double>(), 1.0, 0.02);
+  EXPECT_NEAR(summary["variance_ratio_before_scaling"].get<double>(), 1.0, 0.1);
+}
+
+TEST_F(FitGabor, APhotoOfGravelKeepsItsVariance) {
+  const auto photo = testing::package_file("gravel.png");
+  ASTROLITH_SKIP_WITHOUT(photo);
+  const std::string summary_file = (folder_ / "s.json").string();
+  const testing::Outcome outcome =
+      run_program(kFitGabor, {photo.string(), "-o", (folder_ / "gravel.json").string(), "--summary",
+                              summary_file, "--report", (folder_ / "report").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto summary = nlohmann::json::parse(text_of(summary_file));
+  EXPECT_GE(summary["relative_duality_gap"].get<double>(), 0.0);
+  EXPECT_LE(summary["relative_duality_gap"].get<double>(), 1e-2);
+  EXPECT_NEAR(summary["variance_ratio_synthesized"].get<double>(), 1.0, 0.02);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "report.png"));
+}
+
+TEST_F(FitGabor, NumbersMustBeFinite) {
+  const std::string image = folder_.write("rock.png", testing::noise_png(64));
+  for (const char* option : {"--penalty", "--gap", "--height-rms", "--mm-per-px"}) {
+    expect_refusal(folder_, kFitGabor, {image, "-o", (folder_ / "out.json").string(), option, "nan"}, option);
+  }
+}
+
+TEST_F(FitGabor, TheInputIsNeverOverwritten) {
+  const std::string image = folder_.write("rock.png", testing::noise_png(64));
+  expect_refusal(folder_, kFitGabor, {image, "-o", image}, "rock.png");
 }
 
 TEST_F(FitGabor, BadImagesAreRefused) {

@@ -5,6 +5,7 @@
 #include "recipe/sha256.h"
 #include "tests/apps/inputs.h"
 #include "tests/apps/program_runner.h"
+#include "tests/support/data.h"
 
 namespace astrolith {
 namespace {
@@ -52,6 +53,24 @@ TEST_F(FitShape, WritesARecipeWithABody) {
   EXPECT_LE(recipe.body->spheres.size(), 12u);
   EXPECT_EQ(recipe.provenance.input_name, "egg.obj");
   EXPECT_EQ(recipe.provenance.input_sha256, sha256_of_file(folder_ / "egg.obj"));
+}
+
+TEST_F(FitShape, ARealBodyIsFittedClosely) {
+  const auto gaspra = testing::package_file("gaspra.bmf");
+  ASTROLITH_SKIP_WITHOUT(gaspra);
+  const std::string summary_file = (folder_ / "s.json").string();
+  const testing::Outcome outcome =
+      run_program(kFitShape, {gaspra.string(), "-o", (folder_ / "gaspra.json").string(), "--spheres", "60",
+                              "--population", "8", "--generations", "4", "--summary", summary_file,
+                              "--report", (folder_ / "report").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto summary = nlohmann::json::parse(text_of(summary_file));
+  EXPECT_TRUE(summary["closed"].get<bool>());
+  EXPECT_TRUE(summary["manifold"].get<bool>());
+  EXPECT_EQ(summary["components"].get<int>(), 1);
+  EXPECT_LT(summary["mean_distance"].get<double>(), 0.002);
+  EXPECT_NEAR(summary["volume_ratio"].get<double>(), 1.0, 0.01);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "distance_map.png"));
 }
 
 TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {

@@ -110,7 +110,7 @@ TEST(GaborFit, SurvivesDegenerateTextures) {
 }
 
 TEST(GaborFit, Gravel) {
-  const auto file = testing::shared_texture("gravel_skimage_512.png");
+  const auto file = testing::package_file("gravel.png");
   ASTROLITH_SKIP_WITHOUT(file);
   const GaborFit fit = fit_gabor_lobes(read_grey_image(file).image, "gravel", {});
   EXPECT_LE(fit.pursuit.relative_gap, 1e-2);
