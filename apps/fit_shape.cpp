@@ -74,7 +74,8 @@ void add_options(Program& program, Arguments& arguments) {
          "--time-limit", arguments.time_limit,
          "seconds after which the best so far is written; 0 = none. The result then depends on the machine")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--unit", arguments.unit, "length unit of the mesh's coordinates: its file does not say")
+  app.add_option("--unit", arguments.unit,
+                 "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
       ->check(CLI::IsMember({"km", "m"}));
   app.add_option("--report", arguments.report,
                  "write pictures of target, fit, distances and convergence here")

@@ -140,12 +140,14 @@ void Program::timed(const std::function<void()>& work) {
 Progress Program::progress(std::string stage) const {
   struct State {
     double shown_at = -1.0;
+    double farthest = 0.0;  // work that turns out longer than thought does not run backwards
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   };
   const bool draw = !quiet && ::isatty(STDERR_FILENO) != 0;
   return [draw, stage = std::move(stage), state = std::make_shared<State>()](double fraction,
                                                                              std::string_view words) {
     const std::chrono::duration<double> now = std::chrono::steady_clock::now() - state->started;
+    fraction = state->farthest = std::max(state->farthest, fraction);
     if (draw && (fraction >= 1.0 || now.count() - state->shown_at > 0.1)) {
       state->shown_at = now.count();
       const std::string line =

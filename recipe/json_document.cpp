@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "numerics/errors.h"
+#include "numerics/input_file.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/place_internal.h"
 
@@ -102,10 +103,9 @@ class TreeBuilder : public nlohmann::json_sax<json> {
 
 std::string read_json_text(const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
-  std::error_code unused;  // what cannot be looked at cannot be opened either
-  if (std::filesystem::is_directory(file, unused)) refuse("is a folder; give the name of a recipe file");
+  require_plain_file(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  if (!stream) refuse(fmt::format("cannot open ({}); check the name", std::strerror(errno)));
+  if (!stream) refuse(fmt::format("cannot be read ({}); check its rights", std::strerror(errno)));
   std::string text;
   std::vector<char> chunk(std::size_t{1} << 16);
   while (const std::size_t count = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {

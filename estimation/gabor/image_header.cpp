@@ -8,6 +8,7 @@
 
 #include "estimation/gabor/image_header_internal.h"
 #include "numerics/errors.h"
+#include "numerics/input_file.h"
 
 namespace astrolith {
 namespace {
@@ -65,11 +66,10 @@ ImageHeader tiff_header(const std::string& name) {
 }  // namespace
 
 ImageHeader read_image_header(const std::filesystem::path& file) {
+  require_plain_file(file);
   const std::string name = file.string();
   std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) {
-    throw InputError(name + ": cannot be read; give the name of a PNG, JPEG or TIFF image");
-  }
+  if (!in) throw InputError(name + ": cannot be read; check its rights");
   Bytes start{};
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   const bool whole = in.gcount() == static_cast<std::streamsize>(start.size());

@@ -1,4 +1,6 @@
 // fit_gabor, run as a user runs it.
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 
 #include "recipe/recipe_json.h"
@@ -82,6 +84,12 @@ TEST_F(FitGabor, NumbersMustBeFinite) {
   for (const char* option : {"--penalty", "--gap", "--height-rms", "--mm-per-px"}) {
     expect_refusal(folder_, kFitGabor, {image, "-o", (folder_ / "out.json").string(), option, "nan"}, option);
   }
+}
+
+TEST_F(FitGabor, APipeIsRefusedAtOnce) {
+  const std::string pipe = (folder_ / "pipe.png").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_refusal(folder_, kFitGabor, {pipe, "-o", (folder_ / "out.json").string()}, "pipe.png");
 }
 
 TEST_F(FitGabor, TheInputIsNeverOverwritten) {

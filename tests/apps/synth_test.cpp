@@ -104,7 +104,7 @@ TEST_F(Synth, BadRecipesAreRefused) {
   expect_recipe_refused(replaced(kTwoSpheres, "0.75", "-0.75"), "body.spheres[1].radius");
   expect_recipe_refused(replaced(kTwoSpheres, "]]}", "]}"), "line 2, column");
   expect_recipe_refused(replaced(kTwoSpheres, "0.05", "NaN"), "line 3, column");
-  expect_recipe_refused("", "line 1, column 1");
+  expect_recipe_refused("", "is empty");
   expect_recipe_refused(kTexture, "");  // no body to mesh
 }
 

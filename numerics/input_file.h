@@ -1,0 +1,31 @@
+// What every reader asks of a file before it opens it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+
+// Throws InputError when the file is missing, a folder, empty, or no plain file: opening a pipe could wait
+// for ever.
+inline void require_plain_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  const std::string name = file.string();
+  if (!std::filesystem::exists(status)) {
+    throw InputError(name + ": cannot be read (" +
+                     (error ? error.message() : std::string("No such file or directory")) +
+                     "); check the name");
+  }
+  if (std::filesystem::is_directory(status))
+    throw InputError(name + ": is a folder; give the name of a file");
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(name + ": is not a plain file; copy it into a file first");
+  }
+  if (std::filesystem::file_size(file, error) == 0) throw InputError(name + ": is empty; give another file");
+}
+
+}  // namespace astrolith
