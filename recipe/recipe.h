@@ -3,7 +3,8 @@
 // here.
 //
 // All lengths are in `length_unit`; positions are in the body-fixed frame. No number exceeds kMaxNumber in
-// magnitude and "> 0" means at least kMinPositive, so that a field evaluated in floats stays finite.
+// magnitude and "> 0" means at least kMinPositive, which keeps absurd files out; combinations at
+// the ends of both ranges can still leave what a float holds.
 #pragma once
 
 #include <cstdint>
