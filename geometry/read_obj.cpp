@@ -35,6 +35,7 @@ TriangleMesh read_obj(const MeshFile& file) {
       while (!scan.line_done()) {
         const std::string_view corner = scan.word();
         if (corner.front() == '#') break;
+        if (corner == "\\" && scan.line_done() && scan.next_line()) continue;  // goes on in the next line
         polygon.push_back(corner_index(scan, corner, mesh.vertices.size()));
       }
       if (polygon.size() < 3) scan.fail("the face has fewer than three vertices", "remove or complete it");

@@ -7,6 +7,7 @@
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scratch_folder.h"
 
@@ -44,6 +45,12 @@ TEST_F(MeshFormats, ObjCornersNegativeIndicesPolygonsAndCrlf) {
 // An index may name a vertex that comes later.
 TEST_F(MeshFormats, ObjForwardReference) {
   EXPECT_EQ(read("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles.size(), 1u);
+}
+
+TEST_F(MeshFormats, ObjFaceGoesOnBehindABackslash) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_EQ(read("a.obj", vertices + "f 1 2 \\\r\n 3\n").triangles.size(), 1u);
+  EXPECT_THROW(read("b.obj", vertices + "f 1 2 \\"), InputError);
 }
 
 // Editors put a byte order mark before the first vertex; losing that line would shift every index.

@@ -1,0 +1,39 @@
+// The model as Ceres sees it while it is refined.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "estimation/shape/field_derivatives.h"
+#include "estimation/shape/metaball_model.h"
+
+namespace astrolith {
+
+// The model as Ceres's parameter blocks: centre and log radius a sphere, and t for the sharpness, which
+//   log kappa = middle + half tanh(t / half)
+// keeps between limits: a lone sphere has the same surface at every kappa, and nothing else would hold it.
+struct RefinementParameters {
+  explicit RefinementParameters(const MetaballModel& model) {
+    const double part = (std::log(model.sharpness) - kMiddle) / kHalf;
+    sharpness = kHalf * std::atanh(std::clamp(part, -0.99, 0.99));
+    for (const Sphere& s : model.spheres) {
+      spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
+    }
+  }
+  MetaballModel model() const {
+    MetaballModel m{std::exp(kMiddle + kHalf * std::tanh(sharpness / kHalf)), {}};
+    for (const auto& s : spheres) m.spheres.push_back({{s[0], s[1], s[2]}, std::exp(s[3])});
+    return m;
+  }
+  // d log kappa / dt
+  double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / kHalf), 2); }
+
+  static constexpr double kMiddle = 1.0986122886681098;  // log 3
+  static constexpr double kHalf = 2.3025850929940457;    // log 10: kappa between 0.3 and 30
+
+  std::vector<SphereDerivatives> spheres;
+  double sharpness = 0.0;  // t
+};
+
+}  // namespace astrolith
