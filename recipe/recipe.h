@@ -65,6 +65,15 @@ struct GaborLobe {
   double variance = 0.0;     // what this pair adds to the texture's variance, in squared exemplar units, > 0
 };
 
+// What a layer paints where a texture has colours: RGB values as stored in the exemplar, full scale = 1,
+//   color(p) = sum over the coloured layers of (mean + axis * exemplar_rms * (noise of the layer's lobes,
+//   unit variance)).
+// Colour never moves a surface: that is height_rms alone.
+struct LayerColor {
+  Vec3d axis;  // a principal axis of the exemplar's colours, each part in [-1, 1]; (1, 1, 1) is grey
+  Vec3d mean;  // what the layer adds everywhere: the first of an exemplar's layers holds its mean colour
+};
+
 // Bandwidth-quantised Gabor noise (thesis eq. 5.7 to 5.11) fitted to an exemplar.
 // Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
 struct GaborLayer {
@@ -74,6 +83,7 @@ struct GaborLayer {
   int impulses_per_kernel = 32;  // expected impulses under one kernel, for each bandwidth, 1 .. 1024
   double exemplar_mean = 0.0;    // of the exemplar's grey values, full scale = 1
   double exemplar_rms = 0.0;     // their standard deviation after the fit's preprocessing
+  std::optional<LayerColor> color;
   std::vector<GaborLobe> lobes;  // at least one
 };
 

@@ -88,6 +88,13 @@ void read_fields(ObjectReader& object, FractalLayer& out) {
   object.allow("weight", out.weight);
 }
 
+void read_color(const json& value, const Place& place, LayerColor& out) {
+  ObjectReader object(value, place);
+  object.require("axis", out.axis);
+  object.allow("mean", out.mean);
+  object.finish();
+}
+
 void read_fields(ObjectReader& object, GaborLayer& out) {
   object.allow("name", out.name);
   object.allow("pixel_size", out.pixel_size);
@@ -95,6 +102,7 @@ void read_fields(ObjectReader& object, GaborLayer& out) {
   object.allow("impulses_per_kernel", out.impulses_per_kernel);
   object.allow("exemplar_mean", out.exemplar_mean);
   object.allow("exemplar_rms", out.exemplar_rms);
+  if (const json* color = object.find("color")) read_color(*color, object.at("color"), out.color.emplace());
   require_elements(object, "lobes", out.lobes, read_lobe);
 }
 

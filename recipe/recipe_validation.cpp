@@ -80,12 +80,21 @@ void check(const GaborLobe& lobe, const Place& place) {
   expect_positive(lobe.variance, place.field("variance"));
 }
 
+void check(const LayerColor& color, const Place& place) {
+  const Place axis = place.field("axis");
+  expect_range(color.axis.x, axis.field("x"), -1.0, 1.0);
+  expect_range(color.axis.y, axis.field("y"), -1.0, 1.0);
+  expect_range(color.axis.z, axis.field("z"), -1.0, 1.0);
+  expect_vector(color.mean, place.field("mean"));
+}
+
 void check(const GaborLayer& layer, const Place& place) {
   expect_positive(layer.pixel_size, place.field("pixel_size"));
   expect_not_negative(layer.height_rms, place.field("height_rms"));
   expect_integer(layer.impulses_per_kernel, place.field("impulses_per_kernel"), 1, 1024);
   expect_number(layer.exemplar_mean, place.field("exemplar_mean"));
   expect_not_negative(layer.exemplar_rms, place.field("exemplar_rms"));
+  if (layer.color) check(*layer.color, place.field("color"));
   const Place lobes = place.field("lobes");
   if (layer.lobes.empty())
     lobes.fail("must hold at least one [bandwidth, frequency_x, frequency_y, variance]");

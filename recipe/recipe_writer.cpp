@@ -47,14 +47,18 @@ ordered_json to_json(const GaborLayer& layer) {
   for (const GaborLobe& l : layer.lobes) {
     lobes.push_back(ordered_json::array({l.bandwidth, l.frequency_x, l.frequency_y, l.variance}));
   }
-  return {{"type", "gabor"},
-          {"name", layer.name},
-          {"pixel_size", layer.pixel_size},
-          {"height_rms", layer.height_rms},
-          {"impulses_per_kernel", layer.impulses_per_kernel},
-          {"exemplar_mean", layer.exemplar_mean},
-          {"exemplar_rms", layer.exemplar_rms},
-          {"lobes", std::move(lobes)}};
+  ordered_json object{{"type", "gabor"},
+                      {"name", layer.name},
+                      {"pixel_size", layer.pixel_size},
+                      {"height_rms", layer.height_rms},
+                      {"impulses_per_kernel", layer.impulses_per_kernel},
+                      {"exemplar_mean", layer.exemplar_mean},
+                      {"exemplar_rms", layer.exemplar_rms}};
+  if (layer.color) {
+    object["color"] = {{"axis", to_json(layer.color->axis)}, {"mean", to_json(layer.color->mean)}};
+  }
+  object["lobes"] = std::move(lobes);
+  return object;
 }
 
 template <typename T>

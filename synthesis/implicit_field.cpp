@@ -157,7 +157,10 @@ std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const Box& domain)
     if (const auto* fractal = std::get_if<FractalLayer>(&recipe.layers[i])) {
       layers.emplace_back(FractalNoise(*fractal, recipe.seed, static_cast<int>(i), domain));
     } else if (const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i])) {
-      layers.emplace_back(GaborSurfaceNoise(*gabor, recipe.seed, static_cast<int>(i), domain));
+      // A layer of colour alone has no height.
+      if (gabor->height_rms > 0.0) {
+        layers.emplace_back(GaborSurfaceNoise(*gabor, recipe.seed, static_cast<int>(i), domain));
+      }
     }
   }
   return layers;

@@ -27,7 +27,8 @@ inline const std::string kCompleteRecipe = R"({
     {"type": "simplex", "name": "grit", "amplitude": 0.02, "frequency": 3, "octaves": 6, "gain": 0.5,
      "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1},
     {"type": "gabor", "name": "rock", "pixel_size": 0.001, "height_rms": 0.002, "impulses_per_kernel": 32,
-     "exemplar_mean": 0.4, "exemplar_rms": 0.1, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]}
+     "exemplar_mean": 0.4, "exemplar_rms": 0.1,
+     "color": {"axis": [0.6, 0.8, 0], "mean": [0.5, 0.25, 0.1]}, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]}
   ]
 }
 )";
@@ -58,7 +59,9 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("lobes")", R"("LOBES")", R"(layers[1].LOBES: unknown field; known are)"},
       {R"("height_rms")", R"("height\nrms")",
        R"(layers[1].height\nrms: unknown field; did you mean 'height_rms'?)"},
+      {R"("mean": [)", R"("meen": [)", R"(layers[1].color.meen: unknown field; did you mean 'mean'?)"},
       // Missing fields.
+      {R"("axis": [0.6, 0.8, 0], )", R"()", R"(layers[1].color.axis: is missing)"},
       {R"("format_version": 1,)", R"()", R"(format_version: is missing)"},
       {R"("length_unit": "km",)", R"()", R"(length_unit: is missing)"},
       {R"("type": "metaballs",)", R"()", R"(body.type: is missing)"},
@@ -124,6 +127,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("impulses_per_kernel": 32)", R"("impulses_per_kernel": 0)",
        R"(layers[1].impulses_per_kernel: must be an integer from 1 to 1024)"},
       {R"("exemplar_rms": 0.1)", R"("exemplar_rms": -0.1)", R"(layers[1].exemplar_rms: must be from 0)"},
+      {R"([0.6, 0.8, 0])", R"([0.6, 1.8, 0])", R"(layers[1].color.axis.y: must be from -1 to 1, is 1.8)"},
       {R"([[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]])", R"([])",
        R"(layers[1].lobes: must hold at least one)"},
       {R"([12, 0.5)", R"([14, 0.5)",

@@ -1,5 +1,6 @@
 #include "recipe/recipe_json.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
@@ -54,6 +55,9 @@ TEST(RecipeJson, ReadsEveryField) {
   EXPECT_EQ(simplex.bias, (Vec3d{0.5, 0, 0}));
   const auto& gabor = std::get<GaborLayer>(r.layers.at(1));
   EXPECT_EQ(gabor.pixel_size, 0.001);
+  ASSERT_TRUE(gabor.color.has_value());
+  EXPECT_EQ(gabor.color->axis, (Vec3d{0.6, 0.8, 0}));
+  EXPECT_EQ(gabor.color->mean, (Vec3d{0.5, 0.25, 0.1}));
   EXPECT_EQ(gabor.lobes.at(1).bandwidth, 12);
   EXPECT_EQ(gabor.lobes.at(0).frequency_y, -0.25);
   EXPECT_EQ(gabor.lobes.at(0).variance, 0.75);
@@ -145,7 +149,9 @@ TEST(RecipeJson, SyntaxErrorsGiveLineAndColumn) {
   expect_error("{\n  \"seed\": NaN}", "line 2, column 11");
   expect_error(R"({"seed": Infinity})", "not valid JSON");
   expect_error(R"({"seed": 1e999})", "not valid JSON: number overflow");
-  expect_error(testing::kCompleteRecipe + "x", "line 25, column 1: not valid JSON");
+  const auto lines = std::count(testing::kCompleteRecipe.begin(), testing::kCompleteRecipe.end(), '\n');
+  expect_error(testing::kCompleteRecipe + "x",
+               "line " + std::to_string(lines + 1) + ", column 1: not valid JSON");
   expect_error("{\"frame\": \"\xff\xfe\"}", "ill-formed UTF-8");
   expect_error("{\"frame\": \"a\nb\"}", "not valid JSON");
   expect_error(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "line 1, column 1: not valid JSON");
