@@ -140,7 +140,7 @@ void summarize(const GaborFit& fit, const Gaussianity& gaussianity, Program& pro
 std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, const Program& program) {
   layer.height_rms = 1.0;
   layer.pixel_size = 1.0;
-  return synthesize_texture(layer, exemplar.width, exemplar.height, program.seed,
+  return synthesize_texture(layer, exemplar.width, exemplar.height, {program.seed},
                             program.progress("synthesis"));
 }
 

@@ -1,9 +1,6 @@
-// synth: a recipe becomes a closed mesh, a picture of it, or the height map of its Gabor layer.
+// synth: a recipe becomes a closed mesh, a picture of it, or the texture of its Gabor layers.
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -12,6 +9,7 @@
 #include <vector>
 
 #include "apps/program.h"
+#include "apps/synth_texture.h"
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_sink.h"
 #include "geometry/ply_stream_writer.h"
@@ -19,7 +17,6 @@
 #include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
-#include "synthesis/gabor_texture.h"
 #include "synthesis/image_file.h"
 #include "synthesis/implicit_field.h"
 #include "synthesis/lay_on_base.h"
@@ -37,13 +34,9 @@ struct Options {
   fs::path base;
   fs::path output;
   fs::path preview;
-  std::string texture;  // "1024x1024"
+  TextureRequest texture;
   int resolution = 256;
 };
-
-// 16-bit textures map this many standard deviations either way to [0, 65535].
-constexpr double kTextureRange = 4.0;
-constexpr int kMaxTextureSide = 16384;
 
 void declare_options(Program& program, Options& options) {
   program.app.add_option("recipe", options.recipe, "the recipe, a JSON file")->required();
@@ -64,11 +57,7 @@ void declare_options(Program& program, Options& options) {
       .add_option("--preview", options.preview,
                   "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
       ->option_text("FILE.png");
-  program.app
-      .add_option("--texture", options.texture,
-                  "the height of the recipe's first Gabor layer on a plane of WxH pixels: .tif holds heights "
-                  "as 32-bit floats, .png maps -4 to +4 standard deviations to 0 to 65535")
-      ->option_text("WxH");
+  declare_texture_options(program, options.texture);
   program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");
 }
 
@@ -92,69 +81,11 @@ void summarize_output(Program& program, const fs::path& output) {
   program.summary["sha256"] = sha256_of_file(output);
 }
 
-// --texture ------------------------------------------------------------------------------------------------
-
-struct TextureSize {
-  int width, height;
-};
-
-TextureSize parse_size(const std::string& text) {
-  TextureSize size{};
-  char cross = 0, rest = 0;
-  const int fields = std::sscanf(text.c_str(), "%6d%c%6d%c", &size.width, &cross, &size.height, &rest);
-  const auto fits = [](int side) { return side >= 1 && side <= kMaxTextureSide; };
-  if (fields != 3 || (cross != 'x' && cross != 'X') || !fits(size.width) || !fits(size.height)) {
-    throw InputError("--texture: \"" + text + "\" is not a size; write WxH with sides of 1 to " +
-                     std::to_string(kMaxTextureSide) + ", such as 1024x1024");
-  }
-  return size;
-}
-
-GaborLayer first_gabor_layer(const Recipe& recipe, const Options& options) {
-  for (const Layer& layer : recipe.layers) {
-    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) return *gabor;
-  }
-  throw InputError(options.recipe.string() +
-                   ": layers: hold no Gabor layer, which --texture draws; fit one with fit_gabor");
-}
-
-std::vector<std::uint16_t> to_16_bits(const std::vector<float>& heights, double rms) {
-  std::vector<std::uint16_t> grey;
-  grey.reserve(heights.size());
-  for (const float height : heights) {
-    const double t = std::clamp(0.5 + 0.5 * height / (kTextureRange * rms), 0.0, 1.0);
-    grey.push_back(static_cast<std::uint16_t>(std::lround(65535.0 * t)));
-  }
-  return grey;
-}
-
 void make_texture(Program& program, const Options& options, const Recipe& recipe) {
   require_extension(options.output, {".png", ".tif", ".tiff"});
   require_writable(options.output);
-  const TextureSize size = parse_size(options.texture);
-  GaborLayer layer = first_gabor_layer(recipe, options);
-  // A recipe that does not say how high its rock is still has a texture: in units of its own deviation.
-  const bool has_height = layer.height_rms > 0.0;
-  if (!has_height) layer.height_rms = 1.0;
-  const std::vector<float> heights =
-      synthesize_texture(layer, size.width, size.height, recipe.seed, program.progress("texture"));
-  if (Program::interrupted()) throw WorkError("stopped before the texture was complete");
-  const bool is_png = options.output.extension() == ".png";
-  if (is_png) {
-    write_png16_grey(to_16_bits(heights, layer.height_rms), size.width, size.height, options.output);
-  } else {
-    write_tiff_float(heights, size.width, size.height, options.output);
-  }
-  program.summary["width"] = size.width;
-  program.summary["height"] = size.height;
-  program.summary["height_unit"] = has_height ? recipe.length_unit : "standard deviations";
-  program.summary["height_rms"] = layer.height_rms;
-  if (is_png) {
-    program.summary["height_at_0"] = -kTextureRange * layer.height_rms;
-    program.summary["height_at_65535"] = kTextureRange * layer.height_rms;
-  }
+  write_texture(program, options.texture, recipe, options.recipe, options.output);
   summarize_output(program, options.output);
-  program.say(options.output.string() + ": height of a Gabor layer, " + options.texture + " pixels");
 }
 
 // The mesh -------------------------------------------------------------------------------------------------
@@ -258,10 +189,11 @@ void synthesize(Program& program, const Options& options) {
   require_other_file(options.output, options.recipe);
   if (!options.base.empty()) require_other_file(options.output, options.base);
   const Recipe recipe = read_input(program, options);
-  if (!options.texture.empty()) {
+  if (!options.texture.size.empty()) {
     if (!options.preview.empty()) throw InputError("--preview: draws a mesh; leave out --texture");
     return make_texture(program, options, recipe);
   }
+  if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
   if (!recipe.body) {
     throw InputError(options.recipe.string() +
                      ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
@@ -275,7 +207,7 @@ void synthesize(Program& program, const Options& options) {
 
 int main(int argc, char** argv) {
   astrolith::Program program(
-      "synth", "Turns a recipe into a closed 2-manifold mesh, or its Gabor layer into a height map.");
+      "synth", "Turns a recipe into a closed 2-manifold mesh, or its Gabor layers into a texture.");
   astrolith::Options options;
   astrolith::declare_options(program, options);
   return program.run(argc, argv, [&] { astrolith::synthesize(program, options); });

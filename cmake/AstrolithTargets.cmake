@@ -45,10 +45,10 @@ function(astrolith_library name)
   set_property(GLOBAL APPEND PROPERTY ASTROLITH_LIBRARIES ${target})
 endfunction()
 
-# astrolith_program(NAME LINK link ...)  builds apps/NAME.cpp
+# astrolith_program(NAME [SOURCES x.cpp ...] LINK link ...)  builds apps/NAME.cpp, with further sources
 function(astrolith_program name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  add_executable(${name} ${name}.cpp)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${name}.cpp ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} astrolith_program_common astrolith_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -13,6 +13,7 @@
 #include "numerics/parallel_for.h"
 #include "synthesis/gabor_bands.h"
 #include "synthesis/gabor_kernel.h"
+#include "synthesis/gabor_tiling.h"
 
 namespace astrolith {
 namespace {
@@ -24,11 +25,30 @@ constexpr int kTile = 64;
 struct PlaneBand {
   GaborBand band;
   std::uint32_t seed;
-  double cell;
+  double cell_x, cell_y;  // sides
+  int wrap_x, wrap_y;     // cells in a period; 0 = endless
   double reach;
   int impulses_per_cell;
   float amplitude;
 };
+
+// What brings the noise on a torus to the variance of the endless noise.
+double tiling_gain(const GaborLayer& layer, const TextureOptions& options) {
+  if (options.period_width == 0 && options.period_height == 0) return 1.0;
+  // Far below the size of a kernel every pixel would take thousands of its copies.
+  constexpr double kCopies = 16.0;
+  double largest = 0.0;
+  for (const GaborBand& band : gabor_bands(layer)) largest = std::max(largest, 2.0 * kGaborReach / band.a);
+  const bool tiny = kCopies * std::min(options.period_width, options.period_height) < largest;
+  const double variance = tiny ? 0.0 : tiled_variance(layer, options.period_width, options.period_height);
+  if (!(variance >= 0.5 && variance <= 2.0)) {
+    throw InputError("texture size " + std::to_string(options.period_width) + "x" +
+                     std::to_string(options.period_height) +
+                     ": too small a period for this layer, whose lobes are narrower than the steps between "
+                     "the frequencies that repeat; make the texture larger");
+  }
+  return 1.0 / std::sqrt(variance);
+}
 
 struct Tile {
   int x, y;  // first column and row
@@ -83,8 +103,8 @@ void set_range(const PlaneBand& band, double center, int first, AxisProfile& axi
 }
 
 void add_impulse(const PlaneBand& band, std::uint32_t hash, int cell_x, int cell_y, Tile& tile) {
-  const double x = (cell_x + static_cast<double>(unit_float(hash_append(hash, 0)))) * band.cell;
-  const double y = (cell_y + static_cast<double>(unit_float(hash_append(hash, 1)))) * band.cell;
+  const double x = (cell_x + static_cast<double>(unit_float(hash_append(hash, 0)))) * band.cell_x;
+  const double y = (cell_y + static_cast<double>(unit_float(hash_append(hash, 1)))) * band.cell_y;
   AxisProfile columns, rows;
   set_range(band, x, tile.x, columns);
   set_range(band, y, tile.y, rows);
@@ -99,12 +119,15 @@ void add_impulse(const PlaneBand& band, std::uint32_t hash, int cell_x, int cell
   add_product(columns, rows, tile.height.data());
 }
 
+int wrapped(int cell, int wrap) { return wrap == 0 ? cell : ((cell % wrap) + wrap) % wrap; }
+
 void add_band(const PlaneBand& band, Tile& tile) {
-  const auto cell_of = [&](double pixel) { return static_cast<int>(std::floor(pixel / band.cell)); };
-  const int last_x = cell_of(tile.x + kTile + band.reach), last_y = cell_of(tile.y + kTile + band.reach);
-  for (int cy = cell_of(tile.y - band.reach); cy <= last_y; ++cy) {
-    for (int cx = cell_of(tile.x - band.reach); cx <= last_x; ++cx) {
-      const std::uint32_t cell = hash_cell(band.seed, cx, cy, 0);
+  const auto cell_of = [](double pixel, double side) { return static_cast<int>(std::floor(pixel / side)); };
+  const int last_x = cell_of(tile.x + kTile + band.reach, band.cell_x);
+  const int last_y = cell_of(tile.y + kTile + band.reach, band.cell_y);
+  for (int cy = cell_of(tile.y - band.reach, band.cell_y); cy <= last_y; ++cy) {
+    for (int cx = cell_of(tile.x - band.reach, band.cell_x); cx <= last_x; ++cx) {
+      const std::uint32_t cell = hash_cell(band.seed, wrapped(cx, band.wrap_x), wrapped(cy, band.wrap_y), 0);
       for (int j = 0; j < band.impulses_per_cell; ++j) {
         add_impulse(band, hash_append(cell, static_cast<std::uint32_t>(j)), cx, cy, tile);
       }
@@ -112,19 +135,43 @@ void add_band(const PlaneBand& band, Tile& tile) {
   }
 }
 
-std::vector<PlaneBand> plane_bands(const GaborLayer& layer, std::uint64_t seed) {
+// Cells of about the ideal side, and as many of them as fit into the period exactly.
+void set_cells(const TextureOptions& options, PlaneBand& band) {
+  const double ideal = kGaborPlaneCell / band.band.a;
+  const auto set = [ideal](int period, double& side, int& wrap) {
+    wrap = period == 0 ? 0 : std::max(1, static_cast<int>(std::lround(period / ideal)));
+    side = period == 0 ? ideal : static_cast<double>(period) / wrap;
+  };
+  set(options.period_width, band.cell_x, band.wrap_x);
+  set(options.period_height, band.cell_y, band.wrap_y);
+}
+
+// Impulses in a cell. On a torus smaller than a kernel there are as many as elsewhere under a kernel: with
+// fewer the noise would be no Gaussian.
+int count_impulses(const GaborLayer& layer, const PlaneBand& band) {
+  const double area = band.cell_x * band.cell_y * band.band.a * band.band.a;  // in units of 1/a^2
+  const double wanted = layer.impulses_per_kernel * area / kGaborKernelArea;
+  const double cells = static_cast<double>(band.wrap_x) * band.wrap_y;
+  const double least = cells > 0.0 ? std::ceil(layer.impulses_per_kernel / cells) : 1.0;
+  return static_cast<int>(std::max(least, std::round(wanted)));
+}
+
+std::vector<PlaneBand> plane_bands(const GaborLayer& layer, const TextureOptions& options) {
+  const double gain = tiling_gain(layer, options);
   std::vector<PlaneBand> bands;
   for (GaborBand& band : gabor_bands(layer)) {
-    const double cell = kGaborPlaneCell / band.a;
-    const double wanted = layer.impulses_per_kernel * kGaborPlaneCell * kGaborPlaneCell / kGaborKernelArea;
-    const int count = std::max(1, static_cast<int>(std::lround(wanted)));
+    PlaneBand plane{std::move(band), 0, 0.0, 0.0, 0, 0, 0.0, 0, 0.0f};
+    const GaborBand& b = plane.band;
+    plane.seed = gabor_band_seed(options.seed, options.stream, b.bandwidth);
+    plane.reach = static_cast<double>(kGaborReach) / b.a;
+    set_cells(options, plane);
+    plane.impulses_per_cell = count_impulses(layer, plane);
     // Variance = density K^2/2 (integral of e^2)^2: the phase is uniform, so the cosine contributes 1/2.
-    const double energy = kGaborProfileEnergy / band.a;
-    const double density = count / (cell * cell);
-    const double amplitude = layer.height_rms * std::sqrt(2.0 * band.variance_share / density) / energy;
-    const std::uint32_t band_seed = gabor_band_seed(seed, 0, band.bandwidth);
-    const double reach = static_cast<double>(kGaborReach) / band.a;
-    bands.push_back({std::move(band), band_seed, cell, reach, count, static_cast<float>(amplitude)});
+    const double energy = kGaborProfileEnergy / b.a;
+    const double density = plane.impulses_per_cell / (plane.cell_x * plane.cell_y);
+    plane.amplitude =
+        static_cast<float>(gain * layer.height_rms * std::sqrt(2.0 * b.variance_share / density) / energy);
+    bands.push_back(std::move(plane));
   }
   return bands;
 }
@@ -141,13 +188,13 @@ void store(const Tile& tile, int width, int height, float clip, std::vector<floa
 
 }  // namespace
 
-std::vector<float> synthesize_texture(const GaborLayer& layer, int width, int height, std::uint64_t seed,
-                                      const Progress& progress) {
+std::vector<float> synthesize_texture(const GaborLayer& layer, int width, int height,
+                                      const TextureOptions& options, const Progress& progress) {
   if (width < 1 || height < 1) {
     throw InputError("texture size " + std::to_string(width) + "x" + std::to_string(height) +
                      ": must be at least 1x1");
   }
-  const std::vector<PlaneBand> bands = plane_bands(layer, seed);
+  const std::vector<PlaneBand> bands = plane_bands(layer, options);
   const float clip = static_cast<float>(kGaborClip * layer.height_rms);
   std::vector<float> texture(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const int tiles_x = (width - 1) / kTile + 1, tiles_y = (height - 1) / kTile + 1;

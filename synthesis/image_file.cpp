@@ -75,16 +75,16 @@ struct CloseTiff {
   void operator()(TIFF* tiff) const { TIFFClose(tiff); }
 };
 
-bool write_tiff_rows(TIFF* tiff, std::span<const float> values, int width, int height) {
+bool write_tiff_rows(TIFF* tiff, std::span<const float> values, int width, int height, int channels) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(width));
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(height));
-  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, channels);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
-  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
   TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
-  const auto row_size = static_cast<std::size_t>(width);
+  const auto row_size = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
     std::vector<float> row(values.begin() + static_cast<std::ptrdiff_t>(y * row_size),
                            values.begin() + static_cast<std::ptrdiff_t>((y + 1) * row_size));
@@ -113,14 +113,20 @@ void write_png16_grey(std::span<const std::uint16_t> grey, int width, int height
   write_png({width, height, 16, PNG_COLOR_TYPE_GRAY, 2 * static_cast<std::size_t>(width)}, grey.data(), file);
 }
 
-void write_tiff_float(std::span<const float> values, int width, int height,
-                      const std::filesystem::path& file) {
-  check_size(values.size(), 1, width, height, file);
+void write_png16_rgb(std::span<const std::uint16_t> rgb, int width, int height,
+                     const std::filesystem::path& file) {
+  check_size(rgb.size(), 3, width, height, file);
+  write_png({width, height, 16, PNG_COLOR_TYPE_RGB, 6 * static_cast<std::size_t>(width)}, rgb.data(), file);
+}
+
+void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
+                      int channels) {
+  check_size(values.size(), static_cast<std::size_t>(channels), width, height, file);
   OutputFile target(file);
   TIFFSetErrorHandler(nullptr);  // libraries never print: failures come back as statuses
   TIFFSetWarningHandler(nullptr);
   std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(target.temporary_name().c_str(), "w"));
-  if (tiff == nullptr || !write_tiff_rows(tiff.get(), values, width, height)) {
+  if (tiff == nullptr || !write_tiff_rows(tiff.get(), values, width, height, channels)) {
     throw WorkError(file.string() + ": writing failed; is the disk full?");
   }
   tiff.reset();

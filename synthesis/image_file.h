@@ -24,8 +24,13 @@ void write_png8_grey(std::span<const std::uint8_t> grey, int width, int height,
 void write_png16_grey(std::span<const std::uint16_t> grey, int width, int height,
                       const std::filesystem::path& file);
 
-// One 32-bit float channel, uncompressed; for heights whose unit matters.  values  (height x width)
-void write_tiff_float(std::span<const float> values, int width, int height,
-                      const std::filesystem::path& file);
+// rgb  (height x width x 3)
+void write_png16_rgb(std::span<const std::uint16_t> rgb, int width, int height,
+                     const std::filesystem::path& file);
+
+// 32-bit floats, uncompressed; for heights whose unit matters (1 channel) and colours (3, RGB).
+// values  (height x width x channels)
+void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
+                      int channels = 1);
 
 }  // namespace astrolith

@@ -129,6 +129,31 @@ TEST_F(Synth, ReadOnlyFoldersAreRefused) {
   expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "locked" / "out.ply").string()}, "out.ply");
 }
 
+TEST_F(Synth, ColouredLayersMakeAPicture) {
+  const std::string recipe = folder_.write(
+      "c.json",
+      replaced(kTexture, "\"lobes\"",
+               R"("exemplar_rms": 0.1, "color": {"axis": [1, 0, 0], "mean": [0.5, 0.25, 1]}, "lobes")"));
+  const auto texture = [&](const std::string& name, std::vector<std::string> more) {
+    const std::string file = (folder_ / name).string();
+    std::vector<std::string> arguments{recipe, "--texture", "96x64", "-o", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::Outcome outcome = run_program(kSynth, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(file);
+  };
+  const auto bits_and_type = [](const std::string& png) { return png.substr(24, 2); };
+  EXPECT_EQ(bits_and_type(texture("c16.png", {})), "\x10\x02");
+  EXPECT_EQ(bits_and_type(texture("c8.png", {"--bits", "8", "--tileable"})), "\x08\x02");
+  EXPECT_EQ(bits_and_type(texture("h.png", {"--texture-of", "height"})), std::string("\x10\x00", 2));
+  EXPECT_GT(texture("c.tif", {}).size(), 3u * 96u * 64u * 4u);
+  const std::string grey = folder_.write("g.json", kTexture), output = (folder_ / "x.png").string();
+  expect_refusal(folder_, kSynth, {grey, "--texture", "96x64", "-o", output, "--texture-of", "color"},
+                 "g.json");
+  expect_refusal(folder_, kSynth, {folder_.write("r.json", kTwoSpheres), "--tileable", "-o", output},
+                 "--tileable");
+}
+
 TEST_F(Synth, TextureIsDeterministicAndRefusesNonsense) {
   const std::string recipe = folder_.write("t.json", kTexture);
   const auto texture = [&](const std::string& name, const std::string& threads) {

@@ -59,7 +59,7 @@ void gabor_texture(benchmark::State& state) {
   GaborLayer layer;
   layer.height_rms = 1.0;
   layer.lobes = {{static_cast<int>(state.range(0)), 0.1, 0.05, 1.0}};
-  for (auto _ : state) benchmark::DoNotOptimize(synthesize_texture(layer, 512, 512, 5));
+  for (auto _ : state) benchmark::DoNotOptimize(synthesize_texture(layer, 512, 512, {5}));
   state.SetItemsProcessed(state.iterations() * 512 * 512);
 }
 BENCHMARK(gabor_texture)->ArgName("bandwidth")->DenseRange(1, 7)->Unit(benchmark::kMillisecond);

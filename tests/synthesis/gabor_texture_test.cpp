@@ -38,7 +38,7 @@ TEST(GaborTexture, HasTheStatedVarianceAndIsGaussian) {
   for (const int impulses : {8, 32}) {
     GaborLayer layer = layer_of({{2, 0.1, 0.2, 1.0}, {3, -0.2, 0.05, 2.0}}, 2.5);
     layer.impulses_per_kernel = impulses;
-    const Moments m = moments(synthesize_texture(layer, 1024, 1024, 3));
+    const Moments m = moments(synthesize_texture(layer, 1024, 1024, {3}));
     EXPECT_NEAR(m.mean / 2.5, 0.0, 0.005);
     EXPECT_NEAR(m.variance / (2.5 * 2.5), 1.0, 0.01) << impulses;
     EXPECT_NEAR(m.excess_kurtosis, 0.0, 0.05) << impulses;
@@ -49,7 +49,7 @@ TEST(GaborTexture, HasTheStatedVarianceAndIsGaussian) {
 TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
   GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}});
   layer.impulses_per_kernel = 4;
-  const Moments m = moments(synthesize_texture(layer, 1024, 1024, 9));
+  const Moments m = moments(synthesize_texture(layer, 1024, 1024, {9}));
   EXPECT_NEAR(m.variance, 1.0, 0.01);
   EXPECT_NEAR(m.excess_kurtosis, 0.0, 0.05);
 }
@@ -59,7 +59,7 @@ TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
 TEST(GaborTexture, AutocovarianceIsTheLobes) {
   const std::vector<GaborLobe> lobes = {{3, 0.18, 0.05, 2.0}, {2, -0.1, 0.2, 1.0}, {3, 0.0, 0.0, 1.0}};
   constexpr int n = 1536;
-  const std::vector<float> texture = synthesize_texture(layer_of(lobes), n, n, 17);
+  const std::vector<float> texture = synthesize_texture(layer_of(lobes), n, n, {17});
   for (int dy = 0; dy <= 6; ++dy) {
     for (int dx = -6; dx <= 6; ++dx) {
       double measured = 0.0, expected = 0.0;
@@ -102,7 +102,7 @@ TEST(GaborTexture, PeriodogramIsTheLobes) {
   };
   std::vector<std::vector<float>> textures;
   for (int r = 0; r < kRealisations; ++r) {
-    textures.push_back(synthesize_texture(layer_of(lobes), n, n, static_cast<std::uint64_t>(r)));
+    textures.push_back(synthesize_texture(layer_of(lobes), n, n, {static_cast<std::uint64_t>(r)}));
   }
   for (const auto& [fx, fy] : {std::pair{0.2, 0.1}, {0.25, 0.1}, {0.2, 0.05}, {0.15, 0.15}, {-0.2, 0.1}}) {
     double mean = 0.0;
@@ -116,14 +116,14 @@ TEST(GaborTexture, PeriodogramIsTheLobes) {
 
 TEST(GaborTexture, DependsOnLayerAndSeedAlone) {
   GaborLayer layer = layer_of({{2, 0.1, 0.2, 1.0}, {5, -0.02, 0.05, 2.0}});
-  const std::vector<float> one = synthesize_texture(layer, 333, 201, 5);
+  const std::vector<float> one = synthesize_texture(layer, 333, 201, {5});
   {
     const ThreadLimit single(1);
-    EXPECT_EQ(synthesize_texture(layer, 333, 201, 5), one);
+    EXPECT_EQ(synthesize_texture(layer, 333, 201, {5}), one);
   }
-  EXPECT_NE(synthesize_texture(layer, 333, 201, 6), one);
+  EXPECT_NE(synthesize_texture(layer, 333, 201, {6}), one);
   // A larger texture continues the smaller one.
-  const std::vector<float> larger = synthesize_texture(layer, 400, 300, 5);
+  const std::vector<float> larger = synthesize_texture(layer, 400, 300, {5});
   for (std::size_t y = 0; y < 201; ++y) {
     for (std::size_t x = 0; x < 333; ++x) ASSERT_EQ(larger[y * 400 + x], one[y * 333 + x]);
   }
@@ -131,7 +131,7 @@ TEST(GaborTexture, DependsOnLayerAndSeedAlone) {
 
 // No seams: where tiles meet (every 64 pixels) second differences are as large as elsewhere.
 TEST(GaborTexture, HasNoSeams) {
-  const std::vector<float> t = synthesize_texture(layer_of({{5, 0.02, 0.03, 1.0}}), 1024, 1024, 2);
+  const std::vector<float> t = synthesize_texture(layer_of({{5, 0.02, 0.03, 1.0}}), 1024, 1024, {2});
   double at_seams = 0, elsewhere = 0;
   int seams = 0, others = 0;
   for (std::size_t y = 0; y < 1024; ++y) {
@@ -148,18 +148,18 @@ TEST(GaborTexture, HasNoSeams) {
 
 TEST(GaborTexture, AnySizeAndNoNonsense) {
   const GaborLayer layer = layer_of({{1, 0.5, -0.5, 1.0}, {12, 0.0, 0.0, 1.0}});
-  EXPECT_EQ(synthesize_texture(layer, 1, 1, 1).size(), 1u);
-  EXPECT_EQ(synthesize_texture(layer, 1, 130, 1).size(), 130u);
-  for (const float v : synthesize_texture(layer, 65, 3, 1)) EXPECT_LE(std::fabs(v), 6.0f);
-  EXPECT_THROW(synthesize_texture(layer, 0, 5, 1), InputError);
-  EXPECT_THROW(synthesize_texture(layer, 5, -1, 1), InputError);
+  EXPECT_EQ(synthesize_texture(layer, 1, 1, {1}).size(), 1u);
+  EXPECT_EQ(synthesize_texture(layer, 1, 130, {1}).size(), 130u);
+  for (const float v : synthesize_texture(layer, 65, 3, {1})) EXPECT_LE(std::fabs(v), 6.0f);
+  EXPECT_THROW(synthesize_texture(layer, 0, 5, {1}), InputError);
+  EXPECT_THROW(synthesize_texture(layer, 5, -1, {1}), InputError);
 }
 
 TEST(GaborTexture, StopsWhenAsked) {
   const GaborLayer layer = layer_of({{3, 0.1, 0.1, 1.0}});
   int calls = 0;
   const auto texture =
-      synthesize_texture(layer, 64, 256, 1, [&](double, std::string_view) { return ++calls < 2; });
+      synthesize_texture(layer, 64, 256, {1}, [&](double, std::string_view) { return ++calls < 2; });
   EXPECT_EQ(calls, 2);
   EXPECT_NE(texture[0], 0.0f);
   EXPECT_EQ(texture[64 * 64], 0.0f);

@@ -71,6 +71,40 @@ TEST(ImageFile, EightBitGreyComesBack) {
   std::filesystem::remove(file);
 }
 
+TEST(ImageFile, SixteenBitColoursComeBack) {
+  const std::vector<std::uint16_t> rgb{0, 1, 256, 65535, 4660, 7};
+  const auto file = temporary("rgb16.png");
+  write_png16_rgb(rgb, 2, 1, file);
+  std::FILE* in = std::fopen(file.c_str(), "rb");
+  ASSERT_NE(in, nullptr);
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, in);
+  png_read_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+  ASSERT_EQ(png_get_bit_depth(png, info), 16);
+  ASSERT_EQ(png_get_color_type(png, info), PNG_COLOR_TYPE_RGB);
+  const png_bytep row = png_get_rows(png, info)[0];
+  for (std::size_t i = 0; i < rgb.size(); ++i) EXPECT_EQ(row[2 * i] * 256 + row[2 * i + 1], rgb[i]);
+  png_destroy_read_struct(&png, &info, nullptr);
+  std::fclose(in);
+  std::filesystem::remove(file);
+}
+
+TEST(ImageFile, FloatColoursComeBack) {
+  const std::vector<float> rgb{-0.5f, 0.0f, 1.25f, 0.1f, 0.2f, 0.3f};
+  const auto file = temporary("rgb.tif");
+  write_tiff_float(rgb, 1, 2, file, 3);
+  TIFF* tiff = TIFFOpen(file.c_str(), "r");
+  ASSERT_NE(tiff, nullptr);
+  for (std::uint32_t y = 0; y < 2; ++y) {
+    std::array<float, 3> pixel{};
+    ASSERT_EQ(TIFFReadScanline(tiff, pixel.data(), y), 1);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(pixel[c], rgb[3 * y + c]);
+  }
+  TIFFClose(tiff);
+  std::filesystem::remove(file);
+}
+
 TEST(ImageFile, FloatsComeBackBitForBit) {
   const std::vector<float> heights{-1.5f, 0.0f, 3.25e-7f, 1e30f, -0.1f, 42.0f};
   const auto file = temporary("height.tif");

@@ -1,0 +1,26 @@
+// The part of synth that draws textures: heights or colours of a recipe's Gabor layers on a plane.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "apps/program.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+struct TextureRequest {
+  std::string size;     // "1024x1024"; empty = no texture
+  std::string content;  // "height" or "color"; empty = colours where layers have them
+  bool tileable = false;
+  int bits = 16;  // of a PNG's channel
+};
+
+void declare_texture_options(Program& program, TextureRequest& request);
+
+// Writes the texture that was asked for, .png or .tif, and its summary. Throws InputError where the request
+// makes no sense or the recipe, read from `file`, holds no such layer.
+void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,
+                   const std::filesystem::path& file, const std::filesystem::path& output);
+
+}  // namespace astrolith
