@@ -5,6 +5,7 @@ find_package(nlohmann_json 3.11 REQUIRED)  # recipes and summaries
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256
 find_package(embree 3 REQUIRED)            # rays for previews, closest points on surfaces
 find_package(OpenMesh REQUIRED)            # half-edges for curvature
+find_package(nanoflann REQUIRED)            # nearest points of a cloud
 find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(fmt REQUIRED)
@@ -13,6 +14,7 @@ if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
   find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs)  # images in
+  find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
 endif()
