@@ -12,31 +12,36 @@
 
 namespace astrolith {
 
+// Bit x is set where the sample at local x of a row is inside.
+using SignRow = std::uint32_t;
+
 template <int B>
 struct LayerBlock {
+  static_assert(B + 1 <= 32, "a row of samples has its signs in one word");
   static constexpr int kSide = B + 1;
   static constexpr std::size_t kSamples = std::size_t{kSide} * kSide * kSide;
-  static constexpr std::size_t kOwned = std::size_t{B} * B * B;
+  static constexpr SignRow kWholeRow = (SignRow{2} << B) - 1;
 
   // Local coordinates 0 .. B.
   static constexpr std::size_t sample(int x, int y, int z) {
     return static_cast<std::size_t>((z * kSide + y) * kSide + x);
   }
-  // Local coordinates 1 .. B.
-  static constexpr std::size_t owned(int x, int y, int z) {
-    return static_cast<std::size_t>(((z - 1) * B + y - 1) * B + x - 1);
-  }
+  static constexpr std::size_t sign_row(int y, int z) { return static_cast<std::size_t>(z * kSide + y); }
+  // Of owned samples: local coordinates 1 .. B.
   static constexpr std::size_t row(int y, int z) { return static_cast<std::size_t>((z - 1) * B + y - 1); }
 
-  bool inside(int i, int j, int k) const { return values[sample(i, j, k)] > 0.0f; }
+  // Leaves the arrays as they are.
+  LayerBlock(int block_x, int block_y) : x(block_x), y(block_y) {}
 
-  int x = 0, y = 0;                    // position in the layer, in blocks
-  std::array<float, kSamples> values;  // at every sample the block sees
-  std::array<std::uint32_t, 3 * kOwned>
-      vertices;  // numbers by (owned sample, axis), where the edge is crossed
+  int x, y;  // position in the layer, in blocks
+  // Filled in by the phases of the mesher, in this order.
+  std::array<float, kSamples> values;        // at every sample the block sees
+  std::array<SignRow, kSide * kSide> signs;  // of the values
   // By row of owned samples: how many vertices and triangles it holds, then where in the layer they start.
   std::array<std::uint32_t, B * B> vertex_rows;
   std::array<std::uint32_t, B * B> triangle_rows;
+  // Numbers by (sample, axis) of the edge that ends there, where it is crossed.
+  std::array<std::uint32_t, 3 * kSamples> vertices;
 };
 
 template <int B>
@@ -48,12 +53,9 @@ class BlockLayer {
         height_(height),
         index_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kAbsent) {}
 
-  LayerBlock<B>& add(int x, int y) {
+  void add(int x, int y) {
     index_[slot(x, y)] = static_cast<std::int32_t>(blocks.size());
-    LayerBlock<B>& block = blocks.emplace_back();
-    block.x = x;
-    block.y = y;
-    return block;
+    blocks.emplace_back(x, y);
   }
 
   // Null where the layer has no active block, or no block at all.

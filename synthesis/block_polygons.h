@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,21 +17,38 @@
 
 namespace astrolith {
 
-// The signs of the cell whose upper corner is local sample x, y, z: bit c set where corner c is inside.
+// The signs of the samples around a row of cells, whose upper corners are the owned samples of row y, z.
 template <int B>
-unsigned cell_signs(const LayerBlock<B>& block, int x, int y, int z) {
-  unsigned signs = 0;
-  for (int c = 0; c < 8; ++c) {
-    const bool inside = block.inside(x - 1 + (c & 1), y - 1 + ((c >> 1) & 1), z - 1 + (c >> 2));
-    signs |= (inside ? 1u : 0u) << c;
-  }
-  return signs;
-}
+struct CellRow {
+  CellRow(const LayerBlock<B>& block, int y, int z)
+      : rows{block.signs[LayerBlock<B>::sign_row(y - 1, z - 1)],
+             block.signs[LayerBlock<B>::sign_row(y, z - 1)], block.signs[LayerBlock<B>::sign_row(y - 1, z)],
+             block.signs[LayerBlock<B>::sign_row(y, z)]} {}
 
-// Whether the edge that ends at local sample x, y, z along axis crosses the surface.
-template <int B>
-bool is_crossed(const LayerBlock<B>& block, int x, int y, int z, int axis) {
-  return block.inside(x, y, z) != block.inside(x - (axis == 0), y - (axis == 1), z - (axis == 2));
+  // Bit x set where the cell with upper corner x is crossed by the surface.
+  SignRow crossed_cells() const {
+    const SignRow any = rows[0] | rows[1] | rows[2] | rows[3];
+    const SignRow all = rows[0] & rows[1] & rows[2] & rows[3];
+    return (any | any << 1) & ~(all & all << 1) & kOwned;
+  }
+  // Bit x set where the edge along axis that ends at sample x, y, z is crossed.
+  SignRow crossed_edges(int axis) const {
+    return (rows[3] ^ (axis == 0 ? rows[3] << 1 : axis == 1 ? rows[2] : rows[1])) & kOwned;
+  }
+  // Of one cell: bit c set where corner c is inside.
+  unsigned cell_signs(int x) const {
+    const auto pair = [&](unsigned r) { return (rows[r] >> (x - 1)) & 3u; };
+    return pair(0) | pair(1) << 2 | pair(2) << 4 | pair(3) << 6;
+  }
+
+  static constexpr SignRow kOwned = LayerBlock<B>::kWholeRow & ~SignRow{1};
+  std::array<SignRow, 4> rows;  // (y - 1, z - 1), (y, z - 1), (y - 1, z), (y, z)
+};
+
+// Calls visit(x) for every set bit x, ascending.
+template <typename Visit>
+void for_each_bit(SignRow bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
 }
 
 template <int B>
@@ -37,12 +56,11 @@ void count_rows(LayerBlock<B>& block) {
   const MarchingCubesTable& table = marching_cubes_table();
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
+      const CellRow<B> cells(block, y, z);
       std::uint32_t vertices = 0, triangles = 0;
-      for (int x = 1; x <= B; ++x) {
-        const unsigned signs = cell_signs(block, x, y, z);
-        if (signs == 0u || signs == 255u) continue;
-        triangles += table[signs].count;
-        for (int axis = 0; axis < 3; ++axis) vertices += is_crossed(block, x, y, z, axis) ? 1u : 0u;
+      for_each_bit(cells.crossed_cells(), [&](int x) { triangles += table[cells.cell_signs(x)].count; });
+      for (int axis = 0; axis < 3; ++axis) {
+        vertices += static_cast<std::uint32_t>(std::popcount(cells.crossed_edges(axis)));
       }
       block.vertex_rows[LayerBlock<B>::row(y, z)] = vertices;
       block.triangle_rows[LayerBlock<B>::row(y, z)] = triangles;
@@ -114,26 +132,54 @@ MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, const LayerBlock<
   return vertex;
 }
 
+// Finished together: enough to keep a field's vector loops busy, few enough for the stack.
+inline constexpr std::size_t kVerticesPerBatch = 128;
+
+// Vertices on their way into a layer's array.
+struct VertexBatch {
+  std::size_t size = 0;
+  std::array<MeshVertex, kVerticesPerBatch> vertices;
+  std::array<std::uint32_t, kVerticesPerBatch> slots;  // in the layer's array
+  PointBatch<4 * kVerticesPerBatch> points;
+};
+
 // Replaces normals by the direction in which F falls, from its values at the corners of a small tetrahedron
 // (k_i, the alternate corners of a cube of half-side h): grad F = (1/4h) sum_i k_i F(p + h k_i) + O(h^2).
-// Returns the number of evaluations; where the sum vanishes the normal stays as it was.
+// Where the sum vanishes the normal stays as it was.
 template <FieldBlockLike Block>
-std::int64_t take_normals(const Block& field, float h, std::vector<MeshVertex>& vertices) {
+void take_normals(const Block& field, float h, VertexBatch& batch) {
   constexpr std::array<Vec3<float>, 4> kCorners = {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
-  PointBatch batch;
+  batch.points.clear();
   for (const Vec3<float>& k : kCorners) {
-    for (const MeshVertex& v : vertices) {
-      batch.add(v.position.x + h * k.x, v.position.y + h * k.y, v.position.z + h * k.z);
+    for (std::size_t i = 0; i < batch.size; ++i) {
+      const Vec3<float>& p = batch.vertices[i].position;
+      batch.points.add(p.x + h * k.x, p.y + h * k.y, p.z + h * k.z);
     }
   }
-  batch.evaluate(field);
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
+  batch.points.evaluate(field);
+  for (std::size_t i = 0; i < batch.size; ++i) {
     Vec3<float> gradient{};
-    for (std::size_t k = 0; k < 4; ++k) gradient += kCorners[k] * batch.value[k * vertices.size() + i];
+    for (std::size_t k = 0; k < 4; ++k) gradient += kCorners[k] * batch.points.value(k * batch.size + i);
     const float length = norm(gradient);
-    if (length > 0.0f && std::isfinite(length)) vertices[i].normal = gradient * (-1.0f / length);
+    if (length > 0.0f && std::isfinite(length)) batch.vertices[i].normal = gradient * (-1.0f / length);
   }
-  return static_cast<std::int64_t>(batch.x.size());
+}
+
+// Calls visit(x, y, z, axis) for the crossed edges that a block owns, in the order of their vertices.
+template <int B, typename Visit>
+void for_each_crossed_edge(const LayerBlock<B>& block, const Visit& visit) {
+  for (int z = 1; z <= B; ++z) {
+    for (int y = 1; y <= B; ++y) {
+      const CellRow<B> cells(block, y, z);
+      const std::array<SignRow, 3> edges = {cells.crossed_edges(0), cells.crossed_edges(1),
+                                            cells.crossed_edges(2)};
+      for_each_bit(edges[0] | edges[1] | edges[2], [&](int x) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if ((edges[static_cast<unsigned>(axis)] >> x & 1u) != 0) visit(x, y, z, axis);
+        }
+      });
+    }
+  }
 }
 
 // Makes a block's vertices, numbers them from layer_first + row start, and puts them into the layer's array.
@@ -142,55 +188,77 @@ template <int B, FieldBlockLike Block>
 std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& field,
                            std::uint32_t layer_first, LayerBlock<B>& block,
                            std::span<MeshVertex> layer_vertices) {
-  std::vector<MeshVertex> made;
-  std::vector<std::uint32_t> slots;
-  for (int z = 1; z <= B; ++z) {
-    for (int y = 1; y <= B; ++y) {
-      std::uint32_t next = block.vertex_rows[LayerBlock<B>::row(y, z)];
-      for (int x = 1; x <= B; ++x) {
-        for (int axis = 0; axis < 3; ++axis) {
-          if (!is_crossed(block, x, y, z, axis)) continue;
-          block.vertices[3 * LayerBlock<B>::owned(x, y, z) + static_cast<unsigned>(axis)] =
-              layer_first + next;
-          made.push_back(place_vertex(grid, layer_z, block, x, y, z, axis));
-          slots.push_back(next++);
-        }
-      }
-    }
-  }
   // A quarter of a step: near enough for O(h^2), far enough for differences of floats.
-  const std::int64_t evaluations = take_normals(field, static_cast<float>(0.25 * grid.samples.step), made);
-  for (std::size_t i = 0; i < made.size(); ++i) layer_vertices[slots[i]] = made[i];
+  const auto h = static_cast<float>(0.25 * grid.samples.step);
+  std::int64_t evaluations = 0;
+  VertexBatch batch;
+  const auto finish = [&] {
+    take_normals(field, h, batch);
+    for (std::size_t i = 0; i < batch.size; ++i) layer_vertices[batch.slots[i]] = batch.vertices[i];
+    evaluations += static_cast<std::int64_t>(batch.points.size());
+    batch.size = 0;
+  };
+  std::array<std::uint32_t, B* B> next = block.vertex_rows;
+  for_each_crossed_edge(block, [&](int x, int y, int z, int axis) {
+    const std::uint32_t slot = next[LayerBlock<B>::row(y, z)]++;
+    block.vertices[3 * LayerBlock<B>::sample(x, y, z) + static_cast<unsigned>(axis)] = layer_first + slot;
+    batch.vertices[batch.size] = place_vertex(grid, layer_z, block, x, y, z, axis);
+    batch.slots[batch.size++] = slot;
+    if (batch.size == kVerticesPerBatch) finish();
+  });
+  if (batch.size > 0) finish();
   return evaluations;
 }
 
-// The number of the vertex on an edge of the cell whose upper corner is local sample x, y, z.
+// Copies the numbers of the vertices on edges that lower neighbours own.
 template <int B>
-std::uint32_t vertex_number(const Owners<B>& owners, int x, int y, int z, int edge) {
-  const CellEdge e = cell_edge(edge);
-  const int ex = x - 1 + (e.upper & 1), ey = y - 1 + ((e.upper >> 1) & 1), ez = z - 1 + (e.upper >> 2);
-  const LayerBlock<B>* owner = owners[owner_of(ex, ey, ez)];
-  if (owner == nullptr) throw WorkError("mesher: an edge of the surface lies in a block that was left out");
-  const std::size_t sample = LayerBlock<B>::owned(ex == 0 ? B : ex, ey == 0 ? B : ey, ez == 0 ? B : ez);
-  return owner->vertices[3 * sample + static_cast<unsigned>(e.axis)];
+void borrow_vertices(const Owners<B>& owners, LayerBlock<B>& block) {
+  for_each_borrowed<B>([&](int x, int y, int z, unsigned owner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int lx = x - (axis == 0), ly = y - (axis == 1), lz = z - (axis == 2);
+      if (lx < 0 || ly < 0 || lz < 0) continue;  // no cell of this block has the edge
+      const SignRow upper = block.signs[LayerBlock<B>::sign_row(y, z)] >> x;
+      const SignRow lower = block.signs[LayerBlock<B>::sign_row(ly, lz)] >> lx;
+      if (((upper ^ lower) & 1u) == 0) continue;
+      if (owners[owner] == nullptr) {
+        throw WorkError("mesher: an edge of the surface lies in a block that was left out");
+      }
+      block.vertices[3 * LayerBlock<B>::sample(x, y, z) + static_cast<unsigned>(axis)] =
+          owners[owner]->vertices[3 * owned_sample<B>(x, y, z) + static_cast<unsigned>(axis)];
+    }
+  });
+}
+
+// Where a cell's edges have their vertex numbers, counted from those of its upper corner.
+template <int B>
+constexpr std::array<std::ptrdiff_t, 12> edge_offsets() {
+  std::array<std::ptrdiff_t, 12> offsets{};
+  for (int edge = 0; edge < 12; ++edge) {
+    const CellEdge e = cell_edge(edge);
+    const auto sample = LayerBlock<B>::sample(e.upper & 1, (e.upper >> 1) & 1, e.upper >> 2);
+    offsets[static_cast<unsigned>(edge)] = 3 * (static_cast<std::ptrdiff_t>(sample) -
+                                                static_cast<std::ptrdiff_t>(LayerBlock<B>::sample(1, 1, 1))) +
+                                           e.axis;
+  }
+  return offsets;
 }
 
 template <int B>
-void make_triangles(const Owners<B>& owners, std::span<Triangle> layer_triangles) {
+void make_triangles(const LayerBlock<B>& block, std::span<Triangle> layer_triangles) {
+  static constexpr std::array<std::ptrdiff_t, 12> kOffsets = edge_offsets<B>();
   const MarchingCubesTable& table = marching_cubes_table();
-  const LayerBlock<B>& block = *owners[0];
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
+      const CellRow<B> cells(block, y, z);
       std::size_t next = block.triangle_rows[LayerBlock<B>::row(y, z)];
-      for (int x = 1; x <= B; ++x) {
-        const CellTriangles& cell = table[cell_signs(block, x, y, z)];
+      for_each_bit(cells.crossed_cells(), [&](int x) {
+        const CellTriangles& cell = table[cells.cell_signs(x)];
+        const std::uint32_t* numbers = block.vertices.data() + 3 * LayerBlock<B>::sample(x, y, z);
         for (unsigned t = 0; t < cell.count; ++t) {
           Triangle& triangle = layer_triangles[next++];
-          for (unsigned k = 0; k < 3; ++k) {
-            triangle[k] = vertex_number(owners, x, y, z, cell.edges[3 * t + k]);
-          }
+          for (unsigned k = 0; k < 3; ++k) triangle[k] = numbers[kOffsets[cell.edges[3 * t + k]]];
         }
-      }
+      });
     }
   }
 }

@@ -2,8 +2,10 @@
 // its lower neighbours own.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "synthesis/block_culling.h"
 #include "synthesis/block_layer.h"
@@ -11,19 +13,28 @@
 namespace astrolith {
 
 // Points gathered for one call of a field block.
-struct PointBatch {
+template <std::size_t Capacity>
+class PointBatch {
+ public:
   void add(float px, float py, float pz) {
-    x.push_back(px);
-    y.push_back(py);
-    z.push_back(pz);
+    x_[size_] = px;
+    y_[size_] = py;
+    z_[size_] = pz;
+    ++size_;
   }
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  float value(std::size_t i) const { return value_[i]; }
+
   template <FieldBlockLike Block>
   void evaluate(const Block& field, float band = kExactEverywhere) {
-    value.resize(x.size());
-    if (!x.empty()) field.evaluate(x, y, z, value, band);
+    const auto points = [this](const auto& v) { return std::span(v).first(size_); };
+    if (size_ > 0) field.evaluate(points(x_), points(y_), points(z_), std::span(value_).first(size_), band);
   }
 
-  std::vector<float> x, y, z, value;
+ private:
+  std::size_t size_ = 0;
+  std::array<float, Capacity> x_, y_, z_, value_;
 };
 
 // Samples beyond the grid, in blocks that stick out of it, and all samples before they are known.
@@ -34,76 +45,126 @@ inline constexpr float kOutsideGrid = -1.0f;
 // right, and the vertex stays on its edge.
 inline constexpr double kSampleBand = 2.0;
 
+// Local samples first .. last along x of a row that a block has to evaluate itself.
+struct SampleRow {
+  int first, last;
+};
+
+// The row's samples within the grid that belong to the block or, since their owner is not active, to nobody.
+template <int B>
+SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, const Owners<B>& owners,
+                          const LayerBlock<B>& block, int y, int z) {
+  const auto mine = [&](unsigned owner) { return owner == 0 || owners[owner] == nullptr; };
+  const auto [nx, ny, nz] = grid.samples.cells;
+  if (block.y * B + y > ny || layer_z * B + z > nz) return {0, -1};
+  return {mine(owner_of(0, y, z)) ? 0 : 1, mine(owner_of(1, y, z)) ? std::min(B, nx - block.x * B) : 0};
+}
+
+template <int B>
+bool is_at_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block) {
+  const auto touches = [](int first, int cells) { return first == 0 || first + B >= cells; };
+  const auto [nx, ny, nz] = grid.samples.cells;
+  return touches(block.x * B, nx) || touches(block.y * B, ny) || touches(layer_z * B, nz);
+}
+
+// Throws WorkError when a sample on the grid's border is inside.
+template <int B>
+void check_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block) {
+  const auto [nx, ny, nz] = grid.samples.cells;
+  for (int z = 0; z <= B; ++z) {
+    for (int y = 0; y <= B; ++y) {
+      for (int x = 0; x <= B; ++x) {
+        const int gx = block.x * B + x, gy = block.y * B + y, gz = layer_z * B + z;
+        const bool on_border = gx == 0 || gy == 0 || gz == 0 || gx == nx || gy == ny || gz == nz;
+        if (on_border && block.values[LayerBlock<B>::sample(x, y, z)] > 0.0f) fail_at_border();
+      }
+    }
+  }
+}
+
 // Evaluates the samples whose owner is the block itself or no active block; returns how many. Throws
 // WorkError when a sample on the grid's border is inside.
 template <int B, FieldBlockLike Block>
 std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block& field,
                               const Owners<B>& owners, LayerBlock<B>& block) {
-  PointBatch batch;
-  std::vector<std::size_t> slots;
-  bool at_border = false;
-  std::vector<bool> on_border;
+  PointBatch<LayerBlock<B>::kSamples> batch;
+  const auto for_each_row = [&](const auto& visit) {
+    for (int z = 0; z <= B; ++z) {
+      for (int y = 0; y <= B; ++y) visit(y, z, row_to_evaluate(grid, layer_z, owners, block, y, z));
+    }
+  };
+  for_each_row([&](int y, int z, SampleRow row) {
+    const float py = grid.samples.y(block.y * B + y), pz = grid.samples.z(layer_z * B + z);
+    for (int x = row.first; x <= row.last; ++x) batch.add(grid.samples.x(block.x * B + x), py, pz);
+  });
+  batch.evaluate(field, static_cast<float>(kSampleBand * grid.samples.step));
   block.values.fill(kOutsideGrid);
-  const auto [nx, ny, nz] = grid.samples.cells;
+  std::size_t next = 0;
+  for_each_row([&](int y, int z, SampleRow row) {
+    for (int x = row.first; x <= row.last; ++x) {
+      block.values[LayerBlock<B>::sample(x, y, z)] = batch.value(next++);
+    }
+  });
+  if (is_at_border(grid, layer_z, block)) check_border(grid, layer_z, block);
+  return static_cast<std::int64_t>(batch.size());
+}
+
+// Calls visit(x, y, z, owner) for every sample that a lower neighbour owns.
+template <int B, typename Visit>
+void for_each_borrowed(const Visit& visit) {
   for (int z = 0; z <= B; ++z) {
     for (int y = 0; y <= B; ++y) {
-      for (int x = 0; x <= B; ++x) {
-        const unsigned owner = owner_of(x, y, z);
-        if (owner != 0 && owners[owner] != nullptr) continue;
-        const int gx = block.x * B + x, gy = block.y * B + y, gz = layer_z * B + z;
-        if (gx > nx || gy > ny || gz > nz) continue;
-        batch.add(grid.samples.x(gx), grid.samples.y(gy), grid.samples.z(gz));
-        slots.push_back(LayerBlock<B>::sample(x, y, z));
-        on_border.push_back(gx == 0 || gy == 0 || gz == 0 || gx == nx || gy == ny || gz == nz);
-      }
+      const bool inner_row = y != 0 && z != 0;
+      for (int x = 0; x <= (inner_row ? 0 : B); ++x) visit(x, y, z, owner_of(x, y, z));
     }
   }
-  batch.evaluate(field, static_cast<float>(kSampleBand * grid.samples.step));
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    block.values[slots[i]] = batch.value[i];
-    at_border = at_border || (on_border[i] && batch.value[i] > 0.0f);
-  }
-  if (at_border) fail_at_border();
-  return static_cast<std::int64_t>(slots.size());
+}
+
+// Where the owner of a borrowed sample keeps it.
+template <int B>
+std::size_t owned_sample(int x, int y, int z) {
+  return LayerBlock<B>::sample(x == 0 ? B : x, y == 0 ? B : y, z == 0 ? B : z);
 }
 
 // Copies what active lower neighbours own.
 template <int B>
 void borrow_samples(const Owners<B>& owners, LayerBlock<B>& block) {
-  for (int z = 0; z <= B; ++z) {
-    for (int y = 0; y <= B; ++y) {
-      const bool inner_row = y != 0 && z != 0;
-      for (int x = 0; x <= (inner_row ? 0 : B); ++x) {
-        const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
-        if (owner == nullptr || owner == &block) continue;
-        block.values[LayerBlock<B>::sample(x, y, z)] =
-            owner->values[LayerBlock<B>::sample(x == 0 ? B : x, y == 0 ? B : y, z == 0 ? B : z)];
-      }
-    }
+  for_each_borrowed<B>([&](int x, int y, int z, unsigned owner) {
+    if (owners[owner] == nullptr) return;
+    block.values[LayerBlock<B>::sample(x, y, z)] = owners[owner]->values[owned_sample<B>(x, y, z)];
+  });
+}
+
+template <int B>
+void take_signs(LayerBlock<B>& block) {
+  const float* value = block.values.data();
+  for (SignRow& row : block.signs) {
+    row = 0;
+    for (int x = 0; x <= B; ++x) row |= (*value++ > 0.0f ? SignRow{1} : SignRow{0}) << x;
   }
 }
 
-// Throws WorkError when the surface crosses side 0 .. 5 (axis, then low or high) of a block whose neighbour
-// there was proved free of surface: the mesh would have a hole.
+// Whether the surface crosses side 0 .. 5 (axis, then low or high) of a block.
 template <int B>
-void check_side_is_uncrossed(const LayerBlock<B>& block, int side) {
+bool is_side_crossed(const LayerBlock<B>& block, int side) {
   const int axis = side / 2;
   const int fixed = side % 2 != 0 ? B : 0;
-  const auto inside = [&](int u, int v) {
-    return axis == 0   ? block.inside(fixed, u, v)
-           : axis == 1 ? block.inside(u, fixed, v)
-                       : block.inside(u, v, fixed);
-  };
+  const SignRow mask = axis == 0 ? SignRow{1} << fixed : LayerBlock<B>::kWholeRow;
+  SignRow any = 0, all = mask;
   for (int v = 0; v <= B; ++v) {
-    for (int u = 0; u <= B; ++u) {
-      if (inside(u, v) != inside(0, 0)) {
-        throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
-      }
+    for (int u = 0; u <= (axis == 0 ? B : 0); ++u) {
+      const SignRow row = block.signs[axis == 0   ? LayerBlock<B>::sign_row(u, v)
+                                      : axis == 1 ? LayerBlock<B>::sign_row(fixed, v)
+                                                  : LayerBlock<B>::sign_row(v, fixed)];
+      any |= row & mask;
+      all &= row;
     }
   }
+  return any != 0 && all != mask;
 }
 
-// All sides of a layer that border on nothing active; above's blocks are known by now.
+// Throws WorkError when the surface crosses a side of a block whose neighbour there was proved free of
+// surface: the mesh would have a hole. Above's blocks are known by now.
 template <int B>
 void check_open_sides(const BlockLayer<B>& layer, const BlockLayer<B>& below, const BlockLayer<B>& above) {
   parallel_for(0, static_cast<std::int64_t>(layer.blocks.size()), [&](std::int64_t i) {
@@ -112,7 +173,9 @@ void check_open_sides(const BlockLayer<B>& layer, const BlockLayer<B>& below, co
         layer.find(block.x - 1, block.y), layer.find(block.x + 1, block.y), layer.find(block.x, block.y - 1),
         layer.find(block.x, block.y + 1), below.find(block.x, block.y),     above.find(block.x, block.y)};
     for (int side = 0; side < 6; ++side) {
-      if (neighbours[static_cast<unsigned>(side)] == nullptr) check_side_is_uncrossed(block, side);
+      if (neighbours[static_cast<unsigned>(side)] == nullptr && is_side_crossed(block, side)) {
+        throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
+      }
     }
   });
 }

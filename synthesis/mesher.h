@@ -94,6 +94,7 @@ class LayeredMesher {
     for_each_block(layer, [&](std::size_t i) {
       LayerBlock<B>& block = layer.blocks[i];
       borrow_samples(find_owners(layer, below, block), block);
+      take_signs(block);
       count_rows(block);
       return std::int64_t{0};
     });
@@ -105,21 +106,22 @@ class LayeredMesher {
       throw WorkError("mesher: more than 2^32 vertices; lower the resolution");
     }
     const auto first = static_cast<std::uint32_t>(statistics_.vertices);
-    std::vector<MeshVertex> vertices(counts.vertices);
+    vertices_.resize(counts.vertices);
     for_each_block(layer, [&](std::size_t i) {
-      return make_vertices(grid_, z, active[i].field, first, layer.blocks[i], std::span(vertices));
+      return make_vertices(grid_, z, active[i].field, first, layer.blocks[i], std::span(vertices_));
     });
-    sink_.add_vertices(vertices);
+    sink_.add_vertices(vertices_);
     statistics_.vertices += counts.vertices;
   }
 
-  void emit_triangles(const LayerCounts& counts, const BlockLayer<B>& below, const BlockLayer<B>& layer) {
-    std::vector<Triangle> triangles(counts.triangles);
+  void emit_triangles(const LayerCounts& counts, const BlockLayer<B>& below, BlockLayer<B>& layer) {
+    triangles_.resize(counts.triangles);
     for_each_block(layer, [&](std::size_t i) {
-      make_triangles(find_owners(layer, below, layer.blocks[i]), std::span(triangles));
+      borrow_vertices(find_owners(layer, below, layer.blocks[i]), layer.blocks[i]);
+      make_triangles(layer.blocks[i], std::span(triangles_));
       return std::int64_t{0};
     });
-    sink_.add_triangles(triangles);
+    sink_.add_triangles(triangles_);
     statistics_.triangles += counts.triangles;
   }
 
@@ -127,6 +129,9 @@ class LayeredMesher {
   decltype(std::declval<const Field&>().gather(Box{})) whole_;
   MeshSink& sink_;
   MeshStatistics statistics_;
+  // Of the layer in hand; kept for their memory.
+  std::vector<MeshVertex> vertices_;
+  std::vector<Triangle> triangles_;
 };
 
 // Cells along a block's side: 8 keeps a block's samples in the first-level cache.

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""VTK's flying edges, one thread, on the field that isosurface_benchmark wrote.
+
+    isosurface_peers.py FIELD.raw      needs: pip install vtk numpy
+"""
+import json
+import sys
+import time
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
+
+
+def image_of(path):
+    values = np.fromfile(path, np.float32)
+    side = round(values.size ** (1 / 3))
+    image = vtk.vtkImageData()
+    image.SetDimensions(side, side, side)
+    image.GetPointData().SetScalars(numpy_to_vtk(values, deep=True))
+    return image
+
+
+def flying_edges(image, normals, repeats=5):
+    best, triangles = float("inf"), 0
+    for _ in range(repeats):
+        contour = vtk.vtkFlyingEdges3D()
+        contour.SetInputData(image)
+        contour.SetValue(0, 0.0)
+        contour.ComputeScalarsOff()
+        contour.ComputeGradientsOff()
+        contour.SetComputeNormals(normals)
+        start = time.perf_counter()
+        contour.Update()
+        best = min(best, time.perf_counter() - start)
+        triangles = contour.GetOutput().GetNumberOfPolys()
+    return {"triangles": triangles, "seconds": round(best, 3), "mtriangles_per_s": round(triangles / best / 1e6, 2)}
+
+
+def main():
+    vtk.vtkSMPTools.Initialize(1)
+    image = image_of(sys.argv[1])
+    version = vtk.vtkVersion().GetVTKVersion()
+    print(json.dumps({"vtk": version, "flying_edges": flying_edges(image, False),
+                      "flying_edges_with_normals": flying_edges(image, True)}))
+
+
+if __name__ == "__main__":
+    main()
