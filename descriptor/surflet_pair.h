@@ -7,10 +7,14 @@
 // matters. With d = (p2 - p1) / |p2 - p1| the frame is u = n1, v = d x u / |d x u|, w = u x v, and
 //   alpha = atan2(w.n2, u.n2) in (-pi, pi]     beta  = v.n2 in [-1, 1]
 //   gamma = u.d in [-1, 1]                     delta = |p2 - p1| / largest distance in (0, 1]
-// are cut into five equal bins each. The ranges are those that Wahl's formulas have; the thesis (3.3.1)
-// prints others, and -d in gamma, which mirrors that axis.
+// are cut into equal bins. The ranges are those that Wahl's formulas have; the thesis (3.3.1) prints others,
+// and -d in gamma, which mirrors that axis.
+//
+// No root, quotient or arc tangent is taken: a feature is beyond a border when its square is, and on which
+// side of a border's direction an angle lies follows from squares and signs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "numerics/host_device.h"
@@ -19,65 +23,137 @@
 
 namespace astrolith {
 
-inline constexpr int kSurfletBins = 625;
-
 struct Surflet {
-  Vec3f point;   // in units of the largest distance between two points
+  Vec3f point;   // in units of the largest distance between two points, the middle of their box at 0
   Vec3f normal;  // unit length
+  Vec3f moment;  // normal x point: with the normal the Pluecker coordinates of the line along the normal
 };
 
-// Index in -2 .. 2 of value/scale among the bins of [-1, 1] with borders at +-0.2 and +-0.6, from squares;
-// a value on a border belongs to the bin nearer to zero. scale >= 0; 0/0 is in the middle.
-ASTROLITH_HD inline std::int32_t symmetric_bin(float value, float squared_scale) {
-  const float squared = value * value;
-  const std::int32_t beyond =
-      (squared > 0.04f * squared_scale ? 1 : 0) + (squared > 0.36f * squared_scale ? 1 : 0);
-  return value < 0.0f ? -beyond : beyond;
+ASTROLITH_HD inline Surflet surflet(Vec3f point, Vec3f normal) {
+  return {point, normal, cross(normal, point)};
 }
 
-// Index in -2 .. 2 of atan2(y, x) among the bins of (-pi, pi] with borders at +-pi/5 and +-3pi/5: the side on
-// which (x, |y|) lies of each border's direction. No arc tangent is needed for that.
-ASTROLITH_HD inline std::int32_t angle_bin(float y, float x) {
-  constexpr float kCos36 = 0.80901699437494742f, kSin36 = 0.58778525229247313f;
-  constexpr float kCos108 = -0.30901699437494742f, kSin108 = 0.95105651629515357f;
-  const float height = math::abs(y);
-  const std::int32_t beyond =
-      (kCos36 * height > kSin36 * x ? 1 : 0) + (kCos108 * height > kSin108 * x ? 1 : 0);
-  return y < 0.0f ? -beyond : beyond;
-}
+// Squares of the borders between kBins equal bins, those on one side of the middle; an even number of bins
+// has one more border, in the middle itself.
+template <int kBins>
+struct PairBorders {
+  static constexpr int kSide = (kBins - 1) / 2;
+  static constexpr bool kEven = kBins % 2 == 0;
+  std::array<float, kSide> unit{};        // of [-1, 1]
+  std::array<float, kSide> tangent{};     // tan^2 of those of (-pi, pi]
+  std::array<bool, kSide> obtuse{};       // whether that border is beyond pi / 2 ...
+  std::array<bool, kSide> right{};        // ... or at pi / 2
+  std::array<float, kBins - 1> length{};  // of [0, 1]
 
-// ((alpha 5 + beta) 5 + gamma) 5 + delta with bins 0 .. 4, the same for (i, j) and (j, i). Always defined:
-// points in the same place have alpha, beta and gamma in the middle and delta at 0; where both normals lie
-// along the connecting line beta is in the middle and alpha 0 or pi as the normals agree or oppose.
-ASTROLITH_HD inline std::int32_t surflet_bin(Surflet i, Surflet j) {
+  constexpr PairBorders() {
+    for (int k = 0; k < kSide; ++k) {
+      const int twice = kEven ? 2 * (k + 1) : 2 * k + 1;  // the border is twice / kBins of the half axis
+      const double part = static_cast<double>(twice) / kBins, c = cosine(part), c2 = c * c;
+      unit[at(k)] = static_cast<float>(part * part);
+      right[at(k)] = 2 * twice == kBins;
+      obtuse[at(k)] = 2 * twice > kBins;
+      tangent[at(k)] = right[at(k)] ? 0.0f : static_cast<float>((1 - c2) / c2);
+    }
+    for (int k = 1; k < kBins; ++k) {
+      length[at(k - 1)] = static_cast<float>(static_cast<double>(k * k) / (kBins * kBins));
+    }
+  }
+
+ private:
+  static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
+  // cos(pi x) for x in [0, 1] by its series: the standard library's is no constant expression.
+  static constexpr double cosine(double x) {
+    const double t2 = 3.14159265358979323846 * 3.14159265358979323846 * x * x;
+    double term = 1, sum = 1;
+    for (int k = 1; k <= 15; ++k) sum += term *= -t2 / ((2 * k - 1) * (2 * k));
+    return sum;
+  }
+};
+
+// What the four features are made of; r = p2 - p1.
+struct SurfletPair {
+  bool origin_is_j;  // the second of the two surflets given is p1
+  float length2;     // |r|^2
+  float u_r;         // u.r
+  float across2;     // |r x u|^2, not below 1e-12: so a line along both normals has a defined alpha
+  float cosine;      // u.n2
+  float v_n2;        // v.n2 |r x u|
+  float w_n2;        // w.n2 |r x u|
+};
+
+ASTROLITH_HD inline SurfletPair surflet_pair(const Surflet& i, const Surflet& j) {
   using math::fma;
-  const Vec3f n = i.normal, m = j.normal;
+  const Vec3f n = i.normal, m = j.normal, a = i.moment, b = j.moment;
   const float rx = j.point.x - i.point.x, ry = j.point.y - i.point.y, rz = j.point.z - i.point.z;
-  const float length2 = fma(rx, rx, fma(ry, ry, rz * rz));
   const float along_i = fma(n.x, rx, fma(n.y, ry, n.z * rz));
-  const float along_j = fma(m.x, rx, fma(m.y, ry, m.z * rz));
-  const float cosine = fma(n.x, m.x, fma(n.y, m.y, n.z * m.z));
-  // (r x u).n2 = r.(n x m), whichever of the two is the origin. Without fma it is exactly antisymmetric.
-  const float triple =
-      fma(rx, n.y * m.z - n.z * m.y, fma(ry, n.z * m.x - n.x * m.z, rz * (n.x * m.y - n.y * m.x)));
+  const float along_j = fma(m.x, -rx, fma(m.y, -ry, m.z * -rz));  // as seen from j
+  SurfletPair pair;
+  pair.length2 = fma(rx, rx, fma(ry, ry, rz * rz));
+  pair.cosine = fma(n.x, m.x, fma(n.y, m.y, n.z * m.z));
+  // (r x u).n2 = r.(n x m), whichever of the two is the origin: the reciprocal product of the normals' lines.
+  pair.v_n2 = fma(n.x, b.x, fma(n.y, b.y, fma(n.z, b.z, fma(m.x, a.x, fma(m.y, a.y, m.z * a.z)))));
+  // A relative 2e-7 in favour of a positive along_i settles the tie of parallel normals, rounded or not.
+  pair.origin_is_j = math::abs(along_j) < fma(-2e-7f, along_i, math::abs(along_i));
+  pair.u_r = pair.origin_is_j ? along_j : along_i;
+  const float minus_n2_r = pair.origin_is_j ? along_i : along_j;
+  pair.across2 = math::max(fma(-pair.u_r, pair.u_r, pair.length2), 1e-12f);
+  pair.w_n2 = -fma(pair.u_r, pair.cosine, minus_n2_r);
+  return pair;
+}
 
-  // Were j the origin, r would change its sign.
-  const float size_i = math::abs(along_i), size_j = math::abs(along_j);
-  const bool origin_is_j = (size_j < size_i) | ((size_j == size_i) & (along_i < 0.0f));
-  const float u_r = origin_is_j ? -along_j : along_i;  // u.(p2 - p1)
-  const float m_r = origin_is_j ? -along_i : along_j;  // n2.(p2 - p1)
+// amount when the condition holds: in the form that compilers turn into masked additions.
+ASTROLITH_HD inline void add_if(bool condition, std::int32_t amount, std::int32_t& sum) {
+  sum = condition ? sum + amount : sum;
+}
 
-  // |r x u|^2, kept above rounding noise so that a line along both normals has a defined alpha.
-  const float across2 = math::max(fma(-u_r, u_r, length2), 1e-12f * length2);
-  const float across = math::sqrt(across2);
-  // w.n2 and u.n2, both times |r x u|.
-  const std::int32_t alpha = angle_bin(fma(-u_r, cosine, m_r), cosine * across);
-  const std::int32_t beta = symmetric_bin(triple, across2);
-  const std::int32_t gamma = symmetric_bin(u_r, length2);
-  const std::int32_t delta = (length2 > 0.04f ? 1 : 0) + (length2 > 0.16f ? 1 : 0) +
-                             (length2 > 0.36f ? 1 : 0) + (length2 > 0.64f ? 1 : 0);
-  constexpr std::int32_t kMiddle = 2 * 125 + 2 * 25 + 2 * 5;
-  return kMiddle + 125 * alpha + 25 * beta + 5 * gamma + delta;
+// Adds stride times the bin, counted from the middle one, of value / scale among the bins of [-1, 1], from
+// the squares of both; a value on a border belongs to the bin nearer to zero, 0/0 to the middle.
+template <int kBins>
+ASTROLITH_HD inline void add_unit_bin(float value, float scale2, std::int32_t stride, std::int32_t& sum) {
+  constexpr PairBorders<kBins> borders;
+  const float value2 = value * value;
+  const std::int32_t step = value < 0.0f ? -stride : stride;
+  if (borders.kEven) add_if(value < 0.0f, -stride, sum);
+  ASTROLITH_UNROLL
+  for (int k = 0; k < borders.kSide; ++k)
+    add_if(value2 > borders.unit[static_cast<std::size_t>(k)] * scale2, step, sum);
+}
+
+// The same for the angle atan2(y, x) among the bins of (-pi, pi], from y^2 and x |x|.
+template <int kBins>
+ASTROLITH_HD inline void add_angle_bin(float y, float signed_x2, std::int32_t stride, std::int32_t& sum) {
+  constexpr PairBorders<kBins> borders;
+  const float y2 = y * y;
+  const std::int32_t step = y < 0.0f ? -stride : stride;
+  if (borders.kEven) add_if(y < 0.0f, -stride, sum);
+  ASTROLITH_UNROLL
+  for (int k = 0; k < borders.kSide; ++k) {
+    const float t = borders.tangent[k];
+    const bool beyond = borders.right[k]    ? signed_x2 < 0.0f
+                        : borders.obtuse[k] ? math::fma(t, signed_x2, y2) < 0.0f
+                                            : y2 > t * signed_x2;
+    add_if(beyond, step, sum);
+  }
+}
+
+// ((alpha kBins + beta) kBins + gamma) kBins + delta with bins 0 .. kBins - 1, the same for (i, j) and (j, i)
+// but for rounding; plus kBins^4 where j is the origin. Always defined: of points in the same place beta and
+// gamma are in the middle and delta is 0; there, and where both normals lie along the connecting line, alpha
+// is 0 or pi as the normals agree or oppose.
+template <int kBins>
+ASTROLITH_HD inline std::int32_t surflet_code(const Surflet& i, const Surflet& j) {
+  constexpr PairBorders<kBins> borders;
+  constexpr std::int32_t kGamma = kBins, kBeta = kGamma * kBins, kAlpha = kBeta * kBins;
+  constexpr std::int32_t kMiddle = kBins / 2 * (kAlpha + kBeta + kGamma);
+  const SurfletPair pair = surflet_pair(i, j);
+  std::int32_t code = kMiddle;
+  add_angle_bin<kBins>(pair.w_n2, pair.cosine * math::abs(pair.cosine) * pair.across2, kAlpha, code);
+  add_unit_bin<kBins>(pair.v_n2, pair.across2, kBeta, code);
+  add_unit_bin<kBins>(pair.u_r, pair.length2, kGamma, code);
+  ASTROLITH_UNROLL
+  for (int k = 0; k + 1 < kBins; ++k) add_if(pair.length2 > borders.length[k], 1, code);
+  add_if(pair.origin_is_j, kAlpha * kBins, code);
+  return code;
 }
 
 }  // namespace astrolith

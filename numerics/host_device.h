@@ -19,3 +19,10 @@
 #else
 #define ASTROLITH_SIMD_CLONES
 #endif
+
+// Before a short loop of constant length inside a loop that is to be vectorised: unrolled in time for that.
+#if defined(__CUDACC__) || defined(__clang__)
+#define ASTROLITH_UNROLL _Pragma("unroll")
+#else
+#define ASTROLITH_UNROLL _Pragma("GCC unroll 16")
+#endif

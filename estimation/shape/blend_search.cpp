@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "descriptor/histogram_distance.h"
 #include "descriptor/surflet_histogram.h"
 #include "estimation/shape/isosurface_projection.h"
 
@@ -35,7 +36,7 @@ MetaballBody body_at(const std::vector<Sphere>& packing, std::span<const double>
 
 BlendSearchSummary search_blend(const std::vector<Sphere>& packing, const SurfaceSamples& samples,
                                 const BlendSearchOptions& options, const Progress& progress) {
-  const SurfletHistogram wanted = surflet_histogram(samples.points, samples.normals);
+  const ShapeHistogram wanted = surflet_histogram(samples.points, samples.normals);
   const Objective dissimilarity = [&](std::span<const double> x) {
     const SurfaceSamples projected = project_onto_isosurface(model_of(body_at(packing, x)), samples.points);
     return 1.0 - similarity(wanted, surflet_histogram(projected.points, projected.normals));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "descriptor/histogram_distance.h"
 #include "descriptor/surflet_histogram.h"
 #include "estimation/shape/blend_search.h"
 #include "estimation/shape/sphere_packing.h"
@@ -107,7 +108,7 @@ MetaballBody body_in_target_frame(MetaballBody body, const TargetBody& target) {
   return body;
 }
 
-SurfletHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
+ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
   const SurfaceSamples samples = sample_poisson_disk(mesh, kSimilaritySamples, seed);
   return surflet_histogram(samples.points, samples.normals);
 }
@@ -116,7 +117,7 @@ void measure(const TargetBody& target, const ShapeFitOptions& options, ShapeFitR
   const std::uint64_t seed = options.seed;
   result.check = check_fit(target, body_in_target_frame(result.body, target), options.check_resolution,
                            options.check_samples, stream_seed(seed, kDistances));
-  const SurfletHistogram wanted = fresh_histogram(target.surface, stream_seed(seed, kFreshTarget));
+  const ShapeHistogram wanted = fresh_histogram(target.surface, stream_seed(seed, kFreshTarget));
   result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));
   result.similarity_floor =
       similarity(wanted, fresh_histogram(target.surface, stream_seed(seed, kFreshAgain)));

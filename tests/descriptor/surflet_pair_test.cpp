@@ -18,20 +18,25 @@ Surflet single(const Oriented& s) {
   const auto f = [](const Vec3d& v) {
     return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   };
-  return {f(s.point), f(s.normal)};
+  return surflet(f(s.point), f(s.normal));
 }
 
-// 0 .. 4 of a value in [-1, 1], or nothing when it is within margin of a border.
-std::optional<int> fifth(double value, double margin) {
-  const double position = (value + 1) / 2 * 5;
+// 0 .. bins - 1 of a value in [-1, 1], or nothing when it is within margin of a border.
+std::optional<int> part(double value, int bins, double margin) {
+  const double position = (value + 1) / 2 * bins;
   const double to_border = std::fabs(position - std::round(position));
-  const bool at_end = position < 0.5 || position > 4.5;
-  if (to_border < 2.5 * margin && !at_end) return {};
-  return std::clamp(static_cast<int>(position), 0, 4);
+  const bool at_end = position < 0.5 || position > bins - 0.5;
+  if (to_border < bins / 2.0 * margin && !at_end) return {};
+  return std::clamp(static_cast<int>(position), 0, bins - 1);
 }
+
+struct Expected {
+  int bin;
+  bool origin_is_j;
+};
 
 // The features word by word in double precision; nothing where rounding may decide.
-std::optional<int> bin_by_definition(const Oriented& i, const Oriented& j) {
+std::optional<Expected> bin_by_definition(const Oriented& i, const Oriented& j, int bins) {
   const double margin = 1e-5;
   const Vec3d r = j.point - i.point;
   const double a_i = std::fabs(dot(i.normal, r)), a_j = std::fabs(dot(j.normal, r));
@@ -42,62 +47,103 @@ std::optional<int> bin_by_definition(const Oriented& i, const Oriented& j) {
   const double alpha = std::atan2(dot(w, two.normal), dot(u, two.normal));
   const double wide = margin / norm(r) / norm(d_u);
   if (std::fabs(std::fabs(alpha) - kPi) < wide) return {};
-  const auto a = fifth(alpha / kPi, wide), b = fifth(dot(v, two.normal), wide), c = fifth(dot(u, d), wide),
-             e = fifth(2 * norm(r) - 1, margin);
+  const auto a = part(alpha / kPi, bins, wide), b = part(dot(v, two.normal), bins, wide),
+             c = part(dot(u, d), bins, wide), e = part(2 * norm(r) - 1, bins, margin);
   if (!a || !b || !c || !e) return {};
-  return ((*a * 5 + *b) * 5 + *c) * 5 + *e;
+  return Expected{((*a * bins + *b) * bins + *c) * bins + *e, a_i > a_j};
 }
 
-TEST(SurfletPair, AgreesWithTheDefinitionInDoublePrecision) {
-  CounterRandom random(17);
+template <int kBins>
+void expect_definition() {
+  constexpr int kAll = kBins * kBins * kBins * kBins;
+  CounterRandom random(17 + kBins);
   int compared = 0;
-  std::array<int, kSurfletBins> seen{};
-  const int n = 200000;
+  std::array<int, kAll> seen{};
+  const int n = 50000;
   for (int k = 0; k < n; ++k) {
     const double length = random.uniform(0.001, 1);
     const Oriented i{0.1 * random_direction(random), random_direction(random)};
     const Oriented j{i.point + length * random_direction(random), random_direction(random)};
-    const auto expected = bin_by_definition(i, j);
+    const auto expected = bin_by_definition(i, j, kBins);
     if (!expected) continue;
     ++compared;
-    ++seen[static_cast<std::size_t>(*expected)];
-    ASSERT_EQ(surflet_bin(single(i), single(j)), *expected);
+    ++seen[static_cast<std::size_t>(expected->bin)];
+    const int code = surflet_code<kBins>(single(i), single(j));
+    ASSERT_EQ(code % kAll, expected->bin);
+    ASSERT_EQ(code / kAll, expected->origin_is_j ? 1 : 0);
   }
-  EXPECT_GT(compared, 0.98 * n);
-  // |gamma| > 0.6 leaves no room for some values of beta; all other bins occur.
-  EXPECT_GT(std::count_if(seen.begin(), seen.end(), [](int c) { return c > 0; }), 500);
+  EXPECT_GT(compared, 0.97 * n);
+  // |gamma| > 0.6 leaves no room for some values of beta; all other bins of five occur.
+  const auto occurring = std::count_if(seen.begin(), seen.end(), [](int c) { return c > 0; });
+  EXPECT_GT(occurring, kBins == 5 ? 480 : 0);
+}
+
+TEST(SurfletPair, AgreesWithTheDefinitionInDoublePrecision) {
+  expect_definition<2>();
+  expect_definition<3>();
+  expect_definition<4>();
+  expect_definition<5>();
+  expect_definition<6>();
+  expect_definition<7>();
+  expect_definition<8>();
+  expect_definition<9>();
+  expect_definition<10>();
 }
 
 TEST(SurfletPair, OrderOfTheTwoDoesNotMatter) {
   CounterRandom random(18);
+  int other_bins = 0;
   for (int k = 0; k < 20000; ++k) {
     // Parallel normals in every fourth pair: both points then qualify as origin.
-    const Oriented i{random_direction(random), random_direction(random)};
-    const Oriented j{random_direction(random), k % 4 == 0 ? i.normal : random_direction(random)};
-    ASSERT_EQ(surflet_bin(single(i), single(j)), surflet_bin(single(j), single(i)));
+    const Oriented i{0.5 * random_direction(random), random_direction(random)};
+    const Oriented j{0.5 * random_direction(random), k % 4 == 0 ? i.normal : random_direction(random)};
+    const int one = surflet_code<5>(single(i), single(j)), two = surflet_code<5>(single(j), single(i));
+    other_bins += one % 625 != two % 625 ? 1 : 0;
+    EXPECT_NE(one / 625, two / 625);
   }
+  EXPECT_LE(other_bins, 1);  // rounding may decide on a border
 }
 
-int bin_of(int alpha, int beta, int gamma, int delta) { return ((alpha * 5 + beta) * 5 + gamma) * 5 + delta; }
+// alpha, beta, gamma, delta and the origin of a code.
+int code_of(int alpha, int beta, int gamma, int delta) {
+  return ((alpha * 5 + beta) * 5 + gamma) * 5 + delta;
+}
+int bin(const Oriented& i, const Oriented& j) { return surflet_code<5>(single(i), single(j)) % 625; }
 
 TEST(SurfletPair, DegeneratePairs) {
-  const Surflet up{{0, 0, 0}, {0, 0, 1}};
-  EXPECT_EQ(surflet_bin(up, up), bin_of(2, 2, 2, 0));
+  const Oriented up{{0, 0, 0}, {0, 0, 1}}, down{{0, 0, 0}, {0, 0, -1}};
+  EXPECT_EQ(bin(up, up), code_of(2, 2, 2, 0));
+  EXPECT_EQ(bin(up, down), code_of(4, 2, 2, 0));
   // Both normals along the line: one behind the other, face to face, back to back.
-  EXPECT_EQ(surflet_bin(up, {{0, 0, 1}, {0, 0, 1}}), bin_of(2, 2, 4, 4));
-  EXPECT_EQ(surflet_bin(up, {{0, 0, 1}, {0, 0, -1}}), bin_of(4, 2, 4, 4));
-  EXPECT_EQ(surflet_bin(up, {{0, 0, -1}, {0, 0, -1}}), bin_of(4, 2, 0, 4));
+  EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, 1}}), code_of(2, 2, 4, 4));
+  EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, -1}}), code_of(4, 2, 4, 4));
+  EXPECT_EQ(bin(down, {{0, 0, 1}, {0, 0, 1}}), code_of(4, 2, 0, 4));
   // In one plane.
-  EXPECT_EQ(surflet_bin(up, {{0.5, 0, 0}, {0, 0, 1}}), bin_of(2, 2, 2, 2));
+  EXPECT_EQ(bin(up, {{0.5, 0, 0}, {0, 0, 1}}), code_of(2, 2, 2, 2));
 }
 
+// A pair whose frame is known: r along x, u along z, so v = d x u = -y and w = u x v = x.
 TEST(SurfletPair, AngleBinsFollowTheArcTangent) {
-  for (int k = -1799; k <= 1800; ++k) {
+  for (int k = -1799; k < 1800; ++k) {
     if ((k + 1800) % 720 == 0) continue;  // a border
-    const double angle = kPi * k / 1800;
-    const auto y = static_cast<float>(std::sin(angle)), x = static_cast<float>(std::cos(angle));
-    ASSERT_EQ(angle_bin(y, x) + 2, (k + 1800) / 720 - (k == 1800)) << k;
+    const double alpha = kPi * k / 1800;
+    const Oriented i{{0, 0, 0}, {0, 0, 1}}, j{{0.9, 0, 0}, {std::sin(alpha), 0, std::cos(alpha)}};
+    ASSERT_EQ(bin(i, j), code_of((k + 1800) / 720, 2, 2, 4)) << k;
   }
+}
+
+TEST(SurfletPair, BordersAreWhereTheyBelong) {
+  constexpr PairBorders<5> odd;
+  EXPECT_FLOAT_EQ(odd.unit[0], 0.04f);
+  EXPECT_FLOAT_EQ(odd.unit[1], 0.36f);
+  EXPECT_FLOAT_EQ(odd.tangent[0], static_cast<float>(std::pow(std::tan(kPi / 5), 2)));
+  EXPECT_FLOAT_EQ(odd.tangent[1], static_cast<float>(std::pow(std::tan(3 * kPi / 5), 2)));
+  constexpr PairBorders<4> even;
+  EXPECT_FLOAT_EQ(even.unit[0], 0.25f);
+  EXPECT_TRUE(even.right[0]);
+  constexpr PairBorders<10> fine;
+  EXPECT_FLOAT_EQ(fine.tangent[3], static_cast<float>(std::pow(std::tan(4 * kPi / 5), 2)));
+  EXPECT_TRUE(fine.obtuse[3]);
 }
 
 }  // namespace

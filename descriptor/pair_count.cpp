@@ -1,0 +1,199 @@
+#include <tbb/combinable.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <tuple>
+
+#include "descriptor/pair_count_internal.h"
+#include "descriptor/shape_histogram.h"
+#include "descriptor/surflet_pair.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// Rows a task; times the largest number of points it stays below 2^32, the range of a counter.
+constexpr std::int64_t kRowsPerTask = 64;
+// One AVX-512 vector of codes.
+constexpr std::int64_t kLanes = 16;
+// Codes wait so many vectors before they are counted: the machine then computes and counts at the same time,
+// and need not wait for a vector to be written before it reads its parts.
+constexpr std::int64_t kDelay = 3;
+constexpr std::int64_t kPadding = (kDelay + 1) * kLanes;
+// Counters in copies, so that an increment need not wait for the one before it.
+constexpr std::int64_t kCopies = 4;
+
+// Two for each surflet bin: pairs whose origin is the first and the second of the two.
+template <int kBins>
+constexpr std::int64_t kCodes = 2 * bin_count(PairFeatures::wahl, kBins);
+
+// Pointers to a run of surflets. That the loop below calls a function which makes its Surflet, rather than
+// making it in its own body, is what lets the compiler keep it in vector registers.
+struct SurfletRun {
+  std::array<const float*, 9> c;
+
+  template <int kBins>
+  std::int32_t code_with(const Surflet& one, std::int64_t k) const {
+    return surflet_code<kBins>(
+        one, {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}});
+  }
+};
+
+// One array a coordinate, for vector loads, with room behind the last point. Points of one local code stand
+// together; within them the order is that of the coordinates, so that the order given changes nothing.
+struct SurfletArrays {
+  std::array<std::vector<float>, 9> c;
+  std::vector<std::int64_t> first_of_code;  // (num_local + 1)
+
+  SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                std::span<const std::int32_t> local, int num_local) {
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) {
+      const Vec3d &p = points[i], &n = normals[i];
+      return std::tuple(local[i], p.x, p.y, p.z, n.x, n.y, n.z);
+    };
+    std::sort(order.begin(), order.end(), [&](auto i, auto j) { return key(i) < key(j); });
+    for (auto& v : c) v.assign(points.size() + kPadding, 0.0f);
+    first_of_code.assign(static_cast<std::size_t>(num_local) + 1, 0);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      set(k, surflet(single(points[order[k]]), single(normals[order[k]])));
+      ++first_of_code[static_cast<std::size_t>(local[order[k]]) + 1];
+    }
+    std::partial_sum(first_of_code.begin(), first_of_code.end(), first_of_code.begin());
+  }
+
+  Surflet at(std::int64_t i) const {
+    const auto k = static_cast<std::size_t>(i);
+    return {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}};
+  }
+  SurfletRun from(std::int64_t i) const {
+    SurfletRun run{};
+    for (std::size_t d = 0; d < c.size(); ++d) run.c[d] = c[d].data() + i;
+    return run;
+  }
+
+ private:
+  static Vec3f single(const Vec3d& v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  }
+  void set(std::size_t k, const Surflet& s) {
+    const float values[] = {s.point.x,  s.point.y,  s.point.z,  s.normal.x, s.normal.y,
+                            s.normal.z, s.moment.x, s.moment.y, s.moment.z};
+    for (std::size_t d = 0; d < c.size(); ++d) c[d][k] = values[d];
+  }
+};
+
+// Adds the pairs of one surflet with `count` of the run to kCopies tables of kCodes<kBins> counters.
+template <int kBins>
+ASTROLITH_SIMD_CLONES void count_row(const Surflet& given, SurfletRun run, std::int64_t count,
+                                     std::uint32_t* __restrict counters) {
+  alignas(64) std::int32_t ring[kDelay + 1][kLanes];
+  const Surflet one = given;
+  const std::int64_t vectors = (count + kLanes - 1) / kLanes;
+  for (std::int64_t v = 0; v < vectors + kDelay; ++v) {
+    std::int32_t* __restrict codes = ring[v % (kDelay + 1)];
+#pragma omp simd
+    for (std::int64_t k = 0; k < kLanes; ++k) codes[k] = run.code_with<kBins>(one, v * kLanes + k);
+    if (v < kDelay) continue;
+    const std::int32_t* waited = ring[(v + 1) % (kDelay + 1)];
+    const std::int64_t left = count - (v - kDelay) * kLanes;
+    if (left >= kLanes) {
+      ASTROLITH_UNROLL
+      for (std::int64_t k = 0; k < kLanes; ++k) ++counters[k % kCopies * kCodes<kBins> + waited[k]];
+    } else {
+      for (std::int64_t k = 0; k < left; ++k) ++counters[waited[k]];
+    }
+  }
+}
+
+template <int kBins>
+void add_half(const std::vector<std::uint32_t>& counters, std::int64_t half, std::uint64_t* total) {
+  constexpr std::int64_t kHalf = kCodes<kBins> / 2;
+  for (std::int64_t copy = 0; copy < kCopies; ++copy) {
+    const std::uint32_t* from = counters.data() + copy * kCodes<kBins> + half * kHalf;
+    for (std::int64_t b = 0; b < kHalf; ++b) total[b] += from[b];
+  }
+}
+
+// Some rows of one local code: their pairs with all points before them.
+struct Task {
+  std::int64_t local, first_row, last_row;
+};
+
+std::vector<Task> tasks_of(const SurfletArrays& s) {
+  std::vector<Task> tasks;
+  for (std::size_t l = 0; l + 1 < s.first_of_code.size(); ++l) {
+    const std::int64_t end = s.first_of_code[l + 1];
+    for (std::int64_t row = s.first_of_code[l]; row < end; row += kRowsPerTask) {
+      tasks.push_back({static_cast<std::int64_t>(l), row, std::min(end, row + kRowsPerTask)});
+    }
+  }
+  return tasks;
+}
+
+// Between two local codes only the side of the origin is left to tell, so the counters stay few.
+template <int kBins>
+void count_task(const SurfletArrays& s, const Task& task, std::vector<std::uint64_t>& total) {
+  constexpr std::int64_t kHalf = kCodes<kBins> / 2;
+  std::vector<std::uint32_t> counters;
+  for (std::int64_t other = 0; other <= task.local; ++other) {
+    const std::int64_t begin = s.first_of_code[static_cast<std::size_t>(other)];
+    const std::int64_t end = s.first_of_code[static_cast<std::size_t>(other) + 1];
+    if (begin == end) continue;
+    counters.assign(static_cast<std::size_t>(kCopies * kCodes<kBins>), 0);
+    for (std::int64_t i = task.first_row; i < task.last_row; ++i) {
+      count_row<kBins>(s.at(i), s.from(begin), std::min(end, i) - begin, counters.data());
+    }
+    add_half<kBins>(counters, 0, total.data() + task.local * kHalf);
+    add_half<kBins>(counters, 1, total.data() + other * kHalf);
+  }
+}
+
+template <int kBins>
+std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local) {
+  const std::vector<Task> tasks = tasks_of(s);
+  const auto size = static_cast<std::size_t>(num_local * kCodes<kBins> / 2);
+  // Sums of integers are the same in any order, so each thread may keep its own.
+  tbb::combinable<std::vector<std::uint64_t>> totals([&] { return std::vector<std::uint64_t>(size, 0); });
+  parallel_for(0, static_cast<std::int64_t>(tasks.size()), [&](std::int64_t t) {
+    // The longest first, so that no thread is left with one at the end.
+    count_task<kBins>(s, tasks[tasks.size() - 1 - static_cast<std::size_t>(t)], totals.local());
+  });
+  std::vector<std::uint64_t> sum(size, 0);
+  totals.combine_each([&](const std::vector<std::uint64_t>& one) {
+    for (std::size_t b = 0; b < size; ++b) sum[b] += one[b];
+  });
+  return sum;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> count_pairs(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                                       std::span<const std::int32_t> local, int num_local, int bins) {
+  const SurfletArrays s(points, normals, local, num_local);
+  static_assert(kMinBins == 2 && kMaxBins == 10);
+  switch (bins) {
+    case 2:
+      return count_with<2>(s, num_local);
+    case 3:
+      return count_with<3>(s, num_local);
+    case 4:
+      return count_with<4>(s, num_local);
+    case 6:
+      return count_with<6>(s, num_local);
+    case 7:
+      return count_with<7>(s, num_local);
+    case 8:
+      return count_with<8>(s, num_local);
+    case 9:
+      return count_with<9>(s, num_local);
+    case 10:
+      return count_with<10>(s, num_local);
+    default:
+      return count_with<5>(s, num_local);
+  }
+}
+
+}  // namespace astrolith
