@@ -36,19 +36,41 @@ void ManifoldCheck::add_vertices(std::span<const MeshVertex> vertices) {
   settle(window_, window_first_, batch_first_);
   window_.swap(batch_);
   batch_.clear();
+  forget_components_below(batch_first_);
   window_first_ = batch_first_;
-  batch_first_ = static_cast<std::uint32_t>(parent_.size());
-  parent_.resize(parent_.size() + vertices.size());
-  std::iota(parent_.begin() + batch_first_, parent_.end(), batch_first_);
+  batch_first_ = end_;
+  end_ += static_cast<std::uint32_t>(vertices.size());
+  parent_.resize(end_ - window_first_);
+  std::iota(parent_.begin() + (batch_first_ - window_first_), parent_.end(), batch_first_);
   report_.vertices += static_cast<std::int64_t>(vertices.size());
+}
+
+// Counts the components that end below vertex `first`, and lets the others hang from their lowest vertex that
+// stays.
+void ManifoldCheck::forget_components_below(std::uint32_t first) {
+  std::vector<std::uint32_t> lowest(parent_.size(), end_);  // by root
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t v = first; v < end_; ++v) {
+    std::uint32_t& low = lowest[root(v) - window_first_];
+    low = std::min(low, v);
+    kept.push_back(low);
+  }
+  for (std::uint32_t v = window_first_; v < end_; ++v) {
+    const bool is_root = parent_[v - window_first_] == v;
+    report_.components += is_root && lowest[v - window_first_] == end_ ? 1 : 0;
+  }
+  parent_ = std::move(kept);
 }
 
 void ManifoldCheck::add_triangles(std::span<const Triangle> triangles) {
   for (const Triangle& t : triangles) {
-    if (*std::max_element(t.begin(), t.end()) >= parent_.size()) {
+    if (*std::max_element(t.begin(), t.end()) >= end_) {
       throw WorkError("mesh: a triangle names a vertex not yet given");
     }
-    if (*std::min_element(t.begin(), t.end()) < window_first_) ++report_.late_triangles;
+    if (*std::min_element(t.begin(), t.end()) < window_first_) {
+      ++report_.late_triangles;
+      continue;
+    }
     for (std::size_t k = 0; k < 3; ++k) {
       (t[k] < batch_first_ ? window_ : batch_).push_back({t[k], t[(k + 1) % 3], t[(k + 2) % 3]});
     }
@@ -83,7 +105,6 @@ void ManifoldCheck::settle(std::vector<Corner>& corners, std::uint32_t first, st
 ManifoldReport ManifoldCheck::finish() {
   add_vertices({});
   add_vertices({});
-  for (std::uint32_t v = 0; v < parent_.size(); ++v) report_.components += root(v) == v ? 1 : 0;
   if (report_.closed() && report_.manifold()) {
     // V - E + F = 2 (components - genus) with E = 3F/2.
     report_.genus = report_.components - (report_.vertices - report_.triangles / 2) / 2;
@@ -92,9 +113,10 @@ ManifoldReport ManifoldCheck::finish() {
 }
 
 std::uint32_t ManifoldCheck::root(std::uint32_t vertex) {
-  while (parent_[vertex] != vertex) {
-    parent_[vertex] = parent_[parent_[vertex]];
-    vertex = parent_[vertex];
+  const auto parent = [this](std::uint32_t v) -> std::uint32_t& { return parent_[v - window_first_]; };
+  while (parent(vertex) != vertex) {
+    parent(vertex) = parent(parent(vertex));
+    vertex = parent(vertex);
   }
   return vertex;
 }
@@ -102,7 +124,7 @@ std::uint32_t ManifoldCheck::root(std::uint32_t vertex) {
 void ManifoldCheck::unite(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t root_a = root(a), root_b = root(b);
   // Towards the lower number: later batches then hang below earlier ones, and paths stay short.
-  if (root_a != root_b) parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+  if (root_a != root_b) parent_[std::max(root_a, root_b) - window_first_] = std::min(root_a, root_b);
 }
 
 }  // namespace astrolith

@@ -1,5 +1,5 @@
 // Verifies, while a mesh streams past, that it is a closed oriented 2-manifold: the triangles around every
-// vertex must form one directed cycle. Memory is a window of two batches and four bytes a vertex.
+// vertex must form one directed cycle. Memory is a window of two batches, however large the mesh.
 #pragma once
 
 #include <cstdint>
@@ -42,11 +42,13 @@ class ManifoldCheck : public MeshSink {
   void settle(std::vector<Corner>& corners, std::uint32_t first, std::uint32_t end);
   std::uint32_t root(std::uint32_t vertex);
   void unite(std::uint32_t a, std::uint32_t b);
+  void forget_components_below(std::uint32_t first);
 
   std::uint32_t window_first_ = 0;      // first vertex of the batch before the last
   std::uint32_t batch_first_ = 0;       // first vertex of the last batch
+  std::uint32_t end_ = 0;               // vertices so far
   std::vector<Corner> window_, batch_;  // corners at vertices of these two
-  std::vector<std::uint32_t> parent_;   // union-find over vertices
+  std::vector<std::uint32_t> parent_;   // union-find over the vertices from window_first_ on
   ManifoldReport report_;
 };
 
