@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/program.h"
+#include "apps/synth_size.h"
 #include "apps/synth_texture.h"
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_sink.h"
@@ -35,7 +36,7 @@ struct Options {
   fs::path output;
   fs::path preview;
   TextureRequest texture;
-  int resolution = 256;
+  MeshSizeRequest size;
 };
 
 void declare_options(Program& program, Options& options) {
@@ -45,9 +46,7 @@ void declare_options(Program& program, Options& options) {
                   "the mesh: .ply (binary, streamed), .obj, .stl or .glb, in the recipe's length unit; with "
                   "--texture .png or .tif")
       ->required();
-  program.app
-      .add_option("--resolution", options.resolution, "cells along the body's longest side, border included")
-      ->check(CLI::Range(kMinResolution, kMaxResolution));
+  declare_size_options(program, options.size);
   program.app
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
@@ -150,6 +149,8 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
     const fs::path& file = options.base.empty() ? options.recipe : options.base;
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }
+  const int resolution =
+      choose_resolution(program, options.size, field, options.output, !options.preview.empty());
 
   ManifoldCheck check;
   MeshCollector collector;
@@ -159,7 +160,7 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
   std::unique_ptr<PlyStreamWriter> writer;
   if (streamed) sinks.add(*(writer = std::make_unique<PlyStreamWriter>(options.output, info)));
   const MeshStatistics statistics =
-      mesh_field(field, field.bounds(), options.resolution, sinks, program.progress("mesh"));
+      mesh_field(field, field.bounds(), resolution, sinks, program.progress("mesh"));
   const ManifoldReport report = check.finish();
   require_closed_manifold(report, options);
 

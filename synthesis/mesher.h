@@ -26,6 +26,7 @@ struct MeshStatistics {
   std::int64_t evaluations = 0;    // of the field, at samples and for normals
   std::int64_t active_blocks = 0;  // that the surface may cross; the others were never sampled
   std::int64_t total_blocks = 0;
+  std::int64_t working_bytes = 0;  // of two layers of blocks and one of vertices and triangles, at their most
   double step = 0.0;  // edge of a cell, length units
 
   // V - E + F with E = 3F/2, as in every closed mesh of triangles.
@@ -73,7 +74,15 @@ class LayeredMesher {
     const LayerCounts counts = number_rows(layer);
     emit_vertices(z, active, counts, layer);
     emit_triangles(counts, below, layer);
+    note_memory(layer.blocks.size());
     return layer;
+  }
+
+  void note_memory(std::size_t blocks) {
+    const std::size_t bytes = 2 * blocks * (sizeof(LayerBlock<B>) + sizeof(typename Blocks::value_type)) +
+                              vertices_.capacity() * sizeof(MeshVertex) +
+                              triangles_.capacity() * sizeof(Triangle);
+    statistics_.working_bytes = std::max(statistics_.working_bytes, static_cast<std::int64_t>(bytes));
   }
 
   // Calls body(i) for every block in parallel and adds up the evaluations it returns.

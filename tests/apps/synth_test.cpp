@@ -99,6 +99,22 @@ TEST_F(Synth, SummaryHoldsTheFigures) {
   EXPECT_EQ(summary["sha256"], sha256_of_file(folder_ / "out.ply"));
 }
 
+TEST_F(Synth, TrianglesChooseTheResolutionAndMemoryIsKept) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  const std::string output = (folder_ / "out.obj").string(), summary = (folder_ / "s.json").string();
+  const testing::Outcome outcome =
+      run_program(kSynth, {recipe, "-o", output, "--triangles", "30000", "--summary", summary});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const auto figures = nlohmann::json::parse(text_of(summary));
+  EXPECT_NEAR(figures["triangles"].get<double>(), 30e3, 3e3);
+  EXPECT_NEAR(figures["predicted"]["triangles"].get<double>(), 30e3, 2e3);
+  std::filesystem::remove(output);
+  expect_refusal(folder_, kSynth, {recipe, "-o", output, "--resolution", "1024", "--max-memory", "0.1"},
+                 "needs");
+  expect_refusal(folder_, kSynth, {recipe, "-o", output, "--resolution", "64", "--triangles", "1000"},
+                 "excludes");
+}
+
 TEST_F(Synth, BadRecipesAreRefused) {
   expect_recipe_refused(replaced(kTwoSpheres, "amplitude", "amplitud"), "layers[0].amplitud: unknown field");
   expect_recipe_refused(replaced(kTwoSpheres, "0.75", "-0.75"), "body.spheres[1].radius");

@@ -1,0 +1,98 @@
+#include "apps/synth_size.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "synthesis/mesh_prediction.h"
+#include "synthesis/sample_grid.h"
+
+namespace astrolith {
+namespace {
+
+// Below this resolution a mesh is small and quick: predicting would cost more than it tells.
+constexpr int kWorthPredicting = 256;
+
+// Program, libraries and threads.
+constexpr double kBytesAnyway = 50e6;
+
+// A format's bytes a triangle, half a vertex included: in the file, and in memory until it is written.
+struct OutputCost {
+  double file;
+  double memory;
+};
+
+OutputCost output_cost(const std::filesystem::path& output, bool preview) {
+  const std::string extension = output.extension().string();
+  const double collected = 36.0 * 1.5;  // vertices and normals as doubles, triangles; grown by doubling
+  const double rendered = preview ? 120.0 : 0.0;
+  if (extension == ".ply") return {25.0, preview ? collected + rendered : 0.0};
+  if (extension == ".stl") return {50.0, collected + rendered};
+  if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
+  return {75.0, collected + rendered};
+}
+
+double memory_limit(const MeshSizeRequest& request) {
+  if (request.max_memory_gb > 0.0) return 1e9 * request.max_memory_gb;
+  return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+// "1.2 M", "340 k"
+std::string rounded(double count) {
+  return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
+}
+
+}  // namespace
+
+void declare_size_options(Program& program, MeshSizeRequest& request) {
+  CLI::Option* resolution = program.app
+                                .add_option("--resolution", request.resolution,
+                                            "cells along the body's longest side, border included")
+                                ->check(CLI::Range(kMinResolution, kMaxResolution));
+  program.app
+      .add_option("--triangles", request.triangles,
+                  "choose the resolution that gives about this many triangles, such as 1e6")
+      ->check(CLI::Range(100.0, 1e10))
+      ->excludes(resolution)
+      ->default_str("");
+  program.app
+      .add_option(
+          "--max-memory", request.max_memory_gb,
+          "refuse meshes that are predicted to need more gigabytes of memory; without it three quarters of "
+          "the machine's")
+      ->check(CLI::PositiveNumber)
+      ->default_str("");
+}
+
+int choose_resolution(Program& program, const MeshSizeRequest& request, const ImplicitField& field,
+                      const std::filesystem::path& output, bool preview) {
+  const bool by_triangles = request.triangles > 0.0;
+  if (!by_triangles && request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting) {
+    return request.resolution;
+  }
+  const MeshGrowth growth(field, program.progress("prediction"));
+
+  const MeshPrediction mesh =
+      growth.at(by_triangles ? growth.resolution_for(request.triangles) : request.resolution);
+  const OutputCost cost = output_cost(output, preview);
+  const double memory = kBytesAnyway + mesh.working_bytes + cost.memory * mesh.triangles;
+  program.summary["resolution"] = mesh.resolution;
+  program.summary["predicted"] = {
+      {"triangles", mesh.triangles}, {"file_bytes", cost.file * mesh.triangles}, {"peak_bytes", memory}};
+  if (memory > memory_limit(request)) {
+    throw InputError(
+        fmt::format("{}: the mesh of about {} triangles needs {:.1f} GB of memory, more than {:.1f} GB; "
+                    "lower the resolution, raise --max-memory{}",
+                    output.string(), rounded(mesh.triangles), memory / 1e9, memory_limit(request) / 1e9,
+                    cost.memory > 0.0 ? ", or write .ply without --preview, which is streamed" : ""));
+  }
+  program.say(
+      fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, up to {:.0f} s",
+                  mesh.resolution, rounded(mesh.triangles), cost.file * mesh.triangles / 1e6, memory / 1e6,
+                  std::ceil(growth.seconds(mesh))));
+  return mesh.resolution;
+}
+
+}  // namespace astrolith
