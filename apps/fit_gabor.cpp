@@ -5,11 +5,9 @@
 #include <filesystem>
 
 #include "apps/program.h"
-#include "estimation/gabor/gabor_fit.h"
 #include "estimation/gabor/gabor_report.h"
-#include "estimation/gabor/gaussianity.h"
-#include "estimation/gabor/image_reader.h"
 #include "estimation/gabor/npy_file.h"
+#include "estimation/gabor/photo_fit.h"
 #include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
@@ -30,18 +28,39 @@ struct Options {
   std::string target = "smoothed";
   std::string solver = "working-set";
   std::string unit = "m";
+  std::string channels = "luminance";
+  std::string detrend_by = "subtraction";
   double mm_per_px = 0.0;    // 0 = no physical scale
   double height_rms = -1.0;  // negative = the exemplar's own
-  GaborFitOptions fit;
+  PhotoFitOptions photo;
 };
 
 void add_options(Program& program, Options& o) {
   CLI::App& app = program.app;
-  app.add_option("image", o.image,
-                 "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or float, at least 32 x 32")
+  app.add_option(
+         "image", o.image,
+         "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
+         "alpha is ignored, of several pages or frames the first is taken")
       ->required();
-  app.add_option("-o,--output", o.output, "recipe to write, with one Gabor layer")->required();
-  app.add_option("--lobes", o.fit.max_lobes, "keep at most this many lobes")->check(CLI::Range(1, 1000));
+  app.add_option("-o,--output", o.output,
+                 "recipe to write, with one Gabor layer (up to three with --channels pca)")
+      ->required();
+  app.add_option(
+         "--channels", o.channels,
+         "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
+         "the values as stored, gamma-encoded) or pca (a layer for each principal axis of the "
+         "colours; synth --texture then paints in colour)")
+      ->check(CLI::IsMember({"luminance", "pca"}));
+  app.add_option("--detrend", o.photo.detrend_degree,
+                 "first take out slow changes of brightness, such as light from one side: a polynomial of "
+                 "this degree in x and y, fitted to all pixels; 0 = none")
+      ->check(CLI::Range(0, kLargestTrendDegree));
+  app.add_option("--detrend-by", o.detrend_by,
+                 "how: subtraction (v - t + mean, for height maps) or division (v mean / t, for photos whose "
+                 "contrast falls off with the light)")
+      ->check(CLI::IsMember({"subtraction", "division"}));
+  app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
+      ->check(CLI::Range(1, 1000));
   app.add_option(
          "--mm-per-px", o.mm_per_px,
          "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
@@ -63,29 +82,28 @@ void add_options(Program& program, Options& o) {
       ->check(CLI::IsMember({"smoothed", "periodogram"}));
   app.add_option("--solver", o.solver, "of the basis pursuit; both end with the same certified optimum")
       ->check(CLI::IsMember({"working-set", "fista"}));
-  app.add_option("--penalty", o.fit.penalty_ratio,
+  app.add_option("--penalty", o.photo.fit.penalty_ratio,
                  "sparsity penalty over the largest useful one; smaller finds more lobes")
       ->check(CLI::Range(1e-4, 0.99));
-  app.add_option("--gap", o.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
+  app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
       ->check(CLI::Range(1e-8, 0.5));
   app.add_option("--report", o.report_folder,
                  "folder for pictures: exemplar, synthesis, both spectra, lobes, gap")
       ->option_text("DIR");
-  app.add_option("--spectrum", o.spectrum_file,
-                 "write the fitted power spectrum on the image's DFT grid (.npy, float64, frequency 0 first, "
-                 "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024")
+  app.add_option(
+         "--spectrum", o.spectrum_file,
+         "write the fitted power spectrum on the image's DFT grid (.npy, float64, frequency 0 first, "
+         "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024; with several "
+         "layers an array (layers, height, width)")
       ->option_text("FILE.npy");
 }
 
-GaborLayer make_layer(const Options& o, const GaborFit& fit) {
-  GaborLayer layer;
+GaborLayer make_layer(const Options& o, const FittedChannel& channel, bool first) {
+  GaborLayer layer = layer_of(channel, first);
   layer.name = std::filesystem::path(o.image).stem().string();
   const double per_unit = o.unit == "km" ? 1e6 : 1e3;  // millimetres
   layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / per_unit : 1.0;
-  layer.exemplar_mean = fit.exemplar_mean;
-  layer.exemplar_rms = fit.exemplar_rms;
-  layer.height_rms = o.height_rms >= 0.0 ? o.height_rms : fit.exemplar_rms;
-  layer.lobes = fit.lobes;
+  if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
   return layer;
 }
 
@@ -98,13 +116,7 @@ double variance_of(const std::vector<float>& values) {
   return square / static_cast<double>(values.size());
 }
 
-double lobe_variance_ratio(const GaborFit& fit) {
-  double sum = 0.0;
-  for (const GaborLobe& lobe : fit.lobes) sum += lobe.variance;
-  return sum / (fit.exemplar_rms * fit.exemplar_rms);
-}
-
-Recipe make_recipe(const Program& program, const Options& o, const GaborFit& fit) {
+Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& photo) {
   Recipe recipe;
   recipe.length_unit = o.mm_per_px > 0.0 ? o.unit : "px";
   recipe.seed = program.seed;
@@ -112,70 +124,129 @@ Recipe make_recipe(const Program& program, const Options& o, const GaborFit& fit
   recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
   recipe.provenance.input_sha256 = sha256_of_file(o.image);
   recipe.provenance.options = program.given_options();
-  recipe.provenance.achieved = {{"relative_duality_gap", fit.pursuit.relative_gap},
-                                {"spectrum_distance", fit.spectrum_distance},
-                                {"variance_ratio", lobe_variance_ratio(fit)}};
-  recipe.layers.push_back(make_layer(o, fit));
+  recipe.provenance.achieved = {{"relative_duality_gap", photo.relative_gap()},
+                                {"spectrum_distance", photo.spectrum_distance()},
+                                {"variance_ratio", photo.variance_ratio()}};
+  for (const FittedChannel& channel : photo.channels)
+    recipe.layers.push_back(make_layer(o, channel, recipe.layers.empty()));
   return recipe;
 }
 
-void summarize(const GaborFit& fit, const Gaussianity& gaussianity, Program& program) {
-  auto& s = program.summary;
-  s["lobes"] = fit.lobes.size();
-  s["relative_duality_gap"] = fit.pursuit.relative_gap;
-  s["spectrum_distance"] = fit.spectrum_distance;
-  s["variance_ratio"] = lobe_variance_ratio(fit);
-  s["variance_ratio_before_scaling"] = fit.variance_before_scaling;
-  s["gaussianity"] = gaussianity.p_value;
-  s["gaussianity_details"] = {{"plausible", gaussianity.plausible},
-                              {"skewness", gaussianity.skewness},
-                              {"excess_kurtosis", gaussianity.excess_kurtosis},
-                              {"variance_spread", gaussianity.variance_spread},
-                              {"sentence", gaussianity.sentence}};
-  s["iterations"] = fit.pursuit.iterations;
-  s["pursuit_lobes"] = fit.pursuit_lobes;
+nlohmann::ordered_json details(const Gaussianity& g) {
+  return {{"plausible", g.plausible},
+          {"skewness", g.skewness},
+          {"excess_kurtosis", g.excess_kurtosis},
+          {"variance_spread", g.variance_spread},
+          {"sentence", g.sentence}};
 }
 
-// The layer at unit variance and the exemplar's size: for pictures, and to measure what synthesis keeps.
-std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, const Program& program) {
+void summarize(const PhotoFit& photo, Program& program) {
+  auto& s = program.summary;
+  const Gaussianity gaussianity = photo.gaussianity();
+  s["lobes"] = photo.lobes();
+  s["relative_duality_gap"] = photo.relative_gap();
+  s["spectrum_distance"] = photo.spectrum_distance();
+  s["variance_ratio"] = photo.variance_ratio();
+  s["gaussianity"] = gaussianity.p_value;
+  s["gaussianity_details"] = details(gaussianity);
+  int iterations = 0;
+  double before_scaling = 0.0, variance = 0.0;
+  for (const FittedChannel& channel : photo.channels) {
+    iterations += channel.fit.pursuit.iterations;
+    before_scaling += channel.fit.variance_before_scaling * channel.variance();
+    variance += channel.variance();
+    s["channels"].push_back({{"lobes", channel.fit.lobes.size()},
+                             {"pursuit_lobes", channel.fit.pursuit_lobes},
+                             {"relative_duality_gap", channel.fit.pursuit.relative_gap},
+                             {"spectrum_distance", channel.fit.spectrum_distance},
+                             {"variance", channel.variance()},
+                             {"variance_ratio_before_scaling", channel.fit.variance_before_scaling},
+                             {"gaussianity", channel.gaussianity.p_value}});
+  }
+  s["variance_ratio_before_scaling"] = before_scaling / variance;
+  s["iterations"] = iterations;
+}
+
+void write_spectra(const PhotoFit& photo, const std::string& file) {
+  const PowerSpectrum& first = photo.channels.front().fit.fitted;
+  std::vector<int> shape{first.height, first.width};
+  std::vector<double> power;
+  for (const FittedChannel& channel : photo.channels) {
+    power.insert(power.end(), channel.fit.fitted.power.begin(), channel.fit.fitted.power.end());
+  }
+  if (photo.channels.size() > 1) shape.insert(shape.begin(), static_cast<int>(photo.channels.size()));
+  write_npy(power, shape, file);
+}
+
+// A layer at unit variance and the exemplar's size: for pictures, and to measure what synthesis keeps.
+std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, int stream,
+                                   const Program& program) {
   layer.height_rms = 1.0;
   layer.pixel_size = 1.0;
-  return synthesize_texture(layer, exemplar.width, exemplar.height, {program.seed},
+  return synthesize_texture(layer, exemplar.width, exemplar.height, {program.seed, stream},
                             program.progress("synthesis"));
 }
 
-void work(Program& program, Options o) {
+// Synthesises every channel, draws the pictures that are wanted, returns the variance that synthesis kept.
+double synthesize_all(const Options& o, const PhotoFit& photo, const Recipe& recipe, const Program& program) {
+  double kept = 0.0, variance = 0.0;
+  for (std::size_t k = 0; k < photo.channels.size(); ++k) {
+    const FittedChannel& channel = photo.channels[k];
+    const std::vector<float> synthesis = synthesize_like(
+        channel.exemplar, std::get<GaborLayer>(recipe.layers[k]), static_cast<int>(k), program);
+    kept += variance_of(synthesis) * channel.variance();
+    variance += channel.variance();
+    if (o.report_folder.empty()) continue;
+    const std::filesystem::path folder = o.report_folder;
+    write_gabor_report(channel.exemplar, synthesis, channel.fit,
+                       k == 0 ? folder : folder / ("channel" + std::to_string(k + 1)));
+  }
+  return kept / variance;
+}
+
+PhotoFitOptions photo_options(const Program& program, const Options& o) {
+  PhotoFitOptions photo = o.photo;
+  photo.colors = o.channels == "pca";
+  photo.trend = o.detrend_by == "division" ? TrendModel::kMultiplied : TrendModel::kAdded;
+  photo.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
+  photo.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
+  photo.seed = program.seed;
+  return photo;
+}
+
+void require_outputs(const Options& o) {
   require_other_file(o.output, o.image);
-  o.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
-  o.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
   require_writable(o.output);
   if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
   if (!o.report_folder.empty()) make_output_folder(o.report_folder);
-  const ImageFile file = read_grey_image(o.image);
-  for (const std::string& remark : file.remarks) program.say(o.image + ": " + remark);
+}
 
-  const GaborFit fit = fit_gabor_lobes(file.image, o.image, o.fit, program.progress("pursuit"));
-  const Gaussianity gaussianity = test_gaussianity(file.image, program.seed);
-  const Recipe recipe = make_recipe(program, o, fit);
-  write_recipe(recipe, o.output);
-  if (Program::interrupted()) {
-    program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
-    return summarize(fit, gaussianity, program);
-  }
-  const std::vector<float> synthesis =
-      synthesize_like(file.image, std::get<GaborLayer>(recipe.layers.front()), program);
-  if (!o.spectrum_file.empty())
-    write_npy(fit.fitted.power, fit.fitted.height, fit.fitted.width, o.spectrum_file);
-  if (!o.report_folder.empty()) write_gabor_report(file.image, synthesis, fit, o.report_folder);
-  summarize(fit, gaussianity, program);
-  program.summary["variance_ratio_synthesized"] = variance_of(synthesis);
+void say_result(const PhotoFit& photo, const Program& program) {
+  const std::size_t layers = photo.channels.size();
   program.say(fmt::format(
-      "{} lobes, certified relative duality gap {:.1e}, distance {:.3f} from the estimated spectrum",
-      fit.lobes.size(), fit.pursuit.relative_gap, fit.spectrum_distance));
-  if (fit.spectrum_distance > kPoorDistance) {
+      "{} lobes{}, certified relative duality gap {:.1e}, distance {:.3f} from the estimated spectrum",
+      photo.lobes(), layers > 1 ? fmt::format(" in {} layers", layers) : "", photo.relative_gap(),
+      photo.spectrum_distance()));
+  if (photo.spectrum_distance() > kPoorDistance) {
     program.say("note: the lobes miss much of the spectrum; allow more --lobes or a smaller --penalty");
   }
-  program.say(gaussianity.sentence);
+  program.say(photo.gaussianity().sentence);
+}
+
+void work(Program& program, const Options& o) {
+  require_outputs(o);
+  const PhotoFit photo = fit_photo(o.image, photo_options(program, o), program.progress("pursuit"));
+  for (const std::string& remark : photo.remarks) program.say(o.image + ": " + remark);
+  const Recipe recipe = make_recipe(program, o, photo);
+  write_recipe(recipe, o.output);
+  summarize(photo, program);
+  if (Program::interrupted()) {
+    program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
+    return;
+  }
+  program.summary["variance_ratio_synthesized"] = synthesize_all(o, photo, recipe, program);
+  if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
+  say_result(photo, program);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace astrolith {
 namespace {
 
-using Bytes = std::array<unsigned char, 24>;
+using Bytes = std::array<unsigned char, 26>;
 
 std::uint32_t big_endian(const unsigned char* p, int bytes) {
   std::uint32_t value = 0;
@@ -21,9 +21,20 @@ std::uint32_t big_endian(const unsigned char* p, int bytes) {
   return value;
 }
 
-// Bytes 16 to 23 of a PNG are width and height of its first chunk, IHDR.
-ImageHeader png_header(const Bytes& start) {
-  return {"PNG", big_endian(start.data() + 16, 4), big_endian(start.data() + 20, 4)};
+// Bytes 16 to 25 of a PNG are width, height, bit depth and colour type of its first chunk, IHDR. The chunks
+// before the pixels, IDAT, say whether it is animated (acTL) or has transparent colours (tRNS).
+ImageHeader png_header(std::ifstream& in, const Bytes& start) {
+  ImageHeader header{"PNG", big_endian(start.data() + 16, 4), big_endian(start.data() + 20, 4)};
+  header.has_alpha = (start[25] & 4) != 0;
+  in.seekg(8);
+  for (int chunk = 0; chunk < 10000; ++chunk) {
+    unsigned char head[8];
+    if (!in.read(reinterpret_cast<char*>(head), 8) || std::memcmp(head + 4, "IDAT", 4) == 0) break;
+    if (std::memcmp(head + 4, "acTL", 4) == 0) header.more_pages = true;
+    if (std::memcmp(head + 4, "tRNS", 4) == 0) header.has_alpha = true;
+    in.seekg(std::streamoff{big_endian(head, 4)} + 4, std::ios::cur);  // the data and their checksum
+  }
+  return header;
 }
 
 // A JPEG is a chain of segments FF, marker, length; the frame header (C0 to CF but for C4, C8 and CC) holds
@@ -58,6 +69,13 @@ ImageHeader tiff_header(const std::string& name) {
   ImageHeader header{"TIFF"};
   TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &header.width);
   TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &header.height);
+  std::uint16_t bits = 0, format = SAMPLEFORMAT_UINT, extra = 0;
+  std::uint16_t* kinds = nullptr;
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
+  header.has_alpha = extra > 0;
+  header.half_floats = bits == 16 && format == SAMPLEFORMAT_IEEEFP;
   header.more_pages = TIFFLastDirectory(tiff) == 0;
   TIFFClose(tiff);
   return header;
@@ -74,7 +92,7 @@ ImageHeader read_image_header(const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   const bool whole = in.gcount() == static_cast<std::streamsize>(start.size());
   in.clear();
-  if (whole && std::memcmp(start.data(), "\x89PNG\r\n\x1a\n", 8) == 0) return png_header(start);
+  if (whole && std::memcmp(start.data(), "\x89PNG\r\n\x1a\n", 8) == 0) return png_header(in, start);
   if (whole && std::memcmp(start.data(), "\xff\xd8\xff", 3) == 0) return jpeg_header(in, name);
   const bool tiff = std::memcmp(start.data(), "II*\0", 4) == 0 ||
                     std::memcmp(start.data(), "MM\0*", 4) == 0 ||

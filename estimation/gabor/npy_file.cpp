@@ -12,12 +12,18 @@ namespace astrolith {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
 
-void write_npy(std::span<const double> values, int rows, int columns, const std::filesystem::path& file) {
-  if (values.size() != static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {
+void write_npy(std::span<const double> values, std::span<const int> shape,
+               const std::filesystem::path& file) {
+  std::size_t count = 1;
+  std::string sides;
+  for (const int side : shape) {
+    count *= static_cast<std::size_t>(side);
+    sides += fmt::format("{}{}", sides.empty() ? "" : ", ", side);
+  }
+  if (values.size() != count) {
     throw WorkError(file.string() + ": the array does not have the stated shape");
   }
-  std::string header =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
+  std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}), }}", sides);
   // Magic, version and length take 10 bytes; the data start at a multiple of 64.
   header.append((64 - (10 + header.size() + 1) % 64) % 64, ' ');
   header += '\n';

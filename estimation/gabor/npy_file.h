@@ -6,8 +6,8 @@
 
 namespace astrolith {
 
-// Writes (rows x columns) doubles, row-major, as a .npy file of format 1.0 (little-endian float64), whole or
-// not at all. Throws InputError where the target cannot be written.
-void write_npy(std::span<const double> values, int rows, int columns, const std::filesystem::path& file);
+// Writes doubles, the last index of `shape` running fastest, as a .npy file of format 1.0 (little-endian
+// float64), whole or not at all. Throws InputError where the target cannot be written.
+void write_npy(std::span<const double> values, std::span<const int> shape, const std::filesystem::path& file);
 
 }  // namespace astrolith

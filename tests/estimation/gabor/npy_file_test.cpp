@@ -13,7 +13,7 @@ TEST(NpyFile, HasTheHeaderAndTheBytes) {
   const auto file =
       std::filesystem::temp_directory_path() / ("astrolith_" + std::to_string(::getpid()) + ".npy");
   const std::vector<double> values{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
-  write_npy(values, 2, 3, file);
+  write_npy(values, std::vector<int>{2, 3}, file);
   std::ifstream in(file, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
   std::filesystem::remove(file);

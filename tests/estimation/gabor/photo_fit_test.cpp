@@ -1,0 +1,88 @@
+#include "estimation/gabor/photo_fit.h"
+
+#include <unistd.h>
+
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "synthesis/color_texture.h"
+#include "synthesis/image_file.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A recipe's colours become a photo, and the photo a recipe.
+class PhotoFitTest : public ::testing::Test {
+ protected:
+  PhotoFitTest() {
+    GaborLayer coarse, fine;
+    coarse.exemplar_rms = 0.1;
+    coarse.color = LayerColor{{0.8, 0.6, 0.0}, {0.5, 0.45, 0.4}};
+    coarse.lobes = {{4, 0.0625, 0.03, 1.0}};
+    fine.exemplar_rms = 0.03;
+    fine.color = LayerColor{{0.0, 0.0, 1.0}, {}};
+    fine.lobes = {{3, -0.25, 0.125, 1.0}};
+    write_tiff_float(synthesize_color_texture({coarse, fine}, 128, 96, {5}), 128, 96, file_, 3);
+  }
+  ~PhotoFitTest() override { fs::remove(file_); }
+
+  PhotoFit fit(PhotoFitOptions options) const {
+    options.fit.max_lobes = 20;
+    return fit_photo(file_, options);
+  }
+
+  fs::path file_ = fs::temp_directory_path() / ("astrolith_photo_" + std::to_string(::getpid()) + ".tif");
+};
+
+TEST_F(PhotoFitTest, ColoursComeApartIntoTheLayersThatMadeThem) {
+  PhotoFitOptions options;
+  options.colors = true;
+  const PhotoFit photo = fit(options);
+  ASSERT_EQ(photo.channels.size(), 2u);
+  const FittedChannel& first = photo.channels[0];
+  EXPECT_NEAR(first.color->axis.x, 0.8, 0.01);
+  EXPECT_NEAR(first.color->axis.y, 0.6, 0.01);
+  EXPECT_NEAR(first.color->mean.z, 0.4, 0.01);
+  EXPECT_EQ(photo.channels[1].color->mean, Vec3d{});
+  EXPECT_NEAR(first.fit.exemplar_rms, 0.1, 0.02);
+  EXPECT_NEAR(first.fit.lobes[0].frequency_x, 0.0625, 0.02);
+  EXPECT_NEAR(std::abs(photo.channels[1].fit.lobes[0].frequency_x), 0.25, 0.05);
+  EXPECT_NEAR(photo.variance_ratio(), 1.0, 1e-6);
+  EXPECT_EQ(photo.lobes(), first.fit.lobes.size() + photo.channels[1].fit.lobes.size());
+  EXPECT_GT(layer_of(first, true).height_rms, 0.0);
+  EXPECT_EQ(layer_of(photo.channels[1], false).height_rms, 0.0);
+}
+
+TEST_F(PhotoFitTest, LuminanceIsOneLayerWithoutColour) {
+  const PhotoFit photo = fit({});
+  ASSERT_EQ(photo.channels.size(), 1u);
+  EXPECT_FALSE(photo.channels[0].color.has_value());
+  EXPECT_NEAR(photo.channels[0].fit.exemplar_mean, 0.2126 * 0.5 + 0.7152 * 0.45 + 0.0722 * 0.4, 0.02);
+}
+
+TEST_F(PhotoFitTest, TheTrendIsTakenOutFirst) {
+  PhotoFitOptions options;
+  options.detrend_degree = 2;
+  const PhotoFit photo = fit(options), as_is = fit({});
+  EXPECT_LT(photo.channels[0].fit.exemplar_rms, as_is.channels[0].fit.exemplar_rms);
+  EXPECT_NEAR(photo.channels[0].fit.exemplar_mean, as_is.channels[0].fit.exemplar_mean, 1e-9);
+}
+
+TEST_F(PhotoFitTest, SmallAndConstantImagesAreRefusedWhateverTheOptions) {
+  for (const int n : {1, 31, 40}) {
+    write_tiff_float(std::vector<float>(static_cast<std::size_t>(3 * n * n), 0.25f), n, n, file_, 3);
+    for (const bool colors : {false, true}) {
+      for (const int degree : {0, 3}) {
+        PhotoFitOptions options;
+        options.colors = colors;
+        options.detrend_degree = degree;
+        EXPECT_THROW(fit(options), InputError) << n << colors << degree;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace astrolith
