@@ -1,6 +1,7 @@
 // synth: a recipe becomes a closed mesh, a picture of it, or the texture of its Gabor layers.
 #include <sys/resource.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -37,6 +38,7 @@ struct Options {
   fs::path preview;
   TextureRequest texture;
   MeshSizeRequest size;
+  std::string tile;  // "3/16"
 };
 
 void declare_options(Program& program, Options& options) {
@@ -47,6 +49,12 @@ void declare_options(Program& program, Options& options) {
                   "--texture .png or .tif")
       ->required();
   declare_size_options(program, options.size);
+  program.app
+      .add_option(
+          "--tile", options.tile,
+          "only tile I of N, slabs along z that many machines can make: open where cut, with the same "
+          "vertices there as the next tile, so that all join without cracks")
+      ->option_text("I/N");
   program.app
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
@@ -104,12 +112,15 @@ class SinkList : public MeshSink {
   std::vector<MeshSink*> sinks_;
 };
 
-// The mesh as a promise: closed and manifold, or no file at all.
-void require_closed_manifold(const ManifoldReport& report, const Options& options) {
+// The mesh as a promise: closed (a tile: open where it was cut, and only there) and manifold, or no file.
+void require_closed_manifold(const ManifoldReport& report, const MeshStatistics& statistics,
+                             const Options& options) {
   if (report.triangles == 0) {
-    throw WorkError(options.recipe.string() + ": the recipe's surface is empty at this resolution; raise it");
+    throw WorkError(options.recipe.string() + ": the recipe's surface is empty at this resolution" +
+                    (options.tile.empty() ? "; raise it" : " in this tile"));
   }
-  if (!report.closed() || !report.manifold()) {
+  if (report.open_vertices != statistics.cut_vertices || report.late_triangles > 0 ||
+      report.non_manifold_vertices > 0) {
     throw WorkError("the mesh is not a closed manifold (" + std::to_string(report.open_vertices) +
                     " open and " + std::to_string(report.non_manifold_vertices) +
                     " non-manifold vertices); nothing was written");
@@ -127,6 +138,26 @@ void summarize_mesh(Program& program, const MeshStatistics& statistics, const Ma
   program.summary["cell"] = statistics.step;
   program.summary["active_blocks"] = statistics.active_blocks;
   program.summary["total_blocks"] = statistics.total_blocks;
+}
+
+std::string describe_mesh(const ManifoldReport& report, const Options& options) {
+  const std::string triangles = std::to_string(report.triangles) + " triangles, ";
+  if (!report.closed()) return triangles + "tile " + options.tile + ", open where cut, manifold";
+  return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
+         std::to_string(report.components) + (report.components == 1 ? " component" : " components");
+}
+
+// "3/16" is the third of sixteen.
+MeshTile parse_tile(const std::string& text) {
+  if (text.empty()) return {};
+  MeshTile tile;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%c", &tile.index, &tile.count, &rest) != 2 || tile.index < 1 ||
+      tile.index > tile.count) {
+    throw InputError("--tile: \"" + text + "\" is no tile; write I/N with I from 1 to N, such as 3/16");
+  }
+  --tile.index;
+  return tile;
 }
 
 void make_preview(const Program& program, const Options& options, const TriangleMesh& mesh) {
@@ -152,6 +183,8 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
   const int resolution =
       choose_resolution(program, options.size, field, options.output, !options.preview.empty());
 
+  const MeshTile tile = parse_tile(options.tile);
+
   ManifoldCheck check;
   MeshCollector collector;
   SinkList sinks;
@@ -160,9 +193,9 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
   std::unique_ptr<PlyStreamWriter> writer;
   if (streamed) sinks.add(*(writer = std::make_unique<PlyStreamWriter>(options.output, info)));
   const MeshStatistics statistics =
-      mesh_field(field, field.bounds(), resolution, sinks, program.progress("mesh"));
+      mesh_field(field, field.bounds(), resolution, sinks, program.progress("mesh"), tile);
   const ManifoldReport report = check.finish();
-  require_closed_manifold(report, options);
+  require_closed_manifold(report, statistics, options);
 
   if (streamed) {
     writer->finish();
@@ -172,9 +205,7 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
   if (!options.preview.empty()) make_preview(program, options, collector.mesh);
   summarize_mesh(program, statistics, report);
   summarize_output(program, options.output);
-  program.say(options.output.string() + ": " + std::to_string(report.triangles) +
-              " triangles, closed, manifold, genus " + std::to_string(report.genus) + ", " +
-              std::to_string(report.components) + (report.components == 1 ? " component" : " components"));
+  program.say(options.output.string() + ": " + describe_mesh(report, options));
 }
 
 Recipe read_input(const Program& program, const Options& options) {

@@ -51,21 +51,45 @@ void for_each_bit(SignRow bits, const Visit& visit) {
   for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
 }
 
+// Which of a block's vertices and triangles are wanted: all, or the vertices in its top plane alone, which
+// the layer above shares.
+enum class BlockPart { kAll, kTopPlane };
+
+// The edges along axis whose vertices are wanted of row z.
 template <int B>
-void count_rows(LayerBlock<B>& block) {
+SignRow wanted_edges(const CellRow<B>& cells, int z, int axis, BlockPart part) {
+  const bool wanted = part == BlockPart::kAll || (z == B && axis != 2);
+  return wanted ? cells.crossed_edges(axis) : SignRow{0};
+}
+
+template <int B>
+void count_rows(LayerBlock<B>& block, BlockPart part) {
   const MarchingCubesTable& table = marching_cubes_table();
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
       const CellRow<B> cells(block, y, z);
       std::uint32_t vertices = 0, triangles = 0;
-      for_each_bit(cells.crossed_cells(), [&](int x) { triangles += table[cells.cell_signs(x)].count; });
+      if (part == BlockPart::kAll) {
+        for_each_bit(cells.crossed_cells(), [&](int x) { triangles += table[cells.cell_signs(x)].count; });
+      }
       for (int axis = 0; axis < 3; ++axis) {
-        vertices += static_cast<std::uint32_t>(std::popcount(cells.crossed_edges(axis)));
+        vertices += static_cast<std::uint32_t>(std::popcount(wanted_edges(cells, z, axis, part)));
       }
       block.vertex_rows[LayerBlock<B>::row(y, z)] = vertices;
       block.triangle_rows[LayerBlock<B>::row(y, z)] = triangles;
     }
   }
+}
+
+// Vertices in a block's top plane.
+template <int B>
+std::int64_t count_top_plane(const LayerBlock<B>& block) {
+  std::int64_t vertices = 0;
+  for (int y = 1; y <= B; ++y) {
+    const CellRow<B> cells(block, y, B);
+    for (int axis = 0; axis < 2; ++axis) vertices += std::popcount(cells.crossed_edges(axis));
+  }
+  return vertices;
 }
 
 struct LayerCounts {
@@ -165,14 +189,14 @@ void take_normals(const Block& field, float h, VertexBatch& batch) {
   }
 }
 
-// Calls visit(x, y, z, axis) for the crossed edges that a block owns, in the order of their vertices.
+// Calls visit(x, y, z, axis) for the wanted crossed edges that a block owns, in the order of their vertices.
 template <int B, typename Visit>
-void for_each_crossed_edge(const LayerBlock<B>& block, const Visit& visit) {
+void for_each_crossed_edge(const LayerBlock<B>& block, BlockPart part, const Visit& visit) {
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
       const CellRow<B> cells(block, y, z);
-      const std::array<SignRow, 3> edges = {cells.crossed_edges(0), cells.crossed_edges(1),
-                                            cells.crossed_edges(2)};
+      const std::array<SignRow, 3> edges = {wanted_edges(cells, z, 0, part), wanted_edges(cells, z, 1, part),
+                                            wanted_edges(cells, z, 2, part)};
       for_each_bit(edges[0] | edges[1] | edges[2], [&](int x) {
         for (int axis = 0; axis < 3; ++axis) {
           if ((edges[static_cast<unsigned>(axis)] >> x & 1u) != 0) visit(x, y, z, axis);
@@ -186,7 +210,7 @@ void for_each_crossed_edge(const LayerBlock<B>& block, const Visit& visit) {
 // Returns the number of evaluations.
 template <int B, FieldBlockLike Block>
 std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& field,
-                           std::uint32_t layer_first, LayerBlock<B>& block,
+                           std::uint32_t layer_first, BlockPart part, LayerBlock<B>& block,
                            std::span<MeshVertex> layer_vertices) {
   // A quarter of a step: near enough for O(h^2), far enough for differences of floats.
   const auto h = static_cast<float>(0.25 * grid.samples.step);
@@ -199,7 +223,7 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
     batch.size = 0;
   };
   std::array<std::uint32_t, B* B> next = block.vertex_rows;
-  for_each_crossed_edge(block, [&](int x, int y, int z, int axis) {
+  for_each_crossed_edge(block, part, [&](int x, int y, int z, int axis) {
     const std::uint32_t slot = next[LayerBlock<B>::row(y, z)]++;
     block.vertices[3 * LayerBlock<B>::sample(x, y, z) + static_cast<unsigned>(axis)] = layer_first + slot;
     batch.vertices[batch.size] = place_vertex(grid, layer_z, block, x, y, z, axis);

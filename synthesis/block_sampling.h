@@ -163,16 +163,22 @@ bool is_side_crossed(const LayerBlock<B>& block, int side) {
   return any != 0 && all != mask;
 }
 
+struct Sides {
+  int first, last;
+};
+inline constexpr Sides kAllSides = {0, 5}, kAllButTop = {0, 4}, kTop = {5, 5};
+
 // Throws WorkError when the surface crosses a side of a block whose neighbour there was proved free of
 // surface: the mesh would have a hole. Above's blocks are known by now.
 template <int B>
-void check_open_sides(const BlockLayer<B>& layer, const BlockLayer<B>& below, const BlockLayer<B>& above) {
+void check_open_sides(const BlockLayer<B>& layer, const BlockLayer<B>& below, const BlockLayer<B>& above,
+                      Sides sides = kAllSides) {
   parallel_for(0, static_cast<std::int64_t>(layer.blocks.size()), [&](std::int64_t i) {
     const LayerBlock<B>& block = layer.blocks[static_cast<std::size_t>(i)];
     const std::array<const LayerBlock<B>*, 6> neighbours = {
         layer.find(block.x - 1, block.y), layer.find(block.x + 1, block.y), layer.find(block.x, block.y - 1),
         layer.find(block.x, block.y + 1), below.find(block.x, block.y),     above.find(block.x, block.y)};
-    for (int side = 0; side < 6; ++side) {
+    for (int side = sides.first; side <= sides.last; ++side) {
       if (neighbours[static_cast<unsigned>(side)] == nullptr && is_side_crossed(block, side)) {
         throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
       }

@@ -20,12 +20,14 @@ Link classify_link(std::span<Corner> corners) {
     if (corners[i].from == corners[i - 1].from) return Link::kNonManifold;
   }
   std::uint32_t at = corners[0].from;
-  for (std::size_t steps = 1; steps <= corners.size(); ++steps) {
+  for (std::size_t steps = 0; steps <= corners.size(); ++steps) {
+    if (steps > 0 && at == corners[0].from) {
+      return steps == corners.size() ? Link::kCycle : Link::kNonManifold;
+    }
     const auto next = std::lower_bound(corners.begin(), corners.end(), at,
                                        [](const Corner& c, std::uint32_t from) { return c.from < from; });
     if (next == corners.end() || next->from != at) return Link::kOpen;
     at = next->to;
-    if (at == corners[0].from) return steps == corners.size() ? Link::kCycle : Link::kNonManifold;
   }
   return Link::kNonManifold;
 }

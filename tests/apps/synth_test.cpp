@@ -115,6 +115,22 @@ TEST_F(Synth, TrianglesChooseTheResolutionAndMemoryIsKept) {
                  "excludes");
 }
 
+TEST_F(Synth, TilesMakeTheWholeMesh) {
+  synthesise("whole.ply", {});
+  std::size_t triangles = 0;
+  for (const char* tile : {"1/3", "2/3", "3/3"}) {
+    synthesise("tile.ply", {"--tile", tile});
+    triangles += read_mesh(folder_ / "tile.ply").triangles.size();
+  }
+  EXPECT_EQ(triangles, read_mesh(folder_ / "whole.ply").triangles.size());
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  for (const char* tile : {"0/3", "4/3", "1/0", "1/300", "2", "1/3x"}) {
+    expect_refusal(folder_, kSynth,
+                   {recipe, "-o", (folder_ / "out.ply").string(), "--resolution", "32", "--tile", tile},
+                   "tile");
+  }
+}
+
 TEST_F(Synth, BadRecipesAreRefused) {
   expect_recipe_refused(replaced(kTwoSpheres, "amplitude", "amplitud"), "layers[0].amplitud: unknown field");
   expect_recipe_refused(replaced(kTwoSpheres, "0.75", "-0.75"), "body.spheres[1].radius");

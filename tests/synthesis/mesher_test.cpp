@@ -7,7 +7,9 @@
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/weld.h"
 #include "numerics/hash_random.h"
+#include "synthesis/manifold_check.h"
 #include "tests/synthesis/analytic_field.h"
 
 namespace astrolith {
@@ -139,6 +141,42 @@ TEST(Mesher, SameBytesForAnyThreadsBlocksAndBounds) {
   EXPECT_TRUE(same_bytes(reference, mesh_of<16>(field, cube(1.0), 77)));
   const AnalyticField never_culled(gyroid_sphere);
   EXPECT_TRUE(same_bytes(reference, mesh_of(never_culled, cube(1.0), 77)));
+}
+
+// All tiles one after the other; vertices of a cut, which two tiles share, become one.
+template <class Field>
+TriangleMesh joined_tiles(const Field& field, int resolution, int count) {
+  TriangleMesh all;
+  for (int i = 0; i < count; ++i) {
+    MeshCollector tile;
+    ManifoldCheck check;
+    const MeshStatistics statistics = mesh_field(field, cube(1.0), resolution, tile, {}, {i, count});
+    mesh_field(field, cube(1.0), resolution, check, {}, {i, count});
+    EXPECT_EQ(check.finish().open_vertices, statistics.cut_vertices);
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), tile.mesh.vertices.begin(), tile.mesh.vertices.end());
+    all.normals.insert(all.normals.end(), tile.mesh.normals.begin(), tile.mesh.normals.end());
+    for (const Triangle& t : tile.mesh.triangles) {
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  return weld_vertices(std::move(all), 0.0);
+}
+
+TEST(Mesher, TilesJoinToTheWholeMeshBitByBit) {
+  const auto field = field_of(gyroid_sphere, kGyroidLipschitz);
+  const TriangleMesh whole = mesh_of(field, cube(1.0), 77);
+  for (const int count : {1, 2, 3, 10}) {
+    EXPECT_TRUE(same_bytes(whole, joined_tiles(field, 77, count))) << count << " tiles";
+  }
+}
+
+TEST(Mesher, TilesThatThereAreNotAreInputErrors) {
+  MeshCollector sink;
+  const auto field = field_of(unit_sphere, 1.0);
+  for (const MeshTile tile : {MeshTile{0, 0}, {2, 2}, {-1, 2}, {0, 9}}) {
+    EXPECT_THROW(mesh_field(field, cube(1.0), 64, sink, {}, tile), InputError);
+  }
 }
 
 TEST(Mesher, FlatBoxesUseFewerCellsAlongShortSides) {
