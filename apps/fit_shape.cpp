@@ -61,7 +61,7 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option("--points", arguments.fit.points, "samples of the surface that the refinement sees")
       ->check(CLI::Range(std::int64_t{100}, std::int64_t{10000000}));
   app.add_option("--optimizer", arguments.optimizer, "of the global parameters, on the shape histogram")
-      ->check(CLI::IsMember({"pso", "crs2", "isres", "esch", "sbplx"}));
+      ->check(CLI::IsMember({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
   app.add_option("--population", arguments.fit.population, "of the optimizer")->check(CLI::Range(1, 10000));
   app.add_option("--generations", arguments.fit.generations,
                  "of the optimizer: population x generations evaluations")

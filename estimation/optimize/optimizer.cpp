@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "estimation/optimize/cma_es_internal.h"
 #include "estimation/optimize/nlopt_search_internal.h"
 #include "estimation/optimize/particle_swarm_internal.h"
 #include "numerics/errors.h"
@@ -11,7 +12,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::array<const char*, 5> kNames = {"pso", "crs2", "isres", "esch", "sbplx"};
+constexpr std::array<const char*, 6> kNames = {"pso", "crs2", "isres", "esch", "sbplx", "cmaes"};
 
 void check(const Bounds& bounds, const OptimizeOptions& options) {
   const std::size_t n = bounds.lower.size();
@@ -48,7 +49,7 @@ OptimizeOptions inside(OptimizeOptions options, const Bounds& bounds) {
 OptimizerAlgorithm optimizer_from_name(const std::string& name) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) {
-    throw InputError("optimizer '" + name + "' is unknown; choose pso, crs2, isres, esch or sbplx");
+    throw InputError("optimizer '" + name + "' is unknown; choose pso, crs2, isres, esch, sbplx or cmaes");
   }
   return static_cast<OptimizerAlgorithm>(found - kNames.begin());
 }
@@ -61,9 +62,15 @@ OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const 
                         const Progress& progress) {
   check(bounds, given);
   OptimizeOptions options = inside(given, bounds);
-  if (options.algorithm != OptimizerAlgorithm::pso) return nlopt_search(objective, bounds, options, progress);
-  if (options.population == 0) options.population = 20;
-  return particle_swarm(objective, bounds, options, progress);
+  switch (options.algorithm) {
+    case OptimizerAlgorithm::pso:
+      if (options.population == 0) options.population = 20;
+      return particle_swarm(objective, bounds, options, progress);
+    case OptimizerAlgorithm::cmaes:
+      return cma_es(objective, bounds, options, progress);
+    default:
+      return nlopt_search(objective, bounds, options, progress);
+  }
 }
 
 }  // namespace astrolith

@@ -1,5 +1,5 @@
-// Minimises a function of a few dozen numbers inside a box, without derivatives: particle swarm and four
-// algorithms of NLopt behind one face.
+// Minimises a function of a few dozen numbers inside a box, without derivatives: particle swarm, CMA-ES and
+// four algorithms of NLopt behind one face.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ enum class OptimizerAlgorithm {
   crs2,   // controlled random search with local mutation (Kaelo and Ali 2006; NLopt GN_CRS2_LM)
   isres,  // stochastic-ranking evolution strategy (Runarsson and Yao 2005; NLopt GN_ISRES)
   esch,   // evolutionary algorithm (da Silva Santos 2010; NLopt GN_ESCH)
-  sbplx   // subspace simplex, local, from the start (Rowan 1990; NLopt LN_SBPLX)
+  sbplx,  // subspace simplex, local, from the start (Rowan 1990; NLopt LN_SBPLX)
+  cmaes   // covariance matrix adaptation with restarts (Hansen 2016; Auger and Hansen 2005)
 };
 
 // "pso", "crs2", ...; throws InputError that lists the names.
@@ -32,8 +33,9 @@ struct Bounds {
 
 struct OptimizeOptions {
   OptimizerAlgorithm algorithm = OptimizerAlgorithm::pso;
-  // Particles of pso; population of crs2, isres and esch (crs2 needs one more than there are variables and
-  // gets it); 0 = 20 for pso, NLopt's own choice for the others.
+  // Particles of pso; samples of cmaes a generation (at least 4, doubled at each restart); population of
+  // crs2, isres and esch (crs2 needs one more than there are variables and gets it); 0 = 20 for pso, 4 + 3
+  // log n for cmaes, NLopt's own choice for the others.
   int population = 0;
   // Calls of the objective; pso rounds up to whole generations of population calls.
   std::int64_t max_evaluations = 2000;
@@ -42,8 +44,8 @@ struct OptimizeOptions {
   // Stop sbplx and crs2 once all x[i] change by less than x_tolerance * (upper[i] - lower[i]).
   double x_tolerance = 1e-9;
   std::uint64_t seed = 1;
-  // Where to start: one particle of pso, the first point of the others. Empty = a random particle, the box's
-  // centre. Clipped to the box.
+  // Where to start: one particle of pso, the first point of the others. Empty = a random particle or first
+  // mean, the box's centre for NLopt. Clipped to the box.
   std::vector<double> start;
 };
 
@@ -57,7 +59,7 @@ struct OptimizeResult {
   OptimizeTermination termination = OptimizeTermination::evaluations;
 };
 
-// Values that are not finite count as +infinity. pso calls the objective from many threads at once.
+// Values that are not finite count as +infinity. pso and cmaes call the objective from many threads at once.
 using Objective = std::function<double(std::span<const double> x)>;
 
 // The result is a function of objective, bounds and options alone: thread count and other runs in the process

@@ -53,7 +53,7 @@ OptimizeOptions options_of(Algorithm algorithm, std::int64_t evaluations) {
 class EveryOptimizer : public ::testing::TestWithParam<Algorithm> {};
 INSTANTIATE_TEST_SUITE_P(All, EveryOptimizer,
                          ::testing::Values(Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::esch,
-                                           Algorithm::sbplx),
+                                           Algorithm::sbplx, Algorithm::cmaes),
                          [](const auto& test) { return optimizer_name(test.param); });
 
 TEST_P(EveryOptimizer, FindsTheSphere) {
@@ -179,8 +179,36 @@ TEST(Nlopt, RosenbrockAndRastrigin) {
   EXPECT_LT(minimize(rosenbrock, kBox, options_of(Algorithm::sbplx, 20000)).value, 0.01);
 }
 
+TEST(CmaEs, RosenbrockAndRastrigin) {
+  EXPECT_LT(median_value(Algorithm::cmaes, rosenbrock, 3000), 1e-9);
+  EXPECT_LT(median_value(Algorithm::cmaes, rastrigin, 10000), 1.0);
+}
+
+// Rotated and stretched by 1000: what adapting the covariance is for.
+TEST(CmaEs, EllipsoidInManyDimensions) {
+  const std::size_t n = 20;
+  const Bounds box = {std::vector<double>(n, -5.0), std::vector<double>(n, 5.0)};
+  const auto ellipsoid = [&](std::span<const double> x) {
+    double sum = 0;
+    for (std::size_t d = 0; d < n; ++d) {
+      const double y = (x[d] - 1.0) + 0.5 * (x[(d + 1) % n] - 1.0);
+      sum += std::pow(1e6, static_cast<double>(d) / (n - 1.0)) * y * y;
+    }
+    return sum;
+  };
+  EXPECT_LT(minimize(ellipsoid, box, options_of(Algorithm::cmaes, 20000)).value, 1e-9);
+}
+
+TEST(CmaEs, AllVariablesMayBeFixed) {
+  const OptimizeResult result =
+      minimize(sphere, {{1, 2, 3, 4}, {1, 2, 3, 4}}, options_of(Algorithm::cmaes, 100));
+  EXPECT_EQ(result.evaluations, 1);
+  EXPECT_EQ(result.x, (std::vector<double>{1, 2, 3, 4}));
+}
+
 TEST(Optimizer, TheStartIsTried) {
-  for (const Algorithm algorithm : {Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::sbplx}) {
+  for (const Algorithm algorithm :
+       {Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::sbplx, Algorithm::cmaes}) {
     OptimizeOptions options = options_of(algorithm, 300);
     options.start = kOptimum;
     EXPECT_EQ(minimize(rastrigin, kBox, options).value, 0) << optimizer_name(algorithm);
@@ -188,7 +216,7 @@ TEST(Optimizer, TheStartIsTried) {
 }
 
 TEST(Optimizer, NamesGoBothWays) {
-  for (const char* name : {"pso", "crs2", "isres", "esch", "sbplx"}) {
+  for (const char* name : {"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}) {
     EXPECT_EQ(optimizer_name(optimizer_from_name(name)), name);
   }
   EXPECT_THROW(optimizer_from_name("PSO"), InputError);

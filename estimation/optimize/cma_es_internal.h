@@ -1,0 +1,11 @@
+// Covariance matrix adaptation evolution strategy.
+#pragma once
+
+#include "estimation/optimize/optimizer.h"
+
+namespace astrolith {
+
+OptimizeResult cma_es(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+                      const Progress& progress);
+
+}  // namespace astrolith
