@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 #include <tuple>
 
 #include "descriptor/pair_count_internal.h"
 #include "descriptor/shape_histogram.h"
 #include "descriptor/surflet_pair.h"
+#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
@@ -19,8 +21,9 @@ constexpr std::int64_t kRowsPerTask = 64;
 constexpr std::int64_t kLanes = 16;
 // Codes wait so many vectors before they are counted: the machine then computes and counts at the same time,
 // and need not wait for a vector to be written before it reads its parts.
-constexpr std::int64_t kDelay = 3;
-constexpr std::int64_t kPadding = (kDelay + 1) * kLanes;
+constexpr std::int64_t kDelay = 3, kRing = kDelay + 1;
+// What is read behind the last surflet of a run.
+constexpr std::int64_t kPadding = kRing * kLanes;
 // Counters in copies, so that an increment need not wait for the one before it.
 constexpr std::int64_t kCopies = 4;
 
@@ -29,37 +32,33 @@ template <int kBins>
 constexpr std::int64_t kCodes = 2 * bin_count(PairFeatures::wahl, kBins);
 
 // Pointers to a run of surflets. That the loop below calls a function which makes its Surflet, rather than
-// making it in its own body, is what lets the compiler keep it in vector registers.
+// making it in its own body, is what lets the compiler keep it in vector registers; that all it calls is
+// always inlined is what lets it vectorise the loop in every clone.
 struct SurfletRun {
   std::array<const float*, 9> c;
 
   template <int kBins>
-  std::int32_t code_with(const Surflet& one, std::int64_t k) const {
+  ASTROLITH_KERNEL std::int32_t code_with(const Surflet& one, std::int64_t k) const {
     return surflet_code<kBins>(
         one, {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}});
   }
 };
 
 // One array a coordinate, for vector loads, with room behind the last point. Points of one local code stand
-// together; within them the order is that of the coordinates, so that the order given changes nothing.
+// together. Within them the order is that of a hash of the position: the order given then changes nothing,
+// and neighbours in space, whose pairs with a third point often share a bin, do not follow one another.
 struct SurfletArrays {
   std::array<std::vector<float>, 9> c;
   std::vector<std::int64_t> first_of_code;  // (num_local + 1)
 
   SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                 std::span<const std::int32_t> local, int num_local) {
-    std::vector<std::uint32_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t i) {
-      const Vec3d &p = points[i], &n = normals[i];
-      return std::tuple(local[i], p.x, p.y, p.z, n.x, n.y, n.z);
-    };
-    std::sort(order.begin(), order.end(), [&](auto i, auto j) { return key(i) < key(j); });
     for (auto& v : c) v.assign(points.size() + kPadding, 0.0f);
     first_of_code.assign(static_cast<std::size_t>(num_local) + 1, 0);
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      set(k, surflet(single(points[order[k]]), single(normals[order[k]])));
-      ++first_of_code[static_cast<std::size_t>(local[order[k]]) + 1];
+    std::size_t k = 0;
+    for (const std::uint32_t i : order_of(points, normals, local)) {
+      set(k++, surflet(single(points[i]), single(normals[i])));
+      ++first_of_code[static_cast<std::size_t>(local[i]) + 1];
     }
     std::partial_sum(first_of_code.begin(), first_of_code.end(), first_of_code.begin());
   }
@@ -75,6 +74,35 @@ struct SurfletArrays {
   }
 
  private:
+  static std::uint32_t hash_of(const Vec3d& p) {
+    std::uint32_t hash = 0;
+    for (const double value : {p.x, p.y, p.z}) {
+      const auto bits = std::bit_cast<std::uint64_t>(value);
+      hash = hash_append(hash_append(hash, static_cast<std::uint32_t>(bits)),
+                         static_cast<std::uint32_t>(bits >> 32));
+    }
+    return hash;
+  }
+  static std::vector<std::uint32_t> order_of(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                                             std::span<const std::int32_t> local) {
+    // Places with the same hash, such as points that repeat, are told apart by all their numbers.
+    const auto all = [&](std::uint32_t i) {
+      const Vec3d &p = points[i], &n = normals[i];
+      return std::tuple(p.x, p.y, p.z, n.x, n.y, n.z);
+    };
+    std::vector<std::tuple<std::int32_t, std::uint32_t, std::uint32_t>> keys(points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i) keys[i] = {local[i], hash_of(points[i]), i};
+    std::sort(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
+      const auto [code_a, hash_a, i] = a;
+      const auto [code_b, hash_b, j] = b;
+      return std::tie(code_a, hash_a) != std::tie(code_b, hash_b)
+                 ? std::tie(code_a, hash_a) < std::tie(code_b, hash_b)
+                 : all(i) < all(j);
+    });
+    std::vector<std::uint32_t> order;
+    for (const auto& key : keys) order.push_back(std::get<2>(key));
+    return order;
+  }
   static Vec3f single(const Vec3d& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   }
@@ -85,27 +113,34 @@ struct SurfletArrays {
   }
 };
 
+using Codes = std::int32_t[kLanes];
+
+template <int kBins>
+ASTROLITH_KERNEL void make_codes(const Surflet& one, const SurfletRun& run, std::int64_t first,
+                                 Codes& codes) {
+#pragma omp simd
+  for (std::int64_t k = 0; k < kLanes; ++k) codes[k] = run.code_with<kBins>(one, first + k);
+}
+
+template <int kBins>
+ASTROLITH_KERNEL void count_codes(const Codes& codes, std::uint32_t* counters) {
+  ASTROLITH_UNROLL
+  for (std::int64_t k = 0; k < kLanes; ++k) ++counters[k % kCopies * kCodes<kBins> + codes[k]];
+}
+
 // Adds the pairs of one surflet with `count` of the run to kCopies tables of kCodes<kBins> counters.
 template <int kBins>
 ASTROLITH_SIMD_CLONES void count_row(const Surflet& given, SurfletRun run, std::int64_t count,
                                      std::uint32_t* __restrict counters) {
-  alignas(64) std::int32_t ring[kDelay + 1][kLanes];
+  alignas(64) Codes ring[kRing];
   const Surflet one = given;
-  const std::int64_t vectors = (count + kLanes - 1) / kLanes;
-  for (std::int64_t v = 0; v < vectors + kDelay; ++v) {
-    std::int32_t* __restrict codes = ring[v % (kDelay + 1)];
-#pragma omp simd
-    for (std::int64_t k = 0; k < kLanes; ++k) codes[k] = run.code_with<kBins>(one, v * kLanes + k);
-    if (v < kDelay) continue;
-    const std::int32_t* waited = ring[(v + 1) % (kDelay + 1)];
-    const std::int64_t left = count - (v - kDelay) * kLanes;
-    if (left >= kLanes) {
-      ASTROLITH_UNROLL
-      for (std::int64_t k = 0; k < kLanes; ++k) ++counters[k % kCopies * kCodes<kBins> + waited[k]];
-    } else {
-      for (std::int64_t k = 0; k < left; ++k) ++counters[waited[k]];
-    }
+  const std::int64_t vectors = count / kLanes, rest = count % kLanes;
+  for (std::int64_t v = 0; v < kDelay; ++v) make_codes<kBins>(one, run, v * kLanes, ring[v]);
+  for (std::int64_t v = 0; v < vectors; ++v) {
+    make_codes<kBins>(one, run, (v + kDelay) * kLanes, ring[(v + kDelay) % kRing]);
+    count_codes<kBins>(ring[v % kRing], counters);
   }
+  for (std::int64_t k = 0; k < rest; ++k) ++counters[ring[vectors % kRing][k]];
 }
 
 template <int kBins>

@@ -30,9 +30,9 @@ struct ShapeDescription {
   std::int64_t undefined_curvatures = 0;  // points whose kappa was taken as that of a plane
 };
 
-// Poisson-disk samples with their triangles' normals; kappa is the weighted mean within a tenth of the root mean
-// square distance of the samples from their centre, so it does not depend on the triangles' size. Any mesh
-// with an area will do. Throws InputError for options out of range and for a mesh without area.
+// Poisson-disk samples with their triangles' normals; kappa is the weighted mean within a tenth of the root
+// mean square distance of the samples from their centre, so it does not depend on the triangles' size. Any
+// mesh with an area will do. Throws InputError for options out of range and for a mesh without area.
 ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptions& options);
 
 // From (n) points and (n) normals of any positive length alone. Points that repeat another are left out; of

@@ -29,9 +29,7 @@ struct Surflet {
   Vec3f moment;  // normal x point: with the normal the Pluecker coordinates of the line along the normal
 };
 
-ASTROLITH_HD inline Surflet surflet(Vec3f point, Vec3f normal) {
-  return {point, normal, cross(normal, point)};
-}
+ASTROLITH_KERNEL Surflet surflet(Vec3f point, Vec3f normal) { return {point, normal, cross(normal, point)}; }
 
 // Squares of the borders between kBins equal bins, those on one side of the middle; an even number of bins
 // has one more border, in the middle itself.
@@ -81,7 +79,7 @@ struct SurfletPair {
   float w_n2;        // w.n2 |r x u|
 };
 
-ASTROLITH_HD inline SurfletPair surflet_pair(const Surflet& i, const Surflet& j) {
+ASTROLITH_KERNEL SurfletPair surflet_pair(const Surflet& i, const Surflet& j) {
   using math::fma;
   const Vec3f n = i.normal, m = j.normal, a = i.moment, b = j.moment;
   const float rx = j.point.x - i.point.x, ry = j.point.y - i.point.y, rz = j.point.z - i.point.z;
@@ -97,41 +95,48 @@ ASTROLITH_HD inline SurfletPair surflet_pair(const Surflet& i, const Surflet& j)
   pair.u_r = pair.origin_is_j ? along_j : along_i;
   const float minus_n2_r = pair.origin_is_j ? along_i : along_j;
   pair.across2 = math::max(fma(-pair.u_r, pair.u_r, pair.length2), 1e-12f);
-  pair.w_n2 = -fma(pair.u_r, pair.cosine, minus_n2_r);
+  pair.w_n2 = fma(-pair.u_r, pair.cosine, -minus_n2_r);
   return pair;
 }
 
 // amount when the condition holds: in the form that compilers turn into masked additions.
-ASTROLITH_HD inline void add_if(bool condition, std::int32_t amount, std::int32_t& sum) {
+ASTROLITH_KERNEL void add_if(bool condition, float amount, float& sum) {
   sum = condition ? sum + amount : sum;
+}
+
+// stride with the sign of value.
+ASTROLITH_KERNEL float signed_as(float value, float stride) {
+  return math::float_of((math::bits_of(value) & INT32_MIN) | math::bits_of(stride));
 }
 
 // Adds stride times the bin, counted from the middle one, of value / scale among the bins of [-1, 1], from
 // the squares of both; a value on a border belongs to the bin nearer to zero, 0/0 to the middle.
 template <int kBins>
-ASTROLITH_HD inline void add_unit_bin(float value, float scale2, std::int32_t stride, std::int32_t& sum) {
+ASTROLITH_KERNEL void add_unit_bin(float value, float scale2, float stride, float& sum) {
   constexpr PairBorders<kBins> borders;
   const float value2 = value * value;
-  const std::int32_t step = value < 0.0f ? -stride : stride;
+  const float step = signed_as(value, stride);
   if (borders.kEven) add_if(value < 0.0f, -stride, sum);
   ASTROLITH_UNROLL
-  for (int k = 0; k < borders.kSide; ++k)
+  for (int k = 0; k < borders.kSide; ++k) {
     add_if(value2 > borders.unit[static_cast<std::size_t>(k)] * scale2, step, sum);
+  }
 }
 
 // The same for the angle atan2(y, x) among the bins of (-pi, pi], from y^2 and x |x|.
 template <int kBins>
-ASTROLITH_HD inline void add_angle_bin(float y, float signed_x2, std::int32_t stride, std::int32_t& sum) {
+ASTROLITH_KERNEL void add_angle_bin(float y, float signed_x2, float stride, float& sum) {
   constexpr PairBorders<kBins> borders;
   const float y2 = y * y;
-  const std::int32_t step = y < 0.0f ? -stride : stride;
+  const float step = signed_as(y, stride);
   if (borders.kEven) add_if(y < 0.0f, -stride, sum);
   ASTROLITH_UNROLL
   for (int k = 0; k < borders.kSide; ++k) {
-    const float t = borders.tangent[k];
-    const bool beyond = borders.right[k]    ? signed_x2 < 0.0f
-                        : borders.obtuse[k] ? math::fma(t, signed_x2, y2) < 0.0f
-                                            : y2 > t * signed_x2;
+    const auto at = static_cast<std::size_t>(k);
+    const float t = borders.tangent[at];
+    const bool beyond = borders.right[at]    ? signed_x2 < 0.0f
+                        : borders.obtuse[at] ? math::fma(t, signed_x2, y2) < 0.0f
+                                             : y2 > t * signed_x2;
     add_if(beyond, step, sum);
   }
 }
@@ -141,19 +146,21 @@ ASTROLITH_HD inline void add_angle_bin(float y, float signed_x2, std::int32_t st
 // gamma are in the middle and delta is 0; there, and where both normals lie along the connecting line, alpha
 // is 0 or pi as the normals agree or oppose.
 template <int kBins>
-ASTROLITH_HD inline std::int32_t surflet_code(const Surflet& i, const Surflet& j) {
+ASTROLITH_KERNEL std::int32_t surflet_code(const Surflet& i, const Surflet& j) {
   constexpr PairBorders<kBins> borders;
-  constexpr std::int32_t kGamma = kBins, kBeta = kGamma * kBins, kAlpha = kBeta * kBins;
-  constexpr std::int32_t kMiddle = kBins / 2 * (kAlpha + kBeta + kGamma);
+  constexpr float kGamma = kBins, kBeta = kGamma * kBins, kAlpha = kBeta * kBins;
   const SurfletPair pair = surflet_pair(i, j);
-  std::int32_t code = kMiddle;
+  // Whole numbers below 2^24 are exact in floats, whose signs are free.
+  float code = kBins / 2 * (kAlpha + kBeta + kGamma);
+  ASTROLITH_UNROLL
+  for (int k = 0; k + 1 < kBins; ++k) {
+    add_if(pair.length2 > borders.length[static_cast<std::size_t>(k)], 1.0f, code);
+  }
   add_angle_bin<kBins>(pair.w_n2, pair.cosine * math::abs(pair.cosine) * pair.across2, kAlpha, code);
   add_unit_bin<kBins>(pair.v_n2, pair.across2, kBeta, code);
   add_unit_bin<kBins>(pair.u_r, pair.length2, kGamma, code);
-  ASTROLITH_UNROLL
-  for (int k = 0; k + 1 < kBins; ++k) add_if(pair.length2 > borders.length[k], 1, code);
   add_if(pair.origin_is_j, kAlpha * kBins, code);
-  return code;
+  return static_cast<std::int32_t>(code);
 }
 
 }  // namespace astrolith
