@@ -6,8 +6,8 @@
 
 #include "apps/program.h"
 #include "estimation/gabor/gabor_report.h"
-#include "estimation/gabor/npy_file.h"
 #include "estimation/gabor/photo_fit.h"
+#include "numerics/npy_file.h"
 #include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"

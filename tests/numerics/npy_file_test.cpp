@@ -1,22 +1,23 @@
-#include "estimation/gabor/npy_file.h"
+#include "numerics/npy_file.h"
 
-#include <unistd.h>
+#include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
 #include <vector>
+
+#include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
 
+using testing::file_content;
+
 TEST(NpyFile, HasTheHeaderAndTheBytes) {
-  const auto file =
-      std::filesystem::temp_directory_path() / ("astrolith_" + std::to_string(::getpid()) + ".npy");
+  const testing::ScratchFolder folder;
+  const auto file = folder / "a.npy";
   const std::vector<double> values{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
   write_npy(values, std::vector<int>{2, 3}, file);
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-  std::filesystem::remove(file);
+  const std::string bytes = file_content(file);
   EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
   const std::size_t start = bytes.size() - 6 * sizeof(double);
   EXPECT_EQ(start % 64, 0u);
@@ -24,6 +25,15 @@ TEST(NpyFile, HasTheHeaderAndTheBytes) {
   EXPECT_NE(bytes.find("'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }"), std::string::npos);
   EXPECT_EQ(bytes[start - 1], '\n');
   EXPECT_EQ(std::memcmp(bytes.data() + start, values.data(), 6 * sizeof(double)), 0);
+}
+
+TEST(NpyFile, OneAxisAndWrongShapes) {
+  const testing::ScratchFolder folder;
+  const std::vector<double> values{1.0, 2.0};
+  write_npy(values, std::vector<int>{2}, folder / "a.npy");
+  EXPECT_NE(file_content(folder / "a.npy").find("'shape': (2, ), }"), std::string::npos);
+  EXPECT_THROW(write_npy(values, std::vector<int>{2, 2}, folder / "b.npy"), WorkError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.npy"));
 }
 
 }  // namespace
