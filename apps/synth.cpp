@@ -39,6 +39,7 @@ struct Options {
   TextureRequest texture;
   MeshSizeRequest size;
   std::string tile;  // "3/16"
+  bool points = false;
 };
 
 void declare_options(Program& program, Options& options) {
@@ -60,6 +61,9 @@ void declare_options(Program& program, Options& options) {
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
                   "convert")
       ->option_text("BODY.json");
+  program.app.add_flag("--points", options.points,
+                       "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
+                       "(.ply without faces)");
   program.app
       .add_option("--preview", options.preview,
                   "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
@@ -74,7 +78,7 @@ void require_extension(const fs::path& file, std::initializer_list<const char*> 
     if (file.extension() == extension) return;
     wanted += (wanted.empty() ? "" : " or ") + std::string(extension);
   }
-  throw InputError(file.string() + ": name the file with the extension " + wanted);
+  throw InputError(file.string() + ": is no " + wanted + " file; name it with that extension");
 }
 
 std::uint64_t peak_bytes() {
@@ -110,6 +114,17 @@ class SinkList : public MeshSink {
 
  private:
   std::vector<MeshSink*> sinks_;
+};
+
+// Passes vertices on, not triangles.
+class PointsOnly : public MeshSink {
+ public:
+  explicit PointsOnly(MeshSink& sink) : sink_(sink) {}
+  void add_vertices(std::span<const MeshVertex> vertices) override { sink_.add_vertices(vertices); }
+  void add_triangles(std::span<const Triangle>) override {}
+
+ private:
+  MeshSink& sink_;
 };
 
 // The mesh as a promise: closed (a tile: open where it was cut, and only there) and manifold, or no file.
@@ -173,6 +188,7 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
     require_extension(options.preview, {".png"});
     require_writable(options.preview);
   }
+  if (options.points) require_extension(options.output, {".ply"});
   const MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool()};
   const bool streamed = options.output.extension() == ".ply";
   const ImplicitField field(recipe);
@@ -191,7 +207,12 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
   sinks.add(check);
   if (!streamed || !options.preview.empty()) sinks.add(collector);
   std::unique_ptr<PlyStreamWriter> writer;
-  if (streamed) sinks.add(*(writer = std::make_unique<PlyStreamWriter>(options.output, info)));
+  std::unique_ptr<PointsOnly> points;
+  if (streamed) {
+    writer = std::make_unique<PlyStreamWriter>(options.output, info);
+    points = std::make_unique<PointsOnly>(*writer);
+    sinks.add(options.points ? static_cast<MeshSink&>(*points) : *writer);
+  }
   const MeshStatistics statistics =
       mesh_field(field, field.bounds(), resolution, sinks, program.progress("mesh"), tile);
   const ManifoldReport report = check.finish();

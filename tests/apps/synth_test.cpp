@@ -115,6 +115,17 @@ TEST_F(Synth, TrianglesChooseTheResolutionAndMemoryIsKept) {
                  "excludes");
 }
 
+// The whole mesh's file without its faces, but for the header.
+TEST_F(Synth, PointsAreTheVerticesAlone) {
+  const std::string mesh = synthesise("mesh.ply", {}), points = synthesise("points.ply", {"--points"});
+  const auto body = [](const std::string& file) { return file.substr(file.find("end_header\n")); };
+  EXPECT_NE(points.find("element face 0\n"), std::string::npos);
+  EXPECT_GT(body(points).size(), 10000u);
+  EXPECT_EQ(body(points), body(mesh).substr(0, body(points).size()));
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "out.obj").string(), "--points"}, ".ply");
+}
+
 TEST_F(Synth, TilesMakeTheWholeMesh) {
   synthesise("whole.ply", {});
   std::size_t triangles = 0;
