@@ -112,7 +112,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   try {
     timed(work);
     end_bar();
-    return 0;
+    return part_failed_ ? 1 : 0;
   } catch (const InputError& e) {
     print_line(fmt::format("{}: {}", name_, one_line(e.what())));
     return 2;
@@ -164,6 +164,11 @@ bool Program::interrupted() { return g_interrupts.load() > 0; }
 
 void Program::say(const std::string& line) const {
   if (!quiet) print_line(line);
+}
+
+void Program::report_failure(const std::string& line) {
+  part_failed_ = true;
+  print_line(fmt::format("{}: {}", name_, one_line(line)));
 }
 
 std::string Program::tool() const { return name_ + " " + ASTROLITH_VERSION; }

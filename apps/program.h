@@ -24,7 +24,8 @@ class Program {
   Program(std::string name, std::string description);
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
-  // one line on stderr: InputError gives 2, everything else 1. The summary is written only when the work is
+  // one line on stderr: InputError gives 2, everything else 1, and so does a
+  // reported failure. The summary is written only when the work is
   // done; it holds "seconds", and "interrupted" after a Ctrl-C that left a best result so far.
   int run(int argc, char** argv, const std::function<void()>& work);
 
@@ -36,6 +37,10 @@ class Program {
 
   // One line to stderr, unless --quiet.
   void say(const std::string& line) const;
+
+  // For a part of the work that failed while the rest goes on: one line to stderr, also with --quiet, and
+  // exit status 1 in the end.
+  void report_failure(const std::string& line);
 
   // "fit_shape 0.1.0", for provenance.
   std::string tool() const;
@@ -55,6 +60,7 @@ class Program {
   void timed(const std::function<void()>& work);
 
   std::string name_;
+  bool part_failed_ = false;
 };
 
 }  // namespace astrolith

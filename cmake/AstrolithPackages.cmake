@@ -13,7 +13,7 @@ find_package(CLI11 REQUIRED)               # command lines
 if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
-  find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs)  # images in
+  find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs ml)  # images in, random forests
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms

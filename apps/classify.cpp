@@ -1,0 +1,206 @@
+// classify: learns classes of shapes from folders of meshes, and says to which of them other meshes belong.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/evaluation_json.h"
+#include "apps/program.h"
+#include "descriptor/classification/class_folders.h"
+#include "descriptor/classification/classifier_file.h"
+#include "descriptor/classification/cross_validation.h"
+#include "descriptor/classification/feature_table.h"
+#include "numerics/errors.h"
+#include "numerics/output_file.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  // train
+  std::vector<fs::path> folders;
+  std::string output, kind = "ahd";
+  FeatureOptions features;
+  TrainingOptions training;
+  int folds = 5;
+  // predict
+  std::string model;
+  std::vector<fs::path> meshes;
+  // The options that only some features have, to tell whether they were given.
+  CLI::Option *bins = nullptr, *points = nullptr, *eigenvalues = nullptr;
+};
+
+CLI::App* add_train(Program& program, Arguments& a) {
+  CLI::App* train = program.app.add_subcommand(
+      "train",
+      "Learns classes from folders: each folder of meshes is a class of its name. Give the folders, or "
+      "one that holds them.");
+  train->fallthrough();
+  train->add_option("folders", a.folders, "folders of meshes, or folders of such folders")
+      ->required()
+      ->option_text("DIR...");
+  train->add_option("-o,--output", a.output, "the classifier to write (JSON, which YAML readers read too)")
+      ->required()
+      ->option_text("MODEL.yml");
+  train->add_option("--features", a.kind, "what the classes are told apart by")
+      ->check(CLI::IsMember({"wahl", "ahd", "d2", "shapedna"}));
+  a.bins = train->add_option("--bins", a.features.bins, "of the histogram, an axis; of d2 64 unless given")
+               ->check(CLI::Range(2, 1024));
+  a.points =
+      train->add_option("--points", a.features.points, "samples of each mesh that the histogram is made of")
+          ->check(CLI::Range(16, 100000));
+  a.eigenvalues =
+      train->add_option("--eigenvalues", a.features.eigenvalues, "of shapedna")->check(CLI::Range(1, 500));
+  train->add_option("--trees", a.training.forest.trees, "of the random forest")->check(CLI::Range(1, 10000));
+  train->add_option("--depth", a.training.forest.depth, "of the trees at most")->check(CLI::Range(1, 60));
+  train
+      ->add_option("--pca", a.training.components,
+                   "principal components that the forest sees in place of the features; 0 = the features")
+      ->check(CLI::Range(0, 100000));
+  train->add_option("--folds", a.folds, "of the cross-validation; 0 = none")->check(CLI::Range(0, 1000));
+  return train;
+}
+
+CLI::App* add_predict(Program& program, Arguments& a) {
+  CLI::App* predict = program.app.add_subcommand(
+      "predict",
+      "Prints the class of each mesh and the share of votes for every class, a line of JSON each.");
+  predict->fallthrough();
+  predict->add_option("model", a.model, "what train wrote")->required()->option_text("MODEL.yml");
+  predict->add_option("meshes", a.meshes, "meshes, or folders of meshes")->required()->option_text("MESH...");
+  return predict;
+}
+
+// An option that the features do not have would be passed over in silence.
+void require_belongs(const Arguments& a, const CLI::Option* option, bool belongs) {
+  if (option->count() == 0 || belongs) return;
+  throw InputError("--" + option->get_lnames().front() + ": " + a.kind + " has none; leave it out");
+}
+
+FeatureOptions chosen_features(const Arguments& a, std::uint64_t seed) {
+  const FeatureKind kind = feature_kind_from_name(a.kind);
+  const bool spectrum = kind == FeatureKind::shapedna;
+  require_belongs(a, a.bins, !spectrum);
+  require_belongs(a, a.points, !spectrum);
+  require_belongs(a, a.eigenvalues, spectrum);
+  FeatureOptions options = a.features;
+  options.kind = kind;
+  if (a.bins->count() == 0) options.bins = default_features(kind).bins;
+  options.seed = seed;
+  check(options);
+  return options;
+}
+
+FeatureTable features_with_failures(Program& program, const std::vector<fs::path>& files,
+                                    const FeatureOptions& options) {
+  FeatureTable table = features_of_files(files, options, program.progress("describe"));
+  for (const std::string& failure : table.failures) program.report_failure(failure);
+  program.summary["failed"] = table.failures;
+  return table;
+}
+
+// A class whose every file failed would never be called.
+void require_shapes_of_each(const LabelledFeatures& data) {
+  for (std::size_t c = 0; c < data.classes.size(); ++c) {
+    if (std::find(data.labels.begin(), data.labels.end(), static_cast<int>(c)) != data.labels.end()) continue;
+    throw InputError("class " + data.classes[c] +
+                     ": none of its meshes can be used; mend them or leave it out");
+  }
+}
+
+void say_evaluation(const Program& program, const Evaluation& evaluation, int folds) {
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "%d shapes, %zu classes: %.1f %% right, mean average precision %.1f %% (%d folds)",
+                evaluation.shapes, evaluation.classes.size(), 100 * evaluation.accuracy,
+                100 * evaluation.mean_average_precision, folds);
+  program.say(line);
+}
+
+void train(Program& program, Arguments& a) {
+  require_writable(a.output);
+  const FeatureOptions features = chosen_features(a, program.seed);
+  a.training.forest.seed = program.seed;
+  const LabelledFiles files = find_classes(a.folders);
+  for (const fs::path& file : files.files) require_other_file(a.output, file);
+  const LabelledFeatures data = labelled(files, features_with_failures(program, files.files, features));
+  require_shapes_of_each(data);
+
+  program.summary["features"] = to_json(features);
+  program.summary["shapes"] = data.rows.size();
+  program.summary["class_names"] = data.classes;
+  if (a.folds > 0) {
+    const VoteRows votes =
+        cross_validate(data, a.training, a.folds, program.seed, program.progress("validate"));
+    const Evaluation evaluation = evaluate(votes, data.labels, static_cast<int>(data.classes.size()));
+    program.summary["cross_validation"] = to_json(evaluation, data.classes);
+    program.summary["cross_validation"]["folds"] = a.folds;
+    program.summary["cross_validation"]["recall_levels"] = recall_levels();
+    say_evaluation(program, evaluation, a.folds);
+  }
+  write_classifier(train_classifier(data, features, a.training), program.tool(), a.output);
+}
+
+std::vector<fs::path> all_meshes(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> meshes;
+  std::error_code unused;  // what cannot be looked at is named when it is read
+  for (const fs::path& path : paths) {
+    if (!fs::is_directory(path, unused)) {
+      meshes.push_back(path);
+      continue;
+    }
+    const std::vector<fs::path> inside = meshes_in(path);
+    if (inside.empty()) throw InputError(path.string() + ": holds no meshes; give a folder of meshes");
+    meshes.insert(meshes.end(), inside.begin(), inside.end());
+  }
+  return meshes;
+}
+
+std::string prediction_line(const fs::path& mesh, const ShapeClassifier& classifier,
+                            const std::vector<float>& row) {
+  const std::vector<double> votes = classifier.votes(row);
+  nlohmann::ordered_json line{{"mesh", mesh.string()},
+                              {"class", classifier.classes[static_cast<std::size_t>(winner(votes))]}};
+  for (std::size_t c = 0; c < votes.size(); ++c) line["votes"][classifier.classes[c]] = votes[c];
+  // File names need not be UTF-8.
+  return line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void predict(Program& program, const Arguments& a) {
+  const ShapeClassifier classifier = read_classifier(a.model);
+  const std::vector<fs::path> meshes = all_meshes(a.meshes);
+  const FeatureTable table = features_with_failures(program, meshes, classifier.features);
+  std::size_t predicted = 0;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (table.rows[i].empty()) continue;
+    ++predicted;
+    std::fputs(prediction_line(meshes[i], classifier, table.rows[i]).c_str(), stdout);
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw WorkError("standard output: writing failed; is the disk full?");
+  }
+  program.summary["shapes"] = predicted;
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program("classify",
+                             "Learns classes of shapes from folders of meshes, and names the class of "
+                             "others. \"classify train --help\" states the options of training.");
+  astrolith::Arguments arguments;
+  const CLI::App* training = astrolith::add_train(program, arguments);
+  astrolith::add_predict(program, arguments);
+  program.app.require_subcommand(1);
+  return program.run(argc, argv, [&] {
+    if (training->parsed()) {
+      astrolith::train(program, arguments);
+    } else {
+      astrolith::predict(program, arguments);
+    }
+  });
+}

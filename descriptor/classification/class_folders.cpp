@@ -1,0 +1,96 @@
+#include "descriptor/classification/class_folders.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool hidden(const fs::path& path) { return path.filename().string().starts_with('.'); }
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw InputError(folder.string() + ": is no folder; give a folder of meshes");
+  }
+  std::vector<fs::path> entries;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (!hidden(it->path())) entries.push_back(it->path());
+  }
+  if (error)
+    throw InputError(folder.string() + ": cannot be read (" + error.message() + "); check its rights");
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+// The last part of the name, also of "classes/bird/" and of ".".
+std::string name_of(const fs::path& folder) {
+  fs::path full = fs::absolute(folder).lexically_normal();
+  if (!full.has_filename()) full = full.parent_path();
+  return full.filename().string();
+}
+
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  std::vector<fs::path> folders = entries_of(folder);
+  std::error_code unused;  // what cannot be looked at is no folder
+  std::erase_if(folders, [&](const fs::path& p) { return !fs::is_directory(p, unused); });
+  return folders;
+}
+
+}  // namespace
+
+bool has_mesh_extension(const fs::path& file) {
+  static constexpr std::array<std::string_view, 8> kExtensions{".obj", ".ply", ".stl", ".off",
+                                                               ".tab", ".plt", ".icq", ".bmf"};
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+}
+
+std::vector<fs::path> meshes_in(const fs::path& folder) {
+  std::vector<fs::path> meshes = entries_of(folder);
+  std::error_code unused;
+  std::erase_if(meshes,
+                [&](const fs::path& p) { return fs::is_directory(p, unused) || !has_mesh_extension(p); });
+  return meshes;
+}
+
+LabelledFiles find_classes(std::span<const fs::path> folders) {
+  std::map<std::string, std::vector<fs::path>> classes;
+  const auto add = [&](const fs::path& folder) {
+    const std::vector<fs::path> meshes = meshes_in(folder);
+    if (meshes.empty()) {
+      throw InputError(folder.string() + ": holds no meshes; give a folder of meshes for each class");
+    }
+    auto& files = classes[name_of(folder)];
+    files.insert(files.end(), meshes.begin(), meshes.end());
+  };
+  for (const fs::path& folder : folders) {
+    const std::vector<fs::path> inner = folders_in(folder);
+    if (inner.empty()) {
+      add(folder);
+    } else if (!meshes_in(folder).empty()) {
+      throw InputError(folder.string() +
+                       ": holds meshes beside folders; give a class of meshes a folder of its own");
+    } else {
+      for (const fs::path& one : inner) add(one);
+    }
+  }
+  LabelledFiles result;
+  for (const auto& [name, files] : classes) {
+    result.labels.insert(result.labels.end(), files.size(), static_cast<int>(result.classes.size()));
+    result.files.insert(result.files.end(), files.begin(), files.end());
+    result.classes.push_back(name);
+  }
+  return result;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,60 @@
+#include "descriptor/classification/feature_table.h"
+
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
+
+#include "geometry/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// Messages of readers begin with the file's name, those of descriptors do not.
+std::string naming(const std::filesystem::path& file, const std::string& message) {
+  const std::string name = file.string();
+  return message.starts_with(name) ? message : name + ": " + message;
+}
+
+}  // namespace
+
+FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
+                               const Progress& progress) {
+  check(options);
+  FeatureTable table{FeatureRows(files.size()), {}};
+  std::vector<std::string> failures(files.size());
+  std::mutex reporting;
+  std::size_t done = 0;
+  std::atomic<bool> stopped{false};
+  parallel_for(0, static_cast<std::int64_t>(files.size()), [&](std::int64_t index) {
+    if (stopped) return;
+    const auto i = static_cast<std::size_t>(index);
+    try {
+      table.rows[i] = shape_features(read_mesh(files[i]), options);
+    } catch (const std::runtime_error& e) {  // InputError, WorkError
+      failures[i] = naming(files[i], e.what());
+    }
+    const std::lock_guard lock(reporting);
+    ++done;
+    const double fraction = static_cast<double>(done) / static_cast<double>(files.size());
+    if (!report(progress, fraction, files[i].filename().string())) stopped = true;
+  });
+  if (stopped && done < files.size()) throw WorkError("features: stopped; run it again");
+  for (std::string& failure : failures) {
+    if (!failure.empty()) table.failures.push_back(std::move(failure));
+  }
+  return table;
+}
+
+LabelledFeatures labelled(const LabelledFiles& files, const FeatureTable& table) {
+  LabelledFeatures data{files.classes, {}, {}};
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    if (table.rows[i].empty()) continue;
+    data.rows.push_back(table.rows[i]);
+    data.labels.push_back(files.labels[i]);
+  }
+  return data;
+}
+
+}  // namespace astrolith

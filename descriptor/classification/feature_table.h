@@ -1,0 +1,28 @@
+// Feature vectors of many mesh files; those that cannot be used are named, and the work goes on.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "descriptor/classification/class_folders.h"
+#include "descriptor/classification/shape_classifier.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+struct FeatureTable {
+  FeatureRows rows;                   // (#files); empty where the file could not be used
+  std::vector<std::string> failures;  // a line each, which names the file
+};
+
+// Files are read in parallel; the result does not depend on how many at a time. Stopped by its progress it
+// throws WorkError. Throws InputError for options out of range.
+FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
+                               const Progress& progress = {});
+
+// The rows that are not empty with their labels.
+LabelledFeatures labelled(const LabelledFiles& files, const FeatureTable& table);
+
+}  // namespace astrolith

@@ -1,0 +1,27 @@
+// Asks with each shape for the others of its class: how good a descriptor is without any training.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "descriptor/classification/precision_recall.h"
+#include "descriptor/classification/principal_components.h"
+
+namespace astrolith {
+
+struct Retrieval {
+  double mean_average_precision = 0;       // over all shapes that have others of their class
+  double nearest_accuracy = 0;             // share of shapes whose nearest other is of their class
+  PrecisionCurve curve{};                  // mean over the same shapes
+  std::vector<double> average_precisions;  // (#classes) means over each class's shapes
+};
+
+using FeatureDistance = std::function<double(std::span<const float>, std::span<const float>)>;
+
+// Every shape asks, all others are ranked by their distance to it. labels (#rows) in 0 .. classes - 1. Time
+// O(#rows^2 #features).
+Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, int classes,
+                   const FeatureDistance& distance);
+
+}  // namespace astrolith

@@ -1,0 +1,125 @@
+#include "descriptor/classification/shape_features.h"
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "descriptor/shape_distribution.h"
+#include "descriptor/spectrum/laplacian_spectrum.h"
+#include "descriptor/surflet_histogram.h"
+#include "geometry/mesh_sampling.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kPi = 3.141592653589793;
+
+constexpr struct {
+  const char* name;
+  FeatureKind kind;
+} kNames[] = {{"wahl", FeatureKind::wahl},
+              {"ahd", FeatureKind::ahd},
+              {"d2", FeatureKind::d2},
+              {"shapedna", FeatureKind::shapedna}};
+
+std::vector<float> scaled(const std::vector<double>& frequencies) {
+  std::vector<float> features;
+  features.reserve(frequencies.size());
+  const auto bins = static_cast<double>(frequencies.size());
+  for (const double f : frequencies) features.push_back(static_cast<float>(bins * f));
+  return features;
+}
+
+std::vector<float> weyl_normalised(const std::vector<double>& eigenvalues) {
+  std::vector<float> features;
+  for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
+    features.push_back(static_cast<float>(eigenvalues[i] / (4 * kPi * static_cast<double>(i + 1))));
+  }
+  return features;
+}
+
+void require_range(const char* what, std::int64_t value, std::int64_t low, std::int64_t high) {
+  if (value >= low && value <= high) return;
+  throw InputError(std::string("features: ") + what + " " + std::to_string(value) + "; give between " +
+                   std::to_string(low) + " and " + std::to_string(high));
+}
+
+}  // namespace
+
+FeatureKind feature_kind_from_name(const std::string& name) {
+  for (const auto& entry : kNames) {
+    if (name == entry.name) return entry.kind;
+  }
+  throw InputError("features: " + name + " is unknown; give wahl, ahd, d2 or shapedna");
+}
+
+std::string name_of(FeatureKind kind) {
+  for (const auto& entry : kNames) {
+    if (kind == entry.kind) return entry.name;
+  }
+  return "";
+}
+
+FeatureOptions default_features(FeatureKind kind) {
+  FeatureOptions options;
+  options.kind = kind;
+  if (kind == FeatureKind::d2) options.bins = 64;
+  return options;
+}
+
+void check(const FeatureOptions& options) {
+  require_range("bins", options.bins, 2, options.kind == FeatureKind::d2 ? 1024 : 10);
+  require_range("eigenvalues", options.eigenvalues, 1, 500);
+  require_range("points", options.points, 16, 100000);
+}
+
+std::size_t feature_count(const FeatureOptions& options) {
+  const auto bins = static_cast<std::size_t>(options.bins);
+  switch (options.kind) {
+    case FeatureKind::wahl:
+      return bins * bins * bins * bins;
+    case FeatureKind::ahd:
+      return bins * bins * bins * bins * bins * bins;
+    case FeatureKind::d2:
+      return bins;
+    case FeatureKind::shapedna:
+      break;
+  }
+  return static_cast<std::size_t>(options.eigenvalues);
+}
+
+std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options) {
+  check(options);
+  if (options.kind == FeatureKind::shapedna) {
+    return weyl_normalised(laplacian_spectrum(mesh, options.eigenvalues).eigenvalues);
+  }
+  const SurfaceSamples samples = sample_poisson_disk(mesh, options.points, options.seed);
+  return point_features(samples.points, samples.normals, options);
+}
+
+std::vector<float> point_features(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                                  const FeatureOptions& options) {
+  check(options);
+  switch (options.kind) {
+    case FeatureKind::wahl:
+    case FeatureKind::ahd:
+      return scaled(surflet_histogram(points, normals).frequencies());
+    case FeatureKind::d2:
+      return scaled(shape_distribution(points, options.bins).frequencies());
+    case FeatureKind::shapedna:
+      break;
+  }
+  return weyl_normalised(laplacian_spectrum(points, normals, options.eigenvalues).eigenvalues);
+}
+
+double feature_distance(FeatureKind kind, std::span<const float> f, std::span<const float> g) {
+  const auto vector = [](std::span<const float> v) {
+    return Eigen::Map<const Eigen::VectorXf>(v.data(), static_cast<Eigen::Index>(v.size()));
+  };
+  const double difference = (vector(f) - vector(g)).norm();
+  if (kind == FeatureKind::shapedna) return difference;
+  const double size = std::sqrt(vector(f).squaredNorm() + vector(g).squaredNorm());
+  return size > 0 ? difference / size : 0;
+}
+
+}  // namespace astrolith
