@@ -41,7 +41,8 @@ CLI::App* add_train(Program& program, Arguments& a) {
   train->fallthrough();
   train->add_option("folders", a.folders, "folders of meshes, or folders of such folders")
       ->required()
-      ->option_text("DIR...");
+      ->option_text("DIR...")
+      ->default_str("");
   train->add_option("-o,--output", a.output, "the classifier to write (JSON, which YAML readers read too)")
       ->required()
       ->option_text("MODEL.yml");
@@ -70,7 +71,10 @@ CLI::App* add_predict(Program& program, Arguments& a) {
       "Prints the class of each mesh and the share of votes for every class, a line of JSON each.");
   predict->fallthrough();
   predict->add_option("model", a.model, "what train wrote")->required()->option_text("MODEL.yml");
-  predict->add_option("meshes", a.meshes, "meshes, or folders of meshes")->required()->option_text("MESH...");
+  predict->add_option("meshes", a.meshes, "meshes, or folders of meshes")
+      ->required()
+      ->option_text("MESH...")
+      ->default_str("");
   return predict;
 }
 

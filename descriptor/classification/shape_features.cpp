@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "descriptor/shape_description.h"
 #include "descriptor/shape_distribution.h"
 #include "descriptor/spectrum/laplacian_spectrum.h"
-#include "descriptor/surflet_histogram.h"
 #include "geometry/mesh_sampling.h"
 #include "numerics/errors.h"
 
@@ -38,6 +38,15 @@ std::vector<float> weyl_normalised(const std::vector<double>& eigenvalues) {
   return features;
 }
 
+DescriptionOptions description(const FeatureOptions& options, std::int64_t points) {
+  const PairFeatures pairs = options.kind == FeatureKind::wahl ? PairFeatures::wahl : PairFeatures::ahd;
+  return {pairs, options.bins, points, options.seed};
+}
+
+std::vector<float> distribution_features(std::span<const Vec3d> points, int bins) {
+  return scaled(shape_distribution(points, bins).frequencies());
+}
+
 void require_range(const char* what, std::int64_t value, std::int64_t low, std::int64_t high) {
   if (value >= low && value <= high) return;
   throw InputError(std::string("features: ") + what + " " + std::to_string(value) + "; give between " +
@@ -68,20 +77,19 @@ FeatureOptions default_features(FeatureKind kind) {
 }
 
 void check(const FeatureOptions& options) {
-  require_range("bins", options.bins, 2, options.kind == FeatureKind::d2 ? 1024 : 10);
+  require_range("bins", options.bins, kMinBins, options.kind == FeatureKind::d2 ? 1024 : kMaxBins);
   require_range("eigenvalues", options.eigenvalues, 1, 500);
   require_range("points", options.points, 16, 100000);
 }
 
 std::size_t feature_count(const FeatureOptions& options) {
-  const auto bins = static_cast<std::size_t>(options.bins);
   switch (options.kind) {
     case FeatureKind::wahl:
-      return bins * bins * bins * bins;
+      return static_cast<std::size_t>(bin_count(PairFeatures::wahl, options.bins));
     case FeatureKind::ahd:
-      return bins * bins * bins * bins * bins * bins;
+      return static_cast<std::size_t>(bin_count(PairFeatures::ahd, options.bins));
     case FeatureKind::d2:
-      return bins;
+      return static_cast<std::size_t>(options.bins);
     case FeatureKind::shapedna:
       break;
   }
@@ -90,11 +98,17 @@ std::size_t feature_count(const FeatureOptions& options) {
 
 std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options) {
   check(options);
-  if (options.kind == FeatureKind::shapedna) {
-    return weyl_normalised(laplacian_spectrum(mesh, options.eigenvalues).eigenvalues);
+  switch (options.kind) {
+    case FeatureKind::wahl:
+    case FeatureKind::ahd:
+      return scaled(describe_shape(mesh, description(options, options.points)).histogram.frequencies());
+    case FeatureKind::d2:
+      return distribution_features(sample_poisson_disk(mesh, options.points, options.seed).points,
+                                   options.bins);
+    case FeatureKind::shapedna:
+      break;
   }
-  const SurfaceSamples samples = sample_poisson_disk(mesh, options.points, options.seed);
-  return point_features(samples.points, samples.normals, options);
+  return weyl_normalised(laplacian_spectrum(mesh, options.eigenvalues).eigenvalues);
 }
 
 std::vector<float> point_features(std::span<const Vec3d> points, std::span<const Vec3d> normals,
@@ -102,10 +116,12 @@ std::vector<float> point_features(std::span<const Vec3d> points, std::span<const
   check(options);
   switch (options.kind) {
     case FeatureKind::wahl:
-    case FeatureKind::ahd:
-      return scaled(surflet_histogram(points, normals).frequencies());
+    case FeatureKind::ahd: {
+      const auto all = static_cast<std::int64_t>(points.size());
+      return scaled(describe_shape(points, normals, description(options, all)).histogram.frequencies());
+    }
     case FeatureKind::d2:
-      return scaled(shape_distribution(points, options.bins).frequencies());
+      return distribution_features(points, options.bins);
     case FeatureKind::shapedna:
       break;
   }

@@ -54,6 +54,17 @@ TEST(Program, AnErrorIsOneLineOfText) {
   EXPECT_NE(errors.find("--unknown"), std::string::npos);
 }
 
+TEST(Program, APartThatFailedIsNamedAndTheRestGoesOn) {
+  bool went_on = false;
+  const Outcome outcome = run({"--quiet"}, [&](Program& program) {
+    program.report_failure("a.obj: is empty;\nleft out");
+    went_on = true;
+  });
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(went_on);
+  EXPECT_EQ(outcome.errors, "tool: a.obj: is empty; left out\n");
+}
+
 TEST(Program, NothingIsDrawnInAPipe) {
   EXPECT_EQ(run({}, [](Program& p) { p.progress("fit")(0.5, "half"); }).errors, "");
   EXPECT_EQ(run({}, [](Program& p) { p.say("done"); }).errors, "done\n");
