@@ -83,4 +83,10 @@ struct Box {
   double diagonal() const { return norm(extent()); }
 };
 
+// By `margin` on every side.
+inline Box widened(const Box& box, double margin) {
+  const Vec3d m{margin, margin, margin};
+  return {box.min - m, box.max + m};
+}
+
 }  // namespace astrolith

@@ -28,9 +28,22 @@ struct Sphere {
   double radius = 1.0;  // > 0
 };
 
+// A displacement of coordinates by three fractal sums of simplex noise, one along each axis (thesis eq. 4.6):
+//   warp_k(p) = amplitude * sum_o gain^o simplex_k(lacunarity^o * frequency * p)
+struct Warp {
+  double amplitude = 0.0;    // length units
+  double frequency = 1.0;    // cycles per length unit of the first octave, > 0
+  int octaves = 3;           // 1 .. 24; the last octave's frequency is at most kMaxNumber
+  double gain = 0.5;         // [0, 4]
+  double lacunarity = 1.95;  // (1, 16]
+};
+
 // m(p) = (sum_i f_i(p)^m)^(1/m),  f_i = exp(a - b |p - c_i|^2 / r_i^2)     (thesis eq. 4.3 to 4.5, per
 // sphere) with f_i = 0 beyond cutoff_radii * r_i. The bare body is the set where m(p) >= iso_value. With a =
 // b and iso_value = 1 a lone sphere's surface has its own radius.
+//
+// With a warp, m is taken at p + warp(p) instead of p: low frequencies and high amplitudes make caves,
+// tunnels and arches.
 struct MetaballBody {
   double a = 1.0;               // tension, > 0
   double b = 1.0;               // tension, > 0
@@ -38,13 +51,23 @@ struct MetaballBody {
   double iso_value = 1.0;       // the thesis's T, > 0
   double cutoff_radii = 5.0;    // support of each kernel in its own radii, > 1
   std::vector<Sphere> spheres;  // at least one
+  std::optional<Warp> warp;
 };
 
-// Fractal sum of simplex noise (thesis algorithm 4):
-//   n(p) = amplitude * weight * sum_o gain^o simplex(lacunarity^o * frequency * (scale * p + bias))
+// Simplex and Perlin noise lie in [-1, 1]. Worley noise is the distance to the nearest feature point, to the
+// second nearest, or their difference, less its mean, in a range of length 1. All have zero mean.
+enum class Noise { kSimplex, kPerlin, kWorleyF1, kWorleyF2, kWorleyF2MinusF1 };
+
+inline constexpr bool is_worley(Noise noise) { return noise != Noise::kSimplex && noise != Noise::kPerlin; }
+
+// Fractal sum of noise (thesis algorithms 4 and 5, section 4.3.3):
+//   n(p) = amplitude * weight * sum_o gain^o noise_o / (1 + gradient_modulation |D_o|^2),
+//   noise_o = noise(lacunarity^o * frequency * q),   q = scale * (p + warp(p)) + bias,
+//   D_o = sum_{k <= o} (gain lacunarity)^k grad noise_k, the slope so far over amplitude * frequency.
 // A height in length units, added along the outward normal.
 struct FractalLayer {
   std::string name;
+  Noise noise = Noise::kSimplex;
   double amplitude = 0.0;      // length units
   double frequency = 1.0;      // cycles per length unit of the first octave, > 0
   int octaves = 8;             // 1 .. 24; the last octave's frequency is at most kMaxNumber
@@ -53,6 +76,8 @@ struct FractalLayer {
   Vec3d scale{1.0, 1.0, 1.0};  // of the coordinates
   Vec3d bias{0.0, 0.0, 0.0};   // added after scaling, length units
   double weight = 1.0;
+  double gradient_modulation = 0.0;  // >= 0: octaves fade where the sum is steep; 0 for Worley noise
+  std::optional<Warp> warp;          // of the coordinates, before scale and bias
 };
 
 // One symmetric pair of Gaussians in the power spectrum of a texture.

@@ -60,6 +60,20 @@ void expect_word(const std::string& word, const Place& place, std::string_view w
   if (word != wanted) place.fail(fmt::format("must be \"{}\", is {}", wanted, quote_text(word)));
 }
 
+void read_warp(ObjectReader& parent, std::optional<Warp>& out) {
+  const json* value = parent.find("warp");
+  if (value == nullptr) return;
+  const Place place = parent.at("warp");
+  ObjectReader object(*value, place);
+  Warp& warp = out.emplace();
+  object.require("amplitude", warp.amplitude);
+  object.require("frequency", warp.frequency);
+  object.allow("octaves", warp.octaves);
+  object.allow("gain", warp.gain);
+  object.allow("lacunarity", warp.lacunarity);
+  object.finish();
+}
+
 void read_body(const json& value, const Place& place, MetaballBody& out) {
   ObjectReader object(value, place);
   std::string type = "metaballs", kernel = "gaussian";
@@ -73,10 +87,32 @@ void read_body(const json& value, const Place& place, MetaballBody& out) {
   object.allow("iso_value", out.iso_value);
   object.allow("cutoff_radii", out.cutoff_radii);
   require_elements(object, "spheres", out.spheres, read_sphere);
+  read_warp(object, out.warp);
   object.finish();
 }
 
+// What a Worley layer's field "distance" says, and the noise it means.
+constexpr std::pair<std::string_view, Noise> kWorleyDistances[] = {
+    {"f1", Noise::kWorleyF1}, {"f2", Noise::kWorleyF2}, {"f2-f1", Noise::kWorleyF2MinusF1}};
+
+void read_worley_distance(ObjectReader& object, Noise& out) {
+  std::string word = "f1";
+  object.allow("distance", word);
+  for (const auto& [name, noise] : kWorleyDistances) {
+    if (word == name) {
+      out = noise;
+      return;
+    }
+  }
+  object.at("distance").fail("must be \"f1\", \"f2\" or \"f2-f1\", is " + quote_text(word));
+}
+
 void read_fields(ObjectReader& object, FractalLayer& out) {
+  if (is_worley(out.noise)) {
+    read_worley_distance(object, out.noise);
+  } else {
+    object.allow("gradient_modulation", out.gradient_modulation);
+  }
   object.allow("name", out.name);
   object.allow("amplitude", out.amplitude);
   object.allow("frequency", out.frequency);
@@ -86,6 +122,7 @@ void read_fields(ObjectReader& object, FractalLayer& out) {
   object.allow("scale", out.scale);
   object.allow("bias", out.bias);
   object.allow("weight", out.weight);
+  read_warp(object, out.warp);
 }
 
 void read_color(const json& value, const Place& place, LayerColor& out) {
@@ -106,16 +143,28 @@ void read_fields(ObjectReader& object, GaborLayer& out) {
   require_elements(object, "lobes", out.lobes, read_lobe);
 }
 
+constexpr const char* kLayerTypes = "\"simplex\", \"perlin\", \"worley\" and \"gabor\"";
+
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
   std::string type;
-  if (!object.allow("type", type)) object.at("type").fail("is missing; add \"simplex\" or \"gabor\"");
+  const auto read_fractal = [&](Noise noise) {
+    FractalLayer& layer = out.emplace<FractalLayer>();
+    layer.noise = noise;
+    read_fields(object, layer);
+  };
+  if (!object.allow("type", type))
+    object.at("type").fail(std::string("is missing; add one of ") + kLayerTypes);
   if (type == "simplex") {
-    read_fields(object, out.emplace<FractalLayer>());
+    read_fractal(Noise::kSimplex);
+  } else if (type == "perlin") {
+    read_fractal(Noise::kPerlin);
+  } else if (type == "worley") {
+    read_fractal(Noise::kWorleyF1);
   } else if (type == "gabor") {
     read_fields(object, out.emplace<GaborLayer>());
   } else {
-    object.at("type").fail("must be \"simplex\" or \"gabor\", is " + quote_text(type));
+    object.at("type").fail(std::string("must be one of ") + kLayerTypes + ", is " + quote_text(type));
   }
   object.finish();
 }

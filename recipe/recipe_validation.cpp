@@ -41,6 +41,24 @@ void check(const Sphere& sphere, const Place& place) {
   expect_positive(sphere.radius, place.field("radius"));
 }
 
+// Of a fractal sum.
+void check_octaves(double frequency, int octaves, double gain, double lacunarity, const Place& place) {
+  expect_positive(frequency, place.field("frequency"));
+  expect_integer(octaves, place.field("octaves"), 1, 24);
+  expect_range(gain, place.field("gain"), 0.0, 4.0);
+  expect_above_one(lacunarity, place.field("lacunarity"), 16.0);
+  const double finest = frequency * std::pow(lacunarity, octaves - 1);
+  if (finest > kMaxNumber) {
+    place.field("octaves").fail(fmt::format(
+        "the last octave's frequency is {:.3g}, above {:g}; use fewer octaves", finest, kMaxNumber));
+  }
+}
+
+void check(const Warp& warp, const Place& place) {
+  expect_number(warp.amplitude, place.field("amplitude"));
+  check_octaves(warp.frequency, warp.octaves, warp.gain, warp.lacunarity, place);
+}
+
 void check(const MetaballBody& body, const Place& place) {
   expect_positive(body.a, place.field("a"));
   expect_positive(body.b, place.field("b"));
@@ -55,22 +73,18 @@ void check(const MetaballBody& body, const Place& place) {
   const Place spheres = place.field("spheres");
   if (body.spheres.empty()) spheres.fail("must hold at least one [x, y, z, radius]");
   for (std::size_t i = 0; i < body.spheres.size(); ++i) check(body.spheres[i], spheres.element(i));
+  if (body.warp) check(*body.warp, place.field("warp"));
 }
 
 void check(const FractalLayer& layer, const Place& place) {
   expect_number(layer.amplitude, place.field("amplitude"));
-  expect_positive(layer.frequency, place.field("frequency"));
-  expect_integer(layer.octaves, place.field("octaves"), 1, 24);
-  expect_range(layer.gain, place.field("gain"), 0.0, 4.0);
-  expect_above_one(layer.lacunarity, place.field("lacunarity"), 16.0);
-  const double finest = layer.frequency * std::pow(layer.lacunarity, layer.octaves - 1);
-  if (finest > kMaxNumber) {
-    place.field("octaves").fail(fmt::format(
-        "the last octave's frequency is {:.3g}, above {:g}; use fewer octaves", finest, kMaxNumber));
-  }
+  check_octaves(layer.frequency, layer.octaves, layer.gain, layer.lacunarity, place);
   expect_vector(layer.scale, place.field("scale"));
   expect_vector(layer.bias, place.field("bias"));
   expect_number(layer.weight, place.field("weight"));
+  expect_range(layer.gradient_modulation, place.field("gradient_modulation"), 0.0,
+               is_worley(layer.noise) ? 0.0 : kMaxNumber);
+  if (layer.warp) check(*layer.warp, place.field("warp"));
 }
 
 void check(const GaborLobe& lobe, const Place& place) {

@@ -14,32 +14,52 @@ using nlohmann::ordered_json;
 
 ordered_json to_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
+ordered_json to_json(const Warp& warp) {
+  return {{"amplitude", warp.amplitude},
+          {"frequency", warp.frequency},
+          {"octaves", warp.octaves},
+          {"gain", warp.gain},
+          {"lacunarity", warp.lacunarity}};
+}
+
 ordered_json to_json(const MetaballBody& body) {
   ordered_json spheres = ordered_json::array();
   for (const Sphere& s : body.spheres) {
     spheres.push_back(ordered_json::array({s.center.x, s.center.y, s.center.z, s.radius}));
   }
-  return {{"type", "metaballs"},
-          {"kernel", "gaussian"},
-          {"a", body.a},
-          {"b", body.b},
-          {"blend_exponent", body.blend_exponent},
-          {"iso_value", body.iso_value},
-          {"cutoff_radii", body.cutoff_radii},
-          {"spheres", std::move(spheres)}};
+  ordered_json object{{"type", "metaballs"},
+                      {"kernel", "gaussian"},
+                      {"a", body.a},
+                      {"b", body.b},
+                      {"blend_exponent", body.blend_exponent},
+                      {"iso_value", body.iso_value},
+                      {"cutoff_radii", body.cutoff_radii},
+                      {"spheres", std::move(spheres)}};
+  if (body.warp) object["warp"] = to_json(*body.warp);
+  return object;
+}
+
+const char* type_of(Noise noise) {
+  return noise == Noise::kSimplex ? "simplex" : noise == Noise::kPerlin ? "perlin" : "worley";
+}
+
+const char* distance_of(Noise noise) {
+  return noise == Noise::kWorleyF1 ? "f1" : noise == Noise::kWorleyF2 ? "f2" : "f2-f1";
 }
 
 ordered_json to_json(const FractalLayer& layer) {
-  return {{"type", "simplex"},
-          {"name", layer.name},
-          {"amplitude", layer.amplitude},
-          {"frequency", layer.frequency},
-          {"octaves", layer.octaves},
-          {"gain", layer.gain},
-          {"lacunarity", layer.lacunarity},
-          {"scale", to_json(layer.scale)},
-          {"bias", to_json(layer.bias)},
-          {"weight", layer.weight}};
+  ordered_json object{{"type", type_of(layer.noise)},   {"name", layer.name},
+                      {"amplitude", layer.amplitude},   {"frequency", layer.frequency},
+                      {"octaves", layer.octaves},       {"gain", layer.gain},
+                      {"lacunarity", layer.lacunarity}, {"scale", to_json(layer.scale)},
+                      {"bias", to_json(layer.bias)},    {"weight", layer.weight}};
+  if (is_worley(layer.noise)) {
+    object["distance"] = distance_of(layer.noise);
+  } else {
+    object["gradient_modulation"] = layer.gradient_modulation;
+  }
+  if (layer.warp) object["warp"] = to_json(*layer.warp);
+  return object;
 }
 
 ordered_json to_json(const GaborLayer& layer) {

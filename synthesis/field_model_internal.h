@@ -1,9 +1,12 @@
 // What an ImplicitField and its blocks share.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
+#include "synthesis/block_field.h"
+#include "synthesis/coordinate_warp.h"
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/metaball_body.h"
@@ -14,9 +17,20 @@ using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise>;
 
 struct FieldModel {
   PreparedMetaballs metaballs;
-  std::vector<HeightLayer> layers;  // in the recipe's order
-  double height_bound = 0.0;        // of |sum of heights|
-  Box bounds;                       // of the surface
+  std::optional<CoordinateWarp> warp;  // of the metaballs' coordinates
+  std::vector<HeightLayer> layers;     // in the recipe's order
+  double height_bound = 0.0;           // of |sum of heights|
+  Box bounds;                          // of the surface
 };
+
+// Where the metaballs are evaluated for the points of a box.
+Box metaball_box(const FieldModel& model, const Box& box);
+
+// Whether F keeps one sign over the box; `metaballs` must hold what reaches metaball_box(model, box).
+BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box);
+
+// A box that holds the whole surface, within about 1/64 of its longest side. Uses all of the model but
+// `bounds`.
+Box surface_bounds(const FieldModel& model);
 
 }  // namespace astrolith

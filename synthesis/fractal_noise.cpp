@@ -1,15 +1,17 @@
 #include "synthesis/fractal_noise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "numerics/hash_random.h"
-#include "synthesis/simplex_noise.h"
+#include "numerics/scalar_math.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kLargestLatticeCoordinate = 1048576.0;  // 2^20: leaves three bits within a cell
+constexpr int kChunk = 256;  // ten arrays of so many floats stay in the first cache over all octaves
+using Chunk = std::array<float, kChunk>;
 
 ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, float high, float scale,
                                  float bias, float* __restrict q) {
@@ -17,14 +19,12 @@ ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, fl
   for (int i = 0; i < n; ++i) q[i] = math::fma(math::clamp(p[i], low, high), scale, bias);
 }
 
-ASTROLITH_SIMD_CLONES void add_octave(int n, const float* __restrict x, const float* __restrict y,
-                                      const float* __restrict z, float frequency, float amplitude,
-                                      std::uint32_t seed, float* __restrict height) {
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const float noise = simplex_noise(frequency * x[i], frequency * y[i], frequency * z[i], seed);
-    height[i] = math::fma(amplitude, noise, height[i]);
-  }
+// What `place` makes of the values low .. high.
+Interval placed(double low, double high, float domain_low, float domain_high, float scale, float bias) {
+  const auto at = [&](double p) {
+    return static_cast<double>(scale) * std::clamp(p, double{domain_low}, double{domain_high}) + double{bias};
+  };
+  return {std::min(at(low), at(high)), std::max(at(low), at(high))};
 }
 
 double farthest_coordinate(double low, double high, double scale, double bias) {
@@ -38,36 +38,63 @@ Vec3f to_float(const Vec3d& v) {
 }  // namespace
 
 FractalNoise::FractalNoise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain)
-    : scale_(to_float(layer.scale)),
+    : noise_(layer.noise),
+      scale_(to_float(layer.scale)),
       bias_(to_float(layer.bias)),
-      domain_min_(to_float(domain.min)),
-      domain_max_(to_float(domain.max)) {
-  const double farthest =
-      std::max({farthest_coordinate(domain.min.x, domain.max.x, layer.scale.x, layer.bias.x),
-                farthest_coordinate(domain.min.y, domain.max.y, layer.scale.y, layer.bias.y),
-                farthest_coordinate(domain.min.z, domain.max.z, layer.scale.z, layer.bias.z)});
+      gradient_modulation_(static_cast<float>(layer.gradient_modulation)) {
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
-  double frequency = layer.frequency, amplitude = layer.amplitude * layer.weight;
-  for (int o = 0; o < layer.octaves; ++o) {
-    if (!(frequency * farthest <= kLargestLatticeCoordinate)) break;
-    octaves_.push_back({static_cast<float>(frequency), static_cast<float>(amplitude),
-                        hash_append(layer_seed, static_cast<std::uint32_t>(o))});
+  if (layer.warp) warp_.emplace(*layer.warp, layer_seed, domain);
+  const Box reached = warp_ ? widened(domain, warp_->bound()) : domain;
+  domain_min_ = to_float(reached.min);
+  domain_max_ = to_float(reached.max);
+  const double farthest =
+      std::max({farthest_coordinate(reached.min.x, reached.max.x, layer.scale.x, layer.bias.x),
+                farthest_coordinate(reached.min.y, reached.max.y, layer.scale.y, layer.bias.y),
+                farthest_coordinate(reached.min.z, reached.max.z, layer.scale.z, layer.bias.z)});
+  octaves_ = make_octaves(layer.frequency, layer.amplitude * layer.weight, layer.octaves, layer.gain,
+                          layer.lacunarity, {layer_seed}, farthest);
+  double amplitude = layer.amplitude * layer.weight;
+  for (std::size_t o = 0; o < octaves_.size(); ++o, amplitude *= layer.gain)
     height_bound_ += std::fabs(amplitude);
-    frequency *= layer.lacunarity;
-    amplitude *= layer.gain;
+}
+
+void FractalNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
+  for (int begin = 0; begin < n; begin += kChunk) {
+    evaluate_chunk(std::min(kChunk, n - begin), x + begin, y + begin, z + begin, height + begin);
   }
 }
 
-void FractalNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height,
-                            float* scratch) const {
-  float* qx = scratch;
-  float* qy = scratch + n;
-  float* qz = scratch + 2 * n;
-  place(n, x, domain_min_.x, domain_max_.x, scale_.x, bias_.x, qx);
-  place(n, y, domain_min_.y, domain_max_.y, scale_.y, bias_.y, qy);
-  place(n, z, domain_min_.z, domain_max_.z, scale_.z, bias_.z, qz);
+void FractalNoise::evaluate_chunk(int n, const float* x, const float* y, const float* z,
+                                  float* height) const {
+  Chunk wx, wy, wz, qx, qy, qz;
+  if (warp_) {
+    warp_->evaluate(n, x, y, z, wx.data(), wy.data(), wz.data());
+    x = wx.data();
+    y = wy.data();
+    z = wz.data();
+  }
+  place(n, x, domain_min_.x, domain_max_.x, scale_.x, bias_.x, qx.data());
+  place(n, y, domain_min_.y, domain_max_.y, scale_.y, bias_.y, qy.data());
+  place(n, z, domain_min_.z, domain_max_.z, scale_.z, bias_.z, qz.data());
   std::fill(height, height + n, 0.0f);
-  for (const Octave& o : octaves_) add_octave(n, qx, qy, qz, o.frequency, o.amplitude, o.seed, height);
+  if (gradient_modulation_ == 0.0f) {
+    for (const NoiseOctave& o : octaves_) add_octave(noise_, o, n, qx.data(), qy.data(), qz.data(), height);
+    return;
+  }
+  Chunk dx{}, dy{}, dz{};
+  for (const NoiseOctave& o : octaves_) {
+    add_modulated_octave(noise_, o, gradient_modulation_, n, qx.data(), qy.data(), qz.data(), dx.data(),
+                         dy.data(), dz.data(), height);
+  }
+}
+
+Interval FractalNoise::bound_heights(const Box& box) const {
+  const Box p = warp_ ? warp_->image(box) : box;
+  const Interval x = placed(p.min.x, p.max.x, domain_min_.x, domain_max_.x, scale_.x, bias_.x);
+  const Interval y = placed(p.min.y, p.max.y, domain_min_.y, domain_max_.y, scale_.y, bias_.y);
+  const Interval z = placed(p.min.z, p.max.z, domain_min_.z, domain_max_.z, scale_.z, bias_.z);
+  return bound_sum(noise_, octaves_, {{x.low, y.low, z.low}, {x.high, y.high, z.high}},
+                   gradient_modulation_ != 0.0f);
 }
 
 }  // namespace astrolith

@@ -1,36 +1,41 @@
-// A fractal layer of the recipe, ready for evaluation over many points (thesis algorithm 4).
+// A fractal layer of the recipe, ready for evaluation over many points (thesis algorithms 4 and 5).
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "recipe/recipe.h"
+#include "synthesis/coordinate_warp.h"
+#include "synthesis/noise_octaves.h"
 
 namespace astrolith {
 
 class FractalNoise {
  public:
   // `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-  // `domain`, where no surface is, are moved to its border; octaves so fine that float coordinates within it
-  // could not tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
+  // `domain`, where no surface is, are moved to its border; octaves too fine for float coordinates within it
+  // are left out (noise_octaves.h).
   FractalNoise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
 
-  // height[i] = n(p_i), length units; scratch holds 3 n floats.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height, float* scratch) const;
+  // height[i] = n(p_i), length units.
+  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
 
   // |n(p)| never exceeds this.
   double height_bound() const { return height_bound_; }
 
- private:
-  struct Octave {
-    float frequency;
-    float amplitude;
-    std::uint32_t seed;
-  };
+  // n(p) at every float point of a box.
+  Interval bound_heights(const Box& box) const;
 
+ private:
+  void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;
+
+  Noise noise_;
+  std::optional<CoordinateWarp> warp_;
   Vec3f scale_, bias_, domain_min_, domain_max_;
-  std::vector<Octave> octaves_;
+  std::vector<NoiseOctave> octaves_;
   double height_bound_ = 0.0;
+  float gradient_modulation_;
 };
 
 }  // namespace astrolith

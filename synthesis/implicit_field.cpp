@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "synthesis/field_model_internal.h"
 
 namespace astrolith {
@@ -15,10 +16,12 @@ namespace {
 // Points evaluated together: a block of 9^3 samples and some, on the stack.
 constexpr int kBatch = 1024;
 
-// Points, s and grad L there, and a layer's heights.
+constexpr std::uint32_t kBodyStream = 0xffffffffu;  // of the recipe's seed; layers have their numbers
+
+// Points, where the metaballs are evaluated for them, s and grad L there, and a layer's heights.
 struct Batch {
   int n = 0;
-  std::array<float, kBatch> x, y, z, distance, gx, gy, gz, height;
+  std::array<float, kBatch> x, y, z, mx, my, mz, distance, gx, gy, gz, height;
   std::array<float, 3 * kBatch> scratch;
 };
 
@@ -44,7 +47,7 @@ ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, c
 }
 
 void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data(), b.scratch.data());
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
 }
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
@@ -56,38 +59,50 @@ void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batc
   const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
     project(b.n, p.data(), g.data(), b.height.data(), b.distance.data(), longest_step, out);
   };
-  along(b.x, b.gx, projected);
-  along(b.y, b.gy, projected + kBatch);
-  along(b.z, b.gz, projected + 2 * kBatch);
+  along(b.mx, b.gx, projected);
+  along(b.my, b.gy, projected + kBatch);
+  along(b.mz, b.gz, projected + 2 * kBatch);
   noise.evaluate(model.metaballs, b.n, projected, projected + kBatch, projected + 2 * kBatch,
                  b.height.data());
 }
 
-// Keeps the points whose F the heights may bring into the band; returns where they were.
-int keep_near_surface(float reach, Batch& b, std::array<int, kBatch>& origin) {
+struct PointArrays {
+  const float *x, *y, *z;
+};
+
+// Keeps the points whose F the heights may bring into the band, and where the metaballs were evaluated for
+// them; returns how many, and where they were.
+int keep_near_surface(int n, float reach, const PointArrays& at, const PointArrays& metaballs_at, Batch& b,
+                      std::array<int, kBatch>& origin) {
   int kept = 0;
-  for (int i = 0; i < b.n; ++i) {
+  for (int i = 0; i < n; ++i) {
     const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(kept);
     if (std::fabs(b.distance[from]) > reach) continue;
-    for (auto* a : {&b.x, &b.y, &b.z, &b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
+    b.x[to] = at.x[i], b.y[to] = at.y[i], b.z[to] = at.z[i];
+    b.mx[to] = metaballs_at.x[i], b.my[to] = metaballs_at.y[i], b.mz[to] = metaballs_at.z[i];
+    for (auto* a : {&b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
     origin[to] = i;
     ++kept;
   }
   return kept;
 }
 
-void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const float* x,
-                    const float* y, const float* z, float band, float* value) {
+void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const PointArrays& at,
+                    float band, float* value) {
   Batch b;
-  std::copy_n(x, n, b.x.data());
-  std::copy_n(y, n, b.y.data());
-  std::copy_n(z, n, b.z.data());
-  evaluate_metaballs(metaballs, n, x, y, z, b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
+  PointArrays metaballs_at = at;
+  if (model.warp) {
+    model.warp->evaluate(n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
+    metaballs_at = {b.mx.data(), b.my.data(), b.mz.data()};
+    band *= static_cast<float>(model.warp->stretch());  // s changes so much faster than a distance does
+  }
+  evaluate_metaballs(metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(),
+                     b.gx.data(), b.gy.data(), b.gz.data());
   std::copy_n(b.distance.data(), n, value);
   if (model.layers.empty()) return;
   std::array<int, kBatch> origin;
-  b.n = n;
-  b.n = keep_near_surface(static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band, b, origin);
+  const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
+  b.n = keep_near_surface(n, reach, at, metaballs_at, b, origin);
   if (b.n == 0) return;
   for (const HeightLayer& layer : model.layers) {
     std::visit([&](const auto& noise) { layer_heights(model, noise, b); }, layer);
@@ -95,63 +110,10 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
   }
 }
 
-// Whether F keeps one sign over the box: F has the sign of L - log T + height * divisor.
-BlockContent content_of(const PreparedMetaballs& metaballs, double height_bound, const Box& box) {
-  const MetaballInterval bound = bound_metaballs(metaballs, box);
-  const double margin = height_bound * bound.gradient_max * (1.0 + 1e-5);
-  if (bound.level_max < -margin) return BlockContent::kOutside;
-  if (bound.level_min > margin) return BlockContent::kInside;
-  return BlockContent::kMixed;
-}
-
-std::array<Box, 8> octants(const Box& box) {
-  const Vec3d c = box.center();
-  std::array<Box, 8> children;
-  for (unsigned k = 0; k < 8; ++k) {
-    Box& child = children[k];
-    child.min = {k & 1 ? c.x : box.min.x, k & 2 ? c.y : box.min.y, k & 4 ? c.z : box.min.z};
-    child.max = {k & 1 ? box.max.x : c.x, k & 2 ? box.max.y : c.y, k & 4 ? box.max.z : c.z};
-  }
-  return children;
-}
-
-bool within(const Box& inner, const Box& outer) {
-  return inner.min.x >= outer.min.x && inner.min.y >= outer.min.y && inner.min.z >= outer.min.z &&
-         inner.max.x <= outer.max.x && inner.max.y <= outer.max.y && inner.max.z <= outer.max.z;
-}
-
-// Extends `bounds` by the smallest boxes of an octree that are not proved empty.
-void extend_bounds(const PreparedMetaballs& metaballs, double height_bound, const Box& box, int depth,
-                   Box& bounds) {
-  if (!bounds.empty() && within(box, bounds)) return;
-  const PreparedMetaballs reaching = metaballs_reaching(metaballs, box);
-  const BlockContent content = content_of(reaching, height_bound, box);
-  if (content == BlockContent::kOutside) return;
-  if (depth == 0 || content == BlockContent::kInside) {
-    bounds.extend(box.min);
-    bounds.extend(box.max);
-    return;
-  }
-  for (const Box& child : octants(box)) extend_bounds(reaching, height_bound, child, depth - 1, bounds);
-}
-
-// Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
-Box surface_bounds(const PreparedMetaballs& metaballs, double height_bound) {
-  constexpr int kDepth = 6;
-  Box box = support_bounds(metaballs);
-  for (int pass = 0; pass < 4; ++pass) {
-    Box tighter;
-    extend_bounds(metaballs, height_bound, box, kDepth, tighter);
-    if (tighter.empty()) return tighter;
-    const bool shrunk = norm(tighter.extent()) < 0.7 * norm(box.extent());
-    box = tighter;
-    if (!shrunk) break;
-  }
-  return box;
-}
-
 // Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
-std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const Box& domain) {
+std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const FieldModel& model) {
+  const Box supports = support_bounds(model.metaballs);
+  const Box domain = model.warp ? widened(supports, model.warp->bound()) : supports;
   std::vector<HeightLayer> layers;
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     if (const auto* fractal = std::get_if<FractalLayer>(&recipe.layers[i])) {
@@ -159,7 +121,7 @@ std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const Box& domain)
     } else if (const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i])) {
       // A layer of colour alone has no height.
       if (gabor->height_rms > 0.0) {
-        layers.emplace_back(GaborSurfaceNoise(*gabor, recipe.seed, static_cast<int>(i), domain));
+        layers.emplace_back(GaborSurfaceNoise(*gabor, recipe.seed, static_cast<int>(i), supports));
       }
     }
   }
@@ -168,17 +130,17 @@ std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const Box& domain)
 
 }  // namespace
 
-BlockContent FieldBlock::content() const { return content_of(metaballs_, model_->height_bound, box_); }
+BlockContent FieldBlock::content() const { return content_of(*model_, metaballs_, box_); }
 
 FieldBlock FieldBlock::restricted_to(const Box& child) const {
-  return {*model_, metaballs_reaching(metaballs_, child), child};
+  return {*model_, metaballs_reaching(metaballs_, metaball_box(*model_, child)), child};
 }
 
 void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                           std::span<float> value, float band) const {
   for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
     const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
-    evaluate_batch(*model_, metaballs_, n, &x[begin], &y[begin], &z[begin], band, &value[begin]);
+    evaluate_batch(*model_, metaballs_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
   }
 }
 
@@ -188,23 +150,27 @@ ImplicitField::ImplicitField(const Recipe& recipe) {
   }
   FieldModel model;
   model.metaballs = prepare_metaballs(*recipe.body);
-  model.layers = prepare_layers(recipe, support_bounds(model.metaballs));
+  if (recipe.body->warp) {
+    model.warp.emplace(*recipe.body->warp, hash_seed(recipe.seed, kBodyStream),
+                       support_bounds(model.metaballs));
+  }
+  model.layers = prepare_layers(recipe, model);
   for (const HeightLayer& layer : model.layers) {
     model.height_bound += std::visit([](const auto& l) { return l.height_bound(); }, layer);
   }
-  model.bounds = surface_bounds(model.metaballs, model.height_bound);
+  model.bounds = surface_bounds(model);
   model_ = std::make_shared<const FieldModel>(std::move(model));
 }
 
 double ImplicitField::value(const Vec3d& p) const {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
-  evaluate_batch(*model_, model_->metaballs, 1, &x, &y, &z, kExactEverywhere, &f);
+  evaluate_batch(*model_, model_->metaballs, 1, {&x, &y, &z}, kExactEverywhere, &f);
   return static_cast<double>(f);
 }
 
 Vec3d ImplicitField::gradient(const Vec3d& p) const {
-  if (model_->layers.empty()) return distance_gradient(model_->metaballs, p);
+  if (model_->layers.empty() && !model_->warp) return distance_gradient(model_->metaballs, p);
   const double h = gradient_step();
   const auto slope = [&](const Vec3d& d) { return (value(p + d) - value(p - d)) / (2.0 * h); };
   return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
@@ -220,7 +186,7 @@ Box ImplicitField::bounds() const { return model_->bounds; }
 double ImplicitField::height_bound() const { return model_->height_bound; }
 
 FieldBlock ImplicitField::gather(const Box& box) const {
-  return {*model_, metaballs_reaching(model_->metaballs, box), box};
+  return {*model_, metaballs_reaching(model_->metaballs, metaball_box(*model_, box)), box};
 }
 
 }  // namespace astrolith

@@ -6,7 +6,8 @@
 //   bool rock = field.inside({0.1, 0.0, 0.25});
 //
 // F(p) = s(p) + sum of layer heights (synthesis/metaballs.h), and the surface is F = 0. A positive height
-// lies along the outward normal and enlarges the body. Near the surface F is a distance to first order.
+// lies along the outward normal and enlarges the body. Near the surface F is a distance to first order. Where
+// the body has a warp, s is taken at p + warp(p), and F is steeper or flatter than a distance.
 //
 // Every value is computed in float from float coordinates by the functions that blocks and GPUs run, so a
 // single point, a block of any size and any thread count give the same bits.

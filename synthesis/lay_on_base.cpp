@@ -20,6 +20,10 @@ Layer rescaled(FractalLayer layer, double ratio) {
   layer.amplitude *= ratio;
   layer.frequency /= ratio;
   layer.bias *= ratio;
+  if (layer.warp) {
+    layer.warp->amplitude *= ratio;
+    layer.warp->frequency /= ratio;
+  }
   return layer;
 }
 

@@ -2,6 +2,7 @@
 // an interval that is never wrong.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -34,15 +35,19 @@ void evaluate_metaballs(const PreparedMetaballs& metaballs, int n, const float* 
                         const float* z, float* distance, float* gradient_x, float* gradient_y,
                         float* gradient_z);
 
-// What is certain about L(p) - log T and about sqrt(|grad L(p)|^2 + floor), the divisor of s, for every float
-// point p of a box; float rounding is allowed for.
+// What is certain about L(p) - log T for every float point p of a box, and about sqrt(|grad L(p)|^2 + floor),
+// the divisor of s, for those where |s(p)| <= height; float rounding is allowed for.
 struct MetaballInterval {
   double level_min = 0.0;
   double level_max = 0.0;
   double gradient_max = 0.0;
 };
 // `metaballs` must hold every sphere that reaches the box.
-MetaballInterval bound_metaballs(const PreparedMetaballs& metaballs, const Box& box);
+MetaballInterval bound_metaballs(const PreparedMetaballs& metaballs, const Box& box,
+                                 double height = std::numeric_limits<double>::infinity());
+
+// A lower bound of the same divisor.
+double smallest_gradient(const PreparedMetaballs& metaballs, const Box& box);
 
 // Gradient of s(p) itself in double precision, second derivatives of L included; per length unit, so about a
 // unit vector pointing inwards near the surface.

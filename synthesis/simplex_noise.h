@@ -1,12 +1,8 @@
 // Three-dimensional simplex noise (Perlin 2001, after Gustavson's exposition 2005): gradients at the corners
-// of a lattice of tetrahedra, each fading out inside its neighbours. No branches and no tables: the gradient
-// is a hash of the corner.
+// of a lattice of tetrahedra, each fading out inside its neighbours.
 #pragma once
 
-#include <cstdint>
-
-#include "numerics/host_device.h"
-#include "numerics/scalar_math.h"
+#include "synthesis/lattice_noise.h"
 
 namespace astrolith {
 
@@ -14,53 +10,87 @@ namespace astrolith {
 // reciprocal, rounded down, keeps the noise within [-1, 1].
 inline constexpr float kSimplexScale = 76.8f;
 
-// Of three integers multiplied into `sum` already: enough mixing for the top bits to choose a gradient.
-ASTROLITH_KERNEL std::uint32_t lattice_hash(std::uint32_t sum) {
-  sum = (sum ^ (sum >> 16)) * 0x7feb352du;
-  return (sum ^ (sum >> 15)) * 0x846ca68bu;
-}
+// A point in its tetrahedron: seen from each of the four corners, whose lattice points are given too.
+struct SimplexCell {
+  Vec3f from[4];
+  std::uint32_t corner[4];
+};
 
-// (1/2 - r^2)^4 gradient.(x, y, z), zero beyond r^2 = 1/2, where neighbouring cells begin: a larger radius
-// would make the noise jump. The gradient is one of the twelve edge directions of a cube (Perlin 2002).
-ASTROLITH_KERNEL float simplex_corner(std::uint32_t hash, float x, float y, float z) {
-  const float fade = math::max(0.5f - math::fma(x, x, math::fma(y, y, z * z)), 0.0f);
-  const std::uint32_t g = hash >> 28;
-  const float u = g < 8 ? x : y;
-  const float v = g < 4 ? y : ((g & 13) == 12 ? x : z);
-  const float signed_u = math::float_of(math::bits_of(u) ^ static_cast<std::int32_t>((g & 1) << 31));
-  const float signed_v = math::float_of(math::bits_of(v) ^ static_cast<std::int32_t>((g & 2) << 30));
-  const float fade2 = fade * fade;
-  return fade2 * fade2 * (signed_u + signed_v);
-}
+ASTROLITH_KERNEL float one_where(std::int32_t mask) { return math::float_of(0x3f800000 & mask); }
 
-// In [-1, 1], zero mean, about one feature a unit length; |x|, |y|, |z| <= 2^20.
-ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t seed) {
+ASTROLITH_KERNEL SimplexCell simplex_cell(float x, float y, float z, std::uint32_t seed) {
   constexpr float kUnskew = 1.0f / 6.0f;
   const float skew = (x + y + z) * (1.0f / 3.0f);
   const float i = math::floor(x + skew), j = math::floor(y + skew), k = math::floor(z + skew);
   const float unskew = (i + j + k) * kUnskew;
   const float x0 = x - (i - unskew), y0 = y - (j - unskew), z0 = z - (k - unskew);
 
-  // The tetrahedron: its second corner steps along the largest coordinate, its third along the two largest.
-  const bool xy = x0 >= y0, yz = y0 >= z0, xz = x0 >= z0;
-  const bool i1 = xy && xz, j1 = !xy && yz, k1 = !xz && !yz;
-  const bool i2 = xy || xz, j2 = !xy || yz, k2 = !(xz && yz);
+  // The second corner steps along the largest coordinate, the third along the two largest.
+  const std::int32_t below_y = math::bits_of(x0 - y0) >> 31, below_z = math::bits_of(x0 - z0) >> 31,
+                     y_below_z = math::bits_of(y0 - z0) >> 31;
+  const std::int32_t i1 = ~below_y & ~below_z, j1 = below_y & ~y_below_z, k1 = below_z & y_below_z;
+  const std::int32_t i2 = ~(below_y & below_z), j2 = below_y | ~y_below_z, k2 = below_z | y_below_z;
+  const auto stepped = [](std::int32_t along_x, std::int32_t along_y, std::int32_t along_z) {
+    return (kLatticeX & static_cast<std::uint32_t>(along_x)) +
+           (kLatticeY & static_cast<std::uint32_t>(along_y)) +
+           (kLatticeZ & static_cast<std::uint32_t>(along_z));
+  };
+  const std::uint32_t first = lattice_point(i, j, k, seed);
+  return {{{x0, y0, z0},
+           {x0 - one_where(i1) + kUnskew, y0 - one_where(j1) + kUnskew, z0 - one_where(k1) + kUnskew},
+           {x0 - one_where(i2) + 2.0f * kUnskew, y0 - one_where(j2) + 2.0f * kUnskew,
+            z0 - one_where(k2) + 2.0f * kUnskew},
+           {x0 - 0.5f, y0 - 0.5f, z0 - 0.5f}},
+          {first, first + stepped(i1, j1, k1), first + stepped(i2, j2, k2),
+           first + (kLatticeX + kLatticeY + kLatticeZ)}};
+}
 
-  constexpr std::uint32_t kX = 0x8da6b343u, kY = 0xd8163841u, kZ = 0xcb1ab31fu;
-  const std::uint32_t sum = seed + static_cast<std::uint32_t>(static_cast<std::int32_t>(i)) * kX +
-                            static_cast<std::uint32_t>(static_cast<std::int32_t>(j)) * kY +
-                            static_cast<std::uint32_t>(static_cast<std::int32_t>(k)) * kZ;
-  const std::uint32_t sum1 = sum + (i1 ? kX : 0u) + (j1 ? kY : 0u) + (k1 ? kZ : 0u);
-  const std::uint32_t sum2 = sum + (i2 ? kX : 0u) + (j2 ? kY : 0u) + (k2 ? kZ : 0u);
+// 1/2 - r^2, zero beyond r^2 = 1/2, where neighbouring cells begin: a larger radius would make the noise
+// jump.
+ASTROLITH_KERNEL float simplex_fade(const Vec3f& d) {
+  return math::max(0.5f - math::fma(d.x, d.x, math::fma(d.y, d.y, d.z * d.z)), 0.0f);
+}
 
-  const float n0 = simplex_corner(lattice_hash(sum), x0, y0, z0);
-  const float n1 = simplex_corner(lattice_hash(sum1), x0 - (i1 ? 1.0f : 0.0f) + kUnskew,
-                                  y0 - (j1 ? 1.0f : 0.0f) + kUnskew, z0 - (k1 ? 1.0f : 0.0f) + kUnskew);
-  const float n2 =
-      simplex_corner(lattice_hash(sum2), x0 - (i2 ? 1.0f : 0.0f) + 2.0f * kUnskew,
-                     y0 - (j2 ? 1.0f : 0.0f) + 2.0f * kUnskew, z0 - (k2 ? 1.0f : 0.0f) + 2.0f * kUnskew);
-  const float n3 = simplex_corner(lattice_hash(sum + (kX + kY + kZ)), x0 - 0.5f, y0 - 0.5f, z0 - 0.5f);
+// fade^4 gradient.d
+ASTROLITH_KERNEL float simplex_corner(std::uint32_t corner, const Vec3f& d) {
+  const float fade = simplex_fade(d);
+  const float fade2 = fade * fade;
+  return fade2 * fade2 * gradient_product(lattice_hash(corner), d.x, d.y, d.z);
+}
+
+// In [-1, 1], zero mean, standard deviation 0.389, about one feature a unit length; |x|, |y|, |z| <= 2^20.
+ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t seed) {
+  const SimplexCell cell = simplex_cell(x, y, z, seed);
+  const float n0 = simplex_corner(cell.corner[0], cell.from[0]);
+  const float n1 = simplex_corner(cell.corner[1], cell.from[1]);
+  const float n2 = simplex_corner(cell.corner[2], cell.from[2]);
+  const float n3 = simplex_corner(cell.corner[3], cell.from[3]);
   return kSimplexScale * ((n0 + n1) + (n2 + n3));
+}
+
+// Adds a corner's contribution and its gradient, fade^4 g - 8 fade^3 (g.d) d.
+ASTROLITH_KERNEL void add_simplex_corner(std::uint32_t corner, const Vec3f& d, NoiseSample& sum) {
+  const std::uint32_t hash = lattice_hash(corner);
+  const Vec3f g = gradient_of(hash);
+  const float fade = simplex_fade(d);
+  const float fade2 = fade * fade, fade4 = fade2 * fade2;
+  const float product = gradient_product(hash, d.x, d.y, d.z);
+  const float radial = -8.0f * fade2 * fade * product;
+  sum.value += fade4 * product;
+  sum.gradient.x += math::fma(radial, d.x, fade4 * g.x);
+  sum.gradient.y += math::fma(radial, d.y, fade4 * g.y);
+  sum.gradient.z += math::fma(radial, d.z, fade4 * g.z);
+}
+
+// The same noise, but for the last bits of its sum, with its gradient.
+ASTROLITH_KERNEL NoiseSample simplex_with_gradient(float x, float y, float z, std::uint32_t seed) {
+  const SimplexCell cell = simplex_cell(x, y, z, seed);
+  NoiseSample sum{};
+  add_simplex_corner(cell.corner[0], cell.from[0], sum);
+  add_simplex_corner(cell.corner[1], cell.from[1], sum);
+  add_simplex_corner(cell.corner[2], cell.from[2], sum);
+  add_simplex_corner(cell.corner[3], cell.from[3], sum);
+  return {kSimplexScale * sum.value, kSimplexScale * sum.gradient};
 }
 
 }  // namespace astrolith

@@ -1,0 +1,117 @@
+// What is certain about a field over whole boxes.
+#include <algorithm>
+#include <array>
+
+#include "synthesis/field_model_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kRoundingSlack = 1e-5;  // of heights and their sums, relative to their bound
+
+Interval bound_heights(const FractalNoise& noise, const Box& box) { return noise.bound_heights(box); }
+Interval bound_heights(const GaborSurfaceNoise& noise, const Box&) {
+  return {-noise.height_bound(), noise.height_bound()};
+}
+
+Interval bound_heights(const FieldModel& model, const Box& box) {
+  const double slack = kRoundingSlack * model.height_bound;
+  Interval sum{-slack, slack};
+  for (const HeightLayer& layer : model.layers) {
+    const Interval heights = std::visit([&](const auto& noise) { return bound_heights(noise, box); }, layer);
+    sum.low += heights.low;
+    sum.high += heights.high;
+  }
+  return sum;
+}
+
+// F has the sign of L - log T + height * divisor.
+BlockContent content_by(const MetaballInterval& bound, double margin) {
+  if (bound.level_max < -margin) return BlockContent::kOutside;
+  if (bound.level_min > margin) return BlockContent::kInside;
+  return BlockContent::kMixed;
+}
+
+// By the bound of all heights everywhere, which costs nothing.
+BlockContent content_by_height_bound(const FieldModel& model, const MetaballInterval& bound) {
+  return content_by(bound, model.height_bound * bound.gradient_max * (1.0 + kRoundingSlack));
+}
+
+// By what the heights are in this box.
+BlockContent content_by_heights(const PreparedMetaballs& metaballs, const Box& at,
+                                const MetaballInterval& bound, const Interval& heights) {
+  const double divisor_max = bound.gradient_max;
+  if (heights.high >= 0.0 && bound.level_max < -heights.high * divisor_max) return BlockContent::kOutside;
+  if (heights.low <= 0.0 && bound.level_min > -heights.low * divisor_max) return BlockContent::kInside;
+  if (heights.high >= 0.0 && heights.low <= 0.0) return BlockContent::kMixed;
+  // All heights have one sign: now the smallest divisor counts.
+  const double divisor_min = smallest_gradient(metaballs, at);
+  if (heights.high < 0.0 && bound.level_max < -heights.high * divisor_min) return BlockContent::kOutside;
+  if (heights.low > 0.0 && bound.level_min > -heights.low * divisor_min) return BlockContent::kInside;
+  return BlockContent::kMixed;
+}
+
+std::array<Box, 8> octants(const Box& box) {
+  const Vec3d c = box.center();
+  std::array<Box, 8> children;
+  for (unsigned k = 0; k < 8; ++k) {
+    Box& child = children[k];
+    child.min = {k & 1 ? c.x : box.min.x, k & 2 ? c.y : box.min.y, k & 4 ? c.z : box.min.z};
+    child.max = {k & 1 ? box.max.x : c.x, k & 2 ? box.max.y : c.y, k & 4 ? box.max.z : c.z};
+  }
+  return children;
+}
+
+bool within(const Box& inner, const Box& outer) {
+  return inner.min.x >= outer.min.x && inner.min.y >= outer.min.y && inner.min.z >= outer.min.z &&
+         inner.max.x <= outer.max.x && inner.max.y <= outer.max.y && inner.max.z <= outer.max.z;
+}
+
+// Extends `bounds` by the smallest boxes of an octree that are not proved empty. The grid of a mesh depends
+// on the result: it is a promise that it does not change.
+void extend_bounds(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box, int depth,
+                   Box& bounds) {
+  if (!bounds.empty() && within(box, bounds)) return;
+  const Box at = metaball_box(model, box);
+  const PreparedMetaballs reaching = metaballs_reaching(metaballs, at);
+  const BlockContent content = content_by_height_bound(model, bound_metaballs(reaching, at));
+  if (content == BlockContent::kOutside) return;
+  if (depth == 0 || content == BlockContent::kInside) {
+    bounds.extend(box.min);
+    bounds.extend(box.max);
+    return;
+  }
+  for (const Box& child : octants(box)) extend_bounds(model, reaching, child, depth - 1, bounds);
+}
+
+}  // namespace
+
+Box metaball_box(const FieldModel& model, const Box& box) {
+  return model.warp ? model.warp->image(box) : box;
+}
+
+BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box) {
+  const Box at = metaball_box(model, box);
+  const MetaballInterval bound = bound_metaballs(metaballs, at, model.height_bound);
+  const BlockContent content = content_by_height_bound(model, bound);
+  if (content != BlockContent::kMixed || model.layers.empty()) return content;
+  return content_by_heights(metaballs, at, bound, bound_heights(model, box));
+}
+
+// Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
+Box surface_bounds(const FieldModel& model) {
+  constexpr int kDepth = 6;
+  Box box = support_bounds(model.metaballs);
+  if (model.warp) box = widened(box, model.warp->bound());
+  for (int pass = 0; pass < 4; ++pass) {
+    Box tighter;
+    extend_bounds(model, model.metaballs, box, kDepth, tighter);
+    if (tighter.empty()) return tighter;
+    const bool shrunk = norm(tighter.extent()) < 0.7 * norm(box.extent());
+    box = tighter;
+    if (!shrunk) break;
+  }
+  return box;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,178 @@
+#include "synthesis/noise_octaves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/hash_random.h"
+#include "synthesis/perlin_noise.h"
+#include "synthesis/simplex_noise.h"
+#include "synthesis/worley_noise.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kLargestLatticeCoordinate = 1048576.0;  // 2^20: leaves three bits within a cell
+constexpr double kSteepestOctave = 1e12;                 // keeps the squares of slopes finite in a float
+
+// A noise's values and its greatest slope: 6.960 and 3.619 for simplex and Perlin noise (by search over all
+// positions and gradients), and a distance changes by no more than the way gone.
+struct NoiseRange {
+  double low, high, slope;
+};
+NoiseRange range_of(Noise noise) {
+  constexpr double kF1 = kWorleyMeanF1, kF2 = kWorleyMeanF2, kSlope = 1.0 / kWorleyFarthest;
+  switch (noise) {
+    case Noise::kSimplex:
+      return {-1.0, 1.0, 7.0};
+    case Noise::kPerlin:
+      return {-1.0, 1.0, 3.65};
+    case Noise::kWorleyF1:
+      return {-kF1, 1.0 - kF1, kSlope};
+    case Noise::kWorleyF2:
+      return {-kF2, 1.0 - kF2, kSlope};
+    default:
+      return {kF1 - kF2, 1.0 + kF1 - kF2, 2.0 * kSlope};
+  }
+}
+
+float noise_at(Noise noise, float x, float y, float z, std::uint32_t seed) {
+  switch (noise) {
+    case Noise::kSimplex:
+      return simplex_noise(x, y, z, seed);
+    case Noise::kPerlin:
+      return perlin_noise(x, y, z, seed);
+    case Noise::kWorleyF1:
+      return worley_f1(x, y, z, seed);
+    case Noise::kWorleyF2:
+      return worley_f2(x, y, z, seed);
+    default:
+      return worley_f2_minus_f1(x, y, z, seed);
+  }
+}
+
+// One loop a noise: a choice inside it would keep it from vectorising.
+#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x, \
+                                  const float* __restrict y, const float* __restrict z,        \
+                                  float* __restrict sum) {                                     \
+    const float f = octave.frequency, amplitude = octave.amplitude;                            \
+    const std::uint32_t seed = octave.seed;                                                    \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                          \
+      sum[i] = math::fma(amplitude, noise(f * x[i], f * y[i], f * z[i], seed), sum[i]);        \
+    }                                                                                          \
+  }
+ASTROLITH_OCTAVE_LOOP(add_simplex, simplex_noise)
+ASTROLITH_OCTAVE_LOOP(add_perlin, perlin_noise)
+ASTROLITH_OCTAVE_LOOP(add_f1, worley_f1)
+ASTROLITH_OCTAVE_LOOP(add_f2, worley_f2)
+ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
+#undef ASTROLITH_OCTAVE_LOOP
+
+#define ASTROLITH_MODULATED_LOOP(name, noise)                                                            \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, float modulation, int n,                    \
+                                  const float* __restrict x, const float* __restrict y,                  \
+                                  const float* __restrict z, float* __restrict dx, float* __restrict dy, \
+                                  float* __restrict dz, float* __restrict sum) {                         \
+    const NoiseOctave o = octave;                                                                        \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                    \
+      const NoiseSample s = noise(o.frequency * x[i], o.frequency * y[i], o.frequency * z[i], o.seed);   \
+      dx[i] = math::fma(o.slope, s.gradient.x, dx[i]);                                                   \
+      dy[i] = math::fma(o.slope, s.gradient.y, dy[i]);                                                   \
+      dz[i] = math::fma(o.slope, s.gradient.z, dz[i]);                                                   \
+      const float steepness = math::fma(dx[i], dx[i], math::fma(dy[i], dy[i], dz[i] * dz[i]));           \
+      sum[i] += o.amplitude * s.value / math::fma(modulation, steepness, 1.0f);                          \
+    }                                                                                                    \
+  }
+ASTROLITH_MODULATED_LOOP(add_modulated_simplex, simplex_with_gradient)
+ASTROLITH_MODULATED_LOOP(add_modulated_perlin, perlin_with_gradient)
+#undef ASTROLITH_MODULATED_LOOP
+
+double largest_coordinate(const Box& box) {
+  return std::max({std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.min.z), std::fabs(box.max.x),
+                   std::fabs(box.max.y), std::fabs(box.max.z)});
+}
+
+// One octave's noise over a box: its value at the centre and its greatest slope tell more than its range
+// where the box is small beside the noise's features.
+Interval bound_noise(Noise noise, const NoiseOctave& octave, const Box& box) {
+  const NoiseRange range = range_of(noise);
+  const double f = octave.frequency;
+  const double rounding = 1e-6 * f * largest_coordinate(box);  // of coordinates, in cells
+  const double spread = range.slope * (0.5 * f * box.diagonal() + rounding) + 1e-5;
+  if (spread >= 1.0) return {range.low, range.high};
+  const Vec3d c = f * box.center();
+  const double value = static_cast<double>(noise_at(noise, static_cast<float>(c.x), static_cast<float>(c.y),
+                                                    static_cast<float>(c.z), octave.seed));
+  return {std::max(range.low, value - spread), std::min(range.high, value + spread)};
+}
+
+}  // namespace
+
+std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int count, double gain,
+                                      double lacunarity, const OctaveSeeds& seeds, double farthest) {
+  std::vector<NoiseOctave> octaves;
+  double slope = 1.0;
+  for (int o = 0; o < count; ++o) {
+    if (!(frequency * farthest <= kLargestLatticeCoordinate)) break;
+    const std::uint32_t stream = seeds.first_stream + static_cast<std::uint32_t>(o) * seeds.stream_step;
+    octaves.push_back({static_cast<float>(frequency), static_cast<float>(amplitude),
+                       static_cast<float>(std::min(slope, kSteepestOctave)),
+                       hash_append(seeds.seed, stream)});
+    frequency *= lacunarity;
+    amplitude *= gain;
+    slope *= lacunarity * gain;
+  }
+  return octaves;
+}
+
+double sum_bound(const std::vector<NoiseOctave>& octaves) {
+  double bound = 0.0;
+  for (const NoiseOctave& o : octaves) bound += std::fabs(static_cast<double>(o.amplitude));
+  return bound;
+}
+
+double slope_bound(Noise noise, const std::vector<NoiseOctave>& octaves) {
+  double bound = 0.0;
+  for (const NoiseOctave& o : octaves) {
+    bound += range_of(noise).slope *
+             std::fabs(static_cast<double>(o.amplitude) * static_cast<double>(o.frequency));
+  }
+  return bound;
+}
+
+void add_octave(Noise noise, const NoiseOctave& octave, int n, const float* x, const float* y, const float* z,
+                float* sum) {
+  switch (noise) {
+    case Noise::kSimplex:
+      return add_simplex(octave, n, x, y, z, sum);
+    case Noise::kPerlin:
+      return add_perlin(octave, n, x, y, z, sum);
+    case Noise::kWorleyF1:
+      return add_f1(octave, n, x, y, z, sum);
+    case Noise::kWorleyF2:
+      return add_f2(octave, n, x, y, z, sum);
+    case Noise::kWorleyF2MinusF1:
+      return add_f2_minus_f1(octave, n, x, y, z, sum);
+  }
+}
+
+void add_modulated_octave(Noise noise, const NoiseOctave& octave, float modulation, int n, const float* x,
+                          const float* y, const float* z, float* slope_x, float* slope_y, float* slope_z,
+                          float* sum) {
+  const auto add = noise == Noise::kPerlin ? add_modulated_perlin : add_modulated_simplex;
+  add(octave, modulation, n, x, y, z, slope_x, slope_y, slope_z, sum);
+}
+
+Interval bound_sum(Noise noise, const std::vector<NoiseOctave>& octaves, const Box& box, bool modulated) {
+  Interval sum;
+  for (const NoiseOctave& o : octaves) {
+    Interval noise_values = bound_noise(noise, o, box);
+    if (modulated) noise_values = {std::min(0.0, noise_values.low), std::max(0.0, noise_values.high)};
+    const double a = o.amplitude, slack = 1e-5 * std::fabs(a);
+    sum.low += std::min(a * noise_values.low, a * noise_values.high) - slack;
+    sum.high += std::max(a * noise_values.low, a * noise_values.high) + slack;
+  }
+  return sum;
+}
+
+}  // namespace astrolith
