@@ -198,6 +198,7 @@ Recipe read_document(const json& document, const Place& place) {
   read_version(document, place, recipe.format_version);
   ObjectReader object(document, place);
   object.find("format_version");
+  object.allow("description", recipe.description);
   object.require("length_unit", recipe.length_unit);
   object.allow("frame", recipe.frame);
   object.allow("seed", recipe.seed);

@@ -97,11 +97,12 @@ ordered_json to_json(const Provenance& provenance) {
 }
 
 ordered_json to_json(const Recipe& recipe) {
-  ordered_json document{{"format_version", recipe.format_version},
-                        {"length_unit", recipe.length_unit},
-                        {"frame", recipe.frame},
-                        {"seed", recipe.seed},
-                        {"provenance", to_json(recipe.provenance)}};
+  ordered_json document{{"format_version", recipe.format_version}};
+  if (!recipe.description.empty()) document["description"] = recipe.description;
+  document["length_unit"] = recipe.length_unit;
+  document["frame"] = recipe.frame;
+  document["seed"] = recipe.seed;
+  document["provenance"] = to_json(recipe.provenance);
   if (recipe.body) document["body"] = to_json(*recipe.body);
   document["layers"] = ordered_json::array();
   for (const Layer& layer : recipe.layers) {

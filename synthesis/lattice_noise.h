@@ -34,7 +34,8 @@ ASTROLITH_KERNEL std::uint32_t lattice_hash(std::uint32_t point) {
   return (point ^ (point >> 15)) * 0x846ca68bu;
 }
 ASTROLITH_KERNEL std::uint32_t short_lattice_hash(std::uint32_t point) {
-  return (point ^ (point >> 15)) * 0x7feb352du;
+  point ^= point >> 15;
+  return point * (point + 0x7feb352du);  // by itself: a constant factor would leave neighbours correlated
 }
 
 // a where the top bit of `sign` is set, else b.

@@ -8,6 +8,7 @@ namespace astrolith::testing {
 
 inline const std::string kCompleteRecipe = R"({
   "format_version": 1,
+  "description": "two spheres",
   "length_unit": "km",
   "frame": "body-fixed",
   "seed": 9007199254740991,
@@ -21,14 +22,17 @@ inline const std::string kCompleteRecipe = R"({
   "body": {
     "type": "metaballs", "kernel": "gaussian",
     "a": 1.5, "b": 1.25, "blend_exponent": 2, "iso_value": 1, "cutoff_radii": 5,
-    "spheres": [[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]]
+    "spheres": [[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]],
+    "warp": {"amplitude": 0.1, "frequency": 2, "octaves": 2, "gain": 0.4, "lacunarity": 2.5}
   },
   "layers": [
     {"type": "simplex", "name": "grit", "amplitude": 0.02, "frequency": 3, "octaves": 6, "gain": 0.5,
-     "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1},
+     "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1, "gradient_modulation": 0.25},
     {"type": "gabor", "name": "rock", "pixel_size": 0.001, "height_rms": 0.002, "impulses_per_kernel": 32,
      "exemplar_mean": 0.4, "exemplar_rms": 0.1,
-     "color": {"axis": [0.6, 0.8, 0], "mean": [0.5, 0.25, 0.1]}, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]}
+     "color": {"axis": [0.6, 0.8, 0], "mean": [0.5, 0.25, 0.1]}, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]},
+    {"type": "worley", "amplitude": 0.03, "distance": "f2-f1", "warp": {"amplitude": 0.5, "frequency": 4}},
+    {"type": "perlin", "amplitude": -0.03}
   ]
 }
 )";
@@ -51,7 +55,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
   return {
       // Names.
       {R"("spheres": [[0)", R"("sphers": [[0)", R"(body.sphers: unknown field; did you mean 'spheres'?)"},
-      {R"("amplitude")", R"("amplitdue")",
+      {R"("amplitude": 0.02)", R"("amplitdue": 0.02)",
        R"(layers[0].amplitdue: unknown field; did you mean 'amplitude'?)"},
       {R"("length_unit")", R"("lenght_unit")", R"(lenght_unit: unknown field; did you mean 'length_unit'?)"},
       {R"("seed")", R"("colour")", R"(colour: unknown field; known are)"},
@@ -95,7 +99,11 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("km")", R"("Km")", R"(length_unit: must be "m", "km" or "px", is "Km")"},
       {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
       {R"("gaussian")", R"("wyvill")", R"(body.kernel: must be "gaussian")"},
-      {R"("simplex")", R"("perlin")", R"(layers[0].type: must be "simplex" or "gabor", is "perlin")"},
+      {R"("simplex")", R"("value")",
+       R"(layers[0].type: must be one of "simplex", "perlin", "worley" and "gabor", is "value")"},
+      {R"("simplex")", R"("worley")", R"(layers[0].gradient_modulation: unknown field)"},
+      {R"("f2-f1")", R"("f3")", R"(layers[2].distance: must be "f1", "f2" or "f2-f1", is "f3")"},
+      {R"("perlin", "amplitude")", R"("perlin", "distance")", R"(layers[3].distance: unknown field)"},
       {R"("rock.obj")", R"("shapes/rock.obj")",
        R"(provenance.input_name: must be a file name without folders)"},
       {R"(ba7816bf)", R"(xa7816bf)", R"(provenance.input_sha256: must be 64 hexadecimal digits)"},
@@ -120,6 +128,11 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("octaves": 6)", R"("octaves": 25)", R"(layers[0].octaves: must be an integer from 1 to 24, is 25)"},
       {R"("octaves": 6)", R"("octaves": 3000000000)", R"(layers[0].octaves: must be an integer)"},
       {R"("gain": 0.5)", R"("gain": -0.5)", R"(layers[0].gain: must be from 0 to 4, is -0.5)"},
+      {R"(0.25})", R"(-0.25})", R"(layers[0].gradient_modulation: must be from 0 to 1e+12, is -0.25)"},
+      {R"("amplitude": 0.1, )", R"()", R"(body.warp.amplitude: is missing)"},
+      {R"("lacunarity": 2.5)", R"("lacunarity": 0.5)", R"(body.warp.lacunarity: must be above 1)"},
+      {R"("frequency": 4)", R"("frequency": -4)", R"(layers[2].warp.frequency: must be above 0)"},
+      {R"("frequency": 4)", R"("frequenzy": 4)", R"(layers[2].warp.frequenzy: unknown field)"},
       {R"(1.95)", R"(1)", R"(layers[0].lacunarity: must be above 1 and at most 16, is 1)"},
       {R"("pixel_size": 0.001)", R"("pixel_size": 0)",
        R"(layers[1].pixel_size: must be above 0 (from 1e-12)"},

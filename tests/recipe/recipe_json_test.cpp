@@ -53,6 +53,13 @@ TEST(RecipeJson, ReadsEveryField) {
   EXPECT_EQ(simplex.octaves, 6);
   EXPECT_EQ(simplex.scale, (Vec3d{1, 1, 2}));
   EXPECT_EQ(simplex.bias, (Vec3d{0.5, 0, 0}));
+  EXPECT_EQ(simplex.gradient_modulation, 0.25);
+  EXPECT_EQ(r.description, "two spheres");
+  EXPECT_EQ(r.body->warp.value().lacunarity, 2.5);
+  const auto& worley = std::get<FractalLayer>(r.layers.at(2));
+  EXPECT_EQ(worley.noise, Noise::kWorleyF2MinusF1);
+  EXPECT_EQ(worley.warp.value().frequency, 4.0);
+  EXPECT_EQ(std::get<FractalLayer>(r.layers.at(3)).noise, Noise::kPerlin);
   const auto& gabor = std::get<GaborLayer>(r.layers.at(1));
   EXPECT_EQ(gabor.pixel_size, 0.001);
   ASSERT_TRUE(gabor.color.has_value());

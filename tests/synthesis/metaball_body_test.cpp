@@ -127,5 +127,36 @@ TEST(MetaballBody, IntervalsHoldEveryValue) {
   }
 }
 
+// |grad L| from the double evaluation: at points of a box near the surface it keeps within the bounds.
+TEST(MetaballBody, BoundsOfTheGradientHoldNearTheSurface) {
+  CounterRandom random(12);
+  int tighter = 0, steep = 0;
+  for (int k = 0; k < 400; ++k) {
+    const PreparedMetaballs body =
+        prepare_metaballs(*testing::potato_recipe(1 + k % 60, random.next(), random.uniform(0.7, 9.0)).body);
+    const double size = std::pow(10.0, random.uniform(-2.5, -0.7)), height = 0.3 * size;
+    const Vec3d corner{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
+    const Box box{corner, corner + Vec3d{size, size, size}};
+    const MetaballInterval bound = bound_metaballs(body, box, height);
+    tighter += bound.gradient_max < 0.99 * bound_metaballs(body, box).gradient_max;
+    const double least = smallest_gradient(body, box);
+    steep += least > 0.3 * bound.gradient_max;
+    for (int i = 0; i < 60; ++i) {
+      const auto at = [&](double low) { return static_cast<float>(low + size * random.uniform()); };
+      const float x = at(corner.x), y = at(corner.y), z = at(corner.z);
+      float s = 0, gx = 0, gy = 0, gz = 0;
+      evaluate_metaballs(body, 1, &x, &y, &z, &s, &gx, &gy, &gz);
+      const double divisor =
+          std::sqrt(squared_norm(Vec3d{gx, gy, gz}) + static_cast<double>(body.parameters.gradient_floor));
+      ASSERT_GE(divisor, least);
+      if (std::fabs(static_cast<double>(s)) <= height) {
+        ASSERT_LE(divisor, bound.gradient_max);
+      }
+    }
+  }
+  EXPECT_GT(tighter, 20);
+  EXPECT_GT(steep, 20);
+}
+
 }  // namespace
 }  // namespace astrolith

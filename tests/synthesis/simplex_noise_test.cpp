@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "tests/synthesis/noise_sampling.h"
 
 namespace astrolith {
 namespace {
@@ -47,6 +48,18 @@ TEST(SimplexNoise, IsContinuousWithItsSlope) {
     ASSERT_LT(std::fabs(c - a), 2 * h * 8.0f);
     ASSERT_LT(std::fabs(c - 2 * b + a), 5e-5f);  // h^2 times the largest curvature, about 40
   }
+}
+
+TEST(SimplexNoise, GradientIsThatOfItsValues) {
+  CounterRandom random(4);
+  for (int i = 0; i < 10000; ++i) {
+    const float x = random_coordinate(random, 50), y = random_coordinate(random, 50),
+                z = random_coordinate(random, 50);
+    const NoiseSample s = simplex_with_gradient(x, y, z, 9u);
+    ASSERT_NEAR(s.value, simplex_noise(x, y, z, 9u), 1e-6);
+    ASSERT_LT(norm(s.gradient), 7.0f);
+  }
+  EXPECT_LT(testing::gradient_error(simplex_with_gradient, 20000), 1e-2);
 }
 
 TEST(SimplexNoise, SeedsAreIndependent) {
