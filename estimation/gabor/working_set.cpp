@@ -18,11 +18,13 @@ namespace {
 class RestrictedProblem {
  public:
   RestrictedProblem(const BasisPursuitProblem& problem, std::span<const double> target_correlations)
-      : problem_(problem), target_correlations_(target_correlations) {
+      : problem_(problem),
+        target_correlations_(target_correlations),
+        contained_(problem.dictionary.size(), false) {
     for (const double w : problem.dictionary.weight()) metric_.push_back(w * w);
   }
 
-  bool contains(std::size_t j) const { return std::find(atoms_.begin(), atoms_.end(), j) != atoms_.end(); }
+  bool contains(std::size_t j) const { return contained_[j]; }
   const std::vector<std::size_t>& atoms() const { return atoms_; }
   const Eigen::VectorXd& x() const { return x_; }
 
@@ -30,6 +32,7 @@ class RestrictedProblem {
     const auto old = static_cast<Eigen::Index>(atoms_.size());
     for (const std::size_t j : atoms) {
       atoms_.push_back(j);
+      contained_[j] = true;
       profiles_.push_back(profile(j));
     }
     const auto n = static_cast<Eigen::Index>(atoms_.size());
@@ -58,7 +61,9 @@ class RestrictedProblem {
   void drop_zeros() {
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      if (x_(i) > 0.0) kept.push_back(i);
+      const bool keep = x_(i) > 0.0;
+      if (keep) kept.push_back(i);
+      contained_[atoms_[static_cast<std::size_t>(i)]] = keep;
     }
     for (std::size_t k = 0; k < kept.size(); ++k) {
       const auto i = static_cast<std::size_t>(kept[k]);
@@ -83,6 +88,7 @@ class RestrictedProblem {
   const BasisPursuitProblem& problem_;
   std::span<const double> target_correlations_;
   std::vector<double> metric_;
+  std::vector<bool> contained_;
   std::vector<std::size_t> atoms_;
   std::vector<LobeProfile> profiles_;
   Eigen::MatrixXd gram_;
