@@ -50,12 +50,15 @@ class RestrictedProblem {
     });
   }
 
-  void solve() {
+  // Returns whether the minimum was reached within a few factorisations: while the working set still grows,
+  // more of them are better spent after its next atoms are known.
+  bool solve() {
+    constexpr int kSolves = 12;
     Eigen::VectorXd q(x_.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       q(i) = target_correlations_[atoms_[static_cast<std::size_t>(i)]] - problem_.penalty;
     }
-    if (q.size() > 0) minimize_nonnegative_quadratic(gram_, q, x_);
+    return q.size() == 0 || minimize_nonnegative_quadratic(gram_, q, x_, kSolves);
   }
 
   void drop_zeros() {
@@ -152,7 +155,7 @@ BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const B
   double best_primal = 0.0;
   for (int k = 0;; ++k) {
     restricted.add(entering, start);
-    restricted.solve();
+    const bool solved = restricted.solve();
     restricted.drop_zeros();
     std::vector<double> x(dictionary.size(), 0.0);
     double sum = 0.0;
@@ -179,9 +182,9 @@ BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const B
     const bool go_on = report(
         progress, std::min(0.99, -std::log10(std::max(gap, 1e-12)) / -std::log10(options.relative_gap)),
         fmt::format("gap {:.2e}, {} lobes", gap, restricted.atoms().size()));
-    if (result.reached || !go_on || !progressed || k >= options.max_iterations) break;
+    if (result.reached || !go_on || (solved && !progressed) || k >= options.max_iterations) break;
     entering = worst_violators(problem, correlations, restricted);
-    if (entering.empty()) break;
+    if (entering.empty() && solved) break;
   }
   return result;
 }

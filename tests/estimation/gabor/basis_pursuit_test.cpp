@@ -132,6 +132,45 @@ TEST_P(BasisPursuitTest, AdversarialTargetsKeepTheGapNonNegative) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, BasisPursuitTest, ::testing::Values(&fista, &working_set));
 
+// The optimality conditions, checked in the test's own arithmetic: a_j'r <= penalty everywhere, with equality
+// where x_j > 0. And one optimum: both solvers end at the same value and nearly the same spectrum.
+TEST(BasisPursuit, BothSolversMeetTheOptimalityConditionsAndEachOther) {
+  const GaborDictionary dictionary(32, 24, 2, 5, std::vector<double>(32 * 24, 1.0));
+  BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 12), 0.0};
+  const double largest = largest_penalty(dictionary, problem.target);
+  for (const double share : {0.3, 0.03}) {
+    problem.penalty = share * largest;
+    BasisPursuitOptions options;
+    options.relative_gap = 1e-9;
+    options.max_iterations = 100000;
+    const BasisPursuitResult exact = solve_working_set(problem, options),
+                             slow = solve_fista(problem, options);
+    EXPECT_TRUE(exact.reached && slow.reached);
+    EXPECT_NEAR(exact.primal / slow.primal, 1.0, 2e-9);
+    std::vector<double> a(dictionary.rows()), b(dictionary.rows()), correlations(dictionary.size());
+    dictionary.synthesize(exact.x, a);
+    dictionary.synthesize(slow.x, b);
+    double difference = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      difference += (a[i] - b[i]) * (a[i] - b[i]);
+      size += a[i] * a[i];
+    }
+    // Strong convexity in A x: |A x - A x*|^2 / 2 is at most the absolute gap.
+    EXPECT_LE(difference, 4 * 4e-9 * slow.primal);
+    EXPECT_GT(size, 0.0);
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] = problem.target[i] - a[i];
+    dictionary.analyze(a, correlations);
+    // For the same reason the residual, and so every correlation, is this far from the optimum's at most.
+    const double slack = std::sqrt(2.0 * options.relative_gap * exact.primal);
+    for (std::size_t j = 0; j < correlations.size(); ++j) {
+      EXPECT_LE(correlations[j], problem.penalty + slack);
+      if (exact.x[j] > 0.01 * largest) {
+        EXPECT_NEAR(correlations[j], problem.penalty, slack);
+      }
+    }
+  }
+}
+
 // With the residual pointing away from the target the scaled dual's factor would be negative; an unclipped
 // certificate then claims a bound above the minimum.
 TEST(DualityCertificate, ResidualsAgainstTheTargetGiveNoFalseBound) {
