@@ -133,11 +133,9 @@ Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& pho
 }
 
 nlohmann::ordered_json details(const Gaussianity& g) {
-  return {{"plausible", g.plausible},
-          {"skewness", g.skewness},
-          {"excess_kurtosis", g.excess_kurtosis},
-          {"variance_spread", g.variance_spread},
-          {"sentence", g.sentence}};
+  return {{"plausible", g.plausible()},           {"skewness", g.skewness},
+          {"excess_kurtosis", g.excess_kurtosis}, {"edge_kurtosis", g.edge_kurtosis},
+          {"variance_spread", g.variance_spread}, {"sentence", g.sentence}};
 }
 
 void summarize(const PhotoFit& photo, Program& program) {

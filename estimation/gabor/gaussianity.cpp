@@ -20,12 +20,28 @@ constexpr int kSurrogates = 99;
 constexpr int kLargestSide = 512;
 constexpr int kBlocks = 8;
 
+constexpr std::array<int, 3> kLags{1, 4, 16};
+
+// Skewness, kurtosis and the logarithm of the blocks' spread, then the kurtosis of differences by lag and
+// axis.
 struct Measures {
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
   double variance_spread = 0.0;  // coefficient of variation among blocks
-  std::array<double, 3> values() const {
-    return {skewness, excess_kurtosis, std::log(variance_spread + 1e-12)};
+  std::array<double, 2 * kLags.size()> steps{};
+
+  static constexpr std::size_t kCount = 3 + 2 * kLags.size();
+  double at(std::size_t k) const {
+    switch (k) {
+      case 0:
+        return skewness;
+      case 1:
+        return excess_kurtosis;
+      case 2:
+        return std::log(variance_spread + 1e-12);
+      default:
+        return steps[k - 3];
+    }
   }
 };
 
@@ -54,19 +70,47 @@ double block_variance(const GreyImage& image, int bx, int by) {
   return std::max(0.0, square / n - sum / n * (sum / n));
 }
 
-Measures measure(const GreyImage& image) {
-  const auto n = static_cast<double>(image.values.size());
+// Skewness and excess kurtosis.
+std::array<double, 2> shape_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
   double mean = 0.0;
-  for (const double v : image.values) mean += v / n;
+  for (const double v : values) mean += v / n;
   double moments[3] = {};
-  for (const double v : image.values) {
+  for (const double v : values) {
     const double d = v - mean;
     moments[0] += d * d / n;
     moments[1] += d * d * d / n;
     moments[2] += d * d * d * d / n;
   }
-  double sum = 0.0;
-  double square = 0.0;
+  if (moments[0] <= 0.0) return {};
+  return {moments[1] / std::pow(moments[0], 1.5), moments[2] / (moments[0] * moments[0]) - 3.0};
+}
+
+// The image is periodic, and so are its differences, whose mean is therefore 0.
+double step_kurtosis(const GreyImage& image, int dx, int dy) {
+  double second = 0.0, fourth = 0.0;
+  const auto add = [&](const double* from, const double* to, int n) {
+    double row_second = 0.0, row_fourth = 0.0;
+    for (int x = 0; x < n; ++x) {
+      const double square = (to[x] - from[x]) * (to[x] - from[x]);
+      row_second += square;
+      row_fourth += square * square;
+    }
+    second += row_second;
+    fourth += row_fourth;
+  };
+  const auto width = static_cast<std::size_t>(image.width);
+  for (int y = 0; y < image.height; ++y) {
+    const double* row = &image.values[static_cast<std::size_t>(y) * width];
+    const double* other = &image.values[static_cast<std::size_t>((y + dy) % image.height) * width];
+    add(row, other + dx, image.width - dx);
+    add(row + image.width - dx, other, dx);
+  }
+  return second > 0.0 ? fourth / (second * second) * static_cast<double>(image.values.size()) - 3.0 : 0.0;
+}
+
+double spread_among_blocks(const GreyImage& image) {
+  double sum = 0.0, square = 0.0;
   for (int by = 0; by < kBlocks; ++by) {
     for (int bx = 0; bx < kBlocks; ++bx) {
       const double variance = block_variance(image, bx, by);
@@ -74,9 +118,20 @@ Measures measure(const GreyImage& image) {
       square += variance * variance / (kBlocks * kBlocks);
     }
   }
-  if (moments[0] <= 0.0 || sum <= 0.0) return {};
-  return {moments[1] / std::pow(moments[0], 1.5), moments[2] / (moments[0] * moments[0]) - 3.0,
-          std::sqrt(std::max(0.0, square - sum * sum)) / sum};
+  return sum > 0.0 ? std::sqrt(std::max(0.0, square - sum * sum)) / sum : 0.0;
+}
+
+Measures measure(const GreyImage& image) {
+  Measures m;
+  const std::array<double, 2> shape = shape_of(image.values);
+  m.skewness = shape[0];
+  m.excess_kurtosis = shape[1];
+  m.variance_spread = spread_among_blocks(image);
+  for (std::size_t k = 0; k < kLags.size(); ++k) {
+    m.steps[2 * k] = step_kurtosis(image, kLags[k], 0);
+    m.steps[2 * k + 1] = step_kurtosis(image, 0, kLags[k]);
+  }
+  return m;
 }
 
 // White noise has independent uniform phases that are already conjugate-symmetric: the surrogate takes them.
@@ -101,36 +156,67 @@ GreyImage random_phase_surrogate(const FourierTransform& fourier,
 std::vector<double> unusualness(const std::vector<Measures>& samples) {
   std::vector<double> largest(samples.size(), 0.0);
   const auto n = static_cast<double>(samples.size());
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < Measures::kCount; ++k) {
     double mean = 0.0;
     double square = 0.0;
-    for (const Measures& m : samples) mean += m.values()[k] / n;
-    for (const Measures& m : samples) square += (m.values()[k] - mean) * (m.values()[k] - mean) / n;
+    for (const Measures& m : samples) mean += m.at(k) / n;
+    for (const Measures& m : samples) square += (m.at(k) - mean) * (m.at(k) - mean) / n;
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      const double deviation = std::abs(samples[i].values()[k] - mean);
+      const double deviation = std::abs(samples[i].at(k) - mean);
       largest[i] = std::max(largest[i], square > 0.0 ? deviation / std::sqrt(square) : 0.0);
     }
   }
   return largest;
 }
 
-std::string sentence_for(const Gaussianity& g) {
-  if (g.plausible) {
-    return g.p_value > 0.05
-               ? "The photo is a Gaussian texture as far as can be told: the noise will look like it."
-               : "The photo is close to a Gaussian texture: the noise will look much like it.";
-  }
+// The first size of each pair ends kClose, the second kRoughly.
+struct Limits {
+  double skewness, excess_kurtosis, edges, spread;
+};
+constexpr Limits kClose{0.5, 1.0, 1.5, 2.0}, kRoughly{1.0, 2.0, 3.0, 4.0};
+
+bool within(const Gaussianity& g, const Limits& limits) {
+  return std::abs(g.skewness) <= limits.skewness && std::abs(g.excess_kurtosis) <= limits.excess_kurtosis &&
+         g.edge_kurtosis <= limits.edges && g.variance_spread <= limits.spread;
+}
+
+Likeness likeness_of(const Gaussianity& g) {
+  if (!within(g, kRoughly)) return Likeness::kOutside;
+  if (g.p_value > 0.05) return Likeness::kGaussian;
+  return within(g, kClose) ? Likeness::kClose : Likeness::kRoughly;
+}
+
+// What of the photo is not Gaussian, largest offence or not.
+std::string reasons(const Gaussianity& g, const Limits& limits) {
   std::string why;
-  if (std::abs(g.skewness) > 0.5)
-    why += fmt::format(" its values are lopsided (skewness {:.2f});", g.skewness);
-  if (std::abs(g.excess_kurtosis) > 1.0) {
-    why += fmt::format(" extreme values are {} (excess kurtosis {:.2f});",
+  if (std::abs(g.skewness) > limits.skewness)
+    why += fmt::format(" its values are lopsided (skewness {:.2f}),", g.skewness);
+  if (std::abs(g.excess_kurtosis) > limits.excess_kurtosis) {
+    why += fmt::format(" extreme values are {} (excess kurtosis {:.2f}),",
                        g.excess_kurtosis > 0.0 ? "common" : "rare", g.excess_kurtosis);
   }
-  if (g.variance_spread > 2.0) why += fmt::format(" detail sits in places ({:.1f} x);", g.variance_spread);
-  if (why.empty()) why = " its values spread beyond what can be tested;";
-  why.back() = '.';
-  return "The photo is no Gaussian texture:" + why + " The noise keeps its spectrum, and not its shapes.";
+  if (g.edge_kurtosis > limits.edges)
+    why += fmt::format(" it has edges (excess kurtosis of differences {:.1f}),", g.edge_kurtosis);
+  if (g.variance_spread > limits.spread)
+    why += fmt::format(" detail sits in places ({:.1f} times the spread of noise),", g.variance_spread);
+  if (!why.empty()) why.pop_back();
+  return why;
+}
+
+std::string sentence_for(const Gaussianity& g) {
+  switch (g.likeness) {
+    case Likeness::kGaussian:
+      return "The photo is a Gaussian texture as far as can be told: the noise will look like it.";
+    case Likeness::kClose:
+      return "The photo is close to a Gaussian texture: the noise will look much like it.";
+    case Likeness::kRoughly:
+      return "The photo is roughly a Gaussian texture:" + reasons(g, kClose) +
+             ". The noise keeps its spectrum and will look softer and more even.";
+    case Likeness::kOutside:
+      break;
+  }
+  return "The photo is no Gaussian texture:" + reasons(g, kRoughly) +
+         ". The noise keeps its spectrum, and not its shapes.";
 }
 
 }  // namespace
@@ -150,6 +236,8 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
   Gaussianity result;
   result.skewness = samples[0].skewness;
   result.excess_kurtosis = samples[0].excess_kurtosis;
+  for (const double k : samples[0].steps)
+    result.edge_kurtosis += k / static_cast<double>(samples[0].steps.size());
   double usual_spread = 0.0;
   for (int i = 1; i <= kSurrogates; ++i) usual_spread += samples[static_cast<std::size_t>(i)].variance_spread;
   usual_spread /= kSurrogates;
@@ -158,8 +246,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
   const auto as_unusual =
       std::count_if(unusual.begin(), unusual.end(), [&](double u) { return u >= unusual[0]; });
   result.p_value = static_cast<double>(as_unusual) / (kSurrogates + 1);
-  result.plausible = std::abs(result.skewness) <= 0.5 && std::abs(result.excess_kurtosis) <= 1.0 &&
-                     result.variance_spread <= 2.0;
+  result.likeness = likeness_of(result);
   result.sentence = sentence_for(result);
   return result;
 }

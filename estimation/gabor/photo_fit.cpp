@@ -81,7 +81,8 @@ double PhotoFit::variance_ratio() const {
 
 Gaussianity PhotoFit::gaussianity() const {
   const auto less_plausible = [](const FittedChannel& a, const FittedChannel& b) {
-    if (a.gaussianity.plausible != b.gaussianity.plausible) return !a.gaussianity.plausible;
+    if (a.gaussianity.likeness != b.gaussianity.likeness)
+      return a.gaussianity.likeness > b.gaussianity.likeness;
     return a.gaussianity.p_value < b.gaussianity.p_value;
   };
   Gaussianity worst = std::min_element(channels.begin(), channels.end(), less_plausible)->gaussianity;

@@ -2,7 +2,10 @@
 
 #include <cmath>
 
+#include "estimation/gabor/image_reader.h"
+
 #include "tests/estimation/gabor/known_spectrum.h"
+#include "tests/support/data.h"
 
 namespace astrolith {
 namespace {
@@ -12,7 +15,7 @@ TEST(Gaussianity, OfAGaussianTextureIsPlausible) {
   int rejected = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const Gaussianity g = test_gaussianity(testing::realisation_of(spectrum, seed), 1);
-    EXPECT_TRUE(g.plausible);
+    EXPECT_TRUE(g.plausible());
     rejected += g.p_value <= 0.05;
   }
   EXPECT_LE(rejected, 2);  // expected 0.3 of 6
@@ -24,7 +27,7 @@ TEST(Gaussianity, SeesALopsidedMarginal) {
   const Gaussianity g = test_gaussianity(image, 1);
   EXPECT_GT(g.skewness, 1.0);
   EXPECT_LE(g.p_value, 0.01);
-  EXPECT_FALSE(g.plausible);
+  EXPECT_FALSE(g.plausible());
   EXPECT_NE(g.sentence.find("lopsided"), std::string::npos);
 }
 
@@ -38,7 +41,35 @@ TEST(Gaussianity, SeesDetailThatSitsInPlaces) {
   }
   const Gaussianity g = test_gaussianity(image, 1);
   EXPECT_GT(g.variance_spread, 2.0);
-  EXPECT_FALSE(g.plausible);
+  EXPECT_LE(g.p_value, 0.01);
+  EXPECT_NE(g.likeness, Likeness::kGaussian);
+  EXPECT_NE(g.likeness, Likeness::kClose);
+}
+
+// Sharp-edged cells with the marginal of a Gaussian: only the phases tell.
+TEST(Gaussianity, SeesEdgesUnderAGaussianMarginal) {
+  GreyImage image{128, 128, {}};
+  CounterRandom random(4);
+  std::vector<double> cells(8 * 8);
+  for (double& c : cells) c = random.normal();
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x)
+      image.values.push_back(cells[static_cast<std::size_t>(y / 16 * 8 + x / 16)]);
+  }
+  const Gaussianity g = test_gaussianity(image, 1);
+  EXPECT_GT(g.edge_kurtosis, 3.0);
+  EXPECT_EQ(g.likeness, Likeness::kOutside);
+  EXPECT_NE(g.sentence.find("edges"), std::string::npos) << g.sentence;
+}
+
+TEST(Gaussianity, FlagsBricksAndPaving) {
+  for (const char* name : {"STRUCT_brick_skimage_512.png", "STRUCT_paving_height_ambientcg_2048.png"}) {
+    const auto file = testing::shared_texture(name);
+    ASTROLITH_SKIP_WITHOUT(file);
+    const Gaussianity g = test_gaussianity(read_grey_image(file).image, 1);
+    EXPECT_EQ(g.likeness, Likeness::kOutside) << name << ": " << g.sentence;
+    EXPECT_EQ(g.p_value, 0.01);
+  }
 }
 
 }  // namespace
