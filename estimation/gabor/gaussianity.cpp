@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <vector>
 
 #include "estimation/gabor/fourier_transform.h"
@@ -134,20 +135,33 @@ Measures measure(const GreyImage& image) {
   return m;
 }
 
-// White noise has independent uniform phases that are already conjugate-symmetric: the surrogate takes them.
+// The same moduli with independent uniform phases, as far as the transform of a real image allows: in the
+// columns that hold both a frequency and its opposite, one is the other's conjugate, and a frequency that is
+// its own opposite stays real.
 GreyImage random_phase_surrogate(const FourierTransform& fourier,
                                  const std::vector<std::complex<double>>& spectrum, std::uint64_t seed,
                                  std::uint64_t index) {
   CounterRandom random(seed, index);
   GreyImage noise{fourier.width(), fourier.height(), std::vector<double>(fourier.grid_size())};
-  for (double& v : noise.values) v = random.normal();
   std::vector<std::complex<double>> half(fourier.half_size());
-  fourier.forward(noise.values, half);
-  half[0] = 0.0;
-  for (std::size_t i = 1; i < half.size(); ++i) {
-    const double modulus = std::abs(half[i]);
-    half[i] = modulus > 0.0 ? half[i] * (std::abs(spectrum[i]) / modulus) : 0.0;
+  const auto columns = static_cast<std::size_t>(fourier.half_width());
+  const auto rows = static_cast<std::size_t>(fourier.height());
+  for (std::size_t y = 0; y < rows; ++y) {
+    const std::size_t opposite = (rows - y) % rows;
+    for (std::size_t x = 0; x < columns; ++x) {
+      const std::size_t i = y * columns + x;
+      const bool self_opposite = x == 0 || 2 * x == static_cast<std::size_t>(fourier.width());
+      const double turn = random.uniform();
+      if (self_opposite && opposite < y) {
+        half[i] = std::conj(half[opposite * columns + x]);
+      } else if (self_opposite && opposite == y) {
+        half[i] = std::abs(spectrum[i]) * (turn < 0.5 ? -1.0 : 1.0);
+      } else {
+        half[i] = std::polar(std::abs(spectrum[i]), 2.0 * std::numbers::pi * turn);
+      }
+    }
   }
+  half[0] = 0.0;
   fourier.inverse(half, noise.values);
   return noise;
 }
