@@ -9,6 +9,7 @@
 #include "descriptor/pair_count_internal.h"
 #include "descriptor/shape_histogram.h"
 #include "descriptor/surflet_pair.h"
+#include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 
@@ -17,6 +18,8 @@ namespace {
 
 // Rows a task; times the largest number of points it stays below 2^32, the range of a counter.
 constexpr std::int64_t kRowsPerTask = 64;
+// A report follows so many tasks: at a million points, some hundred reports.
+constexpr std::int64_t kTasksPerReport = 128;
 // One AVX-512 vector of codes.
 constexpr std::int64_t kLanes = 16;
 // Codes wait so many vectors before they are counted: the machine then computes and counts at the same time,
@@ -187,15 +190,21 @@ void count_task(const SurfletArrays& s, const Task& task, std::vector<std::uint6
 }
 
 template <int kBins>
-std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local) {
+std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local, const Progress& progress) {
   const std::vector<Task> tasks = tasks_of(s);
+  const auto num_tasks = static_cast<std::int64_t>(tasks.size());
   const auto size = static_cast<std::size_t>(num_local * kCodes<kBins> / 2);
   // Sums of integers are the same in any order, so each thread may keep its own.
   tbb::combinable<std::vector<std::uint64_t>> totals([&] { return std::vector<std::uint64_t>(size, 0); });
-  parallel_for(0, static_cast<std::int64_t>(tasks.size()), [&](std::int64_t t) {
-    // The longest first, so that no thread is left with one at the end.
-    count_task<kBins>(s, tasks[tasks.size() - 1 - static_cast<std::size_t>(t)], totals.local());
-  });
+  // The longest rows first, so that no thread is left with one at the end.
+  for (std::int64_t end = num_tasks; end > 0; end -= kTasksPerReport) {
+    const std::int64_t count = std::min(end, kTasksPerReport);
+    parallel_for(0, count, [&](std::int64_t t) {
+      count_task<kBins>(s, tasks[static_cast<std::size_t>(end - 1 - t)], totals.local());
+    });
+    const double left = static_cast<double>(end - count) / static_cast<double>(num_tasks);
+    if (!report(progress, 1 - left * left, "")) throw WorkError("stopped; nothing was written");
+  }
   std::vector<std::uint64_t> sum(size, 0);
   totals.combine_each([&](const std::vector<std::uint64_t>& one) {
     for (std::size_t b = 0; b < size; ++b) sum[b] += one[b];
@@ -206,28 +215,29 @@ std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local) {
 }  // namespace
 
 std::vector<std::uint64_t> count_pairs(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                       std::span<const std::int32_t> local, int num_local, int bins) {
+                                       std::span<const std::int32_t> local, int num_local, int bins,
+                                       const Progress& progress) {
   const SurfletArrays s(points, normals, local, num_local);
   static_assert(kMinBins == 2 && kMaxBins == 10);
   switch (bins) {
     case 2:
-      return count_with<2>(s, num_local);
+      return count_with<2>(s, num_local, progress);
     case 3:
-      return count_with<3>(s, num_local);
+      return count_with<3>(s, num_local, progress);
     case 4:
-      return count_with<4>(s, num_local);
+      return count_with<4>(s, num_local, progress);
     case 6:
-      return count_with<6>(s, num_local);
+      return count_with<6>(s, num_local, progress);
     case 7:
-      return count_with<7>(s, num_local);
+      return count_with<7>(s, num_local, progress);
     case 8:
-      return count_with<8>(s, num_local);
+      return count_with<8>(s, num_local, progress);
     case 9:
-      return count_with<9>(s, num_local);
+      return count_with<9>(s, num_local, progress);
     case 10:
-      return count_with<10>(s, num_local);
+      return count_with<10>(s, num_local, progress);
     default:
-      return count_with<5>(s, num_local);
+      return count_with<5>(s, num_local, progress);
   }
 }
 

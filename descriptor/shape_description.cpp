@@ -16,8 +16,9 @@ namespace astrolith {
 namespace {
 
 // Of the root mean square distance from the centre: craters and boulders of this size shape kappa, smaller
-// ones are averaged.
-constexpr double kCurvatureRadius = 0.1;
+// ones are averaged. A smaller radius tells bodies better apart and a body from its own coarser mesh too; this
+// one is two edges of a mesh of 3,000 triangles, so that most meshes of a body give nearly the same kappa.
+constexpr double kCurvatureRadius = 0.2;
 
 void check(const DescriptionOptions& options) {
   if (options.points < 2 || options.points > (std::int64_t{1} << 24)) {
@@ -27,8 +28,8 @@ void check(const DescriptionOptions& options) {
 }
 
 void add_curvature(const SurfaceSamples& s, const SampleCurvature& curvature, int bins,
-                   ShapeDescription& result) {
-  result.histogram = ahd_histogram(s.points, s.normals, curvature.gaussian, bins);
+                   const Progress& progress, ShapeDescription& result) {
+  result.histogram = ahd_histogram(s.points, s.normals, curvature.gaussian, bins, progress);
   result.vertices_left_out = curvature.vertices_left_out;
   result.undefined_curvatures = curvature.undefined;
   if (curvature.vertices_left_out > 0) {
@@ -101,31 +102,32 @@ SurfaceSamples select(std::span<const Vec3d> points, std::span<const Vec3d> norm
 
 }  // namespace
 
-ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptions& options) {
+ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptions& options,
+                                const Progress& progress) {
   check(options);
   ShapeDescription result;
   const SurfaceSamples s = sample_poisson_disk(mesh, options.points, options.seed);
   result.points = static_cast<std::int64_t>(s.points.size());
   if (options.features == PairFeatures::wahl) {
-    result.histogram = surflet_histogram(s.points, s.normals, options.bins);
+    result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress);
   } else {
     const double radius = kCurvatureRadius * std::sqrt(point_spread(s.points).mean_square);
-    add_curvature(s, sample_curvature(mesh, s, radius), options.bins, result);
+    add_curvature(s, sample_curvature(mesh, s, radius), options.bins, progress, result);
   }
   return result;
 }
 
 ShapeDescription describe_shape(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                const DescriptionOptions& options) {
+                                const DescriptionOptions& options, const Progress& progress) {
   check(options);
   check_points(points, normals);
   ShapeDescription result;
   const SurfaceSamples s = select(points, normals, options, result.remarks);
   result.points = static_cast<std::int64_t>(s.points.size());
   if (options.features == PairFeatures::wahl) {
-    result.histogram = surflet_histogram(s.points, s.normals, options.bins);
+    result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress);
   } else {
-    add_curvature(s, point_curvature(s.points, s.normals), options.bins, result);
+    add_curvature(s, point_curvature(s.points, s.normals), options.bins, progress, result);
   }
   return result;
 }

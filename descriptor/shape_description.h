@@ -12,6 +12,7 @@
 
 #include "descriptor/shape_histogram.h"
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -30,16 +31,18 @@ struct ShapeDescription {
   std::int64_t undefined_curvatures = 0;  // points whose kappa was taken as that of a plane
 };
 
-// Poisson-disk samples with their triangles' normals; kappa is the weighted mean within a tenth of the root
+// Poisson-disk samples with their triangles' normals; kappa is the weighted mean within a fifth of the root
 // mean square distance of the samples from their centre, so it does not depend on the triangles' size. Any
-// mesh with an area will do. Throws InputError for options out of range and for a mesh without area.
-ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptions& options);
+// mesh with an area will do. Throws InputError for options out of range and for a mesh without area,
+// WorkError when progress asks to stop.
+ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptions& options,
+                                const Progress& progress = {});
 
 // From (n) points and (n) normals of any positive length alone. Points that repeat another are left out; of
 // more points than asked for a random choice is taken, fewer are all taken; a remark says so. kappa by
 // quadric fits (geometry/sample_curvature.h). Throws InputError for fewer than two points, different sizes,
 // and numbers that are not finite.
 ShapeDescription describe_shape(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                const DescriptionOptions& options);
+                                const DescriptionOptions& options, const Progress& progress = {});
 
 }  // namespace astrolith

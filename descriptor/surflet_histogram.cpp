@@ -66,12 +66,13 @@ std::vector<std::uint64_t> local_last(const std::vector<std::uint64_t>& counts, 
 }
 
 ShapeHistogram histogram_of(std::span<const Vec3d> points, std::span<const Vec3d> unit_normals,
-                            std::span<const std::int32_t> local, int num_local, int bins) {
+                            std::span<const std::int32_t> local, int num_local, int bins,
+                            const Progress& progress) {
   ShapeHistogram histogram;
   histogram.bins = bins;
   histogram.max_distance = largest_distance(points);
   const auto counts =
-      count_pairs(scaled(points, histogram.max_distance), unit_normals, local, num_local, bins);
+      count_pairs(scaled(points, histogram.max_distance), unit_normals, local, num_local, bins, progress);
   histogram.counts = local_last(counts, static_cast<std::size_t>(num_local));
   const std::uint64_t n = points.size();
   histogram.pairs = n > 1 ? n * (n - 1) / 2 : 0;
@@ -86,14 +87,15 @@ std::vector<double> ShapeHistogram::frequencies() const {
   return f;
 }
 
-ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals, int bins) {
+ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals, int bins,
+                                 const Progress& progress) {
   check(points, normals, bins);
   const std::vector<std::int32_t> all_alike(points.size(), 0);
-  return histogram_of(points, unit_vectors(normals), all_alike, 1, bins);
+  return histogram_of(points, unit_vectors(normals), all_alike, 1, bins, progress);
 }
 
 ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                             std::span<const double> curvatures, int bins) {
+                             std::span<const double> curvatures, int bins, const Progress& progress) {
   check(points, normals, bins);
   if (curvatures.size() != points.size()) {
     refuse(std::to_string(points.size()) + " points have " + std::to_string(curvatures.size()) +
@@ -106,7 +108,7 @@ ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3
   }
   const std::vector<Vec3d> unit = unit_vectors(normals);
   const std::vector<std::int32_t> local = local_codes(points, unit, curvatures, bins);
-  ShapeHistogram histogram = histogram_of(points, unit, local, bins * bins, bins);
+  ShapeHistogram histogram = histogram_of(points, unit, local, bins * bins, bins, progress);
   histogram.features = PairFeatures::ahd;
   return histogram;
 }

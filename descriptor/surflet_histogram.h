@@ -5,6 +5,7 @@
 #include <span>
 
 #include "descriptor/shape_histogram.h"
+#include "numerics/progress.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
@@ -13,12 +14,14 @@ namespace astrolith {
 // O(n^2), integers only, so the order of points and the thread count change nothing. delta is a fraction of
 // the exact largest distance between two of the points. Positions are rounded to float32 around the middle of
 // their box, so a pair in some hundred thousand may lie in the bin beside its own. Throws InputError when
-// sizes differ, a number is not finite, there are more than 2^24 points or bins is outside 2 to 10.
+// sizes differ, a number is not finite, there are more than 2^24 points or bins is outside 2 to 10,
+// WorkError when progress asks to stop.
 ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                 int bins = kDefaultBins);
+                                 int bins = kDefaultBins, const Progress& progress = {});
 
 // The six features of the adaptive hybrid descriptor; curvatures (n) are Gaussian, in 1 / length^2.
 ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                             std::span<const double> curvatures, int bins = kDefaultBins);
+                             std::span<const double> curvatures, int bins = kDefaultBins,
+                             const Progress& progress = {});
 
 }  // namespace astrolith

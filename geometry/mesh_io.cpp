@@ -39,7 +39,6 @@ std::string face_complaint(const TriangleMesh& mesh, std::size_t face) {
 }
 
 void require_valid(const MeshFile& file, const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) file.fail("", "holds no faces", "give a mesh of triangles or polygons");
   const std::size_t vertex = find_bad_vertex(mesh);
   if (vertex < mesh.vertices.size()) {
     file.fail("vertex " + std::to_string(vertex + 1), "a coordinate is not finite or beyond 1e18",
@@ -84,6 +83,18 @@ MeshWriter writer_for(const std::filesystem::path& file) {
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
   TriangleMesh mesh = reader_for(content)(content);
+  if (mesh.triangles.empty()) content.fail("", "holds no faces", "give a mesh of triangles or polygons");
+  require_valid(content, mesh);
+  return mesh;
+}
+
+TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
+  const MeshFile content = load_mesh_file(file);
+  TriangleMesh mesh = reader_for(content)(content);
+  if (mesh.triangles.empty() && mesh.normals.empty()) {
+    content.fail("", "holds neither faces nor points with unit normals",
+                 "give a mesh, or a .ply with x y z nx ny nz");
+  }
   require_valid(content, mesh);
   return mesh;
 }

@@ -23,6 +23,10 @@ namespace astrolith {
 // size, whatever the file declares.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
+// The same, but points with unit normals and no faces will do as well (.ply): the mesh then has vertices and
+// normals and no triangles.
+TriangleMesh read_mesh_or_points(const std::filesystem::path& file);
+
 // What a mesh file says about itself; empty texts are left out.
 struct MeshFileInfo {
   std::string length_unit;  // "m", "km", ...: what one unit of a coordinate is

@@ -32,9 +32,15 @@ TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
   const testing::WorkFolder folder;
   const std::string output = (folder / "out").string();
   testing::expect_refusal(folder, GetParam(), {}, "required");
-  testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--no-such-option"}, "--no-such-option");
-  testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--threads", "many"}, "--threads");
-  testing::expect_refusal(folder, GetParam(), {"in", "-o", output, "--seed", "-1"}, "--seed");
+  const auto refuse = [&](std::vector<std::string> more, const std::string& culprit) {
+    std::vector<std::string> arguments{"in", "-o", output};
+    if (name() == "compare") arguments.push_back("other_in");
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    testing::expect_refusal(folder, GetParam(), arguments, culprit);
+  };
+  refuse({"--no-such-option"}, "--no-such-option");
+  refuse({"--threads", "many"}, "--threads");
+  refuse({"--seed", "-1"}, "--seed");
 }
 
 std::string file_name(const ::testing::TestParamInfo<const char*>& program) {

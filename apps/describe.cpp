@@ -1,0 +1,66 @@
+// describe: a mesh, or points with normals, becomes the histogram of its shape.
+#include <string>
+
+#include "apps/program.h"
+#include "apps/shape_options.h"
+#include "geometry/mesh_io.h"
+#include "numerics/npy_file.h"
+
+namespace astrolith {
+namespace {
+
+struct Arguments {
+  std::string shape, output;
+  ShapeOptions options;
+};
+
+void add_options(Program& program, Arguments& arguments) {
+  CLI::App& app = program.app;
+  app.add_option("shape", arguments.shape,
+                 "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; or ply of points with normals")
+      ->required()
+      ->option_text("MESH");
+  app.add_option("-o,--output", arguments.output,
+                 "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]")
+      ->required()
+      ->option_text("H.npy");
+  arguments.options.add_to(app);
+}
+
+void summarize(Program& program, const ShapeDescription& shape, const std::string& features) {
+  program.summary["points"] = shape.points;
+  program.summary["pairs"] = shape.histogram.pairs;
+  program.summary["features"] = features;
+  program.summary["bins"] = shape.histogram.bins;
+  program.summary["max_distance"] = shape.histogram.max_distance;  // in the file's unit
+  program.summary["vertices_left_out"] = shape.vertices_left_out;
+  program.summary["undefined_curvatures"] = shape.undefined_curvatures;
+}
+
+void run(Program& program, const Arguments& arguments) {
+  require_other_file(arguments.output, arguments.shape);
+  require_writable(arguments.output);
+  const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
+  const DescriptionOptions options = arguments.options.with_seed(program.seed);
+  const Progress progress = program.progress("describe");
+  const ShapeDescription shape =
+      mesh.triangles.empty() ? describe_file(arguments.shape, mesh.vertices, mesh.normals, options, progress)
+                             : describe_file(arguments.shape, mesh, options, progress);
+  for (const std::string& remark : shape.remarks) program.say(arguments.shape + ": " + remark);
+  const std::vector<int> axes(static_cast<std::size_t>(dimensions(options.features)), options.bins);
+  write_npy(shape.histogram.frequencies(), axes, arguments.output);
+  summarize(program, shape, arguments.options.features);
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program(
+      "describe",
+      "Writes the histogram of features of pairs of surface points, a fingerprint of the "
+      "shape that does not change when the shape is moved, turned or scaled.");
+  astrolith::Arguments arguments;
+  astrolith::add_options(program, arguments);
+  return program.run(argc, argv, [&] { astrolith::run(program, arguments); });
+}

@@ -1,0 +1,42 @@
+// The options of programs that describe shapes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "descriptor/shape_description.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+
+struct ShapeOptions {
+  std::string features = "ahd";
+  DescriptionOptions description;
+
+  void add_to(CLI::App& app) {
+    app.add_option("--features", features,
+                   "wahl: the four of a pair of points; ahd: also curvature and normal perturbation")
+        ->check(CLI::IsMember({"wahl", "ahd"}));
+    app.add_option("--bins", description.bins, "of each feature")->check(CLI::Range(kMinBins, kMaxBins));
+    app.add_option("--points", description.points, "samples of the surface; the time grows with their square")
+        ->check(CLI::Range(std::int64_t{2}, std::int64_t{1} << 24));
+  }
+  DescriptionOptions with_seed(std::uint64_t seed) const {
+    DescriptionOptions options = description;
+    options.features = features == "wahl" ? PairFeatures::wahl : PairFeatures::ahd;
+    options.seed = seed;
+    return options;
+  }
+};
+
+// describe_shape, with the file's name before what is wrong with its shape.
+template <typename... Arguments>
+ShapeDescription describe_file(const std::string& file, const Arguments&... arguments) {
+  try {
+    return describe_shape(arguments...);
+  } catch (const InputError& e) {
+    throw InputError(file + ": " + e.what());
+  }
+}
+
+}  // namespace astrolith
