@@ -1,6 +1,7 @@
 // fit_gabor IMAGE -o RECIPE: a photo of rock becomes a layer of Gabor noise with the photo's spectrum.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -88,7 +89,9 @@ void add_options(Program& program, Options& o) {
   app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
       ->check(CLI::Range(1e-8, 0.5));
   app.add_option("--report", o.report_folder,
-                 "folder for pictures: exemplar, synthesis, both spectra, lobes, gap")
+                 "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "
+                 "spectra, lobes, "
+                 "gap; and its pictures pixel by pixel")
       ->option_text("DIR");
   app.add_option(
          "--spectrum", o.spectrum_file,
@@ -185,20 +188,68 @@ std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, 
                             program.progress("synthesis"));
 }
 
-// Synthesises every channel, draws the pictures that are wanted, returns the variance that synthesis kept.
-double synthesize_all(const Options& o, const PhotoFit& photo, const Recipe& recipe, const Program& program) {
-  double kept = 0.0, variance = 0.0;
+// The channels put together again: mean + sum of axis * gain * (values - center), cut to full scale.
+struct ChannelValues {
+  std::vector<double> values;
+  double center, gain;
+};
+
+ReportPicture color_picture(const PhotoFit& photo, const std::vector<ChannelValues>& channels) {
+  const GreyImage& size = photo.channels.front().exemplar;
+  const Vec3d mean = photo.channels.front().color->mean;
+  ReportPicture picture{size.width, size.height, {}};
+  picture.rgb.reserve(3 * size.values.size());
+  for (std::size_t i = 0; i < size.values.size(); ++i) {
+    Vec3d color = mean;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const ChannelValues& c = channels[k];
+      color = color + photo.channels[k].color->axis * (c.gain * (c.values[i] - c.center));
+    }
+    for (const double part : {color.x, color.y, color.z})
+      picture.rgb.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(part, 0.0, 1.0))));
+  }
+  return picture;
+}
+
+// One figure a channel; the first shows the colours where there are some.
+void write_reports(const Options& o, const PhotoFit& photo,
+                   const std::vector<std::vector<float>>& syntheses) {
   for (std::size_t k = 0; k < photo.channels.size(); ++k) {
     const FittedChannel& channel = photo.channels[k];
-    const std::vector<float> synthesis = synthesize_like(
-        channel.exemplar, std::get<GaborLayer>(recipe.layers[k]), static_cast<int>(k), program);
-    kept += variance_of(synthesis) * channel.variance();
-    variance += channel.variance();
-    if (o.report_folder.empty()) continue;
+    const int width = channel.exemplar.width, height = channel.exemplar.height;
+    ReportPicture exemplar = tone_mapped(channel.exemplar.values, width, height);
+    ReportPicture synthesis = tone_mapped(syntheses[k], width, height);
+    if (k == 0 && channel.color) {
+      std::vector<ChannelValues> photos, noises;
+      for (std::size_t j = 0; j < photo.channels.size(); ++j) {
+        const GaborFit& fit = photo.channels[j].fit;
+        photos.push_back({photo.channels[j].exemplar.values, fit.exemplar_mean, 1.0});
+        noises.push_back({{syntheses[j].begin(), syntheses[j].end()}, 0.0, fit.exemplar_rms});
+      }
+      exemplar = color_picture(photo, photos);
+      synthesis = color_picture(photo, noises);
+    }
     const std::filesystem::path folder = o.report_folder;
-    write_gabor_report(channel.exemplar, synthesis, channel.fit,
-                       k == 0 ? folder : folder / ("channel" + std::to_string(k + 1)));
+    const bool alone = photo.channels.size() == 1;
+    write_gabor_report(exemplar, synthesis, channel.fit,
+                       std::filesystem::path(o.image).filename().string() +
+                           (alone ? "" : fmt::format(", principal channel {}", k + 1)),
+                       k == 0 ? folder : folder / fmt::format("channel{}", k + 1));
   }
+}
+
+// Synthesises every channel, draws the figures that are wanted, returns the variance that synthesis kept.
+double synthesize_all(const Options& o, const PhotoFit& photo, const Recipe& recipe, const Program& program) {
+  double kept = 0.0, variance = 0.0;
+  std::vector<std::vector<float>> syntheses;
+  for (std::size_t k = 0; k < photo.channels.size(); ++k) {
+    const FittedChannel& channel = photo.channels[k];
+    syntheses.push_back(synthesize_like(channel.exemplar, std::get<GaborLayer>(recipe.layers[k]),
+                                        static_cast<int>(k), program));
+    kept += variance_of(syntheses.back()) * channel.variance();
+    variance += channel.variance();
+  }
+  if (!o.report_folder.empty()) write_reports(o, photo, syntheses);
   return kept / variance;
 }
 

@@ -17,6 +17,7 @@ if(ASTROLITH_ESTIMATION)
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
+  pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # figures
 endif()
 
 # CUDA is used where it is found, and never needed. Sanitizers do not see GPU code, so they build without.

@@ -6,7 +6,7 @@ packages=(
   build-essential cmake ninja-build pkg-config
   libtbb-dev libeigen3-dev nlohmann-json3-dev libvalijson-dev libssl-dev libfmt-dev libcli11-dev
   libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libtiff-dev
-  libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libspectra-dev
+  libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev
   libgtest-dev libbenchmark-dev
 )
 # With --format also the formatter that CI checks with.

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <string>
-#include <system_error>
 
+#include "estimation/gabor/figure_internal.h"
 #include "estimation/gabor/fourier_transform.h"
 #include "numerics/output_file.h"
 #include "synthesis/colormap.h"
@@ -16,46 +15,36 @@
 namespace astrolith {
 namespace {
 
-constexpr int kPanel = 400;       // pixels a side
-constexpr int kMargin = 28;       // around panels
-constexpr int kCaption = 30;      // above each
 constexpr double kDecades = 6.0;  // of the spectra shown
-
-const cv::Scalar kInk(40, 40, 40);
-const cv::Scalar kPaper(255, 255, 255);
-
-// Brightness such that 3.5 standard deviations on either side of the mean fill the scale.
-std::uint8_t tone(double deviations) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(127.5 + 127.5 * deviations / 3.5, 0.0, 255.0)));
-}
+constexpr double kPanel = 200.0;  // points a side
+constexpr double kLeft = 52.0;    // of the first panel
+constexpr double kTop = 58.0;
+constexpr double kColumn = kPanel + 58.0;  // from panel to panel
+constexpr double kRow = kPanel + 74.0;
+constexpr double kPageWidth = kLeft + 3.0 * kColumn + 14.0;
+constexpr double kPageHeight = kTop + 2.0 * kRow - 24.0;
+constexpr Ink kCurve{0.12, 0.35, 0.70};
+constexpr Ink kWhite{1.0, 1.0, 1.0};
 
 template <typename T>
-std::vector<std::uint8_t> tones(std::span<const T> values) {
+ReportPicture tone(std::span<const T> values, int width, int height) {
   const auto n = static_cast<double>(values.size());
-  double mean = 0.0;
-  for (const T v : values) mean += v / n;
-  double square = 0.0;
-  for (const T v : values) square += (v - mean) * (v - mean) / n;
-  const double rms = square > 0.0 ? std::sqrt(square) : 1.0;
-  std::vector<std::uint8_t> grey;
-  grey.reserve(values.size());
-  for (const T v : values) grey.push_back(tone((v - mean) / rms));
-  return grey;
-}
-
-cv::Mat grey_panel(std::vector<std::uint8_t>& grey, int width, int height) {
-  const cv::Mat whole(height, width, CV_8UC1, grey.data());
-  const int side = std::min(width, height);
-  const cv::Mat square = whole(cv::Rect((width - side) / 2, (height - side) / 2, side, side));
-  cv::Mat panel;
-  cv::resize(square, panel, {kPanel, kPanel}, 0, 0, side >= kPanel ? cv::INTER_AREA : cv::INTER_CUBIC);
-  cv::cvtColor(panel, panel, cv::COLOR_GRAY2RGB);
-  return panel;
+  double mean = 0.0, square = 0.0;
+  for (const T v : values) mean += static_cast<double>(v) / n;
+  for (const T v : values) square += (static_cast<double>(v) - mean) * (static_cast<double>(v) - mean) / n;
+  const double per_tone = square > 0.0 ? 127.5 / (3.5 * std::sqrt(square)) : 1.0;
+  ReportPicture picture{width, height, {}};
+  picture.rgb.reserve(3 * values.size());
+  for (const T v : values) {
+    const double level = std::clamp(127.5 + per_tone * (static_cast<double>(v) - mean), 0.0, 255.0);
+    picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(std::lround(level)));
+  }
+  return picture;
 }
 
 // Frequency 0 in the middle, frequencies growing to the right and down; `top` is the brightest power.
-RgbImage spectrum_picture(const PowerSpectrum& spectrum, double top) {
-  RgbImage picture{spectrum.width, spectrum.height, {}};
+ReportPicture spectrum_picture(const PowerSpectrum& spectrum, double top) {
+  ReportPicture picture{spectrum.width, spectrum.height, {}};
   for (int y = 0; y < spectrum.height; ++y) {
     for (int x = 0; x < spectrum.width; ++x) {
       const int kx = frequency_bin(x - spectrum.width / 2, spectrum.width);
@@ -63,110 +52,146 @@ RgbImage spectrum_picture(const PowerSpectrum& spectrum, double top) {
       const double power =
           spectrum.power[static_cast<std::size_t>(ky) * static_cast<std::size_t>(spectrum.width) +
                          static_cast<std::size_t>(kx)];
-      const double level = 1.0 + std::log10(std::max(power / top, 1e-30)) / kDecades;
-      const Vec3<float> color = sequential_color(level);
-      picture.pixels.insert(picture.pixels.end(),
-                            {srgb_byte(color.x), srgb_byte(color.y), srgb_byte(color.z)});
+      const Vec3<float> color = sequential_color(1.0 + std::log10(std::max(power / top, 1e-30)) / kDecades);
+      picture.rgb.insert(picture.rgb.end(), {srgb_byte(color.x), srgb_byte(color.y), srgb_byte(color.z)});
     }
   }
   return picture;
 }
 
-cv::Mat picture_panel(RgbImage& picture) {
-  const cv::Mat whole(picture.height, picture.width, CV_8UC3, picture.pixels.data());
-  cv::Mat panel;
-  cv::resize(whole, panel, {kPanel, kPanel}, 0, 0,
-             picture.width >= kPanel ? cv::INTER_AREA : cv::INTER_NEAREST);
-  return panel;
+Rectangle panel(int column, int row) { return {kLeft + column * kColumn, kTop + row * kRow, kPanel, kPanel}; }
+
+void caption(Figure& page, const Rectangle& at, const std::string& letter, const std::string& words) {
+  page.text(at.x, at.y - 7.0, letter, 9.5, Figure::Align::kLeft, true);
+  page.text(at.x + 17.0, at.y - 7.0, words, 9.0);
 }
 
-// Every lobe as the circle of half its peak, thicker for more variance.
-void draw_lobes(const std::vector<GaborLobe>& lobes, cv::Mat& panel) {
-  constexpr int kShift = 4;  // OpenCV draws at 1/16 pixel
-  constexpr double kSixteenth = 16.0;
+// The numbers 0 .. size at a few round places.
+Axis pixel_axis(int size, bool upwards, const std::string& label) {
+  const double step = size >= 4000 ? 2000 : size >= 800 ? 500 : size >= 300 ? 200 : size >= 150 ? 100 : 25;
+  Axis axis{upwards ? double(size) : 0.0, upwards ? 0.0 : double(size), {}, label};
+  for (double v = 0.0; v <= size; v += step) axis.ticks.emplace_back(v, fmt::format("{:g}", v));
+  return axis;
+}
+
+// A photo in a panel, its longer side filling it, drawn no finer than a page shows.
+void draw_photo(Figure& page, const Rectangle& within, const ReportPicture& picture) {
+  constexpr double kFinest = 800.0;
+  const int longer = std::max(picture.width, picture.height);
+  const double fit = kPanel / longer;
+  const Rectangle at{within.x, within.y, picture.width * fit, picture.height * fit};
+  const cv::Mat whole(picture.height, picture.width, CV_8UC3, const_cast<std::uint8_t*>(picture.rgb.data()));
+  cv::Mat shown = whole;
+  if (longer > kFinest) {
+    cv::resize(whole, shown, {}, kFinest / longer, kFinest / longer, cv::INTER_AREA);
+  }
+  page.picture(at, shown.cols, shown.rows, {shown.data, shown.total() * 3}, longer >= 128);
+  page.axes(at, pixel_axis(picture.width, false, "pixels"), pixel_axis(picture.height, true, "pixels"));
+}
+
+Axis frequency_axis(bool upwards, const std::string& label) {
+  Axis axis{upwards ? 0.5 : -0.5, upwards ? -0.5 : 0.5, {}, label};
+  for (const double v : {-0.5, -0.25, 0.0, 0.25, 0.5}) axis.ticks.emplace_back(v, fmt::format("{:g}", v));
+  return axis;
+}
+
+void draw_spectrum(Figure& page, const Rectangle& at, const ReportPicture& picture) {
+  page.picture(at, picture.width, picture.height, picture.rgb, picture.width > 512);
+  page.axes(at, frequency_axis(false, "cycles per pixel along rows"),
+            frequency_axis(true, "cycles per pixel down columns"));
+}
+
+// Every lobe as the circle where it has half its peak, thicker for more variance.
+void draw_lobes(Figure& page, const Rectangle& at, const std::vector<GaborLobe>& lobes) {
   for (const GaborLobe& lobe : lobes) {
     const double share = std::sqrt(lobe.variance / lobes.front().variance);
     for (const double sign : {1.0, -1.0}) {
-      const cv::Point center(cvRound((0.5 + sign * lobe.frequency_x) * kPanel * kSixteenth),
-                             cvRound((0.5 + sign * lobe.frequency_y) * kPanel * kSixteenth));
-      const int radius = cvRound(std::max(1.0, 0.5 * std::ldexp(1.0, -lobe.bandwidth) * kPanel) * kSixteenth);
-      cv::circle(panel, center, radius, {255, 255, 255}, share > 0.3 ? 2 : 1, cv::LINE_AA, kShift);
+      page.circle(at, at.x + (0.5 + sign * lobe.frequency_x) * at.width,
+                  at.y + (0.5 + sign * lobe.frequency_y) * at.height,
+                  std::max(0.8, 0.5 * std::ldexp(1.0, -lobe.bandwidth) * at.width), share > 0.3 ? 1.1 : 0.5,
+                  kWhite);
     }
   }
 }
 
-void write_text(cv::Mat& sheet, const std::string& text, cv::Point at, double size = 0.5) {
-  cv::putText(sheet, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
+void draw_color_bar(Figure& page, const Rectangle& beside) {
+  ReportPicture bar{1, 128, {}};
+  for (int y = 0; y < bar.height; ++y) {
+    const Vec3<float> color = sequential_color(1.0 - (y + 0.5) / bar.height);
+    bar.rgb.insert(bar.rgb.end(), {srgb_byte(color.x), srgb_byte(color.y), srgb_byte(color.z)});
+  }
+  const Rectangle at{beside.x + beside.width + 8.0, beside.y, 9.0, beside.height};
+  page.picture(at, bar.width, bar.height, bar.rgb, true);
+  Axis axis{-kDecades, 0.0, {}, "log10 of power over the peak"};
+  for (int d = 0; d <= static_cast<int>(kDecades); ++d) axis.ticks.emplace_back(-d, fmt::format("{}", -d));
+  page.y_axis_on_the_right(at, axis);
 }
 
-// The certified relative gap over the iterations, logarithmic.
-cv::Mat gap_panel(const BasisPursuitResult& pursuit) {
-  cv::Mat panel(kPanel, kPanel, CV_8UC3, kPaper);
-  const int left = 52;
-  const int bottom = kPanel - 34;
-  const int last = std::max(1, pursuit.history.back().iteration);
-  double lowest = 0.0;
-  for (const GapSample& s : pursuit.history)
-    lowest = std::min(lowest, std::log10(std::max(s.relative_gap, 1e-12)));
-  const int decades = std::max(1, static_cast<int>(std::ceil(-lowest)));
-  const auto place = [&](double iteration, double log_gap) {
-    return cv::Point(left + cvRound((kPanel - left - 12) * iteration / last),
-                     12 + cvRound((bottom - 12) * -log_gap / decades));
-  };
-  for (int d = 0; d <= decades; ++d) {
-    cv::line(panel, place(0, -d), place(last, -d), {225, 225, 225}, 1);
-    write_text(panel, fmt::format("1e-{}", d), {4, place(0, -d).y + 4}, 0.38);
+// The certified relative gap over the steps of the pursuit.
+void draw_gap(Figure& page, const Rectangle& at, const BasisPursuitResult& pursuit) {
+  std::vector<std::pair<double, double>> points;
+  double lowest = -1.0;
+  for (const GapSample& s : pursuit.history) {
+    points.emplace_back(s.iteration, std::log10(std::clamp(s.relative_gap, 1e-16, 1.0)));
+    lowest = std::min(lowest, points.back().second);
   }
-  cv::rectangle(panel, place(0, 0), place(last, -decades), kInk, 1);
-  for (std::size_t i = 0; i < pursuit.history.size(); ++i) {
-    const auto at = [&](const GapSample& s) {
-      return place(s.iteration, std::log10(std::max(s.relative_gap, 1e-12)));
-    };
-    const cv::Scalar blue(31, 90, 180);
-    if (i > 0) cv::line(panel, at(pursuit.history[i - 1]), at(pursuit.history[i]), blue, 2, cv::LINE_AA);
-    if (pursuit.history.size() <= 60) cv::circle(panel, at(pursuit.history[i]), 3, blue, -1, cv::LINE_AA);
-  }
-  write_text(panel, fmt::format("iterations 0 to {}", last), {left, kPanel - 10}, 0.42);
-  return panel;
+  const int last = std::max(1, pursuit.history.empty() ? 1 : pursuit.history.back().iteration);
+  const int decades = static_cast<int>(std::ceil(-lowest));
+  Axis x{0.0, static_cast<double>(last), {}, "steps of the pursuit"};
+  const double raw = last / 5.0, power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double step = std::max(1.0, power * (raw / power < 2.0 ? 2.0 : raw / power < 5.0 ? 5.0 : 10.0));
+  for (double v = 0.0; v <= last; v += step) x.ticks.emplace_back(v, fmt::format("{:g}", v));
+  Axis y{-static_cast<double>(decades), 0.0, {}, "log10 of the relative duality gap"};
+  for (int d = 0; d <= decades; d += decades > 8 ? 2 : 1) y.ticks.emplace_back(-d, fmt::format("{}", -d));
+  page.axes(at, x, y, true);
+  page.curve(at, x, y, points, kCurve);
 }
 
-void place_panel(const cv::Mat& panel, int column, int row, const std::string& caption, cv::Mat& sheet) {
-  const int x = kMargin + column * (kPanel + kMargin);
-  const int y = kMargin + row * (kPanel + kCaption + kMargin) + kCaption;
-  panel.copyTo(sheet(cv::Rect(x, y, kPanel, kPanel)));
-  write_text(sheet, caption, {x, y - 10});
+void write_picture(const ReportPicture& picture, const std::filesystem::path& file) {
+  write_png8_rgb({picture.width, picture.height, picture.rgb}, file);
 }
 
 }  // namespace
 
-void write_gabor_report(const GreyImage& exemplar, std::span<const float> synthesis, const GaborFit& fit,
-                        const std::filesystem::path& folder) {
+ReportPicture tone_mapped(std::span<const double> values, int width, int height) {
+  return tone(values, width, height);
+}
+
+ReportPicture tone_mapped(std::span<const float> values, int width, int height) {
+  return tone(values, width, height);
+}
+
+void write_gabor_report(const ReportPicture& exemplar, const ReportPicture& synthesis, const GaborFit& fit,
+                        const std::string& title, const std::filesystem::path& folder) {
   make_output_folder(folder);
-  std::vector<std::uint8_t> photo = tones(std::span<const double>(exemplar.values));
-  std::vector<std::uint8_t> noise = tones(synthesis);
   const PowerSpectrum& estimate = fit.estimate.spectrum;
   const double top = *std::max_element(estimate.power.begin(), estimate.power.end());
-  RgbImage measured = spectrum_picture(estimate, top);
-  RgbImage fitted = spectrum_picture(fit.fitted, top);
+  const ReportPicture measured = spectrum_picture(estimate, top);
+  const ReportPicture fitted = spectrum_picture(fit.fitted, top);
 
-  cv::Mat sheet(kMargin + 2 * (kPanel + kCaption + kMargin), kMargin + 3 * (kPanel + kMargin), CV_8UC3,
-                kPaper);
-  place_panel(grey_panel(photo, exemplar.width, exemplar.height), 0, 0, "exemplar", sheet);
-  place_panel(grey_panel(noise, exemplar.width, exemplar.height), 1, 0, "synthesis, same size", sheet);
-  place_panel(gap_panel(fit.pursuit), 2, 0,
-              fmt::format("certified relative duality gap: {:.1e}", fit.pursuit.relative_gap), sheet);
-  place_panel(picture_panel(measured), 0, 1, "spectrum estimated from the exemplar", sheet);
-  place_panel(picture_panel(fitted), 1, 1,
-              fmt::format("fitted spectrum, distance {:.3f}", fit.spectrum_distance), sheet);
-  cv::Mat lobes = picture_panel(measured);
-  draw_lobes(fit.lobes, lobes);
-  place_panel(lobes, 2, 1, fmt::format("{} lobes at half their peak", fit.lobes.size()), sheet);
+  Figure page(kPageWidth, kPageHeight);
+  page.text(kLeft, 27.0, title, 12.0, Figure::Align::kLeft, true);
+  caption(page, panel(0, 0), "a", fmt::format("exemplar, {} x {} pixels", exemplar.width, exemplar.height));
+  draw_photo(page, panel(0, 0), exemplar);
+  caption(page, panel(1, 0), "b", "synthesis, same size");
+  draw_photo(page, panel(1, 0), synthesis);
+  caption(page, panel(2, 0), "c", fmt::format("certified relative gap {:.1e}", fit.pursuit.relative_gap));
+  draw_gap(page, panel(2, 0), fit.pursuit);
+  caption(page, panel(0, 1), "d", "spectrum estimated from the exemplar");
+  draw_spectrum(page, panel(0, 1), measured);
+  caption(page, panel(1, 1), "e", fmt::format("fitted spectrum, distance {:.3f}", fit.spectrum_distance));
+  draw_spectrum(page, panel(1, 1), fitted);
+  caption(page, panel(2, 1), "f", fmt::format("{} lobes at half their peak, over d", fit.lobes.size()));
+  draw_spectrum(page, panel(2, 1), measured);
+  draw_lobes(page, panel(2, 1), fit.lobes);
+  draw_color_bar(page, panel(2, 1));
+  page.write_png(folder / "report.png", 200.0);
+  page.write_svg(folder / "report.svg");
 
-  write_png8_grey(photo, exemplar.width, exemplar.height, folder / "exemplar.png");
-  write_png8_grey(noise, exemplar.width, exemplar.height, folder / "synthesis.png");
-  write_png8_rgb(measured, folder / "spectrum_exemplar.png");
-  write_png8_rgb(fitted, folder / "spectrum_fitted.png");
-  write_png8_rgb({sheet.cols, sheet.rows, {sheet.datastart, sheet.dataend}}, folder / "report.png");
+  write_picture(exemplar, folder / "exemplar.png");
+  write_picture(synthesis, folder / "synthesis.png");
+  write_picture(measured, folder / "spectrum_exemplar.png");
+  write_picture(fitted, folder / "spectrum_fitted.png");
 }
 
 }  // namespace astrolith

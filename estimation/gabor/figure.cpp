@@ -1,0 +1,210 @@
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "estimation/gabor/figure_internal.h"
+#include "numerics/errors.h"
+#include "numerics/output_file.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kTick = 3.0;       // length
+constexpr double kTickText = 7.5;   // size
+constexpr double kLabelText = 8.5;  // size
+constexpr Ink kGrid{0.88, 0.88, 0.88};
+
+double place(double value, const Axis& axis, double begin, double extent) {
+  return begin + extent * (value - axis.low) / (axis.high - axis.low);
+}
+
+cairo_status_t append(void* file, const unsigned char* data, unsigned int length) {
+  try {
+    static_cast<OutputFile*>(file)->write(data, length);
+  } catch (const std::exception&) {
+    return CAIRO_STATUS_WRITE_ERROR;
+  }
+  return CAIRO_STATUS_SUCCESS;
+}
+
+void require_success(cairo_status_t status, const std::filesystem::path& file) {
+  if (status == CAIRO_STATUS_SUCCESS) return;
+  throw WorkError(file.string() + ": the figure could not be drawn (" + cairo_status_to_string(status) + ")");
+}
+
+}  // namespace
+
+void Figure::Free::operator()(cairo_t* context) const { cairo_destroy(context); }
+void Figure::Free::operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+
+Figure::Figure(double width, double height) : width_(width), height_(height) {
+  const cairo_rectangle_t page{0.0, 0.0, width, height};
+  surface_.reset(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, &page));
+  context_.reset(cairo_create(surface_.get()));
+  cairo_set_source_rgb(context_.get(), 1.0, 1.0, 1.0);
+  cairo_paint(context_.get());
+}
+
+void Figure::set(const Ink& ink) { cairo_set_source_rgb(context_.get(), ink.red, ink.green, ink.blue); }
+
+void Figure::line(double x0, double y0, double x1, double y1, double width, const Ink& ink) {
+  set(ink);
+  cairo_set_line_width(context_.get(), width);
+  cairo_move_to(context_.get(), x0, y0);
+  cairo_line_to(context_.get(), x1, y1);
+  cairo_stroke(context_.get());
+}
+
+void Figure::text(double x, double y, const std::string& text, double size, Align align, bool bold) {
+  cairo_t* c = context_.get();
+  cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(c, size);
+  cairo_text_extents_t extents;
+  cairo_text_extents(c, text.c_str(), &extents);
+  const double shift = align == Align::kLeft ? 0.0 : align == Align::kCenter ? 0.5 : 1.0;
+  set({});
+  cairo_move_to(c, x - shift * extents.x_advance, y);
+  cairo_show_text(c, text.c_str());
+}
+
+void Figure::vertical_text(double x, double y, const std::string& what, double size) {
+  cairo_save(context_.get());
+  cairo_translate(context_.get(), x, y);
+  cairo_rotate(context_.get(), -0.5 * std::numbers::pi);
+  text(0.0, 0.0, what, size, Align::kCenter);
+  cairo_restore(context_.get());
+}
+
+void Figure::picture(const Rectangle& at, int width, int height, std::span<const std::uint8_t> rgb,
+                     bool smooth) {
+  const std::unique_ptr<cairo_surface_t, Free> image(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
+  unsigned char* data = cairo_image_surface_get_data(image.get());
+  if (data == nullptr) throw WorkError("figure: a picture is too large to be drawn");
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(image.get()));
+  std::size_t i = 0;
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
+    auto* row = reinterpret_cast<std::uint32_t*>(data + y * stride);
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x, i += 3) {
+      row[x] = std::uint32_t{rgb[i]} << 16 | std::uint32_t{rgb[i + 1]} << 8 | rgb[i + 2];
+    }
+  }
+  cairo_surface_mark_dirty(image.get());
+  cairo_t* c = context_.get();
+  cairo_save(c);
+  cairo_rectangle(c, at.x, at.y, at.width, at.height);
+  cairo_clip(c);
+  cairo_translate(c, at.x, at.y);
+  cairo_scale(c, at.width / width, at.height / height);
+  cairo_set_source_surface(c, image.get(), 0.0, 0.0);
+  cairo_pattern_set_filter(cairo_get_source(c), smooth ? CAIRO_FILTER_GOOD : CAIRO_FILTER_NEAREST);
+  cairo_pattern_set_extend(cairo_get_source(c), CAIRO_EXTEND_PAD);
+  cairo_paint(c);
+  cairo_restore(c);
+}
+
+void Figure::frame(const Rectangle& at) {
+  set({});
+  cairo_set_line_width(context_.get(), 0.7);
+  cairo_rectangle(context_.get(), at.x, at.y, at.width, at.height);
+  cairo_stroke(context_.get());
+}
+
+void Figure::axes(const Rectangle& at, const Axis& x, const Axis& y, bool grid) {
+  const double bottom = at.y + at.height;
+  for (const auto& [value, words] : x.ticks) {
+    const double px = place(value, x, at.x, at.width);
+    if (grid) line(px, at.y, px, bottom, 0.5, kGrid);
+    line(px, bottom, px, bottom + kTick, 0.7, {});
+    text(px, bottom + kTick + kTickText + 1.0, words, kTickText, Align::kCenter);
+  }
+  for (const auto& [value, words] : y.ticks) {
+    const double py = place(value, y, bottom, -at.height);
+    if (grid) line(at.x, py, at.x + at.width, py, 0.5, kGrid);
+    line(at.x - kTick, py, at.x, py, 0.7, {});
+    text(at.x - kTick - 2.0, py + 0.35 * kTickText, words, kTickText, Align::kRight);
+  }
+  text(at.x + 0.5 * at.width, bottom + 25.0, x.label, kLabelText, Align::kCenter);
+  vertical_text(at.x - 30.0, at.y + 0.5 * at.height, y.label, kLabelText);
+  frame(at);
+}
+
+void Figure::y_axis_on_the_right(const Rectangle& at, const Axis& y) {
+  const double right = at.x + at.width;
+  for (const auto& [value, words] : y.ticks) {
+    const double py = place(value, y, at.y + at.height, -at.height);
+    line(right, py, right + kTick, py, 0.7, {});
+    text(right + kTick + 2.0, py + 0.35 * kTickText, words, kTickText);
+  }
+  vertical_text(right + 34.0, at.y + 0.5 * at.height, y.label, kLabelText);
+  frame(at);
+}
+
+void Figure::curve(const Rectangle& at, const Axis& x, const Axis& y,
+                   const std::vector<std::pair<double, double>>& points, const Ink& ink) {
+  constexpr std::size_t kFew = 60;
+  cairo_t* c = context_.get();
+  const auto px = [&](double value) { return place(value, x, at.x, at.width); };
+  const auto py = [&](double value) { return place(value, y, at.y + at.height, -at.height); };
+  set(ink);
+  cairo_set_line_width(c, 1.4);
+  cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+  for (const auto& [vx, vy] : points) cairo_line_to(c, px(vx), py(vy));
+  cairo_stroke(c);
+  if (points.size() > kFew) return;
+  for (const auto& [vx, vy] : points) {
+    cairo_arc(c, px(vx), py(vy), 2.0, 0.0, 2.0 * std::numbers::pi);
+    cairo_fill(c);
+  }
+}
+
+void Figure::circle(const Rectangle& inside, double x, double y, double radius, double line_width,
+                    const Ink& ink) {
+  cairo_t* c = context_.get();
+  cairo_save(c);
+  cairo_rectangle(c, inside.x, inside.y, inside.width, inside.height);
+  cairo_clip(c);
+  set(ink);
+  cairo_set_line_width(c, line_width);
+  cairo_arc(c, x, y, radius, 0.0, 2.0 * std::numbers::pi);
+  cairo_stroke(c);
+  cairo_restore(c);
+}
+
+void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch) const {
+  const double scale = pixels_per_inch / 72.0;
+  const std::unique_ptr<cairo_surface_t, Free> page(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width_ * scale)),
+                                 static_cast<int>(std::lround(height_ * scale))));
+  const std::unique_ptr<cairo_t, Free> c(cairo_create(page.get()));
+  // The page's own white ends at a fraction of a pixel.
+  cairo_set_source_rgb(c.get(), 1.0, 1.0, 1.0);
+  cairo_paint(c.get());
+  cairo_scale(c.get(), scale, scale);
+  cairo_rectangle(c.get(), 1.0, 1.0, width_ - 2.0, height_ - 2.0);
+  cairo_clip(c.get());
+  cairo_set_source_surface(c.get(), surface_.get(), 0.0, 0.0);
+  cairo_paint(c.get());
+  OutputFile out(file);
+  require_success(cairo_surface_write_to_png_stream(page.get(), append, &out), file);
+  out.commit();
+}
+
+void Figure::write_svg(const std::filesystem::path& file) const {
+  OutputFile out(file);
+  {
+    const std::unique_ptr<cairo_surface_t, Free> page(
+        cairo_svg_surface_create_for_stream(append, &out, width_, height_));
+    const std::unique_ptr<cairo_t, Free> c(cairo_create(page.get()));
+    cairo_set_source_surface(c.get(), surface_.get(), 0.0, 0.0);
+    cairo_paint(c.get());
+    cairo_surface_finish(page.get());
+    require_success(cairo_surface_status(page.get()), file);
+  }
+  out.commit();
+}
+
+}  // namespace astrolith
