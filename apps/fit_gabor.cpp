@@ -5,9 +5,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/memory_use.h"
 #include "apps/program.h"
+#include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/gabor_report.h"
 #include "estimation/gabor/photo_fit.h"
+#include "numerics/errors.h"
 #include "numerics/npy_file.h"
 #include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
@@ -31,8 +34,9 @@ struct Options {
   std::string unit = "m";
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";
-  double mm_per_px = 0.0;    // 0 = no physical scale
-  double height_rms = -1.0;  // negative = the exemplar's own
+  double mm_per_px = 0.0;      // 0 = no physical scale
+  double height_rms = -1.0;    // negative = the exemplar's own
+  double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
   PhotoFitOptions photo;
 };
 
@@ -88,6 +92,11 @@ void add_options(Program& program, Options& o) {
       ->check(CLI::Range(1e-4, 0.99));
   app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
       ->check(CLI::Range(1e-8, 0.5));
+  app.add_option("--max-memory", o.max_memory_gb,
+                 "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
+                 "of the machine's")
+      ->check(CLI::PositiveNumber)
+      ->default_str("");
   app.add_option("--report", o.report_folder,
                  "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "
                  "spectra, lobes, "
@@ -99,6 +108,24 @@ void add_options(Program& program, Options& o) {
          "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024; with several "
          "layers an array (layers, height, width)")
       ->option_text("FILE.npy");
+}
+
+// Said, and refused if need be, before the image is decoded.
+void predict_memory(Program& program, const Options& o, const PhotoFitOptions& photo) {
+  const ImageSize size = read_image_size(o.image);
+  const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty());
+  program.summary["predicted"] = {{"peak_bytes", predicted}};
+  if (predicted > memory_limit(o.max_memory_gb)) {
+    throw InputError(
+        fmt::format("{}: fitting {} x {} pixels needs {:.2f} GB of memory, more than {:.2f} GB; "
+                    "cut out a part, scale it down or raise --max-memory",
+                    o.image, size.width, size.height, predicted / 1e9, memory_limit(o.max_memory_gb) / 1e9));
+  }
+  constexpr double kWorthSaying = 1e9;
+  if (predicted > kWorthSaying) {
+    program.say(fmt::format("{}: {} x {} pixels, about {:.1f} GB of memory", o.image, size.width, size.height,
+                            predicted / 1e9));
+  }
 }
 
 GaborLayer make_layer(const Options& o, const FittedChannel& channel, bool first) {
@@ -284,7 +311,9 @@ void say_result(const PhotoFit& photo, const Program& program) {
 
 void work(Program& program, const Options& o) {
   require_outputs(o);
-  const PhotoFit photo = fit_photo(o.image, photo_options(program, o), program.progress("pursuit"));
+  const PhotoFitOptions options = photo_options(program, o);
+  predict_memory(program, o, options);
+  const PhotoFit photo = fit_photo(o.image, options, program.progress("pursuit"));
   for (const std::string& remark : photo.remarks) program.say(o.image + ": " + remark);
   const Recipe recipe = make_recipe(program, o, photo);
   write_recipe(recipe, o.output);
@@ -295,6 +324,7 @@ void work(Program& program, const Options& o) {
   }
   program.summary["variance_ratio_synthesized"] = synthesize_all(o, photo, recipe, program);
   if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
+  program.summary["peak_bytes"] = peak_bytes();
   say_result(photo, program);
 }
 

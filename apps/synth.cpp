@@ -1,6 +1,4 @@
 // synth: a recipe becomes a closed mesh, a picture of it, or the texture of its Gabor layers.
-#include <sys/resource.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <initializer_list>
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/memory_use.h"
 #include "apps/program.h"
 #include "apps/synth_size.h"
 #include "apps/synth_texture.h"
@@ -79,12 +78,6 @@ void require_extension(const fs::path& file, std::initializer_list<const char*> 
     wanted += (wanted.empty() ? "" : " or ") + std::string(extension);
   }
   throw InputError(file.string() + ": is no " + wanted + " file; name it with that extension");
-}
-
-std::uint64_t peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
 }
 
 void summarize_output(Program& program, const fs::path& output) {

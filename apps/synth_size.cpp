@@ -1,10 +1,10 @@
 #include "apps/synth_size.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 
+#include "apps/memory_use.h"
 #include "numerics/errors.h"
 #include "synthesis/mesh_prediction.h"
 #include "synthesis/sample_grid.h"
@@ -32,11 +32,6 @@ OutputCost output_cost(const std::filesystem::path& output, bool preview) {
   if (extension == ".stl") return {50.0, collected + rendered};
   if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
   return {75.0, collected + rendered};
-}
-
-double memory_limit(const MeshSizeRequest& request) {
-  if (request.max_memory_gb > 0.0) return 1e9 * request.max_memory_gb;
-  return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 // "1.2 M", "340 k"
@@ -81,12 +76,12 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Im
   program.summary["resolution"] = mesh.resolution;
   program.summary["predicted"] = {
       {"triangles", mesh.triangles}, {"file_bytes", cost.file * mesh.triangles}, {"peak_bytes", memory}};
-  if (memory > memory_limit(request)) {
-    throw InputError(
-        fmt::format("{}: the mesh of about {} triangles needs {:.1f} GB of memory, more than {:.1f} GB; "
-                    "lower the resolution, raise --max-memory{}",
-                    output.string(), rounded(mesh.triangles), memory / 1e9, memory_limit(request) / 1e9,
-                    cost.memory > 0.0 ? ", or write .ply without --preview, which is streamed" : ""));
+  if (memory > memory_limit(request.max_memory_gb)) {
+    throw InputError(fmt::format(
+        "{}: the mesh of about {} triangles needs {:.1f} GB of memory, more than {:.1f} GB; "
+        "lower the resolution, raise --max-memory{}",
+        output.string(), rounded(mesh.triangles), memory / 1e9, memory_limit(request.max_memory_gb) / 1e9,
+        cost.memory > 0.0 ? ", or write .ply without --preview, which is streamed" : ""));
   }
   program.say(
       fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, up to {:.0f} s",

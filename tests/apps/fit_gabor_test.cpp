@@ -1,6 +1,8 @@
 // fit_gabor, run as a user runs it.
 #include <sys/stat.h>
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "recipe/recipe_json.h"
@@ -105,6 +107,65 @@ TEST_F(FitGabor, BadImagesAreRefused) {
   expect_image_refused("constant.png", testing::png(64, 64, std::vector<std::uint8_t>(64 * 64, 77)));
   const std::string whole = testing::noise_png(64);
   expect_image_refused("cut.png", whole.substr(0, whole.size() / 2));
+}
+
+// The header alone decides, whatever the options; the message states what it would take.
+TEST_F(FitGabor, SizesThatMakeNoSenseAreRefused) {
+  expect_image_refused("huge.png", testing::png_header(20000, 20000));
+  expect_image_refused("negative.png", testing::png_header(0x80000000u, 4));
+  expect_image_refused("none.png", testing::png_header(0, 0));
+  expect_image_refused("below.png", testing::noise_png(31));
+  const std::string huge = folder_.write("huge.png", testing::png_header(20000, 20000));
+  const testing::Outcome outcome = run_program(kFitGabor, {huge, "-o", (folder_ / "out.json").string()});
+  EXPECT_NE(outcome.errors.find("20000 x 20000 pixels would take 7 GB"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(FitGabor, OneValueThatIsNotFiniteIsRefused) {
+  std::vector<float> values(64 * 64);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i * 7919 % 1009);
+  folder_.write("good.tif", testing::float_tiff(64, 64, values));
+  EXPECT_EQ(
+      run_program(kFitGabor, {(folder_ / "good.tif").string(), "-o", (folder_ / "g.json").string()}).status,
+      0);
+  values[5 * 64 + 9] = std::numeric_limits<float>::quiet_NaN();
+  expect_image_refused("nan.tif", testing::float_tiff(64, 64, values));
+  values[5 * 64 + 9] = std::numeric_limits<float>::infinity();
+  expect_image_refused("infinite.tif", testing::float_tiff(64, 64, values));
+}
+
+TEST_F(FitGabor, OtherPicturesAndOddOptionsAreRefused) {
+  expect_image_refused("moving.gif", std::string("GIF89a\x40\0\x40\0", 10) + std::string(100, '\0'));
+  expect_image_refused("photo.webp", std::string("RIFF\x24\0\0\0WEBPVP8 ", 16) + std::string(100, '\0'));
+  const std::string image = folder_.write("rock.png", testing::noise_png(64)),
+                    out = (folder_ / "o.json").string();
+  for (const std::vector<std::string>& odd : {std::vector<std::string>{"--channels", "rgb"},
+                                              {"--detrend", "7"},
+                                              {"--detrend-by", "hope"},
+                                              {"--lobes", "0"},
+                                              {"--max-memory", "0.001"}}) {
+    std::vector<std::string> arguments{image, "-o", out};
+    arguments.insert(arguments.end(), odd.begin(), odd.end());
+    expect_refusal(folder_, kFitGabor, arguments, odd[0] == "--max-memory" ? "rock.png" : odd[0]);
+  }
+}
+
+// A grey picture through every way in: colours of one axis, a trend taken out, all outputs.
+TEST_F(FitGabor, EveryOutputIsWritten) {
+  const auto path = [&](const char* name) { return (folder_ / name).string(); };
+  fit("rock.json", {"--channels", "pca", "--detrend", "2", "--detrend-by", "division", "--spectrum",
+                    path("s.npy"), "--report", path("report"), "--summary", path("s.json")});
+  const Recipe recipe = read_recipe(folder_ / "rock.json");
+  ASSERT_EQ(recipe.layers.size(), 1u);
+  const auto& layer = std::get<GaborLayer>(recipe.layers[0]);
+  ASSERT_TRUE(layer.color.has_value());
+  EXPECT_NEAR(layer.color->axis.x, std::sqrt(1.0 / 3.0), 1e-6);
+  EXPECT_EQ(text_of(folder_ / "s.npy").substr(1, 5), "NUMPY");
+  EXPECT_EQ(text_of(folder_ / "s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
+  for (const char* name : {"report.png", "report.svg", "exemplar.png", "synthesis.png",
+                           "spectrum_exemplar.png", "spectrum_fitted.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / name)) << name;
+  }
+  EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "s.json"))["channels"].size(), 1u);
 }
 
 TEST_F(FitGabor, BadFilesAreRefused) {

@@ -1,0 +1,29 @@
+#include "estimation/gabor/fit_memory.h"
+
+#include <algorithm>
+
+namespace astrolith {
+namespace {
+
+constexpr double kBytesAnyway = 55e6;         // program, libraries, threads
+constexpr double kBytesPerGridPoint = 390.0;  // dictionary, estimates and solver
+
+// Of the image's own pixels, at the stage that holds most of them.
+double bytes_per_pixel(bool colors, bool report) {
+  const double value = 8.0, decoded = 4.0, synthesis = 4.0, pictures = 6.0;
+  if (!colors) return value + std::max(decoded, synthesis + (report ? pictures : 0.0));
+  const double separating = 2.0 * 3.0 * value + decoded;  // planes and channels side by side
+  const double drawing = 3.0 * (3.0 * value + synthesis) + pictures;
+  return report ? std::max(separating, drawing) : separating;
+}
+
+}  // namespace
+
+double predicted_fit_bytes(const ImageSize& image, const PhotoFitOptions& options, bool report) {
+  const double pixels = static_cast<double>(image.width) * image.height;
+  const double grid = static_cast<double>(std::min(image.width, options.fit.largest_side)) *
+                      std::min(image.height, options.fit.largest_side);
+  return kBytesAnyway + kBytesPerGridPoint * grid + bytes_per_pixel(options.colors, report) * pixels;
+}
+
+}  // namespace astrolith
