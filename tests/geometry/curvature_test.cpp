@@ -1,11 +1,16 @@
 #include "geometry/curvature.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
+#include "geometry/mesh_io.h"
 #include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
+#include "tests/support/data.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {
@@ -17,6 +22,36 @@ double total_gaussian(const VertexCurvature& c) {
   return std::inner_product(c.gaussian.begin(), c.gaussian.end(), c.area.begin(), 0.0);
 }
 double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+// Unit cubes in a row of five by three by one, two of them missing: a double torus.
+TriangleMesh double_torus() {
+  const auto solid = [](int x, int y, int z) {
+    return x >= 0 && x < 5 && y >= 0 && y < 3 && z == 0 && !(y == 1 && (x == 1 || x == 3));
+  };
+  TriangleMesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> index;
+  const auto corner = [&](int x, int y, int z) {
+    const auto [it, added] = index.try_emplace({x, y, z}, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (added) mesh.vertices.push_back({1.0 * x, 1.0 * y, 1.0 * z});
+    return it->second;
+  };
+  for (int x = 0; x < 5; ++x) {
+    for (int y = 0; y < 3; ++y) {
+      if (!solid(x, y, 0)) continue;
+      const TriangleMesh box = cube(1.0, {1.0 * x, 1.0 * y, 0});
+      for (const Triangle& t : box.triangles) {
+        const Vec3d &a = box.vertices[t[0]], &b = box.vertices[t[1]], &c = box.vertices[t[2]];
+        const Vec3d n = cross(b - a, c - a);
+        if (solid(x + static_cast<int>(n.x), y + static_cast<int>(n.y), static_cast<int>(n.z))) continue;
+        const auto at = [&](const Vec3d& p) {
+          return corner(static_cast<int>(p.x), static_cast<int>(p.y), static_cast<int>(p.z));
+        };
+        mesh.triangles.push_back({at(a), at(b), at(c)});
+      }
+    }
+  }
+  return mesh;
+}
 
 TEST(Curvature, GaussAndBonnet) {
   const auto expect_total = [](const TriangleMesh& mesh, int euler) {
@@ -30,6 +65,20 @@ TEST(Curvature, GaussAndBonnet) {
   expect_total(icosphere(3), 2);
   expect_total(torus(2, 0.5, 31, 17), 0);
   expect_total(two_spheres(2, 1, 3), 4);
+  expect_total(double_torus(), -2);
+}
+
+TEST(Curvature, GaussAndBonnetOnRealBodies) {
+  for (const char* name : {"eros_gaskell_49k.ply", "itokawa_gaskell_12k.ply", "kleopatra_radar_4k.ply",
+                           "arrokoth_porter2024_10k_two_components.ply"}) {
+    const auto file = shared_shape(name);
+    ASTROLITH_SKIP_WITHOUT(file);
+    const TriangleMesh mesh = read_mesh(file);
+    const VertexCurvature c = vertex_curvature(mesh);
+    EXPECT_TRUE(c.left_out.empty()) << name;
+    const auto euler = static_cast<double>(analyze_topology(mesh).euler_characteristic);
+    EXPECT_NEAR(total_gaussian(c), 2 * kPi * euler, 1e-8) << name;
+  }
 }
 
 TEST(Curvature, SphereOfAnySize) {
