@@ -7,6 +7,7 @@
 
 #include "apps/program.h"
 #include "estimation/shape/fit_report.h"
+#include "estimation/shape/packing_table.h"
 #include "estimation/shape/shape_fit.h"
 #include "geometry/mesh_io.h"
 #include "numerics/errors.h"
@@ -22,6 +23,8 @@ struct Arguments {
   std::string optimizer = "pso";
   std::string unit = "km";
   double time_limit = 0.0;  // seconds; 0 = none
+  bool packing_only = false;
+  double density = 0.0;  // kg / m^3; 0 = no masses
   ShapeFitOptions fit;
 };
 
@@ -54,7 +57,7 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option("mesh", arguments.mesh, "closed mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf")
       ->required()
       ->option_text("MESH");
-  app.add_option("-o,--output", arguments.output, "the recipe to write")
+  app.add_option("-o,--output", arguments.output, "the recipe to write; with --packing-only a .csv")
       ->required()
       ->option_text("RECIPE.json");
   app.add_option("--spheres", arguments.fit.spheres, "metaballs at most")->check(CLI::Range(1, 10000));
@@ -77,6 +80,15 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option("--unit", arguments.unit,
                  "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
       ->check(CLI::IsMember({"km", "m"}));
+  CLI::Option* packing_only = app.add_flag(
+      "--packing-only", arguments.packing_only,
+      "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
+      "a table, and stop");
+  app.add_option("--density", arguments.density,
+                 "of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
+      ->check(CLI::PositiveNumber)
+      ->needs(packing_only)
+      ->default_str("");
   app.add_option("--report", arguments.report,
                  "write pictures of target, fit, distances and convergence here")
       ->option_text("DIR");
@@ -140,6 +152,34 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
   }
 }
 
+// Centres and radii in the frame and the unit of the file.
+std::vector<Sphere> in_file_frame(std::vector<Sphere> spheres, const TargetBody& target) {
+  for (Sphere& s : spheres) {
+    s = {target.center + target.diagonal * s.center, target.diagonal * s.radius};
+  }
+  return spheres;
+}
+
+// --packing-only
+void pack(Program& program, const Arguments& arguments, const TargetBody& target) {
+  PackingOptions options;
+  options.max_spheres = arguments.fit.spheres;
+  const Packing packing = pack_spheres(target.mesh, target.tree, options, program.progress("pack"));
+  const std::string name = std::filesystem::path(arguments.mesh).filename().string();
+  char filled[80];
+  std::snprintf(filled, sizeof filled, "%zu spheres fill %.2f %% of the volume", packing.spheres.size(),
+                100.0 * packing.filling_rate);
+  const double unit_volume = target.diagonal * target.diagonal * target.diagonal;
+  write_packing_table(in_file_frame(packing.spheres, target),
+                      {name + " by " + program.tool() + ": " + filled, arguments.unit,
+                       target.volume * unit_volume, arguments.density},
+                      arguments.output);
+  if (packing.interrupted) program.say("stopped by Ctrl-C: these are the spheres so far");
+  program.summary["spheres"] = packing.spheres.size();
+  program.summary["filling_rate"] = packing.filling_rate;
+  program.say(arguments.output + ": " + filled);
+}
+
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
   require_other_file(arguments.output, arguments.mesh);
@@ -149,6 +189,7 @@ void run(Program& program, Arguments& arguments) {
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
   const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
+  if (arguments.packing_only) return pack(program, arguments, target);
 
   TimeLimit limit(arguments.time_limit);
   const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {

@@ -53,7 +53,6 @@ void check_options(const ShapeFitOptions& options) {
 Packing pack(const TargetBody& target, const ShapeFitOptions& options, const Progress& progress) {
   PackingOptions packing;
   packing.max_spheres = std::max(1, static_cast<int>(kBaseShare * options.spheres));
-  packing.seed = options.seed;
   Packing result = pack_spheres(target.mesh, target.tree, packing, progress);
   if (result.spheres.empty()) throw InputError("no sphere fits inside the body; give a solid body");
   return result;

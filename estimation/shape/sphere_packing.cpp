@@ -3,32 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <queue>
 
+#include "estimation/shape/clearance_grid.h"
 #include "geometry/mesh_measure.h"
-#include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
 
-// Prototypes brought up to date together. Fixed, not the number of threads: it decides the order of events.
-constexpr std::size_t kBatch = 32;
+// Of the grid, inside the body: a cell is then small beside the spheres that are wanted.
+constexpr double kCellsPerSphere = 250.0;
+constexpr double kFewestCells = 50000.0;
 
-struct Prototype {
-  Vec3d position;
-  double clearance = 0.0;  // distance to the nearest obstacle when it last climbed
-  std::size_t known = 0;   // spheres that were placed then
-  std::int64_t index = 0;  // tells prototypes of equal clearance apart
-};
+// Width, in steps of the grid, of the bins that places are sorted into by clearance.
+constexpr double kBinSteps = 0.25;
 
-struct SmallerClearance {
-  bool operator()(const Prototype& a, const Prototype& b) const {
-    return a.clearance < b.clearance || (a.clearance == b.clearance && a.index > b.index);
-  }
-};
+// Climb from a cell's centre to the node nearby: the first step in steps of the grid, how it shrinks, and how
+// often.
+constexpr double kFirstClimb = 0.5;
+constexpr double kClimbDecay = 0.7;
+constexpr int kClimbs = 10;
 
-// Nearest obstacle seen from a point inside the body.
+// Nearest obstacle seen from a point.
 struct Obstacle {
   double distance;  // negative inside a placed sphere
   Vec3d away;       // unit direction that leads away from it
@@ -37,170 +32,146 @@ struct Obstacle {
 class Packer {
  public:
   Packer(const TriangleMesh& body, const SurfaceTree& tree, const PackingOptions& options)
-      : tree_(tree), options_(options), box_(body.bounds()), volume_(volume(body)) {}
+      : tree_(tree),
+        options_(options),
+        grid_(make_clearance_grid(body, tree, std::max(kFewestCells, kCellsPerSphere * options.max_spheres))),
+        bin_width_(kBinSteps * grid_.step),
+        smallest_(options.smallest_radius * body.bounds().diagonal()) {}
 
   Packing run(const Progress& progress) {
     Packing packing;
-    const double smallest = options_.smallest_radius * box_.diagonal();
-    sow();
-    int barren = 0;
-    while (spheres_.size() < static_cast<std::size_t>(options_.max_spheres)) {
-      if (!report(progress, static_cast<double>(spheres_.size()) / options_.max_spheres,
-                  std::to_string(spheres_.size()) + " spheres")) {
-        packing.interrupted = true;
-        break;
-      }
-      if (place_largest(smallest)) {
-        barren = 0;
-      } else if (++barren > 3) {
-        break;
-      } else {
-        sow();
-      }
+    sort_places();
+    while (!bins_.empty() && !full() && !packing.interrupted) {
+      packing.interrupted = !report(progress, static_cast<double>(spheres_.size()) / options_.max_spheres,
+                                    std::to_string(spheres_.size()) + " spheres");
+      empty_last_bin();
     }
     packing.spheres = std::move(spheres_);
     std::stable_sort(packing.spheres.begin(), packing.spheres.end(),
                      [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; });
-    for (const Sphere& s : packing.spheres)
-      packing.filling_rate += 4.0 / 3.0 * std::numbers::pi * std::pow(s.radius, 3);
-    packing.filling_rate /= volume_;
     return packing;
   }
 
  private:
-  Obstacle nearest_obstacle(const Vec3d& p) const {
-    const auto surface = tree_.closest(p);
-    Obstacle nearest{surface.distance, normalized(p - surface.point)};
+  struct Place {
+    float clearance;
+    std::uint32_t cell;
+  };
+
+  bool full() const { return spheres_.size() >= static_cast<std::size_t>(options_.max_spheres); }
+  std::size_t bin_of(float clearance) const { return static_cast<std::size_t>(clearance / bin_width_); }
+
+  void sort_places() {
+    float largest = 0.0f;
+    for (const float c : grid_.clearance) largest = std::max(largest, c);
+    bins_.resize(bin_of(largest) + 1);
+    for (std::size_t i = 0; i < grid_.clearance.size(); ++i) {
+      if (grid_.clearance[i] > 0.0f)
+        bins_[bin_of(grid_.clearance[i])].push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+
+  // Places spheres where clearances are still of the last bin, largest first; the other cells go where they
+  // belong by now.
+  void empty_last_bin() {
+    const std::vector<std::uint32_t> cells = std::move(bins_.back());
+    bins_.pop_back();
+    std::vector<Place> places;
+    for (const std::uint32_t cell : cells) places.push_back({grid_.clearance[cell], cell});
+    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+      return a.clearance > b.clearance || (a.clearance == b.clearance && a.cell < b.cell);
+    });
+    for (const Place& place : places) {
+      const float clearance = grid_.clearance[place.cell];
+      if (clearance <= 0.0f) continue;
+      const std::size_t bin = bin_of(clearance);
+      if (bin < bins_.size()) {
+        bins_[bin].push_back(place.cell);
+      } else if (full() || !place_sphere(place.cell)) {
+        grid_.clearance[place.cell] = 0.0f;
+      }
+    }
+  }
+
+  bool place_sphere(std::uint32_t cell) {
+    const Sphere sphere = climb(grid_.center(std::size_t{cell}), grid_.clearance[cell]);
+    if (sphere.radius < smallest_) return false;
+    spheres_.push_back(sphere);
+    lower_grid(sphere);
+    return true;
+  }
+
+  // To the node near p, whose clearance is about the one given: only placed spheres within twice of that can
+  // be nearest anywhere on the way.
+  Sphere climb(Vec3d p, double clearance) const {
+    const double reach = 2.0 * (clearance + 2.0 * grid_.step);
+    std::vector<Sphere> near;
     for (const Sphere& s : spheres_) {
-      const Vec3d d = p - s.center;
-      const double reach = nearest.distance + s.radius;
-      // Square roots only for the few that are nearer than the nearest so far.
-      if (reach <= 0.0 || squared_norm(d) >= reach * reach) continue;
-      nearest = {norm(d) - s.radius, normalized(d)};
+      const double limit = s.radius + reach;
+      if (squared_norm(s.center - p) < limit * limit) near.push_back(s);
+    }
+    Obstacle obstacle = nearest_obstacle(p, near);
+    Sphere best{p, obstacle.distance};
+    double step = kFirstClimb * grid_.step;
+    for (int i = 0; i < kClimbs && obstacle.distance > 0.0; ++i, step *= kClimbDecay) {
+      // Not out of the sphere of clearance, which holds no obstacle.
+      p += obstacle.away * std::min(step, obstacle.distance);
+      obstacle = nearest_obstacle(p, near);
+      if (obstacle.distance > best.radius) best = {p, obstacle.distance};
+    }
+    return best;
+  }
+
+  Obstacle nearest_obstacle(const Vec3d& p, const std::vector<Sphere>& near) const {
+    const ClosestPoint surface = tree_.closest(p);
+    Obstacle nearest{surface.distance, normalized(p - surface.point)};
+    for (const Sphere& s : near) {
+      const double distance = norm(p - s.center) - s.radius;
+      if (distance < nearest.distance) nearest = {distance, normalized(p - s.center)};
     }
     return nearest;
   }
 
-  // Algorithm 3. The step may not leave the sphere of clearance around p, which holds no obstacle.
-  void climb(Prototype& prototype) const {
-    Vec3d p = prototype.position;
-    Obstacle nearest = nearest_obstacle(p);
-    prototype.clearance = nearest.distance;
-    const double decay = std::pow(1e-3, 1.0 / options_.climb_steps);
-    double eps = 0.5;
-    for (int step = 0; step < options_.climb_steps && nearest.distance > 0.0; ++step, eps *= decay) {
-      p += nearest.away * (eps * nearest.distance);
-      nearest = nearest_obstacle(p);
-      if (nearest.distance > prototype.clearance) {
-        prototype.position = p;
-        prototype.clearance = nearest.distance;
+  // No clearance left exceeds the last bin's, so a sphere is felt no farther than that from its surface.
+  void lower_grid(const Sphere& sphere) {
+    const double reach = sphere.radius + bin_width_ * static_cast<double>(bins_.size() + 1);
+    const Vec3d center = (sphere.center - grid_.origin) * (1.0 / grid_.step);
+    const auto low = [&](double c) {
+      return std::max(0, static_cast<int>(std::ceil(c - reach / grid_.step)));
+    };
+    const auto high = [&](double c, int cells) {
+      return std::min(cells - 1, static_cast<int>(std::floor(c + reach / grid_.step)));
+    };
+    for (int z = low(center.z); z <= high(center.z, grid_.cells[2]); ++z) {
+      for (int y = low(center.y); y <= high(center.y, grid_.cells[1]); ++y) {
+        for (int x = low(center.x); x <= high(center.x, grid_.cells[0]); ++x) {
+          float& clearance = grid_.clearance[grid_.index(x, y, z)];
+          if (clearance <= 0.0f) continue;
+          const double distance = norm(grid_.center(x, y, z) - sphere.center) - sphere.radius;
+          clearance = std::min(clearance, static_cast<float>(distance));
+        }
       }
     }
-  }
-
-  // A new place in the free part of the body, from the prototype's own random stream, and the climb from
-  // there. Clearance 0 when none was found.
-  void start(Prototype& prototype) const {
-    constexpr int kAttempts = 64;
-    CounterRandom random(options_.seed, static_cast<std::uint64_t>(prototype.index) << 24 | spheres_.size());
-    prototype.clearance = 0.0;
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      prototype.position = random_point(random);
-      if (covered(prototype.position) || !inside(prototype.position)) continue;
-      climb(prototype);
-      return;
-    }
-  }
-
-  bool covered(const Vec3d& p) const {
-    return std::any_of(spheres_.begin(), spheres_.end(),
-                       [&](const Sphere& s) { return squared_norm(p - s.center) <= s.radius * s.radius; });
-  }
-
-  bool inside(const Vec3d& p) const { return tree_.signed_distance(p) > 0.0; }
-
-  // New prototypes, uniform in the free part of the body.
-  void sow() {
-    const std::int64_t count = std::int64_t{options_.max_spheres} * options_.prototypes_per_sphere;
-    std::vector<Prototype> sown(static_cast<std::size_t>(count));
-    parallel_for(
-        0, count,
-        [&](std::int64_t i) {
-          Prototype& prototype = sown[static_cast<std::size_t>(i)];
-          prototype.index = sown_ + i;
-          prototype.known = spheres_.size();
-          start(prototype);
-        },
-        16);
-    sown_ += count;
-    for (const Prototype& prototype : sown) queue_.push(prototype);
-  }
-
-  Vec3d random_point(CounterRandom& random) const {
-    const Vec3d e = box_.extent();
-    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    return box_.min + Vec3d{x * e.x, y * e.y, z * e.z};
-  }
-
-  // False when no prototype of at least the smallest radius is left.
-  bool place_largest(double smallest) {
-    while (!queue_.empty()) {
-      if (queue_.top().clearance < smallest) return false;
-      if (queue_.top().known == spheres_.size()) {
-        Prototype winner = queue_.top();
-        queue_.pop();
-        // Only winners are worth a second climb, which settles them in their node.
-        climb(winner);
-        spheres_.push_back({winner.position, winner.clearance});
-        return true;
-      }
-      update_head();
-    }
-    return false;
-  }
-
-  void update_head() {
-    std::vector<Prototype> head;
-    while (!queue_.empty() && head.size() < kBatch && queue_.top().known != spheres_.size()) {
-      head.push_back(queue_.top());
-      queue_.pop();
-    }
-    parallel_for(0, static_cast<std::int64_t>(head.size()), [&](std::int64_t i) {
-      Prototype& prototype = head[static_cast<std::size_t>(i)];
-      // Most prototypes share a few nodes: those whose node was taken start anew elsewhere.
-      if (covered(prototype.position)) {
-        start(prototype);
-      } else if (overtaken(prototype)) {
-        climb(prototype);
-      }
-      prototype.known = spheres_.size();
-    });
-    for (const Prototype& prototype : head) queue_.push(prototype);
-  }
-
-  // Does a sphere placed since overlap the prototype's own?
-  bool overtaken(const Prototype& prototype) const {
-    return std::any_of(spheres_.begin() + static_cast<std::ptrdiff_t>(prototype.known), spheres_.end(),
-                       [&](const Sphere& s) {
-                         const double reach = s.radius + prototype.clearance;
-                         return squared_norm(prototype.position - s.center) < reach * reach;
-                       });
   }
 
   const SurfaceTree& tree_;
   const PackingOptions& options_;
-  Box box_;
-  double volume_;
+  ClearanceGrid grid_;
+  double bin_width_;
+  double smallest_;
+  std::vector<std::vector<std::uint32_t>> bins_;  // cells by clearance
   std::vector<Sphere> spheres_;
-  std::int64_t sown_ = 0;
-  std::priority_queue<Prototype, std::vector<Prototype>, SmallerClearance> queue_;
 };
 
 }  // namespace
 
 Packing pack_spheres(const TriangleMesh& body, const SurfaceTree& tree, const PackingOptions& options,
                      const Progress& progress) {
-  return Packer(body, tree, options).run(progress);
+  Packing packing = Packer(body, tree, options).run(progress);
+  double filled = 0.0;
+  for (const Sphere& s : packing.spheres) filled += 4.0 / 3.0 * std::numbers::pi * std::pow(s.radius, 3);
+  packing.filling_rate = filled / volume(body);
+  return packing;
 }
 
 }  // namespace astrolith

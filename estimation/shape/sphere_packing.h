@@ -1,11 +1,10 @@
 // Greedy polydisperse packing of a closed body with spheres that lie inside and do not overlap, largest first
 // (thesis section 4.3.2, algorithm 3; Weller and Zachmann, "Protosphere", 2010).
 //
-// Prototypes, random points inside, climb to Voronoi nodes of the surface and the spheres placed so far: away
-// from the nearest of them, p += eps (p - q_c), with eps attenuated as they go. The prototype of largest
-// clearance becomes the next sphere. Departure from the paper: a prototype climbs again only when it reaches
-// the head of the queue with an overtaken clearance (clearances only shrink as spheres are placed), so that
-// most of them rest.
+// Where the paper lets random prototypes climb to the Voronoi nodes of the surface and the spheres placed so
+// far, a grid holds the clearance of every place (estimation/shape/clearance_grid.h). The place of largest
+// clearance climbs to its node by exact distances, away from the nearest obstacle with steps that grow
+// shorter; the sphere there is placed and the grid lowered around it. Nothing is random.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +19,7 @@ namespace astrolith {
 
 struct PackingOptions {
   int max_spheres = 200;          // > 0
-  int prototypes_per_sphere = 5;  // > 0
-  int climb_steps = 30;           // of one prototype, > 0
   double smallest_radius = 1e-4;  // as a fraction of the bounding-box diagonal, > 0
-  std::uint64_t seed = 1;
 };
 
 struct Packing {
@@ -33,7 +29,8 @@ struct Packing {
 };
 
 // `body` is closed with positive volume and `tree` was made of it. The result does not depend on the number
-// of threads. Fewer than max_spheres come back when none of smallest_radius fits any more.
+// of threads. Fewer than max_spheres come back when no place of smallest_radius is left, or none that the
+// grid can see: its cells are a seventh of the mean radius wide, for bodies in very large boxes wider.
 Packing pack_spheres(const TriangleMesh& body, const SurfaceTree& tree, const PackingOptions& options,
                      const Progress& progress = {});
 

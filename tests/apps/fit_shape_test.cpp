@@ -1,4 +1,5 @@
 // fit_shape, run as a user runs it.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "recipe/recipe_json.h"
@@ -71,6 +72,15 @@ TEST_F(FitShape, ARealBodyIsFittedClosely) {
   EXPECT_LT(summary["mean_distance"].get<double>(), 0.002);
   EXPECT_NEAR(summary["volume_ratio"].get<double>(), 1.0, 0.01);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "distance_map.png"));
+}
+
+TEST_F(FitShape, PackingOnlyWritesATableOfMascons) {
+  const std::string table = fit("egg.csv", {"--packing-only", "--density", "2000"});
+  EXPECT_NE(table.find("x,y,z,radius,mass\n"), std::string::npos);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3 + 12);
+  expect_refusal(folder_, kFitShape,
+                 {(folder_ / "egg.obj").string(), "-o", (folder_ / "no.json").string(), "--density", "2000"},
+                 "--packing-only");
 }
 
 TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {
