@@ -235,6 +235,9 @@ std::string sentence_for(const Gaussianity& g) {
 
 }  // namespace
 
+// False alarms at p <= 0.05 over 200 Gaussian textures (gaussianity_benchmark): 3.5 to 7 % of whole
+// periods, 5.5 to 6.5 % of squares cut out of white noise, but 18 % of 64 x 64 squares cut out of a smooth
+// texture, where the border is a large part of the square and the periodic component changes it.
 Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
   const GreyImage exemplar = decompose_periodic(central_square(image)).periodic;
   const FourierTransform fourier(exemplar.width, exemplar.height);

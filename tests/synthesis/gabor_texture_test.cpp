@@ -54,6 +54,23 @@ TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
   EXPECT_NEAR(m.excess_kurtosis, 0.0, 0.05);
 }
 
+// Every band alone at the default number of impulses, over several seeds.
+TEST(GaborTexture, EveryBandHasTheStatedDeviationAndIsGaussian) {
+  constexpr int kSeeds = 6;
+  for (int bandwidth = 1; bandwidth <= 4; ++bandwidth) {
+    const GaborLayer layer = layer_of({{bandwidth, 0.21, -0.13, 1.0}}, 0.5);
+    const int side = 64 << bandwidth;  // as many kernels whatever the band
+    double second = 0, fourth = 0;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const Moments m = moments(synthesize_texture(layer, side, side, {seed}));
+      second += m.variance / kSeeds;
+      fourth += (m.excess_kurtosis + 3.0) * m.variance * m.variance / kSeeds;
+    }
+    EXPECT_NEAR(std::sqrt(second) / 0.5, 1.0, 0.01) << bandwidth;
+    EXPECT_NEAR(fourth / (second * second) - 3.0, 0.0, 0.05) << bandwidth;
+  }
+}
+
 // The autocovariance of lobes is known in closed form: sum of variance exp(-pi a^2 r^2 / 2) cos(2 pi f.r).
 // Averaged over a large texture it must be that, at every lag: this is the spectrum, sign and axes included.
 TEST(GaborTexture, AutocovarianceIsTheLobes) {

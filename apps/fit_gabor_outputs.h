@@ -1,0 +1,27 @@
+// What fit_gabor writes beside the recipe.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "apps/program.h"
+#include "estimation/gabor/photo_fit.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+// The recipe's layers at unit variance and the exemplar's size, one for each channel.
+std::vector<std::vector<float>> synthesize_channels(const PhotoFit& photo, const Recipe& recipe,
+                                                    const Program& program);
+
+// Variance that the syntheses have, over the exemplar's, all channels together.
+double synthesized_variance_ratio(const PhotoFit& photo, const std::vector<std::vector<float>>& syntheses);
+
+// A figure for each channel; that of the first, in `folder` itself, shows the colours where there are some.
+void write_reports(const std::filesystem::path& image, const PhotoFit& photo,
+                   const std::vector<std::vector<float>>& syntheses, const std::filesystem::path& folder);
+
+// The fitted spectra: (height x width), or (channels x height x width) where there are several.
+void write_spectra(const PhotoFit& photo, const std::filesystem::path& file);
+
+}  // namespace astrolith
