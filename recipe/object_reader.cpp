@@ -76,6 +76,11 @@ void read_value(const json& value, const Place& place, std::uint64_t& out) {
   out = static_cast<std::uint64_t>(integral(value, place, 0.0, 0x1.0p53 - 1.0));
 }
 
+void read_value(const json& value, const Place& place, bool& out) {
+  if (!value.is_boolean()) fail_type(value, place, "true or false");
+  out = value.get<bool>();
+}
+
 void read_value(const json& value, const Place& place, std::string& out) {
   if (!value.is_string()) fail_type(value, place, "a string");
   out = value.get<std::string>();

@@ -17,6 +17,7 @@ namespace astrolith {
 void read_value(const nlohmann::json& value, const Place& place, double& out);
 void read_value(const nlohmann::json& value, const Place& place, int& out);
 void read_value(const nlohmann::json& value, const Place& place, std::uint64_t& out);
+void read_value(const nlohmann::json& value, const Place& place, bool& out);
 void read_value(const nlohmann::json& value, const Place& place, std::string& out);
 void read_value(const nlohmann::json& value, const Place& place, Vec3d& out);  // [x, y, z]
 void expect_array(const nlohmann::json& value, const Place& place);

@@ -112,7 +112,40 @@ struct GaborLayer {
   std::vector<GaborLobe> lobes;  // at least one
 };
 
-using Layer = std::variant<FractalLayer, GaborLayer>;
+// Locally controlled spot noise (thesis eq. 5.4 to 5.6): craters, or boulders when inverted.
+//   n(p) = -amplitude sum_j gain^j sum_l w_l K(lacunarity^j (p - p_l) / size),      j = 0 .. layers - 1
+//   K(q) = gaussian exp(-alpha q.q) + kappa exp(-beta (log(gamma q.q))^2) where q.V^-1 q <= sigma, else 0
+// with V diagonal. Impulses p_l lie in a lattice of cells, cell_size / lacunarity^j wide: a cell is occupied
+// with `probability`, and then holds a Poisson number of impulses, density_j on average, uniform within
+// `reach` cells of it. Weights w_l are uniform in [least_weight, 1]. On a surface the number of spots above a
+// size falls as the size to the power -exponent, by density_j = density * lacunarity^(j (exponent - 2)).
+struct SpotLayer {
+  std::string name;
+  double amplitude = 0.0;     // length units
+  bool inverted = false;      // without the minus
+  double size = 1.0;          // length units to a unit of q, > 0
+  double cell_size = 4.0;     // length units, > 0; no half axis of a spot exceeds kMaxSpotCells of it
+  double density = 1.0;       // [0, kMaxSpotDensity]; so is that of every j
+  double probability = 1.0;   // [0, 1]
+  double reach = 0.5;         // cells, [0, 1]
+  double least_weight = 0.5;  // [0, 1]
+  double gaussian = 1.0;      // weight of the first kernel
+  double alpha = 1.0;         // >= 0
+  double kappa = 0.0;         // weight of the second kernel, a ring
+  double beta = 10.0;         // >= 0; sharpness of the ring
+  double gamma = 1.0;         // > 0; the ring lies at |q| = gamma^(-1/2)
+  Vec3d variances{1, 1, 1};   // the diagonal of V, > 0
+  double sigma = 4.0;         // > 0
+  int layers = 1;             // 1 .. 12
+  double lacunarity = 2.0;    // (1, 16]
+  double gain = 0.5;          // [0, 4]
+  double exponent = 2.0;      // [0, 6]
+};
+
+inline constexpr double kMaxSpotDensity = 64.0;
+inline constexpr double kMaxSpotCells = 4.0;
+
+using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer>;
 
 // Where a recipe came from.
 struct Provenance {

@@ -143,7 +143,30 @@ void read_fields(ObjectReader& object, GaborLayer& out) {
   require_elements(object, "lobes", out.lobes, read_lobe);
 }
 
-constexpr const char* kLayerTypes = "\"simplex\", \"perlin\", \"worley\" and \"gabor\"";
+void read_fields(ObjectReader& object, SpotLayer& out) {
+  object.allow("name", out.name);
+  object.allow("amplitude", out.amplitude);
+  object.allow("inverted", out.inverted);
+  object.allow("size", out.size);
+  object.allow("cell_size", out.cell_size);
+  object.allow("density", out.density);
+  object.allow("probability", out.probability);
+  object.allow("reach", out.reach);
+  object.allow("least_weight", out.least_weight);
+  object.allow("gaussian", out.gaussian);
+  object.allow("alpha", out.alpha);
+  object.allow("kappa", out.kappa);
+  object.allow("beta", out.beta);
+  object.allow("gamma", out.gamma);
+  object.allow("variances", out.variances);
+  object.allow("sigma", out.sigma);
+  object.allow("layers", out.layers);
+  object.allow("lacunarity", out.lacunarity);
+  object.allow("gain", out.gain);
+  object.allow("exponent", out.exponent);
+}
+
+constexpr const char* kLayerTypes = "\"simplex\", \"perlin\", \"worley\", \"spots\" and \"gabor\"";
 
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
@@ -161,6 +184,8 @@ void read_layer(const json& value, const Place& place, Layer& out) {
     read_fractal(Noise::kPerlin);
   } else if (type == "worley") {
     read_fractal(Noise::kWorleyF1);
+  } else if (type == "spots") {
+    read_fields(object, out.emplace<SpotLayer>());
   } else if (type == "gabor") {
     read_fields(object, out.emplace<GaborLayer>());
   } else {

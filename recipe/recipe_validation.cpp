@@ -115,6 +115,51 @@ void check(const GaborLayer& layer, const Place& place) {
   for (std::size_t i = 0; i < layer.lobes.size(); ++i) check(layer.lobes[i], lobes.element(i));
 }
 
+// What bounds the number of impulses that one point needs.
+void check_spot_counts(const SpotLayer& layer, const Place& place) {
+  const Vec3d& v = layer.variances;
+  const double half_axis = layer.size * std::sqrt(layer.sigma * std::max({v.x, v.y, v.z}));
+  if (!(half_axis <= kMaxSpotCells * layer.cell_size)) {
+    place.field("cell_size")
+        .fail(fmt::format(
+            "a spot's half axis size * sqrt(sigma * variance) must be at most {:g} cells, is {:.3g}; "
+            "use larger cells or smaller spots",
+            kMaxSpotCells, half_axis / layer.cell_size));
+  }
+  const double finest =
+      layer.density * std::pow(layer.lacunarity, (layer.layers - 1) * (layer.exponent - 2.0));
+  if (!(std::max(layer.density, finest) <= kMaxSpotDensity)) {
+    place.field("density").fail(fmt::format(
+        "must be at most {:g} impulses a cell at every size, is {:.3g}; lower it, the exponent or the layers",
+        kMaxSpotDensity, std::max(layer.density, finest)));
+  }
+}
+
+void check(const SpotLayer& layer, const Place& place) {
+  expect_number(layer.amplitude, place.field("amplitude"));
+  expect_positive(layer.size, place.field("size"));
+  expect_positive(layer.cell_size, place.field("cell_size"));
+  expect_not_negative(layer.density, place.field("density"));
+  expect_range(layer.probability, place.field("probability"), 0.0, 1.0);
+  expect_range(layer.reach, place.field("reach"), 0.0, 1.0);
+  expect_range(layer.least_weight, place.field("least_weight"), 0.0, 1.0);
+  expect_range(layer.gaussian, place.field("gaussian"), -1e6, 1e6);
+  expect_range(layer.alpha, place.field("alpha"), 0.0, 1e6);
+  expect_range(layer.kappa, place.field("kappa"), -1e6, 1e6);
+  expect_range(layer.beta, place.field("beta"), 0.0, 1e6);
+  expect_range(layer.gamma, place.field("gamma"), 1e-6, 1e6);
+  const Place variances = place.field("variances");
+  expect_range(layer.variances.x, variances.field("x"), 1e-6, 1e6);
+  expect_range(layer.variances.y, variances.field("y"), 1e-6, 1e6);
+  expect_range(layer.variances.z, variances.field("z"), 1e-6, 1e6);
+  expect_range(layer.sigma, place.field("sigma"), 1e-6, 1e6);
+  expect_integer(layer.layers, place.field("layers"), 1, 12);
+  expect_above_one(layer.lacunarity, place.field("lacunarity"), 16.0);
+  expect_range(layer.gain, place.field("gain"), 0.0, 4.0);
+  expect_range(layer.exponent, place.field("exponent"), 0.0, 6.0);
+  check_spot_counts(layer, place);
+}
+
 template <typename T>
 void expect_sorted(const std::vector<std::pair<std::string, T>>& named, const Place& place) {
   for (std::size_t i = 1; i < named.size(); ++i) {

@@ -81,6 +81,30 @@ ordered_json to_json(const GaborLayer& layer) {
   return object;
 }
 
+ordered_json to_json(const SpotLayer& layer) {
+  return {{"type", "spots"},
+          {"name", layer.name},
+          {"amplitude", layer.amplitude},
+          {"inverted", layer.inverted},
+          {"size", layer.size},
+          {"cell_size", layer.cell_size},
+          {"density", layer.density},
+          {"probability", layer.probability},
+          {"reach", layer.reach},
+          {"least_weight", layer.least_weight},
+          {"gaussian", layer.gaussian},
+          {"alpha", layer.alpha},
+          {"kappa", layer.kappa},
+          {"beta", layer.beta},
+          {"gamma", layer.gamma},
+          {"variances", to_json(layer.variances)},
+          {"sigma", layer.sigma},
+          {"layers", layer.layers},
+          {"lacunarity", layer.lacunarity},
+          {"gain", layer.gain},
+          {"exponent", layer.exponent}};
+}
+
 template <typename T>
 ordered_json to_json(const std::vector<std::pair<std::string, T>>& named) {
   ordered_json object = ordered_json::object();

@@ -10,6 +10,7 @@ namespace {
 constexpr double kRoundingSlack = 1e-5;  // of heights and their sums, relative to their bound
 
 Interval bound_heights(const FractalNoise& noise, const Box& box) { return noise.bound_heights(box); }
+Interval bound_heights(const SpotNoise& noise, const Box& box) { return noise.bound_heights(box); }
 Interval bound_heights(const GaborSurfaceNoise& noise, const Box&) {
   return {-noise.height_bound(), noise.height_bound()};
 }

@@ -10,10 +10,11 @@
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/metaball_body.h"
+#include "synthesis/spot_noise.h"
 
 namespace astrolith {
 
-using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise>;
+using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise>;
 
 struct FieldModel {
   PreparedMetaballs metaballs;

@@ -50,6 +50,10 @@ void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
   noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
 }
 
+void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+}
+
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
   // `height` holds the gradient's length until the heights replace it.
   gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.metaballs.parameters.gradient_floor,
@@ -118,6 +122,8 @@ std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const FieldModel& 
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     if (const auto* fractal = std::get_if<FractalLayer>(&recipe.layers[i])) {
       layers.emplace_back(FractalNoise(*fractal, recipe.seed, static_cast<int>(i), domain));
+    } else if (const auto* spots = std::get_if<SpotLayer>(&recipe.layers[i])) {
+      layers.emplace_back(SpotNoise(*spots, recipe.seed, static_cast<int>(i), domain));
     } else if (const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i])) {
       // A layer of colour alone has no height.
       if (gabor->height_rms > 0.0) {

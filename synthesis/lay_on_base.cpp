@@ -27,6 +27,13 @@ Layer rescaled(FractalLayer layer, double ratio) {
   return layer;
 }
 
+Layer rescaled(SpotLayer layer, double ratio) {
+  layer.amplitude *= ratio;
+  layer.size *= ratio;
+  layer.cell_size *= ratio;
+  return layer;
+}
+
 Layer rescaled(GaborLayer layer, double ratio) {
   layer.pixel_size *= ratio;
   layer.height_rms *= ratio;

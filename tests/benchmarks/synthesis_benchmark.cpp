@@ -6,6 +6,7 @@
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_texture.h"
 #include "synthesis/implicit_field.h"
+#include "synthesis/spot_noise.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -29,7 +30,10 @@ void fractal(benchmark::State& state) {
   Box domain;
   domain.extend({-100, -100, -100});
   domain.extend({100, 100, 100});
-  const FractalNoise noise(testing::fractal_layer(1.0, 1.0, static_cast<int>(state.range(0))), 1, 0, domain);
+  FractalLayer layer = testing::fractal_layer(1.0, 1.0, static_cast<int>(state.range(1)));
+  layer.noise = static_cast<Noise>(state.range(0));
+  layer.gradient_modulation = 0.1 * static_cast<double>(state.range(2));
+  const FractalNoise noise(layer, 1, 0, domain);
   std::vector<float> height(kPoints);
   for (auto _ : state) {
     noise.evaluate(kPoints, row.x.data(), row.y.data(), row.z.data(), height.data());
@@ -37,7 +41,34 @@ void fractal(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * kPoints);
 }
-BENCHMARK(fractal)->ArgName("octaves")->Arg(1)->Arg(5);
+// Noise: 0 simplex, 1 Perlin, 2 to 4 Worley F1, F2 and F2-F1.
+BENCHMARK(fractal)
+    ->ArgNames({"noise", "octaves", "modulated"})
+    ->ArgsProduct({{0, 1, 2, 3, 4}, {1, 5}, {0}})
+    ->ArgsProduct({{0, 1}, {5}, {1}});
+
+// The block of a mesh at a tenth of a cell a step, craters of three sizes with rims.
+void spots(benchmark::State& state) {
+  SpotLayer layer;
+  layer.amplitude = 1.0;
+  layer.size = 0.3;
+  layer.cell_size = 1.0;
+  layer.kappa = -0.5;
+  layer.layers = 3;
+  const SpotNoise noise(layer, 1, 0, {{-100, -100, -100}, {100, 100, 100}});
+  std::vector<float> x, y, z, height(729);
+  for (int i = 0; i < 729; ++i) {
+    x.push_back(0.1f * static_cast<float>(i % 9));
+    y.push_back(0.1f * static_cast<float>(i / 9 % 9));
+    z.push_back(0.1f * static_cast<float>(i / 81));
+  }
+  for (auto _ : state) {
+    noise.evaluate(729, x.data(), y.data(), z.data(), height.data());
+    benchmark::DoNotOptimize(height.data());
+  }
+  state.SetItemsProcessed(state.iterations() * 729);
+}
+BENCHMARK(spots);
 
 void metaballs(benchmark::State& state) {
   const Row row;

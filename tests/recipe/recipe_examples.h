@@ -32,7 +32,9 @@ inline const std::string kCompleteRecipe = R"({
      "exemplar_mean": 0.4, "exemplar_rms": 0.1,
      "color": {"axis": [0.6, 0.8, 0], "mean": [0.5, 0.25, 0.1]}, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]},
     {"type": "worley", "amplitude": 0.03, "distance": "f2-f1", "warp": {"amplitude": 0.5, "frequency": 4}},
-    {"type": "perlin", "amplitude": -0.03}
+    {"type": "perlin", "amplitude": -0.03},
+    {"type": "spots", "inverted": true, "cell_size": 3, "size": 2, "sigma": 9, "variances": [1, 2, 1], "layers": 4,
+     "density": 2, "exponent": 3}
   ]
 }
 )";
@@ -100,7 +102,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
       {R"("gaussian")", R"("wyvill")", R"(body.kernel: must be "gaussian")"},
       {R"("simplex")", R"("value")",
-       R"(layers[0].type: must be one of "simplex", "perlin", "worley" and "gabor", is "value")"},
+       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots" and "gabor", is "value")"},
       {R"("simplex")", R"("worley")", R"(layers[0].gradient_modulation: unknown field)"},
       {R"("f2-f1")", R"("f3")", R"(layers[2].distance: must be "f1", "f2" or "f2-f1", is "f3")"},
       {R"("perlin", "amplitude")", R"("perlin", "distance")", R"(layers[3].distance: unknown field)"},
@@ -133,6 +135,12 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("lacunarity": 2.5)", R"("lacunarity": 0.5)", R"(body.warp.lacunarity: must be above 1)"},
       {R"("frequency": 4)", R"("frequency": -4)", R"(layers[2].warp.frequency: must be above 0)"},
       {R"("frequency": 4)", R"("frequenzy": 4)", R"(layers[2].warp.frequenzy: unknown field)"},
+      {R"("inverted": true)", R"("inverted": 1)", R"(layers[4].inverted: must be true or false, is 1)"},
+      {R"("density": 2)", R"("density": 1e9)", R"(layers[4].density: must be at most 64 impulses a cell)"},
+      {R"("exponent": 3)", R"("exponent": 6)", R"(layers[4].density: must be at most 64)", false},
+      {R"("size": 2)", R"("size": 20)", R"(layers[4].cell_size: a spot's half axis)", false},
+      {R"([1, 2, 1])", R"([1, 0, 1])", R"(layers[4].variances.y: must be from 1e-06)"},
+      {R"("layers": 4)", R"("layers": 13)", R"(layers[4].layers: must be an integer from 1 to 12, is 13)"},
       {R"(1.95)", R"(1)", R"(layers[0].lacunarity: must be above 1 and at most 16, is 1)"},
       {R"("pixel_size": 0.001)", R"("pixel_size": 0)",
        R"(layers[1].pixel_size: must be above 0 (from 1e-12)"},

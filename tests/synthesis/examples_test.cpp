@@ -1,10 +1,13 @@
-// Every example recipe says what it shows and becomes a closed manifold at any resolution.
+// Every example recipe says what it shows and becomes a closed manifold at any resolution; so do random
+// recipes.
+#include <cmath>
 #include <filesystem>
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/implicit_field.h"
 #include "synthesis/mesher.h"
+#include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
@@ -17,7 +20,7 @@ TEST(Examples, BecomeClosedManifolds) {
     EXPECT_FALSE(recipe.description.empty());
     EXPECT_EQ(recipe_to_json(parse_recipe(recipe_to_json(recipe), "r")), recipe_to_json(recipe));
     const ImplicitField field(recipe);
-    for (const int resolution : {17, 40, 71}) {
+    for (const int resolution : {17, 33, 52}) {
       MeshCollector collector;
       mesh_field(field, field.bounds(), resolution, collector);
       const MeshTopology topology = analyze_topology(collector.mesh);
@@ -27,6 +30,59 @@ TEST(Examples, BecomeClosedManifolds) {
     ++examples;
   }
   EXPECT_GE(examples, 5);
+}
+
+SpotLayer random_spots(CounterRandom& random) {
+  SpotLayer layer;
+  layer.amplitude = random.uniform(-0.1, 0.1);
+  layer.size = random.uniform(0.02, 0.15);
+  layer.cell_size = layer.size * random.uniform(2.5, 6.0);
+  layer.kappa = random.uniform(-1.0, 1.0);
+  layer.sigma = random.uniform(0.5, 5.0);
+  layer.layers = 1 + static_cast<int>(random.below(3));
+  return layer;
+}
+
+FractalLayer random_fractal(CounterRandom& random) {
+  FractalLayer layer = testing::fractal_layer(std::pow(10.0, random.uniform(-3, -0.8)), random.uniform(1, 12),
+                                              1 + static_cast<int>(random.below(6)));
+  layer.noise = static_cast<Noise>(random.below(5));
+  if (!is_worley(layer.noise)) layer.gradient_modulation = random.uniform(0.0, 0.5);
+  if (random.uniform() < 0.3) layer.warp = Warp{random.uniform(-0.2, 0.2), random.uniform(1, 5), 2, 0.5, 2.0};
+  return layer;
+}
+
+Recipe random_recipe(std::uint64_t seed) {
+  CounterRandom random(seed);
+  Recipe recipe =
+      testing::potato_recipe(1 + static_cast<int>(random.below(60)), seed, random.uniform(0.7, 12.0));
+  recipe.body->cutoff_radii = random.uniform(1.2, 5.0);
+  if (random.uniform() < 0.3) recipe.body->warp = Warp{random.uniform(-0.15, 0.15), random.uniform(1, 6), 2};
+  for (auto layers = random.below(4); layers > 0; --layers) {
+    if (random.uniform() < 0.3) {
+      recipe.layers.emplace_back(random_spots(random));
+    } else {
+      recipe.layers.emplace_back(random_fractal(random));
+    }
+  }
+  return recipe;
+}
+
+TEST(RandomRecipes, BecomeClosedManifolds) {
+  int meshes = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    const Recipe recipe = random_recipe(seed);
+    validate_recipe(recipe, "random");
+    const ImplicitField field(recipe);
+    if (field.bounds().empty()) continue;
+    MeshCollector collector;
+    mesh_field(field, field.bounds(), 12 + static_cast<int>(seed % 9), collector);
+    const MeshTopology topology = analyze_topology(collector.mesh);
+    ASSERT_TRUE(topology.closed && topology.manifold && topology.oriented);
+    meshes += !collector.mesh.triangles.empty();
+  }
+  EXPECT_GT(meshes, 150);
 }
 
 }  // namespace
