@@ -2,11 +2,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "geometry/mesh_io.h"
-#include "numerics/hash_random.h"
 #include "tests/apps/inputs.h"
+#include "tests/apps/labelled_shapes.h"
 #include "tests/apps/program_runner.h"
-#include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
@@ -18,42 +16,7 @@ using testing::WorkFolder;
 
 const std::string kClassify = ASTROLITH_CLASSIFY;
 
-// Stretched a little, and every vertex moved a little: no two of a class are alike.
-TriangleMesh varied(TriangleMesh mesh, std::uint64_t seed) {
-  CounterRandom random(seed);
-  const Vec3d stretch{random.uniform(0.9, 1.1), random.uniform(0.9, 1.1), random.uniform(0.9, 1.1)};
-  for (Vec3d& p : mesh.vertices) {
-    p = {p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};
-    p += 0.01 * Vec3d{random.normal(), random.normal(), random.normal()};
-  }
-  return mesh;
-}
-
-TriangleMesh shape_of(const std::string& kind) {
-  if (kind == "ball") return testing::icosphere(3);
-  if (kind == "ring") return testing::torus(1, 0.4, 24, 12);
-  TriangleMesh box = testing::cube(1.0);
-  for (int i = 0; i < 3; ++i) box = testing::subdivided(box);
-  return box;
-}
-
-// shapes/ball, shapes/box, shapes/ring with six meshes each, and one fresh mesh of each class.
-struct Shapes {
-  WorkFolder folder;
-  std::string all = (folder / "shapes").string();
-
-  Shapes() {
-    std::uint64_t seed = 0;
-    for (const std::string kind : {"ball", "box", "ring"}) {
-      fs::create_directories(folder / ("shapes/" + kind));
-      for (int i = 0; i < 6; ++i) {
-        write_mesh(varied(shape_of(kind), ++seed),
-                   folder / ("shapes/" + kind + "/" + std::to_string(i) + ".ply"), {});
-      }
-      write_mesh(varied(shape_of(kind), ++seed), folder / (kind + ".obj"), {});
-    }
-  }
-  std::string at(const std::string& name) const { return (folder / name).string(); }
+struct Shapes : testing::LabelledShapes {
   std::vector<std::string> train(const std::vector<std::string>& more = {"--features", "wahl"}) const {
     std::vector<std::string> arguments{"train", all,       "-o", at("model.yml"), "--points",
                                        "500",   "--trees", "40", "--folds",       "3"};

@@ -1,0 +1,52 @@
+// Balls, boxes and rings as mesh files, no two of a kind alike.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "geometry/mesh_io.h"
+#include "numerics/hash_random.h"
+#include "tests/apps/program_runner.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith::testing {
+
+// Stretched a little, and every vertex moved a little.
+inline TriangleMesh varied(TriangleMesh mesh, std::uint64_t seed) {
+  CounterRandom random(seed);
+  const Vec3d stretch{random.uniform(0.9, 1.1), random.uniform(0.9, 1.1), random.uniform(0.9, 1.1)};
+  for (Vec3d& p : mesh.vertices) {
+    p = {p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};
+    p += 0.01 * Vec3d{random.normal(), random.normal(), random.normal()};
+  }
+  return mesh;
+}
+
+inline TriangleMesh shape_of(const std::string& kind) {
+  if (kind == "ball") return icosphere(3);
+  if (kind == "ring") return torus(1, 0.4, 24, 12);
+  TriangleMesh box = cube(1.0);
+  for (int i = 0; i < 3; ++i) box = subdivided(box);
+  return box;
+}
+
+// Six meshes each in shapes/ball, shapes/box and shapes/ring, and one fresh mesh of each class.
+struct LabelledShapes {
+  WorkFolder folder;
+  std::string all = (folder / "shapes").string();
+
+  LabelledShapes() {
+    std::uint64_t seed = 0;
+    for (const std::string kind : {"ball", "box", "ring"}) {
+      std::filesystem::create_directories(folder / ("shapes/" + kind));
+      for (int i = 0; i < 6; ++i) {
+        write_mesh(varied(shape_of(kind), ++seed),
+                   folder / ("shapes/" + kind + "/" + std::to_string(i) + ".ply"), {});
+      }
+      write_mesh(varied(shape_of(kind), ++seed), folder / (kind + ".obj"), {});
+    }
+  }
+  std::string at(const std::string& name) const { return (folder / name).string(); }
+};
+
+}  // namespace astrolith::testing
