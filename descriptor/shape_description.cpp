@@ -16,8 +16,9 @@ namespace astrolith {
 namespace {
 
 // Of the root mean square distance from the centre: craters and boulders of this size shape kappa, smaller
-// ones are averaged. A smaller radius tells bodies better apart and a body from its own coarser mesh too; this
-// one is two edges of a mesh of 3,000 triangles, so that most meshes of a body give nearly the same kappa.
+// ones are averaged. A smaller radius tells bodies better apart and a body from its own coarser mesh too;
+// this one is two edges of a mesh of 3,000 triangles, so that most meshes of a body give nearly the same
+// kappa.
 constexpr double kCurvatureRadius = 0.2;
 
 void check(const DescriptionOptions& options) {
