@@ -28,8 +28,9 @@ ASTROLITH_KERNEL float one_to_two(std::uint32_t bits) {
   return math::float_of(static_cast<std::int32_t>((bits & 0x007fffffu) | 0x3f800000u));
 }
 
-// Squared distance to a cell's feature point; (x, y, z) is the point seen from where a coordinate of 0 to 1
-// in steps of the jitter would begin if it were 1 less.
+// Squared distance to a cell's feature point, which lies at jitter (m - 3/2) + 1/2 in the cell, m in [1, 2)^3
+// by its hash; (x, y, z) is the point in that cell plus 3/2 jitter - 1/2, so that one fma makes each
+// difference.
 ASTROLITH_KERNEL float feature_distance(std::uint32_t cell, float x, float y, float z) {
   std::uint32_t h = short_lattice_hash(cell);
   h ^= h >> 15;
@@ -44,7 +45,6 @@ ASTROLITH_KERNEL float feature_distance(std::uint32_t cell, float x, float y, fl
 template <bool kSecond>
 ASTROLITH_KERNEL WorleyDistances worley_distances(float x, float y, float z, std::uint32_t seed) {
   const float i = math::floor(x), j = math::floor(y), k = math::floor(z);
-  // A feature point's coordinate is 1/2 + jitter (m - 3/2) for m in [1, 2).
   constexpr float kOffset = 1.5f * kWorleyJitter - 0.5f;
   const float fx = x - i + kOffset, fy = y - j + kOffset, fz = z - k + kOffset;
   const std::uint32_t cell = lattice_point(i, j, k, seed);
