@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "estimation/gabor/lobe_refinement.h"
 #include "estimation/gabor/lobe_selection.h"
 #include "estimation/gabor/spectrum_distance.h"
 #include "numerics/errors.h"
@@ -39,7 +40,7 @@ double mean_of(const GreyImage& image) {
 std::vector<double> row_weights(const PowerSpectrum& estimate, SpectrumTarget target) {
   std::vector<double> weight(estimate.power.size(), 1.0);
   if (target == SpectrumTarget::kSmoothed) {
-    const double floor = 1e-6 * estimate.variance();
+    const double floor = 1e-4 * estimate.variance();
     for (std::size_t i = 1; i < weight.size(); ++i) weight[i] = 1.0 / std::sqrt(estimate.power[i] + floor);
   }
   weight[0] = 0.0;
@@ -97,17 +98,21 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
   require_texture(exemplar, name);
   GaborFit fit;
   fit.exemplar_mean = mean_of(exemplar);
-  fit.periodogram = exemplar_periodogram(exemplar, options.largest_side);
+  const Borders borders =
+      options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
+  fit.periodogram = exemplar_periodogram(exemplar, options.largest_side, borders);
   fit.exemplar_rms = std::sqrt(fit.periodogram.variance());
   if (!(fit.exemplar_rms > kSmallestContrast))
     throw InputError(name +
                      ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
   fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram)
-                                                             : SpectrumEstimate{fit.periodogram, {}};
+                                                             : SpectrumEstimate{fit.periodogram, {}, 0.0};
   std::vector<SpectralLobe> lobes = pursue(fit, options, progress);
   fit.pursuit_lobes = static_cast<int>(lobes.size());
-  lobes = select_lobes(std::move(lobes), fit.estimate.spectrum,
-                       row_weights(fit.estimate.spectrum, options.target), options.max_lobes);
+  const std::vector<double> weight = row_weights(fit.estimate.spectrum, options.target);
+  lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
+  if (options.target == SpectrumTarget::kSmoothed)
+    lobes = fewest_lobes(std::move(lobes), fit.estimate, weight);
   if (lobes.empty()) throw WorkError(name + ": no lobe was found; try a smaller penalty");
   fit.lobes = to_layer_lobes(lobes, fit);
   fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);

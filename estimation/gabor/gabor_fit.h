@@ -14,9 +14,9 @@
 namespace astrolith {
 
 enum class SpectrumTarget {
-  kSmoothed,     // cross-validated estimate, weighted so that errors count as optimal-transport distance
-  kPeriodogram,  // the single raw periodogram with equal weights, as in the paper: fits the exemplar's
-                 // speckle
+  kSmoothed,     // smooth estimate, weighted so that errors count as optimal-transport distance
+  kPeriodogram,  // the single raw periodogram of the periodic component with equal weights, as in the paper:
+                 // fits the exemplar's speckle
 };
 enum class PursuitSolver { kWorkingSet, kFista };
 
@@ -24,7 +24,7 @@ struct GaborFitOptions {
   SpectrumTarget target = SpectrumTarget::kSmoothed;
   PursuitSolver solver = PursuitSolver::kWorkingSet;
   int max_lobes = 80;           // >= 1
-  double penalty_ratio = 0.03;  // penalty over the largest useful one, (0, 1)
+  double penalty_ratio = 0.01;  // penalty over the largest useful one, (0, 1)
   double relative_gap = 1e-4;   // certified at the end of the pursuit
   int largest_side = 1024;      // larger exemplars are averaged over tiles of this side
 };
@@ -32,7 +32,7 @@ struct GaborFitOptions {
 struct GaborFit {
   std::vector<GaborLobe> lobes;  // variances sum to exemplar_rms^2
   double exemplar_mean = 0.0;
-  double exemplar_rms = 0.0;             // of the periodic component
+  double exemplar_rms = 0.0;             // square root of the periodogram's variance
   PowerSpectrum periodogram;             // of the exemplar
   SpectrumEstimate estimate;             // what was fitted
   PowerSpectrum fitted;                  // of the lobes, on the same grid

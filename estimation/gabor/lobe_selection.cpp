@@ -124,6 +124,7 @@ std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std:
 
 std::vector<SpectralLobe> select_lobes(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
                                        const std::vector<double>& weight, int max_lobes) {
+  if (lobes.empty()) return lobes;
   HeightFit fit = set_up(std::move(lobes), spectrum, weight);
   fit.solve_and_drop_zeros();
   if (fit.x.size() > max_lobes) {

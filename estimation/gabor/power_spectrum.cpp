@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 
+#include "estimation/gabor/border_taper.h"
 #include "estimation/gabor/fourier_transform.h"
 #include "estimation/gabor/periodic_component.h"
 
@@ -26,6 +27,14 @@ GreyImage cut(const GreyImage& image, int x0, int y0, int width, int height) {
     for (int x = x0; x < x0 + width; ++x) tile.values.push_back(image.at(x, y));
   }
   return tile;
+}
+
+PowerSpectrum periodogram_of(const GreyImage& image, Borders borders) {
+  if (borders == Borders::kPeriodicComponent) return power_spectrum(decompose_periodic(image).periodic);
+  const TaperedImage tapered = taper_borders(image);
+  PowerSpectrum spectrum = power_spectrum(tapered.image);
+  spectrum.averages = tapered.looks;
+  return spectrum;
 }
 
 }  // namespace
@@ -58,19 +67,18 @@ PowerSpectrum power_spectrum(const GreyImage& image) {
   return spectrum;
 }
 
-PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side) {
+PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Borders borders) {
   const int tile_width = std::min(image.width, largest_side);
   const int tile_height = std::min(image.height, largest_side);
   const std::vector<int> xs = tile_starts(image.width, tile_width);
   const std::vector<int> ys = tile_starts(image.height, tile_height);
-  if (xs.size() * ys.size() == 1) return power_spectrum(decompose_periodic(image).periodic);
+  if (xs.size() * ys.size() == 1) return periodogram_of(image, borders);
 
   PowerSpectrum mean{tile_width, tile_height, {}};
   mean.power.assign(static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height), 0.0);
   for (const int y : ys) {
     for (const int x : xs) {
-      const GreyImage tile = cut(image, x, y, tile_width, tile_height);
-      const PowerSpectrum one = power_spectrum(decompose_periodic(tile).periodic);
+      const PowerSpectrum one = periodogram_of(cut(image, x, y, tile_width, tile_height), borders);
       for (std::size_t i = 0; i < mean.power.size(); ++i) mean.power[i] += one.power[i];
     }
   }

@@ -23,10 +23,16 @@ struct PowerSpectrum {
 // |DFT|^2 / (width * height) of the image as it is, its mean removed.
 PowerSpectrum power_spectrum(const GreyImage& image);
 
-// The periodogram from which an exemplar is fitted: of the periodic component, mean removed. An image with a
-// side above `largest_side` is cut into half-overlapping tiles of at most that side, whose periodograms are
-// averaged (Welch 1967): less speckle and bounded memory, at the price of the frequencies below one cycle a
-// tile.
-PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side = 1024);
+// What is done about borders that do not match.
+enum class Borders {
+  kTaper,              // fade them out; leave an exemplar that tiles as it is (see border_taper.h)
+  kPeriodicComponent,  // take Moisan's periodic component, as in Galerne et al. 2012
+};
+
+// The periodogram from which an exemplar is fitted, mean removed. An image with a side above `largest_side`
+// is cut into half-overlapping tiles of at most that side, whose periodograms are averaged (Welch 1967): less
+// speckle and bounded memory, at the price of the frequencies below one cycle a tile.
+PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side = 1024,
+                                   Borders borders = Borders::kTaper);
 
 }  // namespace astrolith

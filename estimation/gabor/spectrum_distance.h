@@ -13,4 +13,8 @@ double optimal_transport_distance(const PowerSpectrum& a, const PowerSpectrum& t
 // |a - truth| / |truth|: ruled by the peaks.
 double relative_l2_distance(const PowerSpectrum& a, const PowerSpectrum& truth);
 
+// Root mean square of ln(a / truth) over the frequencies where the truth is at least 1e-3 of its mean; what
+// is below counts for nothing in a texture, and neither does a below 1e-6 of that mean.
+double log_spectral_distance(const PowerSpectrum& a, const PowerSpectrum& truth);
+
 }  // namespace astrolith

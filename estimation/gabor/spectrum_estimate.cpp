@@ -2,145 +2,103 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimation/gabor/fourier_transform.h"
-#include "estimation/gabor/gabor_dictionary.h"
-#include "numerics/parallel_for.h"
+#include "estimation/gabor/log_spectrum_spline.h"
 
 namespace astrolith {
 namespace {
 
-// Kernel deviations tried, in bins, a factor of sqrt(2) apart.
-constexpr double kDeviations[] = {0.5, 0.7071, 1.0, 1.4142, 2.0, 2.8284, 4.0, 5.6569, 8.0, 11.314};
-constexpr std::size_t kKernels = std::size(kDeviations);
-
 double bins_per_cycle(const PowerSpectrum& s) { return std::sqrt(static_cast<double>(s.width) * s.height); }
 
-// |f| of every grid point in bins, row-major.
-std::vector<double> radii(const PowerSpectrum& s) {
-  std::vector<double> radius;
-  radius.reserve(s.power.size());
+// log2 |f| of every grid point but frequency 0, |f| in bins and at least one.
+std::vector<double> octave_positions(const PowerSpectrum& s) {
+  std::vector<double> positions;
+  positions.reserve(s.power.size());
   for (int y = 0; y < s.height; ++y) {
     const double fy = static_cast<double>(signed_frequency(y, s.height)) / s.height;
     for (int x = 0; x < s.width; ++x) {
       const double fx = static_cast<double>(signed_frequency(x, s.width)) / s.width;
-      radius.push_back(std::hypot(fx, fy) * bins_per_cycle(s));
+      positions.push_back(std::log2(std::max(1.0, std::hypot(fx, fy) * bins_per_cycle(s))));
     }
   }
-  return radius;
+  return positions;
 }
 
-// A periodic Gaussian kernel with unit sum, and what smoothing with it gives.
-struct SmoothedGrid {
-  std::vector<double> kernel_x, kernel_y;
-  std::vector<double> values;   // kernel * data / kernel * mask
-  std::vector<double> support;  // kernel * mask: the share of the kernel that saw data
-};
-
-std::vector<double> unit_kernel(int n, double deviation) {
-  std::vector<double> kernel = periodic_gaussian(n, 0.0, deviation);
-  double sum = 0.0;
-  for (const double k : kernel) sum += k;
-  for (double& k : kernel) k /= sum;
-  return kernel;
+// A factor of sqrt(2) apart, from no smoothing to an eighth of the distance to the Nyquist frequency.
+std::vector<double> widths_tried(const PowerSpectrum& s) {
+  std::vector<double> widths;
+  for (double w = 0.6; w <= std::max(2.0, bins_per_cycle(s) / 16.0); w *= std::sqrt(2.0)) widths.push_back(w);
+  return widths;
 }
 
-SmoothedGrid smooth(const PowerSpectrum& data, const FourierTransform& fourier, double deviation_bins) {
-  SmoothedGrid result;
-  const double deviation = deviation_bins / bins_per_cycle(data);
-  result.kernel_x = unit_kernel(data.width, deviation * data.width);
-  result.kernel_y = unit_kernel(data.height, deviation * data.height);
-  std::vector<double> grid(data.power.size());
-  const auto w = static_cast<std::size_t>(data.width);
-  for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = result.kernel_x[i % w] * result.kernel_y[i / w];
-  std::vector<std::complex<double>> kernel(fourier.half_size());
-  std::vector<std::complex<double>> half(fourier.half_size());
-  fourier.forward(grid, kernel);
-  grid = data.power;
-  grid[0] = 0.0;
-  fourier.forward(grid, half);
-  for (std::size_t i = 0; i < half.size(); ++i) half[i] *= kernel[i];
-  result.values.resize(grid.size());
-  fourier.inverse(half, result.values);
-  // The mask is one everywhere but at frequency 0, so its smoothing is known.
-  result.support.resize(grid.size());
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    result.support[i] = 1.0 - result.kernel_x[i % w] * result.kernel_y[i / w];
-    // Transforms round: a sum of non-negative numbers must stay so.
-    result.values[i] = std::max(0.0, result.values[i]) / std::max(result.support[i], 1e-12);
-  }
-  return result;
-}
-
-// Whittle's score of every bin under the prediction from all bins but itself and its mirror image, which
-// holds the same number, summed by octave of |f|.
-std::vector<double> octave_scores(const PowerSpectrum& data, const SmoothedGrid& smoothed,
-                                  const std::vector<double>& radius, double floor) {
+std::vector<double> octave_scores(const PowerSpectrum& data, const std::vector<double>& g, double parameters,
+                                  const std::vector<double>& positions) {
   std::vector<double> scores;
-  const auto w = static_cast<std::size_t>(data.width);
-  const auto h = static_cast<std::size_t>(data.height);
-  for (std::size_t i = 1; i < data.power.size(); ++i) {
-    const std::size_t x = i % w;
-    const std::size_t y = i / w;
-    const bool own_mirror = (w - x) % w == x && (h - y) % h == y;
-    const double self = smoothed.kernel_x[0] * smoothed.kernel_y[0] +
-                        (own_mirror ? 0.0 : smoothed.kernel_x[2 * x % w] * smoothed.kernel_y[2 * y % h]);
-    const double others = smoothed.support[i] - self;
-    double predicted = std::numeric_limits<double>::infinity();
-    if (others > 1e-9) {
-      predicted = (smoothed.values[i] * smoothed.support[i] - self * data.power[i]) / others;
-    }
-    predicted = std::max(predicted, floor);
-    const auto octave = static_cast<std::size_t>(std::max(0.0, std::floor(std::log2(radius[i]))));
+  for (std::size_t i = 1; i < g.size(); ++i) {
+    const auto octave = static_cast<std::size_t>(positions[i]);
     if (scores.size() <= octave) scores.resize(octave + 1, 0.0);
-    scores[octave] += std::log(predicted) + data.power[i] / predicted;
+    scores[octave] += data.averages * (g[i] + data.power[i] * std::exp(-g[i])) + parameters;
   }
   return scores;
 }
 
-// Position of a radius among octave centres, for linear interpolation: octave o is centred at 2^(o + 1/2).
-double octave_position(double radius, std::size_t octaves) {
-  return std::clamp(std::log2(std::max(radius, 1e-9)) - 0.5, 0.0, static_cast<double>(octaves - 1));
+// Mean of g(f) and g(-f), which differ by rounding only, unless nearly all bins are empty.
+std::vector<double> symmetrised(const std::vector<double>& g, const PowerSpectrum& grid) {
+  std::vector<double> mean(g.size());
+  const auto w = static_cast<std::size_t>(grid.width);
+  const auto h = static_cast<std::size_t>(grid.height);
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    mean[i] = 0.5 * (g[i] + g[(h - i / w) % h * w + (w - i % w) % w]);
+  }
+  return mean;
 }
 
 }  // namespace
 
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram) {
-  const FourierTransform fourier(periodogram.width, periodogram.height);
-  const std::vector<double> radius = radii(periodogram);
-  const double floor = 1e-12 * periodogram.variance();
-  std::vector<SmoothedGrid> smoothed(kKernels);
-  std::vector<std::vector<double>> scores(kKernels);
-  parallel_for(0, static_cast<std::int64_t>(kKernels), [&](std::int64_t k) {
-    const auto i = static_cast<std::size_t>(k);
-    smoothed[i] = smooth(periodogram, fourier, kDeviations[i]);
-    scores[i] = octave_scores(periodogram, smoothed[i], radius, floor);
-  });
+  const LogSpectrumSpline spline(periodogram);
+  const std::vector<double> positions = octave_positions(periodogram);
+  const std::vector<double> widths = widths_tried(periodogram);
+  std::vector<std::vector<double>> logs;
+  std::vector<std::vector<double>> scores;
+  std::vector<LogSpectrumSpline::Freedom> freedom;
+  for (const double w : widths) {
+    logs.push_back(
+        symmetrised(spline.fit(w, logs.empty() ? std::vector<double>{} : logs.back()), periodogram));
+    freedom.push_back(spline.freedom(w));
+    scores.push_back(octave_scores(periodogram, logs.back(), freedom.back().parameters, positions));
+  }
 
-  SpectrumEstimate estimate{periodogram, {}};
-  std::vector<double> choice;  // index into kDeviations by octave
+  SpectrumEstimate estimate{periodogram, {}, 0.0};
+  std::vector<double> choice;  // index into widths by octave
   for (std::size_t octave = 0; octave < scores[0].size(); ++octave) {
     std::size_t best = 0;
-    for (std::size_t k = 1; k < kKernels; ++k) {
+    for (std::size_t k = 1; k < widths.size(); ++k) {
       if (scores[k][octave] < scores[best][octave]) best = k;
     }
     choice.push_back(static_cast<double>(best));
     estimate.smoothing.push_back(
-        {std::exp2(static_cast<double>(octave) + 0.5) / bins_per_cycle(periodogram), kDeviations[best]});
+        {std::exp2(static_cast<double>(octave) + 0.5) / bins_per_cycle(periodogram), widths[best]});
   }
+  const double floor = 1e-12 * periodogram.variance();
+  const auto last = static_cast<double>(choice.size() - 1);
+  double error = 0.0;
   for (std::size_t i = 1; i < periodogram.power.size(); ++i) {
-    const double position = octave_position(radius[i], choice.size());
+    // Octave o is centred at o + 1/2.
+    const double position = std::clamp(positions[i] - 0.5, 0.0, last);
     const auto lower = static_cast<std::size_t>(position);
     const std::size_t upper = std::min(lower + 1, choice.size() - 1);
-    const double kernel = std::lerp(choice[lower], choice[upper], position - static_cast<double>(lower));
-    const auto narrow = static_cast<std::size_t>(kernel);
-    const std::size_t wide = std::min(narrow + 1, kKernels - 1);
-    estimate.spectrum.power[i] =
-        std::max(floor, std::lerp(smoothed[narrow].values[i], smoothed[wide].values[i],
-                                  kernel - static_cast<double>(narrow)));
+    const double k = std::lerp(choice[lower], choice[upper], position - static_cast<double>(lower));
+    const auto rough = static_cast<std::size_t>(k);
+    const std::size_t smooth = std::min(rough + 1, widths.size() - 1);
+    const double g = std::lerp(logs[rough][i], logs[smooth][i], k - static_cast<double>(rough));
+    estimate.spectrum.power[i] = std::max(floor, std::exp(g));
+    error += estimate.spectrum.power[i] * freedom[rough].variance / 4.0;
   }
   estimate.spectrum.power[0] = 0.0;
+  estimate.standard_error =
+      std::sqrt(error / (estimate.spectrum.variance() * static_cast<double>(periodogram.power.size())));
   const double gain = periodogram.variance() / estimate.spectrum.variance();
   for (double& p : estimate.spectrum.power) p *= gain;
   return estimate;

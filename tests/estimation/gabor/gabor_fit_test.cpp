@@ -18,7 +18,8 @@ double total_variance(const std::vector<GaborLobe>& lobes) {
   return sum;
 }
 
-// The reference estimator of Galerne et al. is 0.284 away at its best, texton noise 0.193.
+// The reference estimator of Galerne et al. is 0.284 away at its best, texton noise 0.193, the best of
+// smoothed periodograms 0.136.
 TEST(GaborFit, RecoversAKnownSpectrumFromOneRealisation) {
   const PowerSpectrum truth = testing::four_lobe_spectrum();
   constexpr int kSeeds = 4;
@@ -31,7 +32,7 @@ TEST(GaborFit, RecoversAKnownSpectrumFromOneRealisation) {
     for (const GapSample& sample : fit.pursuit.history) EXPECT_GE(sample.relative_gap, 0.0);
     distance += optimal_transport_distance(fit.fitted, truth) / kSeeds;
   }
-  EXPECT_LT(distance, 0.15);
+  EXPECT_LT(distance, 0.10);
 }
 
 TEST(GaborFit, KeepsTheVarianceOfTheExemplar) {
@@ -76,7 +77,8 @@ TEST(GaborFit, BothSolversFindTheSameSpectrum) {
   options.solver = PursuitSolver::kFista;
   const GaborFit b = fit_gabor_lobes(small, "small", options);
   EXPECT_NEAR(a.pursuit.primal, b.pursuit.primal, 2e-5 * a.pursuit.primal);
-  EXPECT_LT(optimal_transport_distance(a.fitted, b.fitted), 0.02);
+  // Far nearer to each other than either can be to the truth.
+  EXPECT_LT(optimal_transport_distance(a.fitted, b.fitted), 0.2 * a.estimate.standard_error);
 }
 
 TEST(GaborFit, ThreadsDoNotChangeABit) {

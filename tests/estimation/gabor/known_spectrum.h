@@ -1,12 +1,15 @@
-// A spectrum that is known, and realisations of it.
+// Spectra that are known, and realisations of them.
 #pragma once
 
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "estimation/gabor/fourier_transform.h"
 #include "estimation/gabor/grey_image.h"
+#include "estimation/gabor/lobe_selection.h"
 #include "estimation/gabor/power_spectrum.h"
 #include "numerics/hash_random.h"
 
@@ -26,25 +29,86 @@ inline double gaussian_pair(double fx, double fy, double cx, double cy, double s
   return weight * sum;
 }
 
-// Three oblique lobes and a broad floor on a 128 x 128 grid, unit variance.
-inline PowerSpectrum four_lobe_spectrum() {
+// A function of integer frequencies on a 128 x 128 grid, zero at frequency 0 and in the Nyquist row and
+// column, unit variance.
+inline PowerSpectrum spectrum_from(const std::function<double(double fx, double fy)>& power) {
   constexpr int n = 128;
   PowerSpectrum s{n, n, {}};
   for (int y = 0; y < n; ++y) {
     for (int x = 0; x < n; ++x) {
-      const double fx = signed_frequency(x, n);
-      const double fy = signed_frequency(y, n);
       const bool empty = (x == 0 && y == 0) || x == n / 2 || y == n / 2;
-      s.power.push_back(empty ? 0.0
-                              : gaussian_pair(fx, fy, 12, 5, 2, 5, 0.4, 1.0) +
-                                    gaussian_pair(fx, fy, 0, 25, 4, 3, 0.0, 0.35) +
-                                    gaussian_pair(fx, fy, 30, -10, 8, 4, -0.6, 0.08) +
-                                    0.02 * std::exp(-(fx * fx + fy * fy) / 1250.0));
+      s.power.push_back(empty ? 0.0 : power(signed_frequency(x, n), signed_frequency(y, n)));
     }
   }
   const double variance = s.variance();
   for (double& p : s.power) p /= variance;
   return s;
+}
+
+// Three oblique lobes and a broad floor.
+inline PowerSpectrum four_lobe_spectrum() {
+  return spectrum_from([](double fx, double fy) {
+    return gaussian_pair(fx, fy, 12, 5, 2, 5, 0.4, 1.0) + gaussian_pair(fx, fy, 0, 25, 4, 3, 0.0, 0.35) +
+           gaussian_pair(fx, fy, 30, -10, 8, 4, -0.6, 0.08) + 0.02 * std::exp(-(fx * fx + fy * fy) / 1250.0);
+  });
+}
+
+// Grains of one size, in no direction.
+inline double ring_power(double fx, double fy) {
+  const double r = std::hypot(fx, fy);
+  return std::exp(-(r - 20) * (r - 20) / 18) + 0.02 * std::exp(-r * r / 1250.0);
+}
+inline PowerSpectrum ring_spectrum() { return spectrum_from(ring_power); }
+
+// A height map: 1 / f^3 from two cycles an image on.
+inline PowerSpectrum steep_spectrum() {
+  return spectrum_from([](double fx, double fy) { return std::pow(1.0 + (fx * fx + fy * fy) / 4.0, -1.5); });
+}
+
+// Two long and narrow ridges, as of fibres or layers.
+inline PowerSpectrum line_spectrum() {
+  return spectrum_from([](double fx, double fy) {
+    return gaussian_pair(fx, fy, 18, 6, 1.2, 12, 0.3, 1.0) +
+           gaussian_pair(fx, fy, -10, 22, 10, 1.2, 0.3, 0.5) + 0.01 * std::exp(-(fx * fx + fy * fy) / 1800.0);
+  });
+}
+
+// A broad oblique hill and a patch near the Nyquist corner.
+inline PowerSpectrum broad_spectrum() {
+  return spectrum_from([](double fx, double fy) {
+    return gaussian_pair(fx, fy, 0, 0, 24, 8, 0.7, 0.5) + gaussian_pair(fx, fy, 45, 30, 4, 4, 0.0, 0.3) +
+           0.003;
+  });
+}
+
+// What a recipe of eight lobes holds: the one spectrum here that lobes can match exactly.
+inline std::vector<SpectralLobe> eight_lobes() {
+  return {{5, 10.3 / 128, 4.2 / 128, 1.0},   {4, 9.1 / 128, 12.6 / 128, 0.5},
+          {4, -20.4 / 128, 8.7 / 128, 0.3},  {6, 3.3 / 128, 1.2 / 128, 3.0},
+          {3, 31.2 / 128, 25.1 / 128, 0.05}, {2, 0.0, 0.0, 0.03},
+          {5, -7.7 / 128, 30.3 / 128, 0.4},  {4, 40.1 / 128, -2.2 / 128, 0.08}};
+}
+inline PowerSpectrum eight_lobe_spectrum() {
+  return spectrum_from([](double fx, double fy) {
+    double sum = 0.0;
+    for (const SpectralLobe& lobe : eight_lobes()) {
+      const double deviation = 128 * lobe_deviation(lobe.bandwidth);
+      sum += gaussian_pair(fx, fy, 128 * lobe.x, 128 * lobe.y, deviation, deviation, 0.0, lobe.height);
+    }
+    return sum;
+  });
+}
+
+struct NamedSpectrum {
+  std::string name;
+  PowerSpectrum spectrum;
+};
+
+// All of them, different in kind.
+inline std::vector<NamedSpectrum> known_spectra() {
+  return {{"four lobes", four_lobe_spectrum()}, {"ring", ring_spectrum()},
+          {"steep", steep_spectrum()},          {"lines", line_spectrum()},
+          {"broad", broad_spectrum()},          {"eight Gabor lobes", eight_lobe_spectrum()}};
 }
 
 // White Gaussian noise filtered by the square root of the spectrum.
@@ -63,6 +127,33 @@ inline GreyImage realisation_of(const PowerSpectrum& spectrum, std::uint64_t see
   }
   fourier.inverse(half, image.values);
   return image;
+}
+
+// A 128 x 128 corner of a realisation four times as large, whose borders do not match, with the truth on its
+// grid at the variance of the corner.
+struct CutTexture {
+  GreyImage image;
+  PowerSpectrum truth;
+};
+inline CutTexture cut_realisation(const std::function<double(double fx, double fy)>& power,
+                                  std::uint64_t seed) {
+  constexpr int n = 128;
+  constexpr int large = 4 * n;
+  PowerSpectrum whole{large, large, {}};
+  for (int y = 0; y < large; ++y) {
+    for (int x = 0; x < large; ++x) {
+      whole.power.push_back(
+          x + y == 0 ? 0.0 : power(signed_frequency(x, large) / 4.0, signed_frequency(y, large) / 4.0));
+    }
+  }
+  const GreyImage texture = realisation_of(whole, seed);
+  CutTexture cut{{n, n, {}}, spectrum_from(power)};
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) cut.image.values.push_back(texture.at(x, y));
+  }
+  const double variance = power_spectrum(cut.image).variance();
+  for (double& p : cut.truth.power) p *= variance;
+  return cut;
 }
 
 }  // namespace astrolith::testing
