@@ -76,10 +76,10 @@ void add_options(Program& program, Options& o) {
          "the image is a height map in that unit")
       ->check(CLI::NonNegativeNumber)
       ->default_str("");
-  app.add_option(
-         "--spectrum-estimate", o.target,
-         "what the lobes are fitted to: smoothed (the periodogram smoothed as far as cross-validation "
-         "allows, nearest to the true spectrum) or periodogram (raw, as in Galerne et al. 2012)")
+  app.add_option("--spectrum-estimate", o.target,
+                 "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
+                 "nearest to the true one) or periodogram (raw, of the periodic component, as in Galerne et "
+                 "al. 2012)")
       ->check(CLI::IsMember({"smoothed", "periodogram"}));
   app.add_option("--solver", o.solver, "of the basis pursuit; both end with the same certified optimum")
       ->check(CLI::IsMember({"working-set", "fista"}));

@@ -46,7 +46,7 @@ GreyImage synthesis_of(const GaborFit& fit, int side, std::uint64_t seed) {
   GaborLayer layer;
   layer.height_rms = fit.exemplar_rms;
   layer.lobes = fit.lobes;
-  const std::vector<float> texture = synthesize_texture(layer, side, side, seed);
+  const std::vector<float> texture = synthesize_texture(layer, side, side, {.seed = seed});
   return {side, side, std::vector<double>(texture.begin(), texture.end())};
 }
 
