@@ -1,0 +1,37 @@
+// How far the points of a box are from a metaball's centre.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/vec3.h"
+#include "synthesis/metaballs.h"
+
+namespace astrolith {
+
+inline double nearest_offset(double c, double lo, double hi) {
+  return c < lo ? lo - c : c > hi ? c - hi : 0.0;
+}
+inline double farthest_offset(double c, double lo, double hi) {
+  return std::max(std::fabs(c - lo), std::fabs(c - hi));
+}
+
+struct SquaredDistances {
+  double nearest;
+  double farthest;
+};
+
+// From a sphere's centre to the box.
+inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, const Box& box) {
+  const Vec3d c{sphere.center.x, sphere.center.y, sphere.center.z};
+  const Vec3d near{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
+                   nearest_offset(c.z, box.min.z, box.max.z)};
+  const Vec3d far{farthest_offset(c.x, box.min.x, box.max.x), farthest_offset(c.y, box.min.y, box.max.y),
+                  farthest_offset(c.z, box.min.z, box.max.z)};
+  return {squared_norm(near), squared_norm(far)};
+}
+
+// Relative slack on squared distances: float points and float arithmetic differ from ours by less.
+inline constexpr double kDistanceSlack = 1e-5;
+
+}  // namespace astrolith
