@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,8 @@ class ActiveSet {
     }
   }
 
-  // The best coordinate alone always grows but for rounding, so every round lowers the value.
+  // The best coordinate alone always grows but for rounding, so every round lowers the value. What enters and
+  // leaves without lowering it by more than rounding does not count: it would come back for ever.
   bool minimize() {
     // A start that comes from an earlier solution needs no first factorisation: the ridge leaves about this.
     if (!free_.empty() && free_gradient() > 100.0 * tolerance_) descend(solve(free_));
@@ -35,9 +37,11 @@ class ActiveSet {
       std::sort(entering.begin(), entering.end(), [&](Eigen::Index a, Eigen::Index b) {
         return descent(a) != descent(b) ? descent(a) > descent(b) : a < b;
       });
-      bool entered = enter(entering);
-      for (std::size_t k = 0; !entered && k < entering.size(); ++k) entered = enter({entering[k]});
-      if (!entered) return solves_left_ > 0;
+      bool lowered = enter_and_lower(entering);
+      for (std::size_t k = 0; !lowered && k < entering.size(); ++k) {
+        if (x_(entering[k]) <= 0.0) lowered = enter_and_lower({entering[k]});
+      }
+      if (!lowered) return solves_left_ > 0;
     }
     return false;
   }
@@ -66,6 +70,11 @@ class ActiveSet {
     block = G_(at, at);
     block.diagonal() *= 1.0 + kRidge;
     return block.ldlt().solve(right);
+  }
+
+  bool enter_and_lower(const Indices& entering) {
+    const double before = value_at(x_);
+    return enter(entering) && value_at(x_) < before - 1e-14 * std::abs(before);
   }
 
   // Lets those of `entering` (at zero now) into the free set that grow together, and descends; returns
@@ -124,13 +133,15 @@ class ActiveSet {
     double length = 1.0;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const double target = z(static_cast<Eigen::Index>(k));
-      if (target <= 0.0) length = std::min(length, x_(free_[k]) / (x_(free_[k]) - target));
+      const double value = x_(free_[k]);
+      if (target <= 0.0) length = value == 0.0 ? 0.0 : std::min(length, value / (value - target));
     }
     Indices kept;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const double target = z(static_cast<Eigen::Index>(k));
       double& value = x_(free_[k]);
-      const bool leaves = target <= 0.0 && value <= length * (value - target);
+      // The very quotient whose least is the length: multiplied out it may round, and nothing would leave.
+      const bool leaves = target <= 0.0 && (value == 0.0 || value / (value - target) <= length);
       value = leaves ? 0.0 : std::max(0.0, value + length * (target - value));
       if (!leaves) kept.push_back(free_[k]);
     }

@@ -50,15 +50,14 @@ class RestrictedProblem {
     });
   }
 
-  // Returns whether the minimum was reached within a few factorisations: while the working set still grows,
-  // more of them are better spent after its next atoms are known.
-  bool solve() {
-    constexpr int kSolves = 12;
+  // Returns whether the minimum was reached within so many factorisations: while the working set still grows,
+  // more than a few are better spent after its next atoms are known.
+  bool solve(int max_solves) {
     Eigen::VectorXd q(x_.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       q(i) = target_correlations_[atoms_[static_cast<std::size_t>(i)]] - problem_.penalty;
     }
-    return q.size() == 0 || minimize_nonnegative_quadratic(gram_, q, x_, kSolves);
+    return q.size() == 0 || minimize_nonnegative_quadratic(gram_, q, x_, max_solves);
   }
 
   void drop_zeros() {
@@ -153,9 +152,11 @@ BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const B
   result.x.assign(dictionary.size(), 0.0);
   std::vector<double> r(dictionary.rows());
   double best_primal = 0.0;
+  constexpr int kFewSolves = 12;
+  int solves = kFewSolves;
   for (int k = 0;; ++k) {
     restricted.add(entering, start);
-    const bool solved = restricted.solve();
+    const bool solved = restricted.solve(solves);
     restricted.drop_zeros();
     std::vector<double> x(dictionary.size(), 0.0);
     double sum = 0.0;
@@ -182,7 +183,10 @@ BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const B
     const bool go_on = report(
         progress, std::min(0.99, -std::log10(std::max(gap, 1e-12)) / -std::log10(options.relative_gap)),
         fmt::format("gap {:.2e}, {} lobes", gap, restricted.atoms().size()));
-    if (result.reached || !go_on || (solved && !progressed) || k >= options.max_iterations) break;
+    // Few factorisations may not be enough to let any of the new atoms in, and the same would enter for ever.
+    solves = progressed ? kFewSolves : 8 * solves;
+    const bool stuck = !progressed && (solved || solves > 8 * 8 * 8 * 8 * kFewSolves);
+    if (result.reached || !go_on || stuck || k >= options.max_iterations) break;
     entering = worst_violators(problem, correlations, restricted);
     if (entering.empty() && solved) break;
   }

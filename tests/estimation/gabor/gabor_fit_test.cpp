@@ -35,6 +35,16 @@ TEST(GaborFit, RecoversAKnownSpectrumFromOneRealisation) {
   EXPECT_LT(distance, 0.10);
 }
 
+// A realisation on which the pursuit's first atoms once entered and left for ever.
+TEST(GaborFit, ThePursuitDoesNotGoRoundInCircles) {
+  GaborFitOptions options;
+  options.penalty_ratio = 0.03;
+  const GaborFit fit =
+      fit_gabor_lobes(testing::realisation_of(testing::four_lobe_spectrum(), 3), "exemplar", options);
+  EXPECT_TRUE(fit.pursuit.reached);
+  EXPECT_LE(fit.pursuit.iterations, 100);
+}
+
 TEST(GaborFit, KeepsTheVarianceOfTheExemplar) {
   const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 9);
   for (const SpectrumTarget target : {SpectrumTarget::kSmoothed, SpectrumTarget::kPeriodogram}) {
