@@ -52,14 +52,17 @@ void add_options(Program& program, Options& o) {
          "the values as stored, gamma-encoded) or pca (a layer for each principal axis of the "
          "colours; synth --texture then paints in colour)")
       ->check(CLI::IsMember({"luminance", "pca"}));
-  app.add_option("--detrend", o.photo.detrend_degree,
-                 "first take out slow changes of brightness, such as light from one side: a polynomial of "
-                 "this degree in x and y, fitted to all pixels; 0 = none")
-      ->check(CLI::Range(0, kLargestTrendDegree));
+  CLI::Option* detrend =
+      app.add_option(
+             "--detrend", o.photo.detrend_degree,
+             "first take out slow changes of brightness, such as light from one side: a polynomial of "
+             "this degree in x and y, fitted to all pixels; 0 = none")
+          ->check(CLI::Range(0, kLargestTrendDegree));
   app.add_option("--detrend-by", o.detrend_by,
                  "how: subtraction (v - t + mean, for height maps) or division (v mean / t, for photos whose "
                  "contrast falls off with the light)")
-      ->check(CLI::IsMember({"subtraction", "division"}));
+      ->check(CLI::IsMember({"subtraction", "division"}))
+      ->needs(detrend);
   app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
       ->check(CLI::Range(1, 1000));
   app.add_option(

@@ -84,6 +84,10 @@ void add_options(Program& program, Arguments& arguments) {
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
+  for (const char* option :
+       {"--points", "--optimizer", "--population", "--generations", "--tolerance", "--time-limit"}) {
+    packing_only->excludes(app.get_option(option));
+  }
   app.add_option("--density", arguments.density,
                  "of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
       ->check(CLI::PositiveNumber)
@@ -91,6 +95,7 @@ void add_options(Program& program, Arguments& arguments) {
       ->default_str("");
   app.add_option("--report", arguments.report,
                  "write pictures of target, fit, distances and convergence here")
+      ->excludes(packing_only)
       ->option_text("DIR");
 }
 

@@ -68,6 +68,9 @@ void declare_options(Program& program, Options& options) {
                   "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
       ->option_text("FILE.png");
   declare_texture_options(program, options.texture);
+  for (const char* of_mesh : {"--resolution", "--triangles", "--max-memory", "--tile", "--points"}) {
+    program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
+  }
   program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");
 }
 
@@ -182,6 +185,7 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
     require_writable(options.preview);
   }
   if (options.points) require_extension(options.output, {".ply"});
+  const MeshTile tile = parse_tile(options.tile);
   const MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool()};
   const bool streamed = options.output.extension() == ".ply";
   const ImplicitField field(recipe);
@@ -190,9 +194,7 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }
   const int resolution =
-      choose_resolution(program, options.size, field, options.output, !options.preview.empty());
-
-  const MeshTile tile = parse_tile(options.tile);
+      choose_resolution(program, options.size, field, options.output, !options.preview.empty(), tile.count);
 
   ManifoldCheck check;
   MeshCollector collector;

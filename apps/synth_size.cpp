@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/memory_use.h"
@@ -62,15 +63,21 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
 }
 
 int choose_resolution(Program& program, const MeshSizeRequest& request, const ImplicitField& field,
-                      const std::filesystem::path& output, bool preview) {
+                      const std::filesystem::path& output, bool preview, int tiles) {
   const bool by_triangles = request.triangles > 0.0;
   if (!by_triangles && request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting) {
     return request.resolution;
   }
   const MeshGrowth growth(field, program.progress("prediction"));
 
-  const MeshPrediction mesh =
+  MeshPrediction mesh =
       growth.at(by_triangles ? growth.resolution_for(request.triangles) : request.resolution);
+  // The slab with the most surface has seldom more than twice its share.
+  const double share = std::min(1.0, 2.0 / tiles);
+  if (tiles > 1) {
+    mesh.triangles *= share;
+    mesh.evaluations *= share;
+  }
   const OutputCost cost = output_cost(output, preview);
   const double memory = kBytesAnyway + mesh.working_bytes + cost.memory * mesh.triangles;
   program.summary["resolution"] = mesh.resolution;

@@ -16,9 +16,10 @@ struct MeshSizeRequest {
 
 void declare_size_options(Program& program, MeshSizeRequest& request);
 
-// Cells along the longest side. Large meshes are announced with triangles, bytes and seconds, and stand as
-// "predicted" in the summary. Throws InputError when the mesh needs more memory than allowed.
+// Cells along the longest side. `tiles` is how many slabs the mesh is cut into, of which one is made. Large
+// meshes are announced with triangles, bytes and seconds, and stand as "predicted" in the summary. Throws
+// InputError when the mesh needs more memory than allowed.
 int choose_resolution(Program& program, const MeshSizeRequest& request, const ImplicitField& field,
-                      const std::filesystem::path& output, bool preview);
+                      const std::filesystem::path& output, bool preview, int tiles);
 
 }  // namespace astrolith

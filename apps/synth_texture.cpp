@@ -137,7 +137,9 @@ void declare_texture_options(Program& program, TextureRequest& request) {
       ->check(CLI::IsMember({"height", "color"}))
       ->default_str("");
   app.add_flag("--tileable", request.tileable, "the texture repeats without a seam in both directions");
-  app.add_option("--bits", request.bits, "of a texture's .png, a channel")->check(CLI::IsMember({8, 16}));
+  app.add_option("--bits", request.bits, "of a texture's .png, a channel")
+      ->check(CLI::IsMember({8, 16}))
+      ->needs(app.get_option("--texture"));
 }
 
 void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,

@@ -12,7 +12,7 @@ namespace astrolith {
 struct TextureOptions {
   std::uint64_t seed = 1;
   int stream = 0;  // textures of one seed and different streams are independent
-  // The texture repeats after so many pixels, exactly and without a seam; 0 = never. Both or none.
+  // The texture repeats after so many pixels, to float rounding and without a seam; 0 = never. Both or none.
   int period_width = 0;
   int period_height = 0;
 };

@@ -1,7 +1,8 @@
 // Gabor noise on a torus: a texture that repeats without a seam.
 //
 // The grid of cells closes on itself, so every kernel that leaves one side enters at the other and the noise
-// is exactly periodic, with the spectrum of the endless noise at the frequencies that fit into the period.
+// is periodic, to float rounding, with the spectrum of the endless noise at the frequencies that fit into the
+// period.
 #pragma once
 
 #include "recipe/recipe.h"

@@ -50,11 +50,11 @@ ASTROLITH_KERNEL WorleyDistances worley_distances(float x, float y, float z, std
   const std::uint32_t cell = lattice_point(i, j, k, seed);
   // Positive floats have the order of their bits, whose minima compilers vectorise well.
   std::int32_t nearest = math::bits_of(kWorleyFarthest * kWorleyFarthest), second = nearest;
-#pragma GCC unroll 3
+  ASTROLITH_UNROLL
   for (int c = -1; c <= 1; ++c) {
-#pragma GCC unroll 3
+    ASTROLITH_UNROLL
     for (int b = -1; b <= 1; ++b) {
-#pragma GCC unroll 3
+      ASTROLITH_UNROLL
       for (int a = -1; a <= 1; ++a) {
         const std::uint32_t neighbour = cell + static_cast<std::uint32_t>(a) * kLatticeX +
                                         static_cast<std::uint32_t>(b) * kLatticeY +

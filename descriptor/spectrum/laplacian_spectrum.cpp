@@ -127,7 +127,7 @@ std::vector<double> lowest_eigenvalues(const SparseMatrix& matrix, int count) {
                      " vertices; ask for at least 1 and for fewer than there are vertices");
   }
   ShiftedInverse inverse(matrix);
-  // Some more than asked for, since several may be equal: an incomplete group is then the last one.
+  // One more than asked for: the zero of the constant function is dropped.
   const Eigen::Index wanted = std::min<Eigen::Index>(count + 1, n - 1);
   const Eigen::Index basis = std::min<Eigen::Index>(n, 2 * wanted + 20);
   Spectra::SymEigsShiftSolver<ShiftedInverse> solver(inverse, wanted, basis, kShift);

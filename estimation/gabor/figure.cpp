@@ -29,6 +29,29 @@ cairo_status_t append(void* file, const unsigned char* data, unsigned int length
   return CAIRO_STATUS_SUCCESS;
 }
 
+// The bytes of a UTF-8 character that starts with this one; 0 where none does.
+std::size_t utf8_length(unsigned char first) {
+  return first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+}
+
+// Cairo draws nothing at all once it met text that is no UTF-8, as file names may be: their characters
+// outside ASCII become question marks.
+std::string printable(std::string text) {
+  bool valid = true;
+  for (std::size_t i = 0, next = 0; i < text.size() && valid; i = next) {
+    const std::size_t length = utf8_length(static_cast<unsigned char>(text[i]));
+    next = i + length;
+    valid = length > 0 && next <= text.size();
+    for (std::size_t k = i + 1; valid && k < next; ++k) {
+      valid = (static_cast<unsigned char>(text[k]) & 0xc0) == 0x80;
+    }
+  }
+  for (char& c : text) {
+    if (!valid && static_cast<unsigned char>(c) >= 0x80) c = '?';
+  }
+  return text;
+}
+
 void require_success(cairo_status_t status, const std::filesystem::path& file) {
   if (status == CAIRO_STATUS_SUCCESS) return;
   throw WorkError(file.string() + ": the figure could not be drawn (" + cairo_status_to_string(status) + ")");
@@ -57,7 +80,8 @@ void Figure::line(double x0, double y0, double x1, double y1, double width, cons
   cairo_stroke(context_.get());
 }
 
-void Figure::text(double x, double y, const std::string& text, double size, Align align, bool bold) {
+void Figure::text(double x, double y, const std::string& words, double size, Align align, bool bold) {
+  const std::string text = printable(words);
   cairo_t* c = context_.get();
   cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
@@ -188,12 +212,14 @@ void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch
   cairo_clip(c.get());
   cairo_set_source_surface(c.get(), surface_.get(), 0.0, 0.0);
   cairo_paint(c.get());
+  require_success(cairo_status(context_.get()), file);
   OutputFile out(file);
   require_success(cairo_surface_write_to_png_stream(page.get(), append, &out), file);
   out.commit();
 }
 
 void Figure::write_svg(const std::filesystem::path& file) const {
+  require_success(cairo_status(context_.get()), file);
   OutputFile out(file);
   {
     const std::unique_ptr<cairo_surface_t, Free> page(

@@ -23,10 +23,10 @@ class GridBuilder {
       : body_(body), tree_(tree) {
     const Box box = body.bounds();
     const Vec3d e = box.extent();
-    const double by_volume = std::cbrt(volume(body) / inner_cells);
-    const double by_memory = std::cbrt(e.x * e.y * e.z / kMaxGridCells);
-    grid_.step = std::max(by_volume, by_memory);
-    const auto along = [&](double length) { return static_cast<int>(std::ceil(length / grid_.step)) + 3; };
+    const auto cells_along = [&](double length) { return std::ceil(length / grid_.step) + 3.0; };
+    grid_.step = std::cbrt(volume(body) / inner_cells);
+    while (cells_along(e.x) * cells_along(e.y) * cells_along(e.z) > kMaxGridCells) grid_.step *= 1.05;
+    const auto along = [&](double length) { return static_cast<int>(cells_along(length)); };
     grid_.cells = {along(e.x), along(e.y), along(e.z)};
     const auto half = [&](int cells) { return 0.5 * grid_.step * (cells - 1); };
     grid_.origin = box.center() - Vec3d{half(grid_.cells[0]), half(grid_.cells[1]), half(grid_.cells[2])};

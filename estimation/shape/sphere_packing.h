@@ -30,7 +30,8 @@ struct Packing {
 
 // `body` is closed with positive volume and `tree` was made of it. The result does not depend on the number
 // of threads. Fewer than max_spheres come back when no place of smallest_radius is left, or none that the
-// grid can see: its cells are a seventh of the mean radius wide, for bodies in very large boxes wider.
+// grid can see: its cells are about a seventh of the mean diameter wide, for bodies in very large boxes
+// wider.
 Packing pack_spheres(const TriangleMesh& body, const SurfaceTree& tree, const PackingOptions& options,
                      const Progress& progress = {});
 

@@ -75,12 +75,19 @@ TEST_F(FitShape, ARealBodyIsFittedClosely) {
 }
 
 TEST_F(FitShape, PackingOnlyWritesATableOfMascons) {
-  const std::string table = fit("egg.csv", {"--packing-only", "--density", "2000"});
+  fit("egg.json", {});
+  const std::string mesh = (folder_ / "egg.obj").string(), file = (folder_ / "egg.csv").string();
+  const testing::Outcome outcome =
+      run_program(kFitShape, {mesh, "-o", file, "--spheres", "12", "--packing-only", "--density", "2000"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const std::string table = text_of(file);
   EXPECT_NE(table.find("x,y,z,radius,mass\n"), std::string::npos);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3 + 12);
-  expect_refusal(folder_, kFitShape,
-                 {(folder_ / "egg.obj").string(), "-o", (folder_ / "no.json").string(), "--density", "2000"},
+  expect_refusal(folder_, kFitShape, {mesh, "-o", (folder_ / "no.json").string(), "--density", "2000"},
                  "--packing-only");
+  expect_refusal(folder_, kFitShape,
+                 {mesh, "-o", (folder_ / "no.csv").string(), "--packing-only", "--points", "500"},
+                 "excludes");
 }
 
 TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {
