@@ -129,7 +129,10 @@ void train(Program& program, Arguments& a) {
   const FeatureOptions features = chosen_features(a, program.seed);
   a.training.forest.seed = program.seed;
   const LabelledFiles files = find_classes(a.folders);
-  for (const fs::path& file : files.files) require_other_file(a.output, file);
+  for (const fs::path& file : files.files) {
+    require_other_file(a.output, file);
+    if (!program.summary_file.empty()) require_other_file(program.summary_file, file);
+  }
   const LabelledFeatures data = labelled(files, features_with_failures(program, files.files, features));
   require_shapes_of_each(data);
 

@@ -38,7 +38,6 @@ void summarize(Program& program, const ShapeDescription& shape, const std::strin
 }
 
 void run(Program& program, const Arguments& arguments) {
-  require_other_file(arguments.output, arguments.shape);
   require_writable(arguments.output);
   const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
   const DescriptionOptions options = arguments.options.with_seed(program.seed);

@@ -196,10 +196,13 @@ PhotoFitOptions photo_options(const Program& program, const Options& o) {
 }
 
 void require_outputs(const Options& o) {
-  require_other_file(o.output, o.image);
   require_writable(o.output);
   if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
-  if (!o.report_folder.empty()) make_output_folder(o.report_folder);
+  if (o.report_folder.empty()) return;
+  make_output_folder(o.report_folder);
+  for (const auto& entry : std::filesystem::directory_iterator(o.report_folder)) {
+    require_other_file(entry.path(), o.image);
+  }
 }
 
 void say_result(const PhotoFit& photo, const Program& program) {

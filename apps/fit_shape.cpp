@@ -187,7 +187,6 @@ void pack(Program& program, const Arguments& arguments, const TargetBody& target
 
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
-  require_other_file(arguments.output, arguments.mesh);
   require_writable(arguments.output);
   if (!arguments.report.empty()) make_output_folder(arguments.report);
   arguments.fit.seed = program.seed;

@@ -78,6 +78,43 @@ std::string option_not_finite(const CLI::App& app) {
   return "";
 }
 
+// The options that name a file to write, and those, beside the positional ones, that name a file to read.
+const std::vector<std::string> kOutputs{"output", "summary", "spectrum", "preview"};
+const std::vector<std::string> kInputs{"base"};
+
+bool is_named(const CLI::Option& option, const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return option.check_lname(name); });
+}
+
+// All options given to the program and to its subcommand.
+std::vector<const CLI::Option*> given(const CLI::App& app) {
+  std::vector<const CLI::Option*> options;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() > 0) options.push_back(option);
+  }
+  for (const CLI::App* subcommand : app.get_subcommands()) {
+    for (const CLI::Option* option : given(*subcommand)) options.push_back(option);
+  }
+  return options;
+}
+
+// Throws InputError when an output is an input, or another output.
+void require_distinct_files(const CLI::App& app) {
+  const std::vector<const CLI::Option*> options = given(app);
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (!is_named(*options[i], kOutputs)) continue;
+    const std::string output = options[i]->results().front();
+    for (std::size_t j = 0; j < options.size(); ++j) {
+      const bool reads = options[j]->get_positional() || is_named(*options[j], kInputs);
+      for (const std::string& other : options[j]->results()) {
+        if (reads) require_other_file(output, other);
+        if (j > i && is_named(*options[j], kOutputs)) require_two_files(output, other);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Program::Program(std::string name, std::string description)
@@ -126,6 +163,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
 }
 
 void Program::timed(const std::function<void()>& work) {
+  require_distinct_files(app);
   // A summary that cannot be written should not be found out after an hour's work.
   if (!summary_file.empty()) require_writable(summary_file);
   const auto start = std::chrono::steady_clock::now();

@@ -234,8 +234,6 @@ Recipe read_input(const Program& program, const Options& options) {
 }
 
 void synthesize(Program& program, const Options& options) {
-  require_other_file(options.output, options.recipe);
-  if (!options.base.empty()) require_other_file(options.output, options.base);
   const Recipe recipe = read_input(program, options);
   if (!options.texture.size.empty()) {
     if (!options.preview.empty()) throw InputError("--preview: draws a mesh; leave out --texture");

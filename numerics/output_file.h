@@ -86,6 +86,17 @@ inline void require_other_file(const std::filesystem::path& output, const std::f
   }
 }
 
+// Throws InputError when two outputs have one name.
+inline void require_two_files(const std::filesystem::path& output, const std::filesystem::path& other) {
+  const auto place = [](const std::filesystem::path& file) {
+    return std::filesystem::absolute(file).lexically_normal();
+  };
+  if (place(output) == place(other)) {
+    throw InputError(output.string() + ": is the name of two outputs; give each its own");
+  }
+  require_other_file(output, other);
+}
+
 // For outputs of several files. Throws InputError when the folder is not there and cannot be made.
 inline void make_output_folder(const std::filesystem::path& folder) {
   std::error_code error;

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <span>
+#include <vector>
 
 #include "estimation/gabor/image_header_internal.h"
 #include "numerics/errors.h"
@@ -37,6 +39,20 @@ ImageHeader png_header(std::ifstream& in, const Bytes& start) {
   return header;
 }
 
+// Whether FF D9, the end of the image, still comes: decoders fill what is missing with grey and say nothing.
+// Scans hold no FF that D9 follows.
+bool jpeg_ends(std::ifstream& in) {
+  std::vector<char> block(std::size_t{1} << 16);
+  bool after_ff = false;
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
+    for (const char c : std::span(block).first(static_cast<std::size_t>(in.gcount()))) {
+      if (after_ff && c == '\xd9') return true;
+      after_ff = c == '\xff';
+    }
+  }
+  return false;
+}
+
 // A JPEG is a chain of segments FF, marker, length; the frame header (C0 to CF but for C4, C8 and CC) holds
 // the size.
 ImageHeader jpeg_header(std::ifstream& in, const std::string& name) {
@@ -51,6 +67,7 @@ ImageHeader jpeg_header(std::ifstream& in, const std::string& name) {
     const bool frame =
         head[1] >= 0xc0 && head[1] <= 0xcf && head[1] != 0xc4 && head[1] != 0xc8 && head[1] != 0xcc;
     if (frame && in.read(reinterpret_cast<char*>(head) + 4, 5)) {
+      if (!jpeg_ends(in)) throw InputError(name + ": ends too early; the file is damaged, fetch it again");
       return {"JPEG", big_endian(head + 7, 2), big_endian(head + 5, 2)};
     }
     const std::uint32_t length = big_endian(head + 2, 2);

@@ -142,6 +142,15 @@ TEST_F(Synth, TilesMakeTheWholeMesh) {
   }
 }
 
+TEST_F(Synth, NoOutputIsTheInputOrAnotherOutput) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  const std::string output = (folder_ / "out.ply").string();
+  expect_refusal(folder_, kSynth, {recipe, "-o", output, "--summary", recipe}, "is the input itself");
+  expect_refusal(folder_, kSynth, {recipe, "-o", output, "--preview", recipe}, "is the input itself");
+  expect_refusal(folder_, kSynth, {recipe, "-o", output, "--summary", output}, "two outputs");
+  EXPECT_EQ(text_of(recipe), kTwoSpheres);
+}
+
 TEST_F(Synth, BadRecipesAreRefused) {
   expect_recipe_refused(replaced(kTwoSpheres, "amplitude", "amplitud"), "layers[0].amplitud: unknown field");
   expect_recipe_refused(replaced(kTwoSpheres, "0.75", "-0.75"), "body.spheres[1].radius");
