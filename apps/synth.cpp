@@ -152,7 +152,9 @@ void summarize_mesh(Program& program, const MeshStatistics& statistics, const Ma
 }
 
 std::string describe_mesh(const ManifoldReport& report, const Options& options) {
-  const std::string triangles = std::to_string(report.triangles) + " triangles, ";
+  const std::string triangles = options.points
+                                    ? std::to_string(report.vertices) + " points of a mesh that is "
+                                    : std::to_string(report.triangles) + " triangles, ";
   if (!report.closed()) return triangles + "tile " + options.tile + ", open where cut, manifold";
   return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
          std::to_string(report.components) + (report.components == 1 ? " component" : " components");

@@ -72,6 +72,11 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Im
 
   MeshPrediction mesh =
       growth.at(by_triangles ? growth.resolution_for(request.triangles) : request.resolution);
+  if (by_triangles && mesh.triangles < 0.9 * request.triangles) {
+    throw InputError(
+        fmt::format("--triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
+                    mesh.resolution, rounded(mesh.triangles)));
+  }
   // The slab with the most surface has seldom more than twice its share.
   const double share = std::min(1.0, 2.0 / tiles);
   if (tiles > 1) {

@@ -21,8 +21,9 @@ void write_packing_table(const std::vector<Sphere>& spheres, const PackingTable&
   const bool with_mass = table.density > 0.0;
   double cubes = 0.0;
   for (const Sphere& s : spheres) cubes += cube(s.radius);
-  std::string text = fmt::format("# {}\n# lengths in {}{}\n", table.title, table.length_unit,
-                                 with_mass ? fmt::format(", masses in kg at {} kg/m^3", table.density) : "");
+  std::string text = fmt::format(
+      "# {}\n# lengths in {}{}\n", table.title, table.length_unit,
+      with_mass ? fmt::format(", masses in kg that add up to the body's at {} kg/m^3", table.density) : "");
   text += with_mass ? "x,y,z,radius,mass\n" : "x,y,z,radius\n";
   for (const Sphere& s : spheres) {
     text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", s.center.x, s.center.y, s.center.z, s.radius);

@@ -111,6 +111,7 @@ TEST_F(Synth, TrianglesChooseTheResolutionAndMemoryIsKept) {
   std::filesystem::remove(output);
   expect_refusal(folder_, kSynth, {recipe, "-o", output, "--resolution", "1024", "--max-memory", "0.1"},
                  "needs");
+  expect_refusal(folder_, kSynth, {recipe, "-o", output, "--triangles", "1e10"}, "--triangles");
   expect_refusal(folder_, kSynth, {recipe, "-o", output, "--resolution", "64", "--triangles", "1000"},
                  "excludes");
 }
