@@ -5,17 +5,13 @@
 
 #include "numerics/hash_random.h"
 #include "numerics/scalar_math.h"
+#include "synthesis/largest_coordinate.h"
 
 namespace astrolith {
 namespace {
 
 constexpr std::uint32_t kWarpStream = 0x77617270u;  // far from the numbers of layers' octaves
 constexpr int kChunk = 256;
-
-double largest_coordinate(const Box& box) {
-  return std::max({std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.min.z), std::fabs(box.max.x),
-                   std::fabs(box.max.y), std::fabs(box.max.z)});
-}
 
 ASTROLITH_SIMD_CLONES void clamp_all(int n, const float* __restrict p, float low, float high,
                                      float* __restrict clamped) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "synthesis/largest_coordinate.h"
 #include "synthesis/perlin_noise.h"
 #include "synthesis/simplex_noise.h"
 #include "synthesis/worley_noise.h"
@@ -86,11 +87,6 @@ ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
 ASTROLITH_MODULATED_LOOP(add_modulated_simplex, simplex_with_gradient)
 ASTROLITH_MODULATED_LOOP(add_modulated_perlin, perlin_with_gradient)
 #undef ASTROLITH_MODULATED_LOOP
-
-double largest_coordinate(const Box& box) {
-  return std::max({std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.min.z), std::fabs(box.max.x),
-                   std::fabs(box.max.y), std::fabs(box.max.z)});
-}
 
 // One octave's noise over a box: its value at the centre and its greatest slope tell more than its range
 // where the box is small beside the noise's features.

@@ -5,18 +5,14 @@
 #include <string>
 
 #include "numerics/errors.h"
+#include "synthesis/largest_coordinate.h"
 
 namespace astrolith {
 namespace {
 
-double largest_magnitude(const Box& box) {
-  return std::max({std::abs(box.min.x), std::abs(box.min.y), std::abs(box.min.z), std::abs(box.max.x),
-                   std::abs(box.max.y), std::abs(box.max.z)});
-}
-
 // Vertices keep 2^-10 of a cell's edge from its ends; that must be more than a rounding error of a position.
 void check_positions_are_distinct(const Box& bounds, double step) {
-  const double rounding = 0x1.0p-23 * largest_magnitude(bounds);
+  const double rounding = 0x1.0p-23 * largest_coordinate(bounds);
   if (step * 0x1.0p-10 <= rounding) {
     throw InputError("resolution: cells of " + std::to_string(step) +
                      " are too small for 32-bit positions this far from the origin; lower the resolution");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "synthesis/largest_coordinate.h"
 
 namespace astrolith {
 namespace {
@@ -72,11 +73,6 @@ Interval bound_profile(const SpotKernel& k, const Range& q2) {
   const Interval r{std::min(ring(q2.nearest), ring(q2.farthest)), ring(at_ring)};
   return {std::min(g * b.low, g * b.high) + std::min(kappa * r.low, kappa * r.high),
           std::max(g * b.low, g * b.high) + std::max(kappa * r.low, kappa * r.high)};
-}
-
-double largest_coordinate(const Box& box) {
-  return std::max({std::fabs(box.min.x), std::fabs(box.min.y), std::fabs(box.min.z), std::fabs(box.max.x),
-                   std::fabs(box.max.y), std::fabs(box.max.z)});
 }
 
 }  // namespace
