@@ -13,6 +13,7 @@
 
 #include "apps/evaluation_json.h"
 #include "apps/experiments/noisy_bodies.h"
+#include "apps/experiments/results_file.h"
 #include "apps/program.h"
 #include "descriptor/classification/shape_classifier.h"
 #include "numerics/errors.h"
@@ -215,10 +216,7 @@ void run(Program& program, Arguments& a) {
     entry["projection"] = projection(kind, levels.front());
     result["descriptors"].push_back(entry);
   }
-  OutputFile file(a.output);
-  const std::string text = result.dump(1) + "\n";
-  file.write(text.data(), text.size());
-  file.commit();
+  write_results(result, a.output);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/evaluation_json.h"
+#include "apps/experiments/results_file.h"
 #include "apps/program.h"
 #include "descriptor/classification/cross_validation.h"
 #include "descriptor/classification/feature_table.h"
@@ -180,10 +181,7 @@ void run(Program& program, Arguments& a) {
                   100 * d["retrieval"]["mean_average_precision"].get<double>());
     program.say(line);
   }
-  OutputFile file(a.output);
-  const std::string text = result.dump(1) + "\n";
-  file.write(text.data(), text.size());
-  file.commit();
+  write_results(result, a.output);
 }
 
 }  // namespace
