@@ -9,16 +9,10 @@
 
 namespace astrolith::testing {
 
-inline std::filesystem::path shared_shape(const std::string& name) {
-  return std::filesystem::path(ASTROLITH_SHARED_DATA) / "shapes" / name;
-}
-inline std::filesystem::path shared_texture(const std::string& name) {
-  return std::filesystem::path(ASTROLITH_SHARED_DATA) / "textures" / name;
-}
+std::filesystem::path shared_shape(const std::string& name);
+std::filesystem::path shared_texture(const std::string& name);
 // data-cache/gravel.png, data-cache/<body>.bmf
-inline std::filesystem::path package_file(const std::string& name) {
-  return std::filesystem::path(ASTROLITH_PACKAGE_DATA) / name;
-}
+std::filesystem::path package_file(const std::string& name);
 
 }  // namespace astrolith::testing
 
