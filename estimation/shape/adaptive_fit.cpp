@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <tuple>
-#include <utility>
 
 #include "estimation/shape/fit_check.h"
 #include "estimation/shape/sphere_growth.h"
@@ -32,22 +31,11 @@ class AdaptiveFit {
     refinement_.loss_scale = options.loss_scale;
     refinement_.containment_weight = options.containment_weight;
     total_iterations_ =
-        2 * (options.first_iterations + options.rounds * options.round_iterations) + options.last_iterations;
+        options.first_iterations + options.rounds * options.round_iterations + options.last_iterations;
   }
 
-  // Neither way up wins on every body: with exact distances a few samples without slope, at necks, can stop
-  // the whole fit, and with frozen slopes it ends a little less close. So both are gone, and the closer one
-  // is mended.
   AdaptiveFitSummary run(const MetaballModel& start) {
-    grow_to_budget(start, false);
-    if (!done()) {
-      AdaptiveFitSummary exact = std::exchange(summary_, {});
-      grow_to_budget(start, true);
-      if (mean_distance(exact) <= mean_distance(summary_)) {
-        exact.interrupted = summary_.interrupted;
-        summary_ = std::move(exact);
-      }
-    }
+    grow_to_budget(start);
     finish();
     return std::move(summary_);
   }
@@ -57,15 +45,13 @@ class AdaptiveFit {
 
   bool done() const { return summary_.interrupted || mean_distance(summary_) <= options_.tolerance; }
 
-  void grow_to_budget(const MetaballModel& start, bool freeze_slopes) {
+  void grow_to_budget(const MetaballModel& start) {
     summary_.model = start;
-    refinement_.freeze_slopes = freeze_slopes;
     step(options_.first_iterations);
     for (int round = 0; round < options_.rounds && !done(); ++round) {
       grow(options_.spheres, options_.rounds - round);
       step(options_.round_iterations);
     }
-    refinement_.freeze_slopes = false;
     if (!done()) step(options_.last_iterations);
   }
 

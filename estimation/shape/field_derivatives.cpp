@@ -5,33 +5,27 @@
 namespace astrolith {
 namespace {
 
+// Sums over the neighbours as synthesis takes them (synthesis/metaballs.h). Where `terms` is not empty, the
+// terms of every sphere are kept there: u_i (3), then exp k_i, 0 beyond the support.
 MetaballSums<double> sums_at(const MetaballModel& model, const MetaballParameters<double>& parameters,
-                             std::span<const std::int32_t> neighbours, const Vec3d& p) {
+                             std::span<const std::int32_t> neighbours, const Vec3d& p,
+                             std::span<SphereDerivatives> terms) {
   MetaballSums<double> sums;
-  for (const std::int32_t i : neighbours) {
-    const Sphere& s = model.spheres[static_cast<std::size_t>(i)];
-    accumulate_metaball(parameters, MetaballSphere<double>{s.center, 1.0 / (s.radius * s.radius)}, p, sums);
+  for (std::size_t j = 0; j < neighbours.size(); ++j) {
+    const Sphere& s = model.spheres[static_cast<std::size_t>(neighbours[j])];
+    const double v = 1.0 / (s.radius * s.radius);
+    const Vec3d d = p - s.center;
+    const double q = squared_norm(d) * v;
+    const Vec3d u = d * v;
+    const double kernel =
+        q < parameters.cutoff_squared
+            ? std::exp(std::min(parameters.m_a - parameters.m_b * q, double{kLargestExponent}))
+            : 0.0;
+    sums.kernel += kernel;
+    sums.weighted += u * kernel;
+    if (!terms.empty()) terms[j] = {u.x, u.y, u.z, kernel};
   }
   return sums;
-}
-
-// What one sphere contributes at a point: weight w and the geometry of k and u.
-struct Contribution {
-  double weight;                  // w_i; 0 beyond the support
-  double inverse_radius_squared;  // 1 / r_i^2
-  double q;                       // |p - c_i|^2 / r_i^2
-  Vec3d u;                        // (p - c_i) / r_i^2
-};
-
-Contribution contribution(const MetaballModel& model, const MetaballParameters<double>& parameters,
-                          std::int32_t index, const Vec3d& p, double inverse_total) {
-  const Sphere& s = model.spheres[static_cast<std::size_t>(index)];
-  const Vec3d d = p - s.center;
-  const double v = 1.0 / (s.radius * s.radius);
-  const double q = squared_norm(d) * v;
-  const double weight =
-      q < parameters.cutoff_squared ? std::exp(model.sharpness * (1.0 - q)) * inverse_total : 0.0;
-  return {weight, v, q, d * v};
 }
 
 }  // namespace
@@ -39,7 +33,7 @@ Contribution contribution(const MetaballModel& model, const MetaballParameters<d
 double distance_with_derivatives(const MetaballModel& model, const MetaballParameters<double>& parameters,
                                  std::span<const std::int32_t> neighbours, const Vec3d& p,
                                  std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
-  const MetaballSums<double> sums = sums_at(model, parameters, neighbours, p);
+  const MetaballSums<double> sums = sums_at(model, parameters, neighbours, p, by_sphere);
   const double s = metaball_distance(parameters, sums).distance;
   if (by_sphere.empty()) return s;
 
@@ -53,13 +47,15 @@ double distance_with_derivatives(const MetaballModel& model, const MetaballParam
   const double by_g_of_g = dot(by_g, g);
   double by_kappa = -s / kappa;
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
-    const Contribution c = contribution(model, parameters, neighbours[j], p, inverse_total);
-    const double by_g_of_u = dot(by_g, c.u);
-    const double by_k = c.weight * (by_lambda + by_g_of_u - by_g_of_g);  // ds/dk_i
-    const Vec3d by_center = c.u * (2.0 * kappa * by_k) - by_g * (c.weight * c.inverse_radius_squared);
-    by_sphere[j] = {by_center.x, by_center.y, by_center.z,
-                    2.0 * kappa * c.q * by_k - 2.0 * c.weight * by_g_of_u};
-    by_kappa += (1.0 - c.q) * by_k;
+    const double radius = model.spheres[static_cast<std::size_t>(neighbours[j])].radius;
+    const Vec3d u{by_sphere[j][0], by_sphere[j][1], by_sphere[j][2]};
+    const double weight = by_sphere[j][3] * inverse_total;
+    const double q = squared_norm(u) * radius * radius;
+    const double by_g_of_u = dot(by_g, u);
+    const double by_k = weight * (by_lambda + by_g_of_u - by_g_of_g);  // ds/dk_i
+    const Vec3d by_center = u * (2.0 * kappa * by_k) - by_g * (weight / (radius * radius));
+    by_sphere[j] = {by_center.x, by_center.y, by_center.z, 2.0 * kappa * q * by_k - 2.0 * weight * by_g_of_u};
+    by_kappa += (1.0 - q) * by_k;
   }
   *by_log_sharpness = kappa * by_kappa;
   return s;
@@ -68,17 +64,19 @@ double distance_with_derivatives(const MetaballModel& model, const MetaballParam
 double level_with_derivatives(const MetaballModel& model, const MetaballParameters<double>& parameters,
                               std::span<const std::int32_t> neighbours, const Vec3d& p,
                               std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
-  const MetaballSums<double> sums = sums_at(model, parameters, neighbours, p);
+  const MetaballSums<double> sums = sums_at(model, parameters, neighbours, p, by_sphere);
   const double total = sums.kernel + double{kKernelFloor};
   const double level = std::log(total) / model.sharpness;
   if (by_sphere.empty()) return level;
 
   double by_log_kappa = -level;
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
-    const Contribution c = contribution(model, parameters, neighbours[j], p, 1.0 / total);
-    by_sphere[j] = {2.0 * c.weight * c.u.x, 2.0 * c.weight * c.u.y, 2.0 * c.weight * c.u.z,
-                    2.0 * c.weight * c.q};
-    by_log_kappa += (1.0 - c.q) * c.weight;
+    const double radius = model.spheres[static_cast<std::size_t>(neighbours[j])].radius;
+    const Vec3d u{by_sphere[j][0], by_sphere[j][1], by_sphere[j][2]};
+    const double weight = by_sphere[j][3] / total;
+    const double q = squared_norm(u) * radius * radius;
+    by_sphere[j] = {2.0 * weight * u.x, 2.0 * weight * u.y, 2.0 * weight * u.z, 2.0 * weight * q};
+    by_log_kappa += (1.0 - q) * weight;
   }
   *by_log_sharpness = by_log_kappa;
   return level;

@@ -1,5 +1,5 @@
 // Moves all centres and radii, and the shared sharpness, so that the surface passes through samples of the
-// target: Levenberg and Marquardt (Ceres) on the first-order distance of every sample.
+// target: Levenberg and Marquardt on the first-order distance of every sample.
 //
 // Residuals, in length units:
 //   on the surface   phi(s(p)),  phi^2 = 2 c^2 (sqrt(1 + s^2 / c^2) - 1)   pseudo-Huber: bad vertices pull
@@ -7,6 +7,9 @@
 //   of every centre      center_weight * max(0, r_i / 20 - d(c_i)),  d the target's signed distance
 // The second and third kind keep cavities and islands away: a surface that no sample lies on costs nothing
 // otherwise. Every centre is inside the model, so one outside the target is an island or a spike.
+// The solver is our own and not Ceres: at these sizes Ceres spent most of its time multiplying small blocks,
+// and it cannot shorten the steps of single spheres, without which a few in a neck stop the whole fit. What
+// is left to a library is the sparse factorisation (CHOLMOD).
 // Sums run in a fixed order, so that the result is the same for every thread count.
 #pragma once
 
@@ -31,9 +34,6 @@ struct RefinementOptions {
   double containment_weight = 0.0;                   // length units, >= 0
   const SurfaceTree* keep_centers_inside = nullptr;  // the target, or null: centres may leave it
   double center_weight = 1.0;
-  // Takes L / N for s on the surface, with N = |grad L| as it was when the lists of neighbours were made:
-  // nearly linear, where s is wild in necks and between lobes, but blind to how N changes with the spheres.
-  bool freeze_slopes = false;
   double containment_margin = 0.02;  // of the level L, which is 1 at a lone centre
   double relative_decrease = 1e-4;   // stops when a round lowers the cost by less than this part
 };

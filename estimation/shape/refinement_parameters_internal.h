@@ -26,6 +26,13 @@ struct RefinementParameters {
     for (const auto& s : spheres) m.spheres.push_back({{s[0], s[1], s[2]}, std::exp(s[3])});
     return m;
   }
+  // Adds a step: four numbers a sphere, then one for the sharpness.
+  void add(const double* step) {
+    for (SphereDerivatives& s : spheres) {
+      for (double& value : s) value += *step++;
+    }
+    sharpness += *step;
+  }
   // d log kappa / dt
   double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / kHalf), 2); }
 

@@ -13,15 +13,15 @@ namespace {
 // that reach only some of the points.
 constexpr std::size_t kPointsPerBlock = 24;
 
-// Derivatives are taken by the spheres that may reach a block after they moved or grew by this part of their
-// support; the residuals themselves see every sphere in reach.
-constexpr double kSupportSlack = 1.15;
-
-// |grad L| counts as at least this over the largest radius: a lone sphere has twice that on its surface.
-constexpr double kSmallestSlope = 1.0;
+// Derivatives are taken by the spheres that hold this share of the kernel sum at a point of the block when a
+// round starts; the residuals themselves see every sphere in reach.
+constexpr double kSmallestShare = 1e-3;
 
 // Containment points are left out of a round when their condition holds by more than this level.
 constexpr double kIdleLevel = 0.05;
+
+// Centres are asked to lie this part of their radius inside the target.
+constexpr double kCenterDepth = 0.05;
 
 // phi and dphi/ds of the pseudo-Huber loss. phi^2 = 2 s^2 / (1 + t), t = sqrt(1 + s^2 / c^2), which has no
 // cancellation near zero.
@@ -29,6 +29,42 @@ ScaledResidual pseudo_huber(double s, double c) {
   const double t = std::sqrt(1.0 + s * s / (c * c));
   const double shrink = std::sqrt(2.0 / (1.0 + t));
   return {s * shrink, 1.0 / (shrink * t)};
+}
+
+// Those of `spheres` that hold kSmallestShare of the kernel sum at one of the points.
+std::vector<std::int32_t> spheres_with_share(const MetaballModel& model,
+                                             const MetaballParameters<double>& evaluation,
+                                             const std::vector<Vec3d>& points,
+                                             const std::vector<std::int32_t>& spheres) {
+  std::vector<double> kernels(spheres.size()), largest(spheres.size());
+  for (const Vec3d& p : points) {
+    double total = double{kKernelFloor};
+    for (std::size_t j = 0; j < spheres.size(); ++j) {
+      const Sphere& s = model.spheres[static_cast<std::size_t>(spheres[j])];
+      MetaballSums<double> own;
+      accumulate_metaball(evaluation, MetaballSphere<double>{s.center, 1.0 / (s.radius * s.radius)}, p, own);
+      kernels[j] = own.kernel;
+      total += own.kernel;
+    }
+    for (std::size_t j = 0; j < spheres.size(); ++j) largest[j] = std::max(largest[j], kernels[j] / total);
+  }
+  std::vector<std::int32_t> kept;
+  for (std::size_t j = 0; j < spheres.size(); ++j) {
+    if (largest[j] >= kSmallestShare) kept.push_back(spheres[j]);
+  }
+  return kept;
+}
+
+CenterCondition center_condition(const SurfaceTree& target, double weight, const Sphere& sphere) {
+  const ClosestPoint closest = target.closest(sphere.center);
+  const double sign = dot(sphere.center - closest.point, closest.normal) > 0.0 ? -1.0 : 1.0;
+  const double depth = kCenterDepth * sphere.radius;
+  const double lack = depth - sign * closest.distance;
+  if (!(lack > 0.0)) return {};
+  // The signed distance's gradient points inwards, from the nearest point or towards it.
+  const Vec3d inward =
+      closest.distance > 0.0 ? (sphere.center - closest.point) * (sign / closest.distance) : -closest.normal;
+  return {weight * lack, {-weight * inward.x, -weight * inward.y, -weight * inward.z, weight * depth}};
 }
 
 }  // namespace
@@ -42,7 +78,6 @@ ResidualBlocks::ResidualBlocks(const FitPoints& points, const RefinementOptions&
     add_blocks(active(points.outside, PointCondition::outside), PointCondition::outside);
   }
   find_neighbours();
-  if (options.freeze_slopes) find_slopes();
 }
 
 void ResidualBlocks::evaluate(bool with_derivatives) {
@@ -51,11 +86,30 @@ void ResidualBlocks::evaluate(bool with_derivatives) {
   parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
     evaluate_block(static_cast<std::size_t>(b), model, evaluation, with_derivatives);
   });
+  if (options_.keep_centers_inside != nullptr) evaluate_centers(model);
+}
+
+double ResidualBlocks::cost() const {
+  double sum = 0.0;
+  for (const ResidualBlock& block : blocks_) {
+    for (const double r : block.residuals) sum += r * r;
+  }
+  for (const CenterCondition& condition : center_conditions_) sum += condition.residual * condition.residual;
+  return 0.5 * sum;
+}
+
+void ResidualBlocks::evaluate_centers(const MetaballModel& model) {
+  center_conditions_.resize(model.spheres.size());
+  parallel_for(0, static_cast<std::int64_t>(model.spheres.size()), [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    center_conditions_[k] =
+        center_condition(*options_.keep_centers_inside, options_.center_weight, model.spheres[k]);
+  });
 }
 
 void ResidualBlocks::add_blocks(const std::vector<Vec3d>& points, PointCondition condition) {
   for (const PointCluster& cluster : cluster_points(points, kPointsPerBlock)) {
-    ResidualBlock block{condition, {}, {}, {}, {}, {}, {}};
+    ResidualBlock block{condition, {}, {}, {}, {}, {}};
     for (const std::int32_t i : cluster.points) block.points.push_back(points[static_cast<std::size_t>(i)]);
     blocks_.push_back(std::move(block));
     reach_.push_back(cluster);
@@ -76,10 +130,12 @@ std::vector<Vec3d> ResidualBlocks::active(const std::vector<Vec3d>& points, Poin
 
 void ResidualBlocks::find_neighbours() {
   const MetaballModel model = parameters_.model();
-  const double reach = kSupportSlack * cutoff_radii(model.sharpness);
+  const MetaballParameters<double> evaluation = evaluation_parameters(model);
+  const double reach = cutoff_radii(model.sharpness);
   parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
     ResidualBlock& block = blocks_[static_cast<std::size_t>(b)];
-    block.neighbours = spheres_within(model, reach_[static_cast<std::size_t>(b)], reach);
+    block.neighbours = spheres_with_share(model, evaluation, block.points,
+                                          spheres_within(model, reach_[static_cast<std::size_t>(b)], reach));
     block.residuals.resize(block.points.size());
     block.by_sharpness.resize(block.points.size());
     block.by_sphere.resize(block.points.size() * block.neighbours.size());
@@ -120,36 +176,9 @@ ScaledResidual ResidualBlocks::surface_condition(ResidualBlock& block, std::size
                                                  const MetaballParameters<double>& evaluation,
                                                  std::span<const std::int32_t> spheres,
                                                  std::span<SphereDerivatives> row) const {
-  if (!options_.freeze_slopes) {
-    const double s =
-        distance_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
-    return pseudo_huber(s, options_.loss_scale);
-  }
-  const double level =
-      level_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
-  const ScaledResidual scaled = pseudo_huber(level / block.slopes[j], options_.loss_scale);
-  return {scaled.value, scaled.derivative / block.slopes[j]};
-}
-
-// Frozen for a round: s = L / |grad L| is far from linear where the slope nearly vanishes, in necks and
-// between lobes, and a few such samples would shrink the steps of all. On the surface both are the same.
-void ResidualBlocks::find_slopes() {
-  const MetaballModel model = parameters_.model();
-  const MetaballParameters<double> evaluation = evaluation_parameters(model);
-  const double smallest = kSmallestSlope / largest_radius(model.spheres);
-  parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
-    ResidualBlock& block = blocks_[static_cast<std::size_t>(b)];
-    if (block.condition != PointCondition::on_surface) return;
-    for (const Vec3d& p : block.points) {
-      MetaballSums<double> sums;
-      for (const std::int32_t i : block.neighbours) {
-        const Sphere& s = model.spheres[static_cast<std::size_t>(i)];
-        accumulate_metaball(evaluation, MetaballSphere<double>{s.center, 1.0 / (s.radius * s.radius)}, p,
-                            sums);
-      }
-      block.slopes.push_back(std::max(norm(metaball_distance(evaluation, sums).log_gradient), smallest));
-    }
-  });
+  const double s =
+      distance_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
+  return pseudo_huber(s, options_.loss_scale);
 }
 
 ScaledResidual ResidualBlocks::containment_condition(ResidualBlock& block, std::size_t j,

@@ -22,7 +22,12 @@ struct ResidualBlock {
   std::vector<double> residuals;             // (#points)
   std::vector<SphereDerivatives> by_sphere;  // (#points x #neighbours)
   std::vector<double> by_sharpness;          // (#points)
-  std::vector<double> slopes;                // (#points) |grad L| at the round's start, on the surface
+};
+
+// weight * max(0, r / 20 - d(c)) of one sphere, and its derivatives.
+struct CenterCondition {
+  double residual = 0.0;
+  SphereDerivatives derivatives{};
 };
 
 // A residual and what its derivative by the model's value is multiplied with.
@@ -31,8 +36,7 @@ struct ScaledResidual {
   double derivative;
 };
 
-// All blocks of one round: their lists of spheres, and frozen slopes, are made for the parameters at its
-// start.
+// All blocks of one round: their lists of spheres are made for the parameters at its start.
 class ResidualBlocks {
  public:
   // `options` and `parameters` must outlive the blocks.
@@ -43,13 +47,17 @@ class ResidualBlocks {
   void evaluate(bool with_derivatives);
 
   const std::vector<ResidualBlock>& blocks() const { return blocks_; }
+  // One a sphere; none where centres may be anywhere.
+  const std::vector<CenterCondition>& center_conditions() const { return center_conditions_; }
+  // Half the sum of squares of all residuals.
+  double cost() const;
 
  private:
   void add_blocks(const std::vector<Vec3d>& points, PointCondition condition);
   std::vector<Vec3d> active(const std::vector<Vec3d>& points, PointCondition condition) const;
   void find_neighbours();
-  void find_slopes();
   std::vector<std::int32_t> contributors(std::size_t b, const MetaballModel& model, double cutoff) const;
+  void evaluate_centers(const MetaballModel& model);
   void evaluate_block(std::size_t b, const MetaballModel& model, const MetaballParameters<double>& evaluation,
                       bool with_derivatives);
   ScaledResidual surface_condition(ResidualBlock& block, std::size_t j, const MetaballModel& model,
@@ -65,6 +73,7 @@ class ResidualBlocks {
   const RefinementParameters& parameters_;
   std::vector<ResidualBlock> blocks_;
   std::vector<PointCluster> reach_;
+  std::vector<CenterCondition> center_conditions_;
 };
 
 }  // namespace astrolith
