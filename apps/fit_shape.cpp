@@ -61,8 +61,9 @@ void add_options(Program& program, Arguments& arguments) {
       ->required()
       ->option_text("RECIPE.json");
   app.add_option("--spheres", arguments.fit.spheres, "metaballs at most")->check(CLI::Range(1, 10000));
-  app.add_option("--points", arguments.fit.points, "samples of the surface that the refinement sees")
-      ->check(CLI::Range(std::int64_t{100}, std::int64_t{10000000}));
+  app.add_option("--points", arguments.fit.points,
+                 "samples of the surface that the refinement sees; 0 = 120 a metaball")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{10000000}));
   app.add_option("--optimizer", arguments.optimizer, "of the global parameters, on the shape histogram")
       ->check(CLI::IsMember({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
   app.add_option("--population", arguments.fit.population, "of the optimizer")->check(CLI::Range(1, 10000));

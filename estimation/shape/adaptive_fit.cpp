@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <tuple>
 
 #include "estimation/shape/fit_check.h"
@@ -27,32 +28,59 @@ class AdaptiveFit {
   AdaptiveFit(const TargetBody& target, const SurfaceSamples& samples, const FitPoints& containment,
               const AdaptiveFitOptions& options, const Progress& progress)
       : target_(target), samples_(samples), points_(containment), options_(options), progress_(progress) {
-    points_.on_surface = samples.points;
     refinement_.loss_scale = options.loss_scale;
     refinement_.containment_weight = options.containment_weight;
-    total_iterations_ =
-        options.first_iterations + options.rounds * options.round_iterations + options.last_iterations;
+    refinement_.keep_centers_inside = &target.tree;
+    total_iterations_ = options.first_iterations + options.rounds * options.round_iterations +
+                        options.grown_iterations + options.relocations * options.relocation_iterations +
+                        options.last_iterations;
   }
 
   AdaptiveFitSummary run(const MetaballModel& start) {
-    grow_to_budget(start);
-    finish();
+    summary_.model = best_ = start;
+    see_samples(std::size_t{static_cast<unsigned>(options_.samples_per_sphere)} *
+                static_cast<std::size_t>(options_.spheres));
+    step(options_.first_iterations);
+    grow_to_budget();
+    relocate();
+    see_samples(samples_.points.size());
+    if (!done()) step(options_.last_iterations);
+    summary_.model = best_;
+    if (!summary_.interrupted) finish();
+    note(0);
     return std::move(summary_);
   }
 
  private:
-  static double mean_distance(const AdaptiveFitSummary& fit) { return fit.convergence.back().mean_distance; }
+  double mean_distance() const { return summary_.convergence.back().mean_distance; }
 
-  bool done() const { return summary_.interrupted || mean_distance(summary_) <= options_.tolerance; }
+  bool done() const { return summary_.interrupted || best_distance_ <= options_.tolerance; }
 
-  void grow_to_budget(const MetaballModel& start) {
-    summary_.model = start;
-    step(options_.first_iterations);
+  void see_samples(std::size_t count) {
+    const auto end = static_cast<std::ptrdiff_t>(std::min(count, samples_.points.size()));
+    points_.on_surface.assign(samples_.points.begin(), samples_.points.begin() + end);
+  }
+
+  void grow_to_budget() {
     for (int round = 0; round < options_.rounds && !done(); ++round) {
       grow(options_.spheres, options_.rounds - round);
       step(options_.round_iterations);
     }
-    if (!done()) step(options_.last_iterations);
+    if (!done()) step(options_.grown_iterations);
+  }
+
+  // Takes the least useful spheres to where the error is largest; fewer of them after a round in vain.
+  void relocate() {
+    int count = static_cast<int>(options_.relocated * options_.spheres);
+    for (int round = 0; round < options_.relocations && count > 0 && !done(); ++round) {
+      summary_.model = best_;
+      const double before = best_distance_;
+      remove_least_useful_spheres(summary_.model, points_.on_surface, count);
+      grow(options_.spheres, 1);
+      step(options_.relocation_iterations);
+      if (best_distance_ >= before) count /= 2;
+    }
+    summary_.model = best_;
   }
 
   void step(int iterations) {
@@ -65,6 +93,9 @@ class AdaptiveFit {
     summary_.model = refined.model;
     summary_.interrupted = refined.interrupted;
     note(refined.iterations);
+    if (mean_distance() >= best_distance_) return;
+    best_distance_ = mean_distance();
+    best_ = summary_.model;
   }
 
   // Adds a point to the convergence, so many iterations after the last.
@@ -112,14 +143,11 @@ class AdaptiveFit {
       const bool complete = static_cast<int>(summary_.model.spheres.size()) == wanted;
       const bool clean = collect_strays(check);
       if ((clean && complete) || summary_.interrupted || repair == kRepairs) break;
-      // Not before: held at the surface from the start, spheres that want out stop the whole fit (measured).
-      refinement_.keep_centers_inside = &target_.tree;
       grow(wanted, 1);
-      spent_ -= options_.round_iterations;
-      step(options_.round_iterations);
+      spent_ -= options_.relocation_iterations;
+      step(options_.relocation_iterations);
     }
     summary_.model = std::move(best);
-    note(0);
   }
 
   // Fewer parts too many or missing come first, then the mean distance.
@@ -150,6 +178,8 @@ class AdaptiveFit {
   const Progress& progress_;
   RefinementOptions refinement_;
   AdaptiveFitSummary summary_;
+  MetaballModel best_;
+  double best_distance_ = std::numeric_limits<double>::infinity();
   std::string words_ = "starting";
   int total_iterations_ = 0;
   double spent_ = 0.0;

@@ -42,7 +42,9 @@ std::uint64_t stream_seed(std::uint64_t seed, Stream stream) { return 1000003u *
 
 void check_options(const ShapeFitOptions& options) {
   if (options.spheres < 1 || options.spheres > 10000) throw InputError("--spheres: give 1 to 10000");
-  if (options.points < 100 || options.points > 10000000) throw InputError("--points: give 100 to 10000000");
+  if (options.points != 0 && (options.points < 100 || options.points > 10000000)) {
+    throw InputError("--points: give 100 to 10000000, or 0");
+  }
   if (options.population < 1 || options.generations < 1) {
     throw InputError("--population and --generations: give at least 1");
   }
@@ -73,13 +75,15 @@ BlendSearchSummary search(const TargetBody& target, const Packing& packing, cons
 
 AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& start,
                                 const ShapeFitOptions& options, const Progress& progress) {
-  const SurfaceSamples samples = sample_surface(
-      target.surface, options.points, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
+  const std::int64_t count =
+      options.points > 0 ? options.points : std::max(kFewestPoints, kPointsPerSphere * options.spheres);
+  const SurfaceSamples samples = sample_poisson_disk(
+      target.surface, count, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
   FitPoints containment;
   add_containment_points(target, kContainmentDepth, kContainmentPoints,
                          stream_seed(options.seed, kContainment), containment);
   for (const double distance : kShells) {
-    add_shell_points(target, distance, static_cast<int>(kShellShare * static_cast<double>(options.points)),
+    add_shell_points(target, distance, static_cast<int>(kShellShare * static_cast<double>(count)),
                      stream_seed(options.seed, kShellsAround), containment);
   }
   AdaptiveFitOptions adaptive;

@@ -14,10 +14,14 @@
 
 namespace astrolith {
 
+// What the last refinement sees by default: with fewer the fit follows the samples and not the body.
+inline constexpr std::int64_t kPointsPerSphere = 120;
+inline constexpr std::int64_t kFewestPoints = 4000;
+
 struct ShapeFitOptions {
-  int spheres = 200;            // at most, 1 .. 10000
-  std::int64_t points = 15000;  // of the target's surface that the refinement sees, >= 100
-  double tolerance = 0.0;  // no more spheres are added below this mean distance, fraction of the diagonal
+  int spheres = 200;        // at most, 1 .. 10000
+  std::int64_t points = 0;  // of the target's surface that the refinement sees; 0 = kPointsPerSphere a sphere
+  double tolerance = 0.0;   // no more spheres are added below this mean distance, fraction of the diagonal
   OptimizerAlgorithm optimizer = OptimizerAlgorithm::pso;
   int population = 20;                  // of the optimiser
   int generations = 20;                 // of the optimiser: population * generations evaluations

@@ -20,7 +20,7 @@ constexpr double kStartShare = 0.02;
 
 MetaballSphere<double> kernel_of(const Sphere& s) { return {s.center, 1.0 / (s.radius * s.radius)}; }
 
-// Mean |s| of the samples within `radius` of sample i.
+// Mean s^2 of the samples within `radius` of sample i.
 std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::vector<double>& distances,
                                  double radius) {
   std::vector<double> errors(points.size());
@@ -37,13 +37,42 @@ std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::ve
       int count = 0;
       for (const std::size_t j : near) {
         if (squared_norm(points[j] - points[static_cast<std::size_t>(i)]) > radius * radius) continue;
-        sum += std::abs(distances[j]);
+        sum += distances[j] * distances[j];
         ++count;
       }
       errors[static_cast<std::size_t>(i)] = sum / count;
     }
   });
   return errors;
+}
+
+// Squared distance by which the surface would move at every point without one sphere, summed over the points.
+// The level there falls by -log(1 - w_i) / kappa, w_i the sphere's share of the kernel sum.  (#spheres)
+std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec3d>& points) {
+  constexpr double kMostOfIt = 0.999;
+  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  std::vector<std::vector<std::pair<std::int32_t, double>>> moved(points.size());
+  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
+    std::vector<double> kernels;
+    MetaballSums<double> sums;
+    for (const std::int32_t i : neighbours) {
+      const double before = sums.kernel;
+      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), points[p], sums);
+      kernels.push_back(sums.kernel - before);
+    }
+    const Vec3d slope = metaball_distance(parameters, sums).log_gradient;
+    const double scale = 1.0 / (model.sharpness * std::sqrt(squared_norm(slope) + parameters.gradient_floor));
+    for (std::size_t j = 0; j < neighbours.size(); ++j) {
+      const double share = kernels[j] / (sums.kernel + double{kKernelFloor});
+      const double distance = -std::log1p(-std::min(share, kMostOfIt)) * scale;
+      if (share > 1e-6) moved[p].emplace_back(neighbours[j], distance * distance);
+    }
+  });
+  std::vector<double> use(model.spheres.size(), 0.0);
+  for (const auto& list : moved) {
+    for (const auto& [i, square] : list) use[static_cast<std::size_t>(i)] += square;
+  }
+  return use;
 }
 
 // Returns how many spheres went; none, should all be unwanted.
@@ -138,6 +167,17 @@ int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double sh
     for (const std::int32_t i : list) busy[static_cast<std::size_t>(i)] = true;
   }
   return keep_only(model, busy);
+}
+
+void remove_least_useful_spheres(MetaballModel& model, const std::vector<Vec3d>& on_surface, int count) {
+  const std::vector<double> use = usefulness(model, on_surface);
+  std::vector<std::size_t> order(use.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return use[i] < use[j]; });
+  std::vector<bool> wanted(use.size(), true);
+  for (std::size_t k = 0; k < order.size() && k < static_cast<std::size_t>(count); ++k)
+    wanted[order[k]] = false;
+  keep_only(model, wanted);
 }
 
 int remove_outside_spheres(MetaballModel& model, const SurfaceTree& target, double margin) {
