@@ -27,7 +27,7 @@ struct AdaptiveFitOptions {
   int samples_per_sphere = 60;  // seen before the end
   double tolerance = 0.0;       // stops growing at this mean |s| over the samples, fraction of the diagonal
   double loss_scale = 1e-3;     // fraction of the diagonal
-  double containment_weight = 0.02;
+  double containment_weight = 0.2;
   int repair_resolution = 128;  // cells along the longest side of the mesh in which islands are looked for
 };
 
