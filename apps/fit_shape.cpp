@@ -1,4 +1,5 @@
 // fit_shape: a closed mesh becomes a recipe of metaballs.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include "geometry/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/output_file.h"
+#include "numerics/output_folder.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
 
@@ -28,22 +30,25 @@ struct Arguments {
   ShapeFitOptions fit;
 };
 
-// Asks a stage to stop when its share of the time is over.
+// Asks a stage to stop when its share of the time, counted from the start of the program's work, is over.
 class TimeLimit {
  public:
   explicit TimeLimit(double seconds) : seconds_(seconds) {}
 
   Progress guard(Progress progress, const std::string& stage) {
     if (seconds_ <= 0.0) return progress;
-    const double share = stage == "pack" ? 0.15 : stage == "search" ? 0.3 : 1.0;
-    return [this, share, progress = std::move(progress)](double fraction, std::string_view words) {
+    const bool last = stage == "refine";
+    const double end = last ? seconds_ - reserve() : seconds_ * (stage == "pack" ? 0.1 : 0.25);
+    return [this, last, end, progress = std::move(progress)](double fraction, std::string_view words) {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-      const bool over = spent.count() > share * seconds_;
+      const bool over = spent.count() > end;
       // Of the earlier stages only their shares are over: that is no early stop.
-      reached_ = reached_ || (over && share == 1.0);
+      reached_ = reached_ || (over && last);
       return progress(fraction, words) && !over;
     };
   }
+  // What meshing and measuring the result take, at most half of all.
+  double reserve() const { return std::min(4.0, 0.5 * seconds_); }
   bool reached() const { return reached_; }
 
  private:
@@ -74,9 +79,10 @@ void add_options(Program& program, Arguments& arguments) {
          "--tolerance", arguments.fit.tolerance,
          "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
       ->check(CLI::NonNegativeNumber);
-  app.add_option(
-         "--time-limit", arguments.time_limit,
-         "seconds after which the best so far is written; 0 = none. The result then depends on the machine")
+  app.add_option("--time-limit", arguments.time_limit,
+                 "seconds after which the best so far is written, measured figures included; 0 = none. The "
+                 "result then "
+                 "depends on the machine")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--unit", arguments.unit,
                  "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
@@ -134,6 +140,7 @@ void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
   summary["manifold"] = fit.check.topology.manifold;
   summary["components"] = fit.check.topology.components;
   summary["genus"] = fit.check.topology.genus;
+  summary["similarity_features"] = "ahd";
   summary["filling_rate"] = fit.filling_rate;
   summary["base_spheres"] = fit.base_spheres;
   summary["base_similarity"] = fit.base_similarity;
@@ -189,14 +196,14 @@ void pack(Program& program, const Arguments& arguments, const TargetBody& target
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
   require_writable(arguments.output);
-  if (!arguments.report.empty()) make_output_folder(arguments.report);
+  if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
+  TimeLimit limit(arguments.time_limit);
   arguments.fit.seed = program.seed;
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
   const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
   if (arguments.packing_only) return pack(program, arguments, target);
 
-  TimeLimit limit(arguments.time_limit);
   const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
     return limit.guard(program.progress(stage), stage);
   });

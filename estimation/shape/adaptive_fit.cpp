@@ -38,6 +38,7 @@ class AdaptiveFit {
 
   AdaptiveFitSummary run(const MetaballModel& start) {
     summary_.model = best_ = start;
+    note(0);
     see_samples(std::size_t{static_cast<unsigned>(options_.samples_per_sphere)} *
                 static_cast<std::size_t>(options_.spheres));
     step(options_.first_iterations);
@@ -85,6 +86,9 @@ class AdaptiveFit {
 
   void step(int iterations) {
     refinement_.max_iterations = iterations;
+    // While most of the surface is further away than the loss's scale, that would follow the nearer half.
+    if (!summary_.convergence.empty())
+      refinement_.loss_scale = std::max(options_.loss_scale, mean_distance());
     const RefinementSummary refined =
         refine(summary_.model, points_, refinement_, [&](double part, std::string_view) {
           return report(progress_, std::min(1.0, (spent_ + part * iterations) / total_iterations_), words_);

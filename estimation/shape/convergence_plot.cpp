@@ -64,6 +64,7 @@ RgbImage plot_convergence(std::span<const ConvergencePoint> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i > 0) cv::line(canvas, axes.at(points[i - 1]), axes.at(points[i]), kCurve, 2, cv::LINE_AA);
     cv::circle(canvas, axes.at(points[i]), 3, kCurve, cv::FILLED, cv::LINE_AA);
+    if (i > 0 && points[i].spheres == points[i - 1].spheres) continue;
     write_text(canvas, std::to_string(points[i].spheres), axes.at(points[i]) + cv::Point(2, -8));
   }
   return {kWidth, kHeight, {canvas.data, canvas.data + canvas.total() * canvas.elemSize()}};

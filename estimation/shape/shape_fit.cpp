@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "descriptor/histogram_distance.h"
-#include "descriptor/surflet_histogram.h"
+#include "descriptor/shape_description.h"
 #include "estimation/shape/blend_search.h"
 #include "estimation/shape/sphere_packing.h"
 #include "numerics/errors.h"
@@ -13,6 +13,7 @@ namespace {
 
 // Share of the budget that the packing's spheres may take; the rest grows where the error is.
 constexpr double kBaseShare = 0.5;
+constexpr int kFewSpheres = 16;  // may all be the packing's
 
 constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
@@ -54,7 +55,8 @@ void check_options(const ShapeFitOptions& options) {
 
 Packing pack(const TargetBody& target, const ShapeFitOptions& options, const Progress& progress) {
   PackingOptions packing;
-  packing.max_spheres = std::max(1, static_cast<int>(kBaseShare * options.spheres));
+  packing.max_spheres =
+      std::max(std::min(options.spheres, kFewSpheres), static_cast<int>(kBaseShare * options.spheres));
   Packing result = pack_spheres(target.mesh, target.tree, packing, progress);
   if (result.spheres.empty()) throw InputError("no sphere fits inside the body; give a solid body");
   return result;
@@ -111,9 +113,12 @@ MetaballBody body_in_target_frame(MetaballBody body, const TargetBody& target) {
   return body;
 }
 
+// With the features that `compare` takes unless told otherwise.
 ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
-  const SurfaceSamples samples = sample_poisson_disk(mesh, kSimilaritySamples, seed);
-  return surflet_histogram(samples.points, samples.normals);
+  DescriptionOptions options;
+  options.points = kSimilaritySamples;
+  options.seed = seed;
+  return describe_shape(mesh, options).histogram;
 }
 
 void measure(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {

@@ -33,7 +33,7 @@ struct ShapeFitOptions {
 struct ShapeFitResult {
   MetaballBody body;        // in the file's frame and unit
   FitCheck check;           // of that body, in the target's frame: lengths are fractions of the diagonal
-  double similarity = 0.0;  // of fresh Poisson-disk samples of target and fit
+  double similarity = 0.0;  // ahd, of 5,000 fresh Poisson-disk samples of target and of fit
   double similarity_floor =
       0.0;  // of two Poisson-disk samplings of the target: no fit can be told from 1 above it
   double filling_rate = 0.0;                  // of the packing
