@@ -18,6 +18,7 @@
 #include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
+#include "synthesis/feature_list.h"
 #include "synthesis/image_file.h"
 #include "synthesis/implicit_field.h"
 #include "synthesis/lay_on_base.h"
@@ -35,6 +36,7 @@ struct Options {
   fs::path base;
   fs::path output;
   fs::path preview;
+  fs::path features;
   TextureRequest texture;
   MeshSizeRequest size;
   std::string tile;  // "3/16"
@@ -67,8 +69,14 @@ void declare_options(Program& program, Options& options) {
       .add_option("--preview", options.preview,
                   "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
       ->option_text("FILE.png");
+  program.app
+      .add_option("--features", options.features,
+                  "also a list of the craters, those of the recipe and those drawn: places on the bare "
+                  "body, sizes and ages, in the recipe's unit")
+      ->option_text("FILE.csv|FILE.json");
   declare_texture_options(program, options.texture);
-  for (const char* of_mesh : {"--resolution", "--triangles", "--max-memory", "--tile", "--points"}) {
+  for (const char* of_mesh :
+       {"--resolution", "--triangles", "--max-memory", "--tile", "--points", "--features"}) {
     program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
   }
   program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");
@@ -187,10 +195,14 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
     require_writable(options.preview);
   }
   if (options.points) require_extension(options.output, {".ply"});
+  if (!options.features.empty()) {
+    require_extension(options.features, {".csv", ".json"});
+    require_writable(options.features);
+  }
   const MeshTile tile = parse_tile(options.tile);
   const MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool()};
   const bool streamed = options.output.extension() == ".ply";
-  const ImplicitField field(recipe);
+  const ImplicitField field(recipe, options.recipe.string());
   if (field.bounds().empty()) {
     const fs::path& file = options.base.empty() ? options.recipe : options.base;
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
@@ -221,6 +233,9 @@ void make_mesh(Program& program, const Options& options, const Recipe& recipe) {
     write_mesh(collector.mesh, options.output, info);
   }
   if (!options.preview.empty()) make_preview(program, options, collector.mesh);
+  if (!options.features.empty()) {
+    write_feature_list(field, recipe.length_unit, options.features);
+  }
   summarize_mesh(program, statistics, report);
   summarize_output(program, options.output);
   program.say(options.output.string() + ": " + describe_mesh(report, options));

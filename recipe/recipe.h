@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "numerics/vec3.h"
+#include "recipe/surface_features.h"
 
 namespace astrolith {
 
@@ -145,7 +146,7 @@ struct SpotLayer {
 inline constexpr double kMaxSpotDensity = 64.0;
 inline constexpr double kMaxSpotCells = 4.0;
 
-using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer>;
+using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer>;
 
 // Where a recipe came from.
 struct Provenance {

@@ -6,6 +6,7 @@
 #include "recipe/json_document_internal.h"
 #include "recipe/object_reader_internal.h"
 #include "recipe/recipe_json.h"
+#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {
@@ -166,7 +167,8 @@ void read_fields(ObjectReader& object, SpotLayer& out) {
   object.allow("exponent", out.exponent);
 }
 
-constexpr const char* kLayerTypes = "\"simplex\", \"perlin\", \"worley\", \"spots\" and \"gabor\"";
+constexpr const char* kLayerTypes =
+    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"craters\" and \"gabor\"";
 
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
@@ -186,6 +188,8 @@ void read_layer(const json& value, const Place& place, Layer& out) {
     read_fractal(Noise::kWorleyF1);
   } else if (type == "spots") {
     read_fields(object, out.emplace<SpotLayer>());
+  } else if (type == "craters") {
+    read_fields(object, out.emplace<CraterLayer>());
   } else if (type == "gabor") {
     read_fields(object, out.emplace<GaborLayer>());
   } else {

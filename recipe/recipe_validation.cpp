@@ -4,37 +4,12 @@
 #include <cctype>
 #include <cmath>
 
-#include "recipe/place_internal.h"
+#include "recipe/expect_internal.h"
 #include "recipe/recipe_json.h"
+#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {
-
-void expect_range(double value, const Place& place, double low, double high) {
-  if (value >= low && value <= high) return;  // false for NaN
-  place.fail(fmt::format("must be from {:g} to {:g}, is {}; give a value in that range", low, high, value));
-}
-void expect_integer(int value, const Place& place, int low, int high) {
-  if (value >= low && value <= high) return;
-  place.fail(
-      fmt::format("must be an integer from {} to {}, is {}; give one in that range", low, high, value));
-}
-void expect_number(double value, const Place& place) { expect_range(value, place, -kMaxNumber, kMaxNumber); }
-void expect_not_negative(double value, const Place& place) { expect_range(value, place, 0.0, kMaxNumber); }
-void expect_positive(double value, const Place& place) {
-  if (value >= kMinPositive && value <= kMaxNumber) return;
-  place.fail(fmt::format("must be above 0 (from {:g} to {:g}), is {}; give a value in that range",
-                         kMinPositive, kMaxNumber, value));
-}
-void expect_above_one(double value, const Place& place, double high) {
-  if (value > 1.0 && value <= high) return;
-  place.fail(fmt::format("must be above 1 and at most {:g}, is {}; give a value in that range", high, value));
-}
-void expect_vector(const Vec3d& v, const Place& place) {
-  expect_number(v.x, place.field("x"));
-  expect_number(v.y, place.field("y"));
-  expect_number(v.z, place.field("z"));
-}
 
 void check(const Sphere& sphere, const Place& place) {
   expect_vector(sphere.center, place);

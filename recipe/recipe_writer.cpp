@@ -6,6 +6,7 @@
 #include "numerics/errors.h"
 #include "numerics/output_file.h"
 #include "recipe/recipe_json.h"
+#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {

@@ -1,29 +1,50 @@
 // What is certain about a field over whole boxes.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "synthesis/field_model_internal.h"
+#include "synthesis/largest_coordinate.h"
 
 namespace astrolith {
 namespace {
 
 constexpr double kRoundingSlack = 1e-5;  // of heights and their sums, relative to their bound
 
-Interval bound_heights(const FractalNoise& noise, const Box& box) { return noise.bound_heights(box); }
-Interval bound_heights(const SpotNoise& noise, const Box& box) { return noise.bound_heights(box); }
-Interval bound_heights(const GaborSurfaceNoise& noise, const Box&) {
-  return {-noise.height_bound(), noise.height_bound()};
+Interval plus(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
+
+// Elevations over a box from those that the layers before made. `reach` holds where the box's points are
+// projected on the bare surface.
+Interval bound_elevation(const FractalNoise& noise, const Box& box, const Box&, const Interval& before) {
+  return plus(before, noise.bound_heights(box));
+}
+Interval bound_elevation(const SpotNoise& noise, const Box& box, const Box&, const Interval& before) {
+  return plus(before, noise.bound_heights(box));
+}
+Interval bound_elevation(const GaborSurfaceNoise& noise, const Box&, const Box&, const Interval& before) {
+  return plus(before, {-noise.height_bound(), noise.height_bound()});
+}
+Interval bound_elevation(const CraterRelief& relief, const Box&, const Box& projected,
+                         const Interval& before) {
+  return relief.bound(projected, before);
 }
 
-Interval bound_heights(const FieldModel& model, const Box& box) {
-  const double slack = kRoundingSlack * model.height_bound;
-  Interval sum{-slack, slack};
+// A point is projected by its |s|, which no surface has above the bound of all heights.
+Box projected_box(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& at,
+                  const MetaballInterval& bound) {
+  const double level = std::max(std::fabs(bound.level_min), std::fabs(bound.level_max));
+  const double distance = std::min(model.height_bound, level / smallest_gradient(metaballs, at));
+  return widened(at, distance * (1.0 + kRoundingSlack) + 2e-6 * largest_coordinate(at));
+}
+
+Interval bound_heights(const FieldModel& model, const Box& box, const Box& projected) {
+  Interval elevation;
   for (const HeightLayer& layer : model.layers) {
-    const Interval heights = std::visit([&](const auto& noise) { return bound_heights(noise, box); }, layer);
-    sum.low += heights.low;
-    sum.high += heights.high;
+    elevation =
+        std::visit([&](const auto& l) { return bound_elevation(l, box, projected, elevation); }, layer);
   }
-  return sum;
+  const double slack = kRoundingSlack * model.height_bound;
+  return {elevation.low - slack, elevation.high + slack};
 }
 
 // F has the sign of L - log T + height * divisor.
@@ -96,7 +117,8 @@ BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaba
   const MetaballInterval bound = bound_metaballs(metaballs, at, model.height_bound);
   const BlockContent content = content_by_height_bound(model, bound);
   if (content != BlockContent::kMixed || model.layers.empty()) return content;
-  return content_by_heights(metaballs, at, bound, bound_heights(model, box));
+  const Box projected = model.craters.empty() ? at : projected_box(model, metaballs, at, bound);
+  return content_by_heights(metaballs, at, bound, bound_heights(model, box, projected));
 }
 
 // Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.

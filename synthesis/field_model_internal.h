@@ -7,6 +7,7 @@
 
 #include "synthesis/block_field.h"
 #include "synthesis/coordinate_warp.h"
+#include "synthesis/crater_relief.h"
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/metaball_body.h"
@@ -14,13 +15,14 @@
 
 namespace astrolith {
 
-using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise>;
+using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise, CraterRelief>;
 
 struct FieldModel {
   PreparedMetaballs metaballs;
   std::optional<CoordinateWarp> warp;  // of the metaballs' coordinates
   std::vector<HeightLayer> layers;     // in the recipe's order
-  double height_bound = 0.0;           // of |sum of heights|
+  double height_bound = 0.0;           // of the |elevation| that all layers make
+  std::vector<LayerCraters> craters;   // that the layers hold
   Box bounds;                          // of the surface
 };
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
+#include "synthesis/bare_surface.h"
 #include "synthesis/field_model_internal.h"
 
 namespace astrolith {
@@ -18,11 +21,13 @@ constexpr int kBatch = 1024;
 
 constexpr std::uint32_t kBodyStream = 0xffffffffu;  // of the recipe's seed; layers have their numbers
 
-// Points, where the metaballs are evaluated for them, s and grad L there, and a layer's heights.
+// Points, where the metaballs are evaluated for them, s and grad L there, what the layers so far have made of
+// the surface, and a layer's heights.
 struct Batch {
   int n = 0;
-  std::array<float, kBatch> x, y, z, mx, my, mz, distance, gx, gy, gz, height;
-  std::array<float, 3 * kBatch> scratch;
+  std::array<float, kBatch> x, y, z, mx, my, mz, distance, gx, gy, gz, elevation, height;
+  std::array<float, kBatch> px, py, pz;  // projected on the bare surface
+  bool is_projected = false;             // for the first layer that asks
 };
 
 // First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
@@ -46,6 +51,21 @@ ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, c
   }
 }
 
+void project(const FieldModel& model, Batch& b) {
+  if (b.is_projected) return;
+  b.is_projected = true;
+  std::array<float, kBatch> length;
+  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.metaballs.parameters.gradient_floor,
+                   length.data());
+  const float longest_step = static_cast<float>(model.height_bound);
+  const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
+    project(b.n, p.data(), g.data(), length.data(), b.distance.data(), longest_step, out);
+  };
+  along(b.mx, b.gx, b.px.data());
+  along(b.my, b.gy, b.py.data());
+  along(b.mz, b.gz, b.pz.data());
+}
+
 void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
   noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
 }
@@ -55,19 +75,19 @@ void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
 }
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
-  // `height` holds the gradient's length until the heights replace it.
-  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.metaballs.parameters.gradient_floor,
-                   b.height.data());
-  const float longest_step = static_cast<float>(model.height_bound);
-  float* const projected = b.scratch.data();
-  const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
-    project(b.n, p.data(), g.data(), b.height.data(), b.distance.data(), longest_step, out);
-  };
-  along(b.mx, b.gx, projected);
-  along(b.my, b.gy, projected + kBatch);
-  along(b.mz, b.gz, projected + 2 * kBatch);
-  noise.evaluate(model.metaballs, b.n, projected, projected + kBatch, projected + 2 * kBatch,
-                 b.height.data());
+  project(model, b);
+  noise.evaluate(model.metaballs, b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+}
+
+template <typename Noise>
+void add_layer(const FieldModel& model, const Noise& noise, Batch& b) {
+  layer_heights(model, noise, b);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) b.elevation[i] += b.height[i];
+}
+
+void add_layer(const FieldModel& model, const CraterRelief& craters, Batch& b) {
+  project(model, b);
+  craters.apply(b.n, b.px.data(), b.py.data(), b.pz.data(), b.elevation.data());
 }
 
 struct PointArrays {
@@ -108,31 +128,91 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
   const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
   b.n = keep_near_surface(n, reach, at, metaballs_at, b, origin);
   if (b.n == 0) return;
+  std::fill_n(b.elevation.data(), b.n, 0.0f);
   for (const HeightLayer& layer : model.layers) {
-    std::visit([&](const auto& noise) { layer_heights(model, noise, b); }, layer);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.height[i];
+    std::visit([&](const auto& l) { add_layer(model, l, b); }, layer);
   }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }
 
-// Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
-std::vector<HeightLayer> prepare_layers(const Recipe& recipe, const FieldModel& model) {
-  const Box supports = support_bounds(model.metaballs);
-  const Box domain = model.warp ? widened(supports, model.warp->bound()) : supports;
-  std::vector<HeightLayer> layers;
-  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    if (const auto* fractal = std::get_if<FractalLayer>(&recipe.layers[i])) {
-      layers.emplace_back(FractalNoise(*fractal, recipe.seed, static_cast<int>(i), domain));
-    } else if (const auto* spots = std::get_if<SpotLayer>(&recipe.layers[i])) {
-      layers.emplace_back(SpotNoise(*spots, recipe.seed, static_cast<int>(i), domain));
-    } else if (const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i])) {
-      // A layer of colour alone has no height.
-      if (gabor->height_rms > 0.0) {
-        layers.emplace_back(GaborSurfaceNoise(*gabor, recipe.seed, static_cast<int>(i), supports));
-      }
+// What the layers so far have made of the bare surface at points of it, where s = 0.
+std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d> points) {
+  std::vector<float> elevations(points.size());
+  std::array<float, kBatch> x, y, z;
+  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
+    const std::size_t n = std::min<std::size_t>(kBatch, points.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = static_cast<float>(points[begin + i].x);
+      y[i] = static_cast<float>(points[begin + i].y);
+      z[i] = static_cast<float>(points[begin + i].z);
+    }
+    evaluate_batch(model, model.metaballs, static_cast<int>(n), {x.data(), y.data(), z.data()},
+                   kExactEverywhere, &elevations[begin]);
+  }
+  return elevations;
+}
+
+// Puts a recipe's layers on a model of its body, one by one.
+class LayerStack {
+ public:
+  LayerStack(const Recipe& recipe, const std::string& name, FieldModel& model)
+      : recipe_(recipe),
+        name_(name),
+        model_(model),
+        supports_(support_bounds(model.metaballs)),
+        domain_(model.warp ? widened(supports_, model.warp->bound()) : supports_) {}
+
+  void add_all() {
+    for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
+      std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
     }
   }
-  return layers;
-}
+
+ private:
+  void add(const FractalLayer& layer) { push(FractalNoise(layer, recipe_.seed, index_, domain_)); }
+  void add(const SpotLayer& layer) { push(SpotNoise(layer, recipe_.seed, index_, domain_)); }
+  void add(const GaborLayer& layer) {
+    // A layer of colour alone has no height.
+    if (layer.height_rms > 0.0) push(GaborSurfaceNoise(layer, recipe_.seed, index_, supports_));
+  }
+  void add(const CraterLayer& layer) {
+    if (!bare_) bare_.emplace(recipe_);
+    const std::string where = name_ + ": layers[" + std::to_string(index_) + "]";
+    std::vector<PlacedCrater> craters = place_craters(layer, *bare_, recipe_.seed, index_, where);
+    std::vector<Vec3d> centers;
+    for (const PlacedCrater& crater : craters) centers.push_back(crater.position);
+    const std::vector<float> elevations = elevations_at(model_, centers);
+    if (model_.warp) centers = warped(centers);
+    CraterRelief relief(layer, craters, centers, elevations, model_.height_bound);
+    model_.height_bound = relief.elevation_bound();
+    model_.layers.emplace_back(std::move(relief));
+    model_.craters.push_back({index_, std::move(craters)});
+  }
+
+  template <typename Noise>
+  void push(Noise noise) {
+    model_.height_bound += noise.height_bound();
+    model_.layers.emplace_back(std::move(noise));
+  }
+
+  std::vector<Vec3d> warped(std::vector<Vec3d> points) const {
+    for (Vec3d& p : points) {
+      const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+      float mx, my, mz;
+      model_.warp->evaluate(1, &x, &y, &z, &mx, &my, &mz);
+      p = {mx, my, mz};
+    }
+    return points;
+  }
+
+  const Recipe& recipe_;
+  const std::string& name_;  // for errors
+  FieldModel& model_;
+  // Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
+  Box supports_, domain_;
+  std::optional<BareSurface> bare_;  // for the first layer that asks
+  int index_ = 0;
+};
 
 }  // namespace
 
@@ -150,9 +230,9 @@ void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, st
   }
 }
 
-ImplicitField::ImplicitField(const Recipe& recipe) {
+ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
   if (!recipe.body || recipe.body->spheres.empty()) {
-    throw InputError("recipe: body: is missing; give a body, or lay these layers on one");
+    throw InputError(name + ": body: is missing; give a body, or lay these layers on one");
   }
   FieldModel model;
   model.metaballs = prepare_metaballs(*recipe.body);
@@ -160,10 +240,7 @@ ImplicitField::ImplicitField(const Recipe& recipe) {
     model.warp.emplace(*recipe.body->warp, hash_seed(recipe.seed, kBodyStream),
                        support_bounds(model.metaballs));
   }
-  model.layers = prepare_layers(recipe, model);
-  for (const HeightLayer& layer : model.layers) {
-    model.height_bound += std::visit([](const auto& l) { return l.height_bound(); }, layer);
-  }
+  LayerStack(recipe, name, model).add_all();
   model.bounds = surface_bounds(model);
   model_ = std::make_shared<const FieldModel>(std::move(model));
 }
@@ -190,6 +267,8 @@ double ImplicitField::gradient_step() const {
 Box ImplicitField::bounds() const { return model_->bounds; }
 
 double ImplicitField::height_bound() const { return model_->height_bound; }
+
+std::span<const LayerCraters> ImplicitField::craters() const { return model_->craters; }
 
 FieldBlock ImplicitField::gather(const Box& box) const {
   return {*model_, metaballs_reaching(model_->metaballs, metaball_box(*model_, box)), box};

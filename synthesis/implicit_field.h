@@ -5,8 +5,9 @@
 //   Vec3d inward = field.gradient({0.1, 0.0, 0.25});
 //   bool rock = field.inside({0.1, 0.0, 0.25});
 //
-// F(p) = s(p) + sum of layer heights (synthesis/metaballs.h), and the surface is F = 0. A positive height
-// lies along the outward normal and enlarges the body. Near the surface F is a distance to first order. Where
+// F(p) = s(p) + elevation (synthesis/metaballs.h), and the surface is F = 0. Layers add their heights to the
+// elevation, or change what is there as craters do. A positive one lies along the outward normal and enlarges
+// the body. Near the surface F is a distance to first order. Where
 // the body has a warp, s is taken at p + warp(p), and F is steeper or flatter than a distance.
 //
 // Every value is computed in float from float coordinates by the functions that blocks and GPUs run, so a
@@ -15,6 +16,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "recipe/recipe.h"
@@ -23,7 +25,8 @@
 
 namespace astrolith {
 
-struct FieldModel;  // what the field and its blocks share
+struct FieldModel;    // what the field and its blocks share
+struct LayerCraters;  // synthesis/crater_relief.h
 
 // The part of a field that reaches a box. Lives no longer than its field. All members may be called from
 // many threads.
@@ -54,8 +57,9 @@ class FieldBlock {
 
 class ImplicitField {
  public:
-  // Expects a recipe that validation accepts. Throws InputError when it has no body.
-  explicit ImplicitField(const Recipe& recipe);
+  // Expects a recipe that validation accepts. Throws InputError when it has no body, and for craters that
+  // find no place on it.
+  explicit ImplicitField(const Recipe& recipe, const std::string& name = "recipe");
 
   double value(const Vec3d& p) const;
   bool inside(const Vec3d& p) const { return value(p) > 0.0; }
@@ -66,8 +70,11 @@ class ImplicitField {
 
   // Holds the whole surface, within about 1/64 of its longest side; empty where the body is.
   Box bounds() const;
-  // |sum of layer heights| never exceeds this, in length units.
+  // The |elevation| never exceeds this, in length units.
   double height_bound() const;
+
+  // Of each layer of craters, those listed and those drawn, from the oldest to the youngest.
+  std::span<const LayerCraters> craters() const;
 
   FieldBlock gather(const Box& box) const;
 

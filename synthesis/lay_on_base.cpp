@@ -40,6 +40,24 @@ Layer rescaled(GaborLayer layer, double ratio) {
   return layer;
 }
 
+void rescale(Population& population, double ratio) {
+  population.least_diameter *= ratio;
+  population.greatest_diameter *= ratio;
+  if (population.density) *population.density /= ratio * ratio;
+}
+
+Layer rescaled(CraterLayer layer, double ratio) {
+  if (layer.complex_from) *layer.complex_from *= ratio;
+  for (Crater& crater : layer.craters) {
+    crater.place.vector *= ratio;
+    crater.diameter *= ratio;
+    if (crater.depth) *crater.depth *= ratio;
+    if (crater.rim_height) *crater.rim_height *= ratio;
+  }
+  if (layer.population) rescale(layer.population->drawn, ratio);
+  return layer;
+}
+
 }  // namespace
 
 Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,

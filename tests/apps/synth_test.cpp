@@ -1,4 +1,5 @@
 // synth, run as a user runs it.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "geometry/mesh_io.h"
@@ -47,6 +48,29 @@ class Synth : public ::testing::Test {
 
   WorkFolder folder_;
 };
+
+TEST_F(Synth, FeaturesAreListedAsDrawn) {
+  const std::string craters = replaced(kTwoSpheres, "\"layers\": [", R"("layers": [{"type": "craters",
+    "craters": [{"direction": [0, 0, 1], "diameter": 0.5, "age": 9}], "complex_from": 0.4,
+    "population": {"count": 20, "least_diameter": 0.05, "greatest_diameter": 0.3}}, )");
+  const std::string file = folder_.write("c.json", craters), csv = (folder_ / "f.csv").string(),
+                    json = (folder_ / "f.json").string();
+  for (const std::string& list : {csv, json}) {
+    const testing::Outcome outcome = run_program(
+        kSynth, {file, "-o", (folder_ / "c.ply").string(), "--resolution", "24", "--features", list});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  }
+  const auto document = nlohmann::json::parse(text_of(json));
+  EXPECT_EQ(document["length_unit"], "km");
+  ASSERT_EQ(document["features"].size(), 21u);
+  EXPECT_EQ(document["features"][0]["kind"], "complex crater");  // the oldest
+  EXPECT_EQ(document["features"][0]["depth"], 0.03);
+  const std::string text = text_of(csv);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 22);
+  EXPECT_EQ(text.rfind("layer,kind,x,y,z,diameter,depth,rim_height,age\n0,complex crater,", 0), 0u) << text;
+  expect_recipe_refused(replaced(craters, "\"diameter\": 0.5", "\"diameter\": 50"),
+                        "layers[0].craters[0].diameter: is 50");
+}
 
 TEST_F(Synth, MeshIsClosedAndManifold) {
   synthesise("out.ply", {});

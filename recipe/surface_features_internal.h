@@ -1,0 +1,16 @@
+// Craters and boulders in a recipe: reading, checking and writing.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "recipe/object_reader_internal.h"
+#include "recipe/place_internal.h"
+#include "recipe/surface_features.h"
+
+namespace astrolith {
+
+void read_fields(ObjectReader& object, CraterLayer& out);
+void check(const CraterLayer& layer, const Place& place);
+nlohmann::ordered_json to_json(const CraterLayer& layer);
+
+}  // namespace astrolith

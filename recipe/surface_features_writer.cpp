@@ -1,0 +1,63 @@
+#include "recipe/surface_features_internal.h"
+
+namespace astrolith {
+namespace {
+
+using nlohmann::ordered_json;
+
+void write_place(const SurfacePlace& place, ordered_json& object) {
+  const Vec3d& v = place.vector;
+  object[place.is_direction ? "direction" : "position"] = ordered_json::array({v.x, v.y, v.z});
+}
+
+ordered_json to_json(const Population& population) {
+  ordered_json object = ordered_json::object();
+  if (population.count) object["count"] = *population.count;
+  if (population.density) object["density"] = *population.density;
+  object["least_diameter"] = population.least_diameter;
+  object["greatest_diameter"] = population.greatest_diameter;
+  object["exponent"] = population.exponent;
+  return object;
+}
+
+ordered_json to_json(const CraterProfile& profile) {
+  return {{"depth", profile.depth},
+          {"rim_height", profile.rim_height},
+          {"extent", profile.extent},
+          {"flank", profile.flank},
+          {"sharpness", profile.sharpness},
+          {"smoothing", profile.smoothing},
+          {"peak_height", profile.peak_height},
+          {"peak_radius", profile.peak_radius},
+          {"terraces", profile.terraces}};
+}
+
+ordered_json to_json(const Crater& crater) {
+  ordered_json object = ordered_json::object();
+  write_place(crater.place, object);
+  object["diameter"] = crater.diameter;
+  if (crater.depth) object["depth"] = *crater.depth;
+  if (crater.rim_height) object["rim_height"] = *crater.rim_height;
+  object["age"] = crater.age;
+  return object;
+}
+
+}  // namespace
+
+ordered_json to_json(const CraterLayer& layer) {
+  ordered_json object{{"type", "craters"}, {"name", layer.name}};
+  object["simple"] = to_json(layer.simple);
+  object["complex"] = to_json(layer.complex);
+  if (layer.complex_from) object["complex_from"] = *layer.complex_from;
+  object["craters"] = ordered_json::array();
+  for (const Crater& crater : layer.craters) object["craters"].push_back(to_json(crater));
+  if (layer.population) {
+    object["population"] = to_json(layer.population->drawn);
+    object["population"]["greatest_age"] = layer.population->greatest_age;
+    object["population"]["depth_spread"] = layer.population->depth_spread;
+    object["population"]["degradation"] = layer.population->degradation;
+  }
+  return object;
+}
+
+}  // namespace astrolith

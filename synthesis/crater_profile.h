@@ -1,0 +1,76 @@
+// The relief of one crater at one point, as recipe/surface_features.h states it.
+#pragma once
+
+#include "numerics/host_device.h"
+#include "numerics/scalar_math.h"
+
+namespace astrolith {
+
+// Ready for evaluation; heights in length units, x = distance / radius.
+struct CraterKernel {
+  float x, y, z;                 // centre on the bare surface, length units
+  float inverse_radius_squared;  // of the rim's crest
+  float depth, rim_height;       // length units
+  float sharpness;
+  float smoothing;                    // k, length units
+  float extent_squared, extent;       // in radii
+  float inverse_flank_width;          // 1 / (extent - 1)
+  float flank;                        // exponent
+  float terraces;                     // a whole number
+  float peak_height;                  // length units
+  float inverse_peak_radius_squared;  // in radii
+  float base;                         // elevation it starts from at its centre, length units
+};
+
+// The polynomial smooth minimum: exact where |a - b| >= k, up to k/4 below the smaller elsewhere.
+ASTROLITH_KERNEL float smooth_min(float a, float b, float k) {
+  const float share = math::clamp(math::fma(0.5f, (b - a) / math::max(k, 1e-30f), 0.5f), 0.0f, 1.0f);
+  return math::fma(share, a, (1.0f - share) * b) - k * (share * (1.0f - share));
+}
+ASTROLITH_KERNEL float smooth_max(float a, float b, float k) { return -smooth_min(-a, -b, k); }
+
+// A staircase through (0, 0) and (1, 1) with treads where the number of steps times v is whole; v itself
+// beyond them, and where there are no steps. Never falls.
+ASTROLITH_KERNEL float terraced(float v, float steps) {
+  const float n = math::max(steps, 1.0f);
+  const float whole = math::floor(n * v), rest = math::fma(n, v, -whole);
+  const float riser = rest * rest * math::fma(-2.0f, rest, 3.0f);
+  const bool on_wall = steps > 0.0f && v > 0.0f && v < 1.0f;
+  return on_wall ? (whole + riser) / n : v;
+}
+
+ASTROLITH_KERNEL float crater_cavity(const CraterKernel& c, float x_squared) {
+  const float up_the_wall = terraced(math::fma(c.sharpness, x_squared - 1.0f, 1.0f), c.terraces);
+  return math::fma(c.depth + c.rim_height, up_the_wall, -c.depth);
+}
+
+ASTROLITH_KERNEL float crater_rim(const CraterKernel& c, float x_squared) {
+  const float left = (c.extent - math::sqrt(x_squared)) * c.inverse_flank_width;
+  return left > 0.0f ? c.rim_height * math::exp(c.flank * math::log(math::max(left, 1e-30f))) : 0.0f;
+}
+
+ASTROLITH_KERNEL float crater_peak(const CraterKernel& c, float x_squared) {
+  const float left = math::max(1.0f - x_squared * c.inverse_peak_radius_squared, 0.0f);
+  return c.peak_height * (left * left);
+}
+
+// Above the surroundings; exactly zero beyond the extent.
+ASTROLITH_KERNEL float crater_height(const CraterKernel& c, float x_squared) {
+  const float pit = smooth_min(crater_cavity(c, x_squared), crater_rim(c, x_squared), c.smoothing);
+  const float height = smooth_max(pit, -c.depth, c.smoothing) + crater_peak(c, x_squared);
+  return x_squared < c.extent_squared ? height : 0.0f;
+}
+
+// What becomes of an elevation where the crater falls.
+ASTROLITH_KERNEL float cratered(const CraterKernel& c, float x_squared, float elevation) {
+  const float kept = math::min(x_squared, 1.0f);
+  const float changed = math::fma(elevation - c.base, kept, c.base) + crater_height(c, x_squared);
+  return x_squared < c.extent_squared ? changed : elevation;
+}
+
+ASTROLITH_KERNEL float crater_distance_squared(const CraterKernel& c, float x, float y, float z) {
+  const float dx = x - c.x, dy = y - c.y, dz = z - c.z;
+  return math::fma(dx, dx, math::fma(dy, dy, dz * dz)) * c.inverse_radius_squared;
+}
+
+}  // namespace astrolith
