@@ -146,7 +146,7 @@ struct SpotLayer {
 inline constexpr double kMaxSpotDensity = 64.0;
 inline constexpr double kMaxSpotCells = 4.0;
 
-using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer>;
+using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer, BoulderLayer>;
 
 // Where a recipe came from.
 struct Provenance {

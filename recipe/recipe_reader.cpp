@@ -168,7 +168,7 @@ void read_fields(ObjectReader& object, SpotLayer& out) {
 }
 
 constexpr const char* kLayerTypes =
-    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"craters\" and \"gabor\"";
+    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"craters\", \"boulders\" and \"gabor\"";
 
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
@@ -190,6 +190,8 @@ void read_layer(const json& value, const Place& place, Layer& out) {
     read_fields(object, out.emplace<SpotLayer>());
   } else if (type == "craters") {
     read_fields(object, out.emplace<CraterLayer>());
+  } else if (type == "boulders") {
+    read_fields(object, out.emplace<BoulderLayer>());
   } else if (type == "gabor") {
     read_fields(object, out.emplace<GaborLayer>());
   } else {

@@ -14,6 +14,8 @@ namespace astrolith {
 
 inline constexpr int kMaxDrawnFeatures = 1'000'000;  // of one layer
 
+inline constexpr double kMinAxisRatio = 0.05;  // of a boulder's shortest axis to its longest
+
 // Where on the bare body: the point of its surface nearest to a position, or where the ray along a direction
 // from the frame's origin leaves the body for the last time.
 struct SurfacePlace {
@@ -77,6 +79,34 @@ struct CraterLayer {
   std::optional<double> complex_from;  // > 0; all are simple when absent
   std::vector<Crater> craters;
   std::optional<CraterPopulation> population;
+};
+
+// An ellipsoid on the surface that all other layers make, its shortest axis along the bare surface's normal
+// but for the tilt.
+struct Boulder {
+  SurfacePlace place;
+  Vec3d axes{1, 1, 1};   // full lengths a, b, c, > 0
+  double heading = 0.0;  // of axis a on the surface, degrees from east (z x normal) towards north
+  double tilt = 0.0;     // of axis c, degrees about axis a
+  double burial = 0.3;   // share of its height that lies below the surface, [0, 1]
+};
+
+struct BoulderPopulation {
+  Population drawn;                 // diameters are the boulders' axes a
+  Vec3d axis_ratios{1, 0.71, 0.5};  // a : b : c, each in [0.05, 1]
+  double ratio_spread = 0.2;        // b and c are multiplied by 1 +- this, uniformly, [0, 0.9]
+  double least_burial = 0.1;        // burials are uniform between two limits, [0, 1]
+  double greatest_burial = 0.6;
+  double greatest_tilt = 20.0;  // tilts are uniform between +- this, degrees, [0, 90]
+};
+
+// Boulders join the body as a smooth union with the joint k = smoothing * (half the shortest axis).
+struct BoulderLayer {
+  std::string name;
+  double smoothing = 0.0;  // [0, 1]
+  double roughness = 0.0;  // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
+  std::vector<Boulder> boulders;
+  std::optional<BoulderPopulation> population;
 };
 
 }  // namespace astrolith

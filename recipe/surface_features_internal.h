@@ -13,4 +13,8 @@ void read_fields(ObjectReader& object, CraterLayer& out);
 void check(const CraterLayer& layer, const Place& place);
 nlohmann::ordered_json to_json(const CraterLayer& layer);
 
+void read_fields(ObjectReader& object, BoulderLayer& out);
+void check(const BoulderLayer& layer, const Place& place);
+nlohmann::ordered_json to_json(const BoulderLayer& layer);
+
 }  // namespace astrolith

@@ -53,6 +53,27 @@ void read_crater(const json& value, const Place& place, Crater& out) {
   object.finish();
 }
 
+void read_boulder(const json& value, const Place& place, Boulder& out) {
+  ObjectReader object(value, place);
+  read_place(object, out.place);
+  object.require("axes", out.axes);
+  object.allow("heading", out.heading);
+  object.allow("tilt", out.tilt);
+  object.allow("burial", out.burial);
+  object.finish();
+}
+
+template <typename T>
+void read_list(ObjectReader& parent, std::string_view name, std::vector<T>& out,
+               void (*read)(const json&, const Place&, T&)) {
+  const json* value = parent.find(name);
+  if (value == nullptr) return;
+  const Place place = parent.at(name);
+  expect_array(*value, place);
+  out.resize(value->size());
+  for (std::size_t i = 0; i < out.size(); ++i) read((*value)[i], place.element(i), out[i]);
+}
+
 }  // namespace
 
 void read_fields(ObjectReader& object, CraterLayer& out) {
@@ -60,14 +81,7 @@ void read_fields(ObjectReader& object, CraterLayer& out) {
   read_profile(object, "simple", out.simple);
   read_profile(object, "complex", out.complex);
   allow(object, "complex_from", out.complex_from);
-  if (const json* craters = object.find("craters")) {
-    const Place place = object.at("craters");
-    expect_array(*craters, place);
-    out.craters.resize(craters->size());
-    for (std::size_t i = 0; i < out.craters.size(); ++i) {
-      read_crater((*craters)[i], place.element(i), out.craters[i]);
-    }
-  }
+  read_list(object, "craters", out.craters, read_crater);
   if (const json* value = object.find("population")) {
     const Place place = object.at("population");
     ObjectReader population(*value, place);
@@ -76,6 +90,25 @@ void read_fields(ObjectReader& object, CraterLayer& out) {
     population.allow("greatest_age", drawn.greatest_age);
     population.allow("depth_spread", drawn.depth_spread);
     population.allow("degradation", drawn.degradation);
+    population.finish();
+  }
+}
+
+void read_fields(ObjectReader& object, BoulderLayer& out) {
+  object.allow("name", out.name);
+  object.allow("smoothing", out.smoothing);
+  object.allow("roughness", out.roughness);
+  read_list(object, "boulders", out.boulders, read_boulder);
+  if (const json* value = object.find("population")) {
+    const Place place = object.at("population");
+    ObjectReader population(*value, place);
+    BoulderPopulation& drawn = out.population.emplace();
+    read_population_fields(population, drawn.drawn);
+    population.allow("axis_ratios", drawn.axis_ratios);
+    population.allow("ratio_spread", drawn.ratio_spread);
+    population.allow("least_burial", drawn.least_burial);
+    population.allow("greatest_burial", drawn.greatest_burial);
+    population.allow("greatest_tilt", drawn.greatest_tilt);
     population.finish();
   }
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "recipe/expect_internal.h"
 #include "recipe/surface_features_internal.h"
 
@@ -45,6 +47,38 @@ void check(const Crater& crater, const Place& place) {
   expect_not_negative(crater.age, place.field("age"));
 }
 
+void check(const Boulder& boulder, const Place& place) {
+  check(boulder.place, place);
+  const Place axes = place.field("axes");
+  expect_positive(boulder.axes.x, axes.field("x"));
+  expect_positive(boulder.axes.y, axes.field("y"));
+  expect_positive(boulder.axes.z, axes.field("z"));
+  const double longest = std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
+  if (std::min({boulder.axes.x, boulder.axes.y, boulder.axes.z}) < kMinAxisRatio * longest) {
+    axes.fail(
+        fmt::format("the shortest must be at least {:g} of the longest; bring them closer", kMinAxisRatio));
+  }
+  expect_range(boulder.heading, place.field("heading"), -360.0, 360.0);
+  expect_range(boulder.tilt, place.field("tilt"), -180.0, 180.0);
+  expect_range(boulder.burial, place.field("burial"), 0.0, 1.0);
+}
+
+void check(const BoulderPopulation& population, const Place& place) {
+  check(population.drawn, place);
+  const Place ratios = place.field("axis_ratios");
+  expect_range(population.axis_ratios.x, ratios.field("x"), kMinAxisRatio, 1.0);
+  expect_range(population.axis_ratios.y, ratios.field("y"), kMinAxisRatio, 1.0);
+  expect_range(population.axis_ratios.z, ratios.field("z"), kMinAxisRatio, 1.0);
+  expect_range(population.ratio_spread, place.field("ratio_spread"), 0.0, 0.9);
+  expect_range(population.least_burial, place.field("least_burial"), 0.0, 1.0);
+  expect_range(population.greatest_burial, place.field("greatest_burial"), 0.0, 1.0);
+  if (population.greatest_burial < population.least_burial) {
+    place.field("greatest_burial")
+        .fail(fmt::format("is {}, below least_burial; raise it", population.greatest_burial));
+  }
+  expect_range(population.greatest_tilt, place.field("greatest_tilt"), 0.0, 90.0);
+}
+
 }  // namespace
 
 void check(const CraterLayer& layer, const Place& place) {
@@ -59,6 +93,14 @@ void check(const CraterLayer& layer, const Place& place) {
   expect_not_negative(layer.population->greatest_age, population.field("greatest_age"));
   expect_range(layer.population->depth_spread, population.field("depth_spread"), 0.0, 1.0);
   expect_range(layer.population->degradation, population.field("degradation"), 0.0, 1.0);
+}
+
+void check(const BoulderLayer& layer, const Place& place) {
+  expect_range(layer.smoothing, place.field("smoothing"), 0.0, 1.0);
+  expect_range(layer.roughness, place.field("roughness"), 0.0, 0.5);
+  const Place boulders = place.field("boulders");
+  for (std::size_t i = 0; i < layer.boulders.size(); ++i) check(layer.boulders[i], boulders.element(i));
+  if (layer.population) check(*layer.population, place.field("population"));
 }
 
 }  // namespace astrolith

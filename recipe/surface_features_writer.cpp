@@ -5,9 +5,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
+ordered_json to_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
 void write_place(const SurfacePlace& place, ordered_json& object) {
-  const Vec3d& v = place.vector;
-  object[place.is_direction ? "direction" : "position"] = ordered_json::array({v.x, v.y, v.z});
+  object[place.is_direction ? "direction" : "position"] = to_json(place.vector);
 }
 
 ordered_json to_json(const Population& population) {
@@ -42,6 +43,26 @@ ordered_json to_json(const Crater& crater) {
   return object;
 }
 
+ordered_json to_json(const Boulder& boulder) {
+  ordered_json object = ordered_json::object();
+  write_place(boulder.place, object);
+  object["axes"] = to_json(boulder.axes);
+  object["heading"] = boulder.heading;
+  object["tilt"] = boulder.tilt;
+  object["burial"] = boulder.burial;
+  return object;
+}
+
+ordered_json to_json(const BoulderPopulation& population) {
+  ordered_json object = to_json(population.drawn);
+  object["axis_ratios"] = to_json(population.axis_ratios);
+  object["ratio_spread"] = population.ratio_spread;
+  object["least_burial"] = population.least_burial;
+  object["greatest_burial"] = population.greatest_burial;
+  object["greatest_tilt"] = population.greatest_tilt;
+  return object;
+}
+
 }  // namespace
 
 ordered_json to_json(const CraterLayer& layer) {
@@ -57,6 +78,17 @@ ordered_json to_json(const CraterLayer& layer) {
     object["population"]["depth_spread"] = layer.population->depth_spread;
     object["population"]["degradation"] = layer.population->degradation;
   }
+  return object;
+}
+
+ordered_json to_json(const BoulderLayer& layer) {
+  ordered_json object{{"type", "boulders"},
+                      {"name", layer.name},
+                      {"smoothing", layer.smoothing},
+                      {"roughness", layer.roughness}};
+  object["boulders"] = ordered_json::array();
+  for (const Boulder& boulder : layer.boulders) object["boulders"].push_back(to_json(boulder));
+  if (layer.population) object["population"] = to_json(*layer.population);
   return object;
 }
 

@@ -112,13 +112,25 @@ Box metaball_box(const FieldModel& model, const Box& box) {
   return model.warp ? model.warp->image(box) : box;
 }
 
-BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box) {
+namespace {
+
+BlockContent content_without_boulders(const FieldModel& model, const PreparedMetaballs& metaballs,
+                                      const Box& box) {
   const Box at = metaball_box(model, box);
   const MetaballInterval bound = bound_metaballs(metaballs, at, model.height_bound);
   const BlockContent content = content_by_height_bound(model, bound);
   if (content != BlockContent::kMixed || model.layers.empty()) return content;
   const Box projected = model.craters.empty() ? at : projected_box(model, metaballs, at, bound);
   return content_by_heights(metaballs, at, bound, bound_heights(model, box, projected));
+}
+
+}  // namespace
+
+// A union only adds.
+BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box) {
+  const BlockContent content = content_without_boulders(model, metaballs, box);
+  const bool boulders = content == BlockContent::kOutside && model.boulders.touches(box);
+  return boulders ? BlockContent::kMixed : content;
 }
 
 // Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
@@ -133,6 +145,10 @@ Box surface_bounds(const FieldModel& model) {
     const bool shrunk = norm(tighter.extent()) < 0.7 * norm(box.extent());
     box = tighter;
     if (!shrunk) break;
+  }
+  if (!model.boulders.empty()) {
+    box.extend(model.boulders.bounds().min);
+    box.extend(model.boulders.bounds().max);
   }
   return box;
 }

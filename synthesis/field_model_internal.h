@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "synthesis/block_field.h"
+#include "synthesis/boulder_field.h"
 #include "synthesis/coordinate_warp.h"
 #include "synthesis/crater_relief.h"
 #include "synthesis/fractal_noise.h"
@@ -23,7 +24,9 @@ struct FieldModel {
   std::vector<HeightLayer> layers;     // in the recipe's order
   double height_bound = 0.0;           // of the |elevation| that all layers make
   std::vector<LayerCraters> craters;   // that the layers hold
-  Box bounds;                          // of the surface
+  BoulderField boulders;               // on the surface that the layers make
+  std::vector<LayerBoulders> placed_boulders;
+  Box bounds;  // of the surface
 };
 
 // Where the metaballs are evaluated for the points of a box.

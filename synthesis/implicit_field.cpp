@@ -94,14 +94,15 @@ struct PointArrays {
   const float *x, *y, *z;
 };
 
-// Keeps the points whose F the heights may bring into the band, and where the metaballs were evaluated for
-// them; returns how many, and where they were.
-int keep_near_surface(int n, float reach, const PointArrays& at, const PointArrays& metaballs_at, Batch& b,
-                      std::array<int, kBatch>& origin) {
+// Keeps the points whose F the heights may bring into the band and those that boulders reach, and where the
+// metaballs were evaluated for them; returns how many, and where they were.
+template <typename Reach>
+int keep_near_surface(int n, float reach, const Reach& boulders_reach, const PointArrays& at,
+                      const PointArrays& metaballs_at, Batch& b, std::array<int, kBatch>& origin) {
   int kept = 0;
   for (int i = 0; i < n; ++i) {
     const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(kept);
-    if (std::fabs(b.distance[from]) > reach) continue;
+    if (std::fabs(b.distance[from]) > reach && !boulders_reach(i)) continue;
     b.x[to] = at.x[i], b.y[to] = at.y[i], b.z[to] = at.z[i];
     b.mx[to] = metaballs_at.x[i], b.my[to] = metaballs_at.y[i], b.mz[to] = metaballs_at.z[i];
     for (auto* a : {&b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
@@ -111,9 +112,27 @@ int keep_near_surface(int n, float reach, const PointArrays& at, const PointArra
   return kept;
 }
 
+// Adds what the layers make of the surface, near to it and wherever `boulders` reach.
+void add_elevations(const FieldModel& model, std::span<const std::uint32_t> boulders, const PointArrays& at,
+                    const PointArrays& metaballs_at, float band, Batch& b, float* value) {
+  std::array<int, kBatch> origin;
+  const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
+  const auto boulders_reach = [&](int i) {
+    return model.boulders.reach(boulders, at.x[i], at.y[i], at.z[i]);
+  };
+  b.n = keep_near_surface(b.n, reach, boulders_reach, at, metaballs_at, b, origin);
+  if (b.n == 0) return;
+  std::fill_n(b.elevation.data(), b.n, 0.0f);
+  for (const HeightLayer& layer : model.layers) {
+    std::visit([&](const auto& l) { add_layer(model, l, b); }, layer);
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
+}
+
 void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const PointArrays& at,
                     float band, float* value) {
   Batch b;
+  b.n = n;
   PointArrays metaballs_at = at;
   if (model.warp) {
     model.warp->evaluate(n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
@@ -123,16 +142,16 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
   evaluate_metaballs(metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(),
                      b.gx.data(), b.gy.data(), b.gz.data());
   std::copy_n(b.distance.data(), n, value);
-  if (model.layers.empty()) return;
-  std::array<int, kBatch> origin;
-  const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
-  b.n = keep_near_surface(n, reach, at, metaballs_at, b, origin);
-  if (b.n == 0) return;
-  std::fill_n(b.elevation.data(), b.n, 0.0f);
-  for (const HeightLayer& layer : model.layers) {
-    std::visit([&](const auto& l) { add_layer(model, l, b); }, layer);
-  }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
+  const std::vector<std::uint32_t> boulders = model.boulders.near(n, at.x, at.y, at.z);
+  if (!model.layers.empty()) add_elevations(model, boulders, at, metaballs_at, band, b, value);
+  model.boulders.join(boulders, n, at.x, at.y, at.z, value);
+}
+
+float value_at(const FieldModel& model, const Vec3d& p) {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  float f = 0.0f;
+  evaluate_batch(model, model.metaballs, 1, {&x, &y, &z}, kExactEverywhere, &f);
+  return f;
 }
 
 // What the layers so far have made of the bare surface at points of it, where s = 0.
@@ -166,6 +185,7 @@ class LayerStack {
     for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
       std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
     }
+    add_boulders();
   }
 
  private:
@@ -176,9 +196,7 @@ class LayerStack {
     if (layer.height_rms > 0.0) push(GaborSurfaceNoise(layer, recipe_.seed, index_, supports_));
   }
   void add(const CraterLayer& layer) {
-    if (!bare_) bare_.emplace(recipe_);
-    const std::string where = name_ + ": layers[" + std::to_string(index_) + "]";
-    std::vector<PlacedCrater> craters = place_craters(layer, *bare_, recipe_.seed, index_, where);
+    std::vector<PlacedCrater> craters = place_craters(layer, bare(), recipe_.seed, index_, place_of(index_));
     std::vector<Vec3d> centers;
     for (const PlacedCrater& crater : craters) centers.push_back(crater.position);
     const std::vector<float> elevations = elevations_at(model_, centers);
@@ -188,6 +206,30 @@ class LayerStack {
     model_.layers.emplace_back(std::move(relief));
     model_.craters.push_back({index_, std::move(craters)});
   }
+
+  void add(const BoulderLayer&) {}  // once the surface is there
+
+  void add_boulders() {
+    BoulderField boulders;
+    const Terrain terrain{[this](const Vec3d& p) { return static_cast<double>(value_at(model_, p)); },
+                          model_.height_bound};
+    for (int i = 0; i < static_cast<int>(recipe_.layers.size()); ++i) {
+      const auto* layer = std::get_if<BoulderLayer>(&recipe_.layers[static_cast<std::size_t>(i)]);
+      if (layer == nullptr) continue;
+      std::vector<PlacedBoulder> placed =
+          place_boulders(*layer, bare(), terrain, recipe_.seed, i, place_of(i));
+      boulders.add(*layer, placed, hash_seed(recipe_.seed, static_cast<std::uint32_t>(i)));
+      model_.placed_boulders.push_back({i, std::move(placed)});
+    }
+    boulders.finish();
+    model_.boulders = std::move(boulders);
+  }
+
+  const BareSurface& bare() {
+    if (!bare_) bare_.emplace(recipe_);
+    return *bare_;
+  }
+  std::string place_of(int layer) const { return name_ + ": layers[" + std::to_string(layer) + "]"; }
 
   template <typename Noise>
   void push(Noise noise) {
@@ -245,15 +287,11 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
   model_ = std::make_shared<const FieldModel>(std::move(model));
 }
 
-double ImplicitField::value(const Vec3d& p) const {
-  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-  float f = 0.0f;
-  evaluate_batch(*model_, model_->metaballs, 1, {&x, &y, &z}, kExactEverywhere, &f);
-  return static_cast<double>(f);
-}
+double ImplicitField::value(const Vec3d& p) const { return static_cast<double>(value_at(*model_, p)); }
 
 Vec3d ImplicitField::gradient(const Vec3d& p) const {
-  if (model_->layers.empty() && !model_->warp) return distance_gradient(model_->metaballs, p);
+  if (model_->layers.empty() && model_->boulders.empty() && !model_->warp)
+    return distance_gradient(model_->metaballs, p);
   const double h = gradient_step();
   const auto slope = [&](const Vec3d& d) { return (value(p + d) - value(p - d)) / (2.0 * h); };
   return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
@@ -269,6 +307,8 @@ Box ImplicitField::bounds() const { return model_->bounds; }
 double ImplicitField::height_bound() const { return model_->height_bound; }
 
 std::span<const LayerCraters> ImplicitField::craters() const { return model_->craters; }
+
+std::span<const LayerBoulders> ImplicitField::boulders() const { return model_->placed_boulders; }
 
 FieldBlock ImplicitField::gather(const Box& box) const {
   return {*model_, metaballs_reaching(model_->metaballs, metaball_box(*model_, box)), box};

@@ -7,7 +7,7 @@
 //
 // F(p) = s(p) + elevation (synthesis/metaballs.h), and the surface is F = 0. Layers add their heights to the
 // elevation, or change what is there as craters do. A positive one lies along the outward normal and enlarges
-// the body. Near the surface F is a distance to first order. Where
+// the body. Boulders join the result as a union. Near the surface F is a distance to first order. Where
 // the body has a warp, s is taken at p + warp(p), and F is steeper or flatter than a distance.
 //
 // Every value is computed in float from float coordinates by the functions that blocks and GPUs run, so a
@@ -25,8 +25,9 @@
 
 namespace astrolith {
 
-struct FieldModel;    // what the field and its blocks share
-struct LayerCraters;  // synthesis/crater_relief.h
+struct FieldModel;     // what the field and its blocks share
+struct LayerCraters;   // synthesis/crater_relief.h
+struct LayerBoulders;  // synthesis/boulder_field.h
 
 // The part of a field that reaches a box. Lives no longer than its field. All members may be called from
 // many threads.
@@ -75,6 +76,9 @@ class ImplicitField {
 
   // Of each layer of craters, those listed and those drawn, from the oldest to the youngest.
   std::span<const LayerCraters> craters() const;
+
+  // Of each layer of boulders, those listed, then those drawn.
+  std::span<const LayerBoulders> boulders() const;
 
   FieldBlock gather(const Box& box) const;
 

@@ -58,6 +58,15 @@ Layer rescaled(CraterLayer layer, double ratio) {
   return layer;
 }
 
+Layer rescaled(BoulderLayer layer, double ratio) {
+  for (Boulder& boulder : layer.boulders) {
+    boulder.place.vector *= ratio;
+    boulder.axes *= ratio;
+  }
+  if (layer.population) rescale(layer.population->drawn, ratio);
+  return layer;
+}
+
 }  // namespace
 
 Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,
