@@ -71,8 +71,8 @@ void declare_options(Program& program, Options& options) {
       ->option_text("FILE.png");
   program.app
       .add_option("--features", options.features,
-                  "also a list of the craters, those of the recipe and those drawn: places on the bare "
-                  "body, sizes and ages, in the recipe's unit")
+                  "also a list of the craters and boulders, those of the recipe and those drawn: places, "
+                  "sizes, ages and angles (degrees), in the recipe's unit")
       ->option_text("FILE.csv|FILE.json");
   declare_texture_options(program, options.texture);
   for (const char* of_mesh :

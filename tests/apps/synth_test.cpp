@@ -52,7 +52,8 @@ class Synth : public ::testing::Test {
 TEST_F(Synth, FeaturesAreListedAsDrawn) {
   const std::string craters = replaced(kTwoSpheres, "\"layers\": [", R"("layers": [{"type": "craters",
     "craters": [{"direction": [0, 0, 1], "diameter": 0.5, "age": 9}], "complex_from": 0.4,
-    "population": {"count": 20, "least_diameter": 0.05, "greatest_diameter": 0.3}}, )");
+    "population": {"count": 20, "least_diameter": 0.05, "greatest_diameter": 0.3}},
+    {"type": "boulders", "boulders": [{"direction": [0, 1, 0], "axes": [0.3, 0.2, 0.1]}]}, )");
   const std::string file = folder_.write("c.json", craters), csv = (folder_ / "f.csv").string(),
                     json = (folder_ / "f.json").string();
   for (const std::string& list : {csv, json}) {
@@ -62,12 +63,15 @@ TEST_F(Synth, FeaturesAreListedAsDrawn) {
   }
   const auto document = nlohmann::json::parse(text_of(json));
   EXPECT_EQ(document["length_unit"], "km");
-  ASSERT_EQ(document["features"].size(), 21u);
+  ASSERT_EQ(document["features"].size(), 22u);
+  EXPECT_EQ(document["features"][21]["kind"], "boulder");
+  EXPECT_EQ(document["features"][21]["axis_b"], 0.2);
+  EXPECT_FALSE(document["features"][21].contains("depth"));
   EXPECT_EQ(document["features"][0]["kind"], "complex crater");  // the oldest
   EXPECT_EQ(document["features"][0]["depth"], 0.03);
   const std::string text = text_of(csv);
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 22);
-  EXPECT_EQ(text.rfind("layer,kind,x,y,z,diameter,depth,rim_height,age\n0,complex crater,", 0), 0u) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 23);
+  EXPECT_EQ(text.rfind("layer,kind,x,y,z,diameter,depth,rim_height,age,axis_b,", 0), 0u) << text;
   expect_recipe_refused(replaced(craters, "\"diameter\": 0.5", "\"diameter\": 50"),
                         "layers[0].craters[0].diameter: is 50");
 }

@@ -39,7 +39,10 @@ inline const std::string kCompleteRecipe = R"({
      "complex": {"terraces": 2, "peak_height": 0.05},
      "craters": [{"direction": [0, 0, 1], "diameter": 0.9, "age": 2},
                  {"position": [1, 0, 0], "diameter": 0.5, "depth": 0.06, "rim_height": 0.01}],
-     "population": {"count": 40, "least_diameter": 0.05, "greatest_diameter": 0.375, "degradation": 0.5}}
+     "population": {"count": 40, "least_diameter": 0.05, "greatest_diameter": 0.375, "degradation": 0.5}},
+    {"type": "boulders", "smoothing": 0.25, "roughness": 0.125,
+     "boulders": [{"direction": [0, 1, 1], "axes": [0.3, 0.2, 0.15], "heading": 30, "tilt": 10, "burial": 0.4}],
+     "population": {"density": 2.5, "least_diameter": 0.02, "greatest_diameter": 0.125, "least_burial": 0.2}}
   ]
 }
 )";
@@ -107,7 +110,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
       {R"("gaussian")", R"("wyvill")", R"(body.kernel: must be "gaussian")"},
       {R"("simplex")", R"("value")",
-       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots", "craters" and "gabor", is "value")"},
+       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots", "craters", "boulders" and "gabor", is "value")"},
       {R"("simplex")", R"("worley")", R"(layers[0].gradient_modulation: unknown field)"},
       {R"("f2-f1")", R"("f3")", R"(layers[2].distance: must be "f1", "f2" or "f2-f1", is "f3")"},
       {R"("perlin", "amplitude")", R"("perlin", "distance")", R"(layers[3].distance: unknown field)"},
@@ -170,6 +173,15 @@ inline std::vector<Spoiled> spoiled_recipes() {
        R"(layers[5].population.greatest_diameter: is 0.01, below least_diameter)", false},
       {R"("degradation": 0.5)", R"("degradation": 1.5)",
        R"(layers[5].population.degradation: must be from 0 to 1)"},
+      {R"("burial": 0.4)", R"("burial": 1.4)",
+       R"(layers[6].boulders[0].burial: must be from 0 to 1, is 1.4)"},
+      {R"([0.3, 0.2, 0.15])", R"([0.3, 0.2, 0])", R"(layers[6].boulders[0].axes.z: must be above 0)"},
+      {R"([0.3, 0.2, 0.15])", R"([0.3, 0.2, 0.01])",
+       R"(layers[6].boulders[0].axes: the shortest must be at least 0.05 of the longest)", false},
+      {R"("least_burial": 0.2)", R"("least_burial": 0.7)",
+       R"(layers[6].population.greatest_burial: is 0.6, below least_burial)", false},
+      {R"("density": 2.5)", R"("density": -2.5)", R"(layers[6].population.density: must be from 0)"},
+      {R"("roughness": 0.125)", R"("roughness": 1)", R"(layers[6].roughness: must be from 0 to 0.5, is 1)"},
       {R"(1.95)", R"(1)", R"(layers[0].lacunarity: must be above 1 and at most 16, is 1)"},
       {R"("pixel_size": 0.001)", R"("pixel_size": 0)",
        R"(layers[1].pixel_size: must be above 0 (from 1e-12)"},
