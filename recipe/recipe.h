@@ -146,7 +146,23 @@ struct SpotLayer {
 inline constexpr double kMaxSpotDensity = 64.0;
 inline constexpr double kMaxSpotCells = 4.0;
 
-using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer, BoulderLayer>;
+// White noise of cells that is mostly zero, upscaled from level to level by quadratic interpolation: round
+// pits where cells are not zero, each level's half as wide as the last one's.
+//   N_l(p) = upscaled noise of cells cell_size / 2^l wide; a lone value v has its peak v
+//   n(p) = -amplitude sum_l gain^l max(N_l - threshold, 0),    l = 0 .. levels - 1
+// or, merged, n(p) = -amplitude max(sum_l gain^l N_l - threshold, 0). The threshold cuts a crisp border.
+struct SparseLayer {
+  std::string name;
+  double amplitude = 0.0;     // length units
+  double cell_size = 1.0;     // of the first level, length units, > 0
+  int levels = 4;             // 1 .. 16
+  double probability = 0.05;  // of a cell's value being uniform in [0, 1) instead of zero, [0, 1]
+  double threshold = 0.2;     // [0, 1]
+  double gain = 0.5;          // [0, 4]
+  bool merged = false;        // one image for all levels
+};
+
+using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer, BoulderLayer, SparseLayer>;
 
 // Where a recipe came from.
 struct Provenance {

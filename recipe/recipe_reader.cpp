@@ -167,8 +167,19 @@ void read_fields(ObjectReader& object, SpotLayer& out) {
   object.allow("exponent", out.exponent);
 }
 
+void read_fields(ObjectReader& object, SparseLayer& out) {
+  object.allow("name", out.name);
+  object.allow("amplitude", out.amplitude);
+  object.allow("cell_size", out.cell_size);
+  object.allow("levels", out.levels);
+  object.allow("probability", out.probability);
+  object.allow("threshold", out.threshold);
+  object.allow("gain", out.gain);
+  object.allow("merged", out.merged);
+}
+
 constexpr const char* kLayerTypes =
-    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"craters\", \"boulders\" and \"gabor\"";
+    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"sparse\", \"craters\", \"boulders\" and \"gabor\"";
 
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
@@ -188,6 +199,8 @@ void read_layer(const json& value, const Place& place, Layer& out) {
     read_fractal(Noise::kWorleyF1);
   } else if (type == "spots") {
     read_fields(object, out.emplace<SpotLayer>());
+  } else if (type == "sparse") {
+    read_fields(object, out.emplace<SparseLayer>());
   } else if (type == "craters") {
     read_fields(object, out.emplace<CraterLayer>());
   } else if (type == "boulders") {

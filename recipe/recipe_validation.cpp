@@ -135,6 +135,15 @@ void check(const SpotLayer& layer, const Place& place) {
   check_spot_counts(layer, place);
 }
 
+void check(const SparseLayer& layer, const Place& place) {
+  expect_number(layer.amplitude, place.field("amplitude"));
+  expect_positive(layer.cell_size, place.field("cell_size"));
+  expect_integer(layer.levels, place.field("levels"), 1, 16);
+  expect_range(layer.probability, place.field("probability"), 0.0, 1.0);
+  expect_range(layer.threshold, place.field("threshold"), 0.0, 1.0);
+  expect_range(layer.gain, place.field("gain"), 0.0, 4.0);
+}
+
 template <typename T>
 void expect_sorted(const std::vector<std::pair<std::string, T>>& named, const Place& place) {
   for (std::size_t i = 1; i < named.size(); ++i) {

@@ -106,6 +106,18 @@ ordered_json to_json(const SpotLayer& layer) {
           {"exponent", layer.exponent}};
 }
 
+ordered_json to_json(const SparseLayer& layer) {
+  return {{"type", "sparse"},
+          {"name", layer.name},
+          {"amplitude", layer.amplitude},
+          {"cell_size", layer.cell_size},
+          {"levels", layer.levels},
+          {"probability", layer.probability},
+          {"threshold", layer.threshold},
+          {"gain", layer.gain},
+          {"merged", layer.merged}};
+}
+
 template <typename T>
 ordered_json to_json(const std::vector<std::pair<std::string, T>>& named) {
   ordered_json object = ordered_json::object();

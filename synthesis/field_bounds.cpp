@@ -21,6 +21,9 @@ Interval bound_elevation(const FractalNoise& noise, const Box& box, const Box&, 
 Interval bound_elevation(const SpotNoise& noise, const Box& box, const Box&, const Interval& before) {
   return plus(before, noise.bound_heights(box));
 }
+Interval bound_elevation(const SparseNoise& noise, const Box& box, const Box&, const Interval& before) {
+  return plus(before, noise.bound_heights(box));
+}
 Interval bound_elevation(const GaborSurfaceNoise& noise, const Box&, const Box&, const Interval& before) {
   return plus(before, {-noise.height_bound(), noise.height_bound()});
 }

@@ -12,11 +12,12 @@
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/metaball_body.h"
+#include "synthesis/sparse_noise.h"
 #include "synthesis/spot_noise.h"
 
 namespace astrolith {
 
-using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise, CraterRelief>;
+using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise, SparseNoise, CraterRelief>;
 
 struct FieldModel {
   PreparedMetaballs metaballs;

@@ -74,6 +74,10 @@ void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
   noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
 }
 
+void layer_heights(const FieldModel&, const SparseNoise& noise, Batch& b) {
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+}
+
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
   project(model, b);
   noise.evaluate(model.metaballs, b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
@@ -191,6 +195,7 @@ class LayerStack {
  private:
   void add(const FractalLayer& layer) { push(FractalNoise(layer, recipe_.seed, index_, domain_)); }
   void add(const SpotLayer& layer) { push(SpotNoise(layer, recipe_.seed, index_, domain_)); }
+  void add(const SparseLayer& layer) { push(SparseNoise(layer, recipe_.seed, index_, domain_)); }
   void add(const GaborLayer& layer) {
     // A layer of colour alone has no height.
     if (layer.height_rms > 0.0) push(GaborSurfaceNoise(layer, recipe_.seed, index_, supports_));

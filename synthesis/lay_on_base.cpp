@@ -34,6 +34,12 @@ Layer rescaled(SpotLayer layer, double ratio) {
   return layer;
 }
 
+Layer rescaled(SparseLayer layer, double ratio) {
+  layer.amplitude *= ratio;
+  layer.cell_size *= ratio;
+  return layer;
+}
+
 Layer rescaled(GaborLayer layer, double ratio) {
   layer.pixel_size *= ratio;
   layer.height_rms *= ratio;

@@ -42,7 +42,8 @@ inline const std::string kCompleteRecipe = R"({
      "population": {"count": 40, "least_diameter": 0.05, "greatest_diameter": 0.375, "degradation": 0.5}},
     {"type": "boulders", "smoothing": 0.25, "roughness": 0.125,
      "boulders": [{"direction": [0, 1, 1], "axes": [0.3, 0.2, 0.15], "heading": 30, "tilt": 10, "burial": 0.4}],
-     "population": {"density": 2.5, "least_diameter": 0.02, "greatest_diameter": 0.125, "least_burial": 0.2}}
+     "population": {"density": 2.5, "least_diameter": 0.02, "greatest_diameter": 0.125, "least_burial": 0.2}},
+    {"type": "sparse", "amplitude": 0.05, "cell_size": 0.5, "levels": 3, "threshold": 0.25, "merged": true}
   ]
 }
 )";
@@ -110,7 +111,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
       {R"("gaussian")", R"("wyvill")", R"(body.kernel: must be "gaussian")"},
       {R"("simplex")", R"("value")",
-       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots", "craters", "boulders" and "gabor", is "value")"},
+       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots", "sparse", "craters", "boulders" and "gabor", is "value")"},
       {R"("simplex")", R"("worley")", R"(layers[0].gradient_modulation: unknown field)"},
       {R"("f2-f1")", R"("f3")", R"(layers[2].distance: must be "f1", "f2" or "f2-f1", is "f3")"},
       {R"("perlin", "amplitude")", R"("perlin", "distance")", R"(layers[3].distance: unknown field)"},
@@ -182,6 +183,9 @@ inline std::vector<Spoiled> spoiled_recipes() {
        R"(layers[6].population.greatest_burial: is 0.6, below least_burial)", false},
       {R"("density": 2.5)", R"("density": -2.5)", R"(layers[6].population.density: must be from 0)"},
       {R"("roughness": 0.125)", R"("roughness": 1)", R"(layers[6].roughness: must be from 0 to 0.5, is 1)"},
+      {R"("threshold": 0.25)", R"("threshold": 2)", R"(layers[7].threshold: must be from 0 to 1, is 2)"},
+      {R"("merged": true)", R"("merged": "yes")", R"(layers[7].merged: must be true or false)"},
+      {R"("levels": 3)", R"("levels": 0)", R"(layers[7].levels: must be an integer from 1 to 16, is 0)"},
       {R"(1.95)", R"(1)", R"(layers[0].lacunarity: must be above 1 and at most 16, is 1)"},
       {R"("pixel_size": 0.001)", R"("pixel_size": 0)",
        R"(layers[1].pixel_size: must be above 0 (from 1e-12)"},
