@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -29,6 +30,12 @@ struct FieldModel {
   std::vector<LayerBoulders> placed_boulders;
   Box bounds;  // of the surface
 };
+
+// Adds the recipe's layers to a model that holds its body. Throws InputError as ImplicitField.
+void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model);
+
+// F at a point.
+float value_at(const FieldModel& model, const Vec3d& p);
 
 // Where the metaballs are evaluated for the points of a box.
 Box metaball_box(const FieldModel& model, const Box& box);

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <string>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
-#include "synthesis/bare_surface.h"
 #include "synthesis/field_model_internal.h"
 
 namespace astrolith {
@@ -151,117 +148,14 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
   model.boulders.join(boulders, n, at.x, at.y, at.z, value);
 }
 
+}  // namespace
+
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
   evaluate_batch(model, model.metaballs, 1, {&x, &y, &z}, kExactEverywhere, &f);
   return f;
 }
-
-// What the layers so far have made of the bare surface at points of it, where s = 0.
-std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d> points) {
-  std::vector<float> elevations(points.size());
-  std::array<float, kBatch> x, y, z;
-  for (std::size_t begin = 0; begin < points.size(); begin += kBatch) {
-    const std::size_t n = std::min<std::size_t>(kBatch, points.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] = static_cast<float>(points[begin + i].x);
-      y[i] = static_cast<float>(points[begin + i].y);
-      z[i] = static_cast<float>(points[begin + i].z);
-    }
-    evaluate_batch(model, model.metaballs, static_cast<int>(n), {x.data(), y.data(), z.data()},
-                   kExactEverywhere, &elevations[begin]);
-  }
-  return elevations;
-}
-
-// Puts a recipe's layers on a model of its body, one by one.
-class LayerStack {
- public:
-  LayerStack(const Recipe& recipe, const std::string& name, FieldModel& model)
-      : recipe_(recipe),
-        name_(name),
-        model_(model),
-        supports_(support_bounds(model.metaballs)),
-        domain_(model.warp ? widened(supports_, model.warp->bound()) : supports_) {}
-
-  void add_all() {
-    for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
-      std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
-    }
-    add_boulders();
-  }
-
- private:
-  void add(const FractalLayer& layer) { push(FractalNoise(layer, recipe_.seed, index_, domain_)); }
-  void add(const SpotLayer& layer) { push(SpotNoise(layer, recipe_.seed, index_, domain_)); }
-  void add(const SparseLayer& layer) { push(SparseNoise(layer, recipe_.seed, index_, domain_)); }
-  void add(const GaborLayer& layer) {
-    // A layer of colour alone has no height.
-    if (layer.height_rms > 0.0) push(GaborSurfaceNoise(layer, recipe_.seed, index_, supports_));
-  }
-  void add(const CraterLayer& layer) {
-    std::vector<PlacedCrater> craters = place_craters(layer, bare(), recipe_.seed, index_, place_of(index_));
-    std::vector<Vec3d> centers;
-    for (const PlacedCrater& crater : craters) centers.push_back(crater.position);
-    const std::vector<float> elevations = elevations_at(model_, centers);
-    if (model_.warp) centers = warped(centers);
-    CraterRelief relief(layer, craters, centers, elevations, model_.height_bound);
-    model_.height_bound = relief.elevation_bound();
-    model_.layers.emplace_back(std::move(relief));
-    model_.craters.push_back({index_, std::move(craters)});
-  }
-
-  void add(const BoulderLayer&) {}  // once the surface is there
-
-  void add_boulders() {
-    BoulderField boulders;
-    const Terrain terrain{[this](const Vec3d& p) { return static_cast<double>(value_at(model_, p)); },
-                          model_.height_bound};
-    for (int i = 0; i < static_cast<int>(recipe_.layers.size()); ++i) {
-      const auto* layer = std::get_if<BoulderLayer>(&recipe_.layers[static_cast<std::size_t>(i)]);
-      if (layer == nullptr) continue;
-      std::vector<PlacedBoulder> placed =
-          place_boulders(*layer, bare(), terrain, recipe_.seed, i, place_of(i));
-      boulders.add(*layer, placed, hash_seed(recipe_.seed, static_cast<std::uint32_t>(i)));
-      model_.placed_boulders.push_back({i, std::move(placed)});
-    }
-    boulders.finish();
-    model_.boulders = std::move(boulders);
-  }
-
-  const BareSurface& bare() {
-    if (!bare_) bare_.emplace(recipe_);
-    return *bare_;
-  }
-  std::string place_of(int layer) const { return name_ + ": layers[" + std::to_string(layer) + "]"; }
-
-  template <typename Noise>
-  void push(Noise noise) {
-    model_.height_bound += noise.height_bound();
-    model_.layers.emplace_back(std::move(noise));
-  }
-
-  std::vector<Vec3d> warped(std::vector<Vec3d> points) const {
-    for (Vec3d& p : points) {
-      const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-      float mx, my, mz;
-      model_.warp->evaluate(1, &x, &y, &z, &mx, &my, &mz);
-      p = {mx, my, mz};
-    }
-    return points;
-  }
-
-  const Recipe& recipe_;
-  const std::string& name_;  // for errors
-  FieldModel& model_;
-  // Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
-  Box supports_, domain_;
-  std::optional<BareSurface> bare_;  // for the first layer that asks
-  int index_ = 0;
-};
-
-}  // namespace
 
 BlockContent FieldBlock::content() const { return content_of(*model_, metaballs_, box_); }
 
@@ -287,7 +181,7 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
     model.warp.emplace(*recipe.body->warp, hash_seed(recipe.seed, kBodyStream),
                        support_bounds(model.metaballs));
   }
-  LayerStack(recipe, name, model).add_all();
+  add_layers(recipe, name, model);
   model.bounds = surface_bounds(model);
   model_ = std::make_shared<const FieldModel>(std::move(model));
 }

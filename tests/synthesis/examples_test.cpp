@@ -52,6 +52,47 @@ FractalLayer random_fractal(CounterRandom& random) {
   return layer;
 }
 
+Population random_population(CounterRandom& random) {
+  Population population;
+  population.count = static_cast<int>(random.below(60));
+  population.least_diameter = random.uniform(0.02, 0.1);
+  population.greatest_diameter = random.uniform(0.1, 0.4);
+  return population;
+}
+
+CraterLayer random_craters(CounterRandom& random) {
+  CraterLayer layer;
+  layer.complex_from = random.uniform(0.05, 0.4);
+  layer.simple.smoothing = random.uniform();
+  layer.simple.depth = random.uniform(0.0, 0.3);
+  layer.population = CraterPopulation{random_population(random), 1.0, random.uniform(), random.uniform()};
+  return layer;
+}
+
+BoulderLayer random_boulders(CounterRandom& random) {
+  BoulderLayer layer;
+  layer.smoothing = random.uniform();
+  layer.roughness = random.uniform(0.0, 0.5);
+  layer.population.emplace().drawn = random_population(random);
+  return layer;
+}
+
+SparseLayer random_sparse(CounterRandom& random) {
+  SparseLayer layer;
+  layer.amplitude = random.uniform(-0.1, 0.1);
+  layer.cell_size = random.uniform(0.1, 0.5);
+  layer.levels = 1 + static_cast<int>(random.below(4));
+  layer.merged = random.uniform() < 0.5;
+  return layer;
+}
+
+// Of what stands on the surface. After all else, so that the other layers of a seed stay as they are.
+void add_features(CounterRandom& random, Recipe& recipe) {
+  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_craters(random));
+  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_boulders(random));
+  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_sparse(random));
+}
+
 Recipe random_recipe(std::uint64_t seed) {
   CounterRandom random(seed);
   Recipe recipe =
@@ -65,6 +106,7 @@ Recipe random_recipe(std::uint64_t seed) {
       recipe.layers.emplace_back(random_fractal(random));
     }
   }
+  add_features(random, recipe);
   return recipe;
 }
 
