@@ -91,7 +91,9 @@ TEST(BoulderField, UnionChangesNothingElsewhere) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3d p{random.uniform(-11, 11), random.uniform(-11, 11), random.uniform(-11, 11)};
     ASSERT_GE(with.value(p), without.value(p));  // a union only adds
-    if (norm(p - Vec3d{0, 0, 10}) > 1.0 * (1.0 + 0.7) + 0.01) ASSERT_EQ(with.value(p), without.value(p));
+    if (norm(p - Vec3d{0, 0, 10}) > 1.0 * (1.0 + 0.7) + 0.01) {
+      ASSERT_EQ(with.value(p), without.value(p));
+    }
   }
 }
 
@@ -141,8 +143,9 @@ TEST(BoulderField, CulledBoxesHoldNoSurfaceAndBlocksGiveTheBitsOfTheField) {
       block.evaluate(x, y, z, value);
       for (std::size_t i = 0; i < value.size(); ++i) {
         ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
-        if (content != BlockContent::kMixed)
+        if (content != BlockContent::kMixed) {
           ASSERT_EQ(value[i] > 0.0f, content == BlockContent::kInside) << seed;
+        }
       }
       culled += content != BlockContent::kMixed;
     }

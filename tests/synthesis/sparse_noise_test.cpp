@@ -132,7 +132,9 @@ TEST(SparseNoise, BoundsOverBoxesAreNeverWrongAndGroupsDoNotMatter) {
       ASSERT_GE(double{h[i]}, bound.low);
       ASSERT_LE(double{h[i]}, bound.high);
       ASSERT_LE(double{std::fabs(h[i])}, noise.height_bound());
-      if (i % 9 == 0) ASSERT_EQ(h[i], height_at(noise, x[i], y[i], z[i]));
+      if (i % 9 == 0) {
+        ASSERT_EQ(h[i], height_at(noise, x[i], y[i], z[i]));
+      }
     }
     tight += bound.high - bound.low < 0.3 * noise.height_bound();
   }
