@@ -13,23 +13,26 @@ constexpr double kRoundingSlack = 1e-5;  // of heights and their sums, relative 
 
 Interval plus(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
 
-// Elevations over a box from those that the layers before made. `reach` holds where the box's points are
-// projected on the bare surface.
-Interval bound_elevation(const FractalNoise& noise, const Box& box, const Box&, const Interval& before) {
-  return plus(before, noise.bound_heights(box));
+// A box as a layer needs it.
+struct LayerBox {
+  const Box& box;
+  const Box& projected;       // where its points are projected on the bare surface
+  const SpotImpulses* spots;  // of the layer, that reach the box; null where none were drawn
+};
+
+// Elevations over a box from those that the layers before made.
+template <typename Noise>
+Interval bound_elevation(const Noise& noise, const LayerBox& at, const Interval& before) {
+  return plus(before, noise.bound_heights(at.box));
 }
-Interval bound_elevation(const SpotNoise& noise, const Box& box, const Box&, const Interval& before) {
-  return plus(before, noise.bound_heights(box));
+Interval bound_elevation(const SpotNoise& noise, const LayerBox& at, const Interval& before) {
+  return plus(before, noise.bound_heights(at.box, at.spots));
 }
-Interval bound_elevation(const SparseNoise& noise, const Box& box, const Box&, const Interval& before) {
-  return plus(before, noise.bound_heights(box));
-}
-Interval bound_elevation(const GaborSurfaceNoise& noise, const Box&, const Box&, const Interval& before) {
+Interval bound_elevation(const GaborSurfaceNoise& noise, const LayerBox&, const Interval& before) {
   return plus(before, {-noise.height_bound(), noise.height_bound()});
 }
-Interval bound_elevation(const CraterRelief& relief, const Box&, const Box& projected,
-                         const Interval& before) {
-  return relief.bound(projected, before);
+Interval bound_elevation(const CraterRelief& relief, const LayerBox& at, const Interval& before) {
+  return relief.bound(at.projected, before);
 }
 
 // A point is projected by its |s|, which no surface has above the bound of all heights.
@@ -40,11 +43,12 @@ Box projected_box(const FieldModel& model, const PreparedMetaballs& metaballs, c
   return widened(at, distance * (1.0 + kRoundingSlack) + 2e-6 * largest_coordinate(at));
 }
 
-Interval bound_heights(const FieldModel& model, const Box& box, const Box& projected) {
+Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const Box& box,
+                       const Box& projected) {
   Interval elevation;
-  for (const HeightLayer& layer : model.layers) {
-    elevation =
-        std::visit([&](const auto& l) { return bound_elevation(l, box, projected, elevation); }, layer);
+  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    const LayerBox at{box, projected, spots_of(spots, i)};
+    elevation = std::visit([&](const auto& l) { return bound_elevation(l, at, elevation); }, model.layers[i]);
   }
   const double slack = kRoundingSlack * model.height_bound;
   return {elevation.low - slack, elevation.high + slack};
@@ -118,22 +122,34 @@ Box metaball_box(const FieldModel& model, const Box& box) {
 namespace {
 
 BlockContent content_without_boulders(const FieldModel& model, const PreparedMetaballs& metaballs,
-                                      const Box& box) {
+                                      const DrawnSpots& spots, const Box& box) {
   const Box at = metaball_box(model, box);
   const MetaballInterval bound = bound_metaballs(metaballs, at, model.height_bound);
   const BlockContent content = content_by_height_bound(model, bound);
   if (content != BlockContent::kMixed || model.layers.empty()) return content;
   const Box projected = model.craters.empty() ? at : projected_box(model, metaballs, at, bound);
-  return content_by_heights(metaballs, at, bound, bound_heights(model, box, projected));
+  return content_by_heights(metaballs, at, bound, bound_heights(model, spots, box, projected));
 }
 
 }  // namespace
 
 // A union only adds.
-BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box) {
-  const BlockContent content = content_without_boulders(model, metaballs, box);
+BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
+                        const Box& box) {
+  const BlockContent content = content_without_boulders(model, metaballs, spots, box);
   const bool boulders = content == BlockContent::kOutside && model.boulders.touches(box);
   return boulders ? BlockContent::kMixed : content;
+}
+
+DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger) {
+  DrawnSpots spots;
+  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    const auto* noise = std::get_if<SpotNoise>(&model.layers[i]);
+    if (noise == nullptr) continue;
+    spots.resize(model.layers.size());
+    spots[i] = noise->gather(box, spots_of(of_larger, i));
+  }
+  return spots;
 }
 
 // Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.

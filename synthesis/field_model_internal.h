@@ -12,6 +12,7 @@
 #include "synthesis/crater_relief.h"
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
+#include "synthesis/implicit_field.h"
 #include "synthesis/metaball_body.h"
 #include "synthesis/sparse_noise.h"
 #include "synthesis/spot_noise.h"
@@ -40,8 +41,18 @@ float value_at(const FieldModel& model, const Vec3d& p);
 // Where the metaballs are evaluated for the points of a box.
 Box metaball_box(const FieldModel& model, const Box& box);
 
-// Whether F keeps one sign over the box; `metaballs` must hold what reaches metaball_box(model, box).
-BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box);
+// The spots that reach a box, from those of a larger one or, where that has none, drawn.
+DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger);
+
+// Those of one layer; null where none were drawn.
+inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) {
+  return spots.empty() ? nullptr : spots[layer].get();
+}
+
+// Whether F keeps one sign over the box; `metaballs` must hold what reaches metaball_box(model, box), `spots`
+// what reaches the box.
+BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
+                        const Box& box);
 
 // A box that holds the whole surface, within about 1/64 of its longest side. Uses all of the model but
 // `bounds`.

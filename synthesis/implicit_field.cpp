@@ -25,6 +25,7 @@ struct Batch {
   std::array<float, kBatch> x, y, z, mx, my, mz, distance, gx, gy, gz, elevation, height;
   std::array<float, kBatch> px, py, pz;  // projected on the bare surface
   bool is_projected = false;             // for the first layer that asks
+  const SpotImpulses* spots = nullptr;   // of the layer, that reach the points; null where none were drawn
 };
 
 // First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
@@ -68,7 +69,7 @@ void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
 }
 
 void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data(), b.spots);
 }
 
 void layer_heights(const FieldModel&, const SparseNoise& noise, Batch& b) {
@@ -113,25 +114,32 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
   return kept;
 }
 
-// Adds what the layers make of the surface, near to it and wherever `boulders` reach.
-void add_elevations(const FieldModel& model, std::span<const std::uint32_t> boulders, const PointArrays& at,
+// What reaches the points of a block.
+struct BlockParts {
+  const DrawnSpots& spots;
+  std::vector<std::uint32_t> boulders;
+};
+
+// Adds what the layers make of the surface, near to it and wherever boulders reach.
+void add_elevations(const FieldModel& model, const BlockParts& parts, const PointArrays& at,
                     const PointArrays& metaballs_at, float band, Batch& b, float* value) {
   std::array<int, kBatch> origin;
   const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
   const auto boulders_reach = [&](int i) {
-    return model.boulders.reach(boulders, at.x[i], at.y[i], at.z[i]);
+    return model.boulders.reach(parts.boulders, at.x[i], at.y[i], at.z[i]);
   };
   b.n = keep_near_surface(b.n, reach, boulders_reach, at, metaballs_at, b, origin);
   if (b.n == 0) return;
   std::fill_n(b.elevation.data(), b.n, 0.0f);
-  for (const HeightLayer& layer : model.layers) {
-    std::visit([&](const auto& l) { add_layer(model, l, b); }, layer);
+  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    b.spots = spots_of(parts.spots, i);
+    std::visit([&](const auto& l) { add_layer(model, l, b); }, model.layers[i]);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }
 
-void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, int n, const PointArrays& at,
-                    float band, float* value) {
+void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
+                    int n, const PointArrays& at, float band, float* value) {
   Batch b;
   b.n = n;
   PointArrays metaballs_at = at;
@@ -143,9 +151,9 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
   evaluate_metaballs(metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(),
                      b.gx.data(), b.gy.data(), b.gz.data());
   std::copy_n(b.distance.data(), n, value);
-  const std::vector<std::uint32_t> boulders = model.boulders.near(n, at.x, at.y, at.z);
-  if (!model.layers.empty()) add_elevations(model, boulders, at, metaballs_at, band, b, value);
-  model.boulders.join(boulders, n, at.x, at.y, at.z, value);
+  const BlockParts parts{spots, model.boulders.near(n, at.x, at.y, at.z)};
+  if (!model.layers.empty()) add_elevations(model, parts, at, metaballs_at, band, b, value);
+  model.boulders.join(parts.boulders, n, at.x, at.y, at.z, value);
 }
 
 }  // namespace
@@ -153,21 +161,22 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
-  evaluate_batch(model, model.metaballs, 1, {&x, &y, &z}, kExactEverywhere, &f);
+  evaluate_batch(model, model.metaballs, {}, 1, {&x, &y, &z}, kExactEverywhere, &f);
   return f;
 }
 
-BlockContent FieldBlock::content() const { return content_of(*model_, metaballs_, box_); }
+BlockContent FieldBlock::content() const { return content_of(*model_, metaballs_, spots_, box_); }
 
 FieldBlock FieldBlock::restricted_to(const Box& child) const {
-  return {*model_, metaballs_reaching(metaballs_, metaball_box(*model_, child)), child};
+  return {*model_, metaballs_reaching(metaballs_, metaball_box(*model_, child)),
+          spots_reaching(*model_, child, spots_), child};
 }
 
 void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                           std::span<float> value, float band) const {
   for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
     const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
-    evaluate_batch(*model_, metaballs_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
+    evaluate_batch(*model_, metaballs_, spots_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
   }
 }
 
@@ -210,7 +219,8 @@ std::span<const LayerCraters> ImplicitField::craters() const { return model_->cr
 std::span<const LayerBoulders> ImplicitField::boulders() const { return model_->placed_boulders; }
 
 FieldBlock ImplicitField::gather(const Box& box) const {
-  return {*model_, metaballs_reaching(model_->metaballs, metaball_box(*model_, box)), box};
+  return {*model_, metaballs_reaching(model_->metaballs, metaball_box(*model_, box)),
+          spots_reaching(*model_, box, {}), box};
 }
 
 }  // namespace astrolith

@@ -22,12 +22,17 @@
 #include "recipe/recipe.h"
 #include "synthesis/block_field.h"
 #include "synthesis/metaball_body.h"
+#include "synthesis/spot_noise.h"
 
 namespace astrolith {
 
 struct FieldModel;     // what the field and its blocks share
 struct LayerCraters;   // synthesis/crater_relief.h
 struct LayerBoulders;  // synthesis/boulder_field.h
+
+// What of each layer of spots reaches a box, by layer; null where nothing was drawn. Empty without such
+// layers.
+using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
 
 // The part of a field that reaches a box. Lives no longer than its field. All members may be called from
 // many threads.
@@ -48,11 +53,12 @@ class FieldBlock {
 
  private:
   friend class ImplicitField;
-  FieldBlock(const FieldModel& model, PreparedMetaballs metaballs, const Box& box)
-      : model_(&model), metaballs_(std::move(metaballs)), box_(box) {}
+  FieldBlock(const FieldModel& model, PreparedMetaballs metaballs, DrawnSpots spots, const Box& box)
+      : model_(&model), metaballs_(std::move(metaballs)), spots_(std::move(spots)), box_(box) {}
 
   const FieldModel* model_;
   PreparedMetaballs metaballs_;
+  DrawnSpots spots_;
   Box box_;
 };
 

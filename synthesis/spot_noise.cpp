@@ -59,6 +59,16 @@ Range squared_distance(const SpotImpulse& p, const Box& box, const Vec3d& per_ax
   return range;
 }
 
+// Whether a spot of these half axes touches the box.
+bool reaches(const SpotImpulse& impulse, const Vec3d& half, const Box& box) {
+  const auto near = [](double c, double low, double high, double h) { return c >= low - h && c <= high + h; };
+  return near(impulse.x, box.min.x, box.max.x, half.x) && near(impulse.y, box.min.y, box.max.y, half.y) &&
+         near(impulse.z, box.min.z, box.max.z, half.z);
+}
+
+// For the rounding of float positions.
+Box widened_by_rounding(const Box& box) { return widened(box, 2e-6 * largest_coordinate(box)); }
+
 // K over squared distances, as spot_profile: one falls, the other rises to its ring and falls.
 Interval bound_profile(const SpotKernel& k, const Range& q2) {
   const auto bowl = [&](double q) { return std::exp(-double{k.alpha} * q); };
@@ -138,20 +148,13 @@ void SpotNoise::draw_cell(const Size& size, int cx, int cy, int cz, const Box& b
     };
     const SpotImpulse impulse{along(cx, 0), along(cy, 1), along(cz, 2),
                               math::fma(1.0f - least_weight, random(3), least_weight)};
-    const Vec3d& h = size.support;
-    const auto near = [](double c, double low, double high, double half) {
-      return c >= low - half && c <= high + half;
-    };
-    if (near(impulse.x, box.min.x, box.max.x, h.x) && near(impulse.y, box.min.y, box.max.y, h.y) &&
-        near(impulse.z, box.min.z, box.max.z, h.z)) {
-      out.push_back(impulse);
-    }
+    if (reaches(impulse, size.support, box)) out.push_back(impulse);
   }
 }
 
 std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) const {
   const Size& size = sizes_[static_cast<std::size_t>(j)];
-  const Box wide = widened(box, 2e-6 * largest_coordinate(box));  // float positions
+  const Box wide = widened_by_rounding(box);
   const Cells cells = cells_around(size, wide);
   std::vector<SpotImpulse> impulses;
   for (int z = cells.first[2]; z <= cells.last[2]; ++z) {
@@ -162,7 +165,26 @@ std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) con
   return impulses;
 }
 
-void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
+std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
+  const Box moved = moved_into_domain(box);
+  auto impulses = std::make_shared<SpotImpulses>(sizes_.size());
+  for (std::size_t j = 0; j < sizes_.size(); ++j) {
+    const Size& size = sizes_[j];
+    if (of_larger == nullptr) {
+      if (cells_around(size, moved).count() > kMostCells) return nullptr;
+      (*impulses)[j] = impulses_reaching(static_cast<int>(j), moved);
+      continue;
+    }
+    const Box wide = widened_by_rounding(moved);
+    for (const SpotImpulse& impulse : (*of_larger)[j]) {
+      if (reaches(impulse, size.support, wide)) (*impulses)[j].push_back(impulse);
+    }
+  }
+  return impulses;
+}
+
+void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height,
+                         const SpotImpulses* impulses) const {
   std::vector<float> points(static_cast<std::size_t>(4 * n));
   float *px = points.data(), *py = px + n, *pz = py + n, *sum = pz + n;
   for (int i = 0; i < n; ++i) {
@@ -171,9 +193,14 @@ void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, 
     pz[i] = math::clamp(z[i], domain_min_.z, domain_max_.z);
   }
   std::fill(height, height + n, 0.0f);
-  for (const Size& size : sizes_) {
+  for (std::size_t j = 0; j < sizes_.size(); ++j) {
+    const Size& size = sizes_[j];
     std::fill(sum, sum + n, 0.0f);
-    add_size(size, n, px, py, pz, sum);
+    if (impulses == nullptr) {
+      add_size(size, n, px, py, pz, sum);
+    } else {
+      add_spots(size.kernel, (*impulses)[j].data(), (*impulses)[j].size(), n, px, py, pz, sum);
+    }
     for (int i = 0; i < n; ++i) height[i] += math::clamp(sum[i], -size.clip, size.clip);
   }
 }
@@ -193,15 +220,15 @@ void SpotNoise::add_size(const Size& size, int n, const float* x, const float* y
   add_spots(size.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
 }
 
-Interval SpotNoise::bound_size(const Size& size, const Box& box) const {
+Interval SpotNoise::bound_size(const Size& size, const Box& box,
+                               const std::vector<SpotImpulse>& impulses) const {
   const double clip = size.clip;
-  if (cells_around(size, box).count() > kMostCells) return {-clip, clip};
   const SpotKernel& k = size.kernel;
   const double scale_squared = double{k.scale} * double{k.scale};
   const Vec3d ones{scale_squared, scale_squared, scale_squared};
   const Vec3d shape = scale_squared * Vec3d{k.inverse_vx, k.inverse_vy, k.inverse_vz};
   Interval sum;
-  for (const SpotImpulse& impulse : impulses_reaching(static_cast<int>(&size - sizes_.data()), box)) {
+  for (const SpotImpulse& impulse : impulses) {
     const Range inside = squared_distance(impulse, box, shape);
     if (inside.nearest > double{k.sigma} * (1.0 + kSlack)) continue;
     const Range q2 = squared_distance(impulse, box, ones);
@@ -215,17 +242,28 @@ Interval SpotNoise::bound_size(const Size& size, const Box& box) const {
   return {std::clamp(sum.low, -clip, clip), std::clamp(sum.high, -clip, clip)};
 }
 
-Interval SpotNoise::bound_heights(const Box& box) const {
+Box SpotNoise::moved_into_domain(const Box& box) const {
   const auto inside = [&](const Vec3d& p) {
     return Vec3d{std::clamp(p.x, double{domain_min_.x}, double{domain_max_.x}),
                  std::clamp(p.y, double{domain_min_.y}, double{domain_max_.y}),
                  std::clamp(p.z, double{domain_min_.z}, double{domain_max_.z})};
   };
-  const Box moved{inside(box.min), inside(box.max)};
+  return {inside(box.min), inside(box.max)};
+}
+
+Interval SpotNoise::bound_heights(const Box& box, const SpotImpulses* impulses) const {
+  const Box moved = moved_into_domain(box);
   const double slack = 3.0 * kSlack * height_bound_;
   Interval sum{-slack, slack};
-  for (const Size& size : sizes_) {
-    const Interval heights = bound_size(size, moved);
+  for (std::size_t j = 0; j < sizes_.size(); ++j) {
+    const Size& size = sizes_[j];
+    const double clip = size.clip;
+    Interval heights{-clip, clip};
+    if (impulses != nullptr) {
+      heights = bound_size(size, moved, (*impulses)[j]);
+    } else if (cells_around(size, moved).count() <= kMostCells) {
+      heights = bound_size(size, moved, impulses_reaching(static_cast<int>(j), moved));
+    }
     sum.low += heights.low;
     sum.high += heights.high;
   }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "recipe/recipe.h"
@@ -14,6 +15,9 @@
 
 namespace astrolith {
 
+// Drawn ones, by size.
+using SpotImpulses = std::vector<std::vector<SpotImpulse>>;
+
 class SpotNoise {
  public:
   // `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
@@ -21,14 +25,19 @@ class SpotNoise {
   // could not tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
   SpotNoise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
 
-  // height[i] = n(p_i), length units.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
+  // The impulses that reach a box, chosen from those of a larger one where these are given; null where there
+  // are too many to be drawn at once.
+  std::shared_ptr<const SpotImpulses> gather(const Box& box, const SpotImpulses* of_larger) const;
+
+  // height[i] = n(p_i), length units. `impulses`, unless null, must hold all that reach the points.
+  void evaluate(int n, const float* x, const float* y, const float* z, float* height,
+                const SpotImpulses* impulses = nullptr) const;
 
   // |n(p)| never exceeds this.
   double height_bound() const { return height_bound_; }
 
-  // n(p) at every float point of a box.
-  Interval bound_heights(const Box& box) const;
+  // n(p) at every float point of a box; `impulses` as above.
+  Interval bound_heights(const Box& box, const SpotImpulses* impulses = nullptr) const;
 
   int num_sizes() const { return static_cast<int>(sizes_.size()); }
   // The impulses of size j whose spots may reach the box, in the order of their cells (z, then y, then x).
@@ -53,7 +62,8 @@ class SpotNoise {
   void draw_cell(const Size& size, int cx, int cy, int cz, const Box& box,
                  std::vector<SpotImpulse>& out) const;
   void add_size(const Size& size, int n, const float* x, const float* y, const float* z, float* height) const;
-  Interval bound_size(const Size& size, const Box& box) const;
+  Interval bound_size(const Size& size, const Box& box, const std::vector<SpotImpulse>& impulses) const;
+  Box moved_into_domain(const Box& box) const;
 
   SpotLayer layer_;
   std::vector<Size> sizes_;
