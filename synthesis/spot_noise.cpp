@@ -166,18 +166,17 @@ std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) con
 }
 
 std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
-  const Box moved = moved_into_domain(box);
+  const Box moved = moved_into_domain(box), wide = widened_by_rounding(moved);
+  const auto too_many = [&](const Size& size) { return cells_around(size, moved).count() > kMostCells; };
+  if (of_larger == nullptr && std::any_of(sizes_.begin(), sizes_.end(), too_many)) return nullptr;
   auto impulses = std::make_shared<SpotImpulses>(sizes_.size());
   for (std::size_t j = 0; j < sizes_.size(); ++j) {
-    const Size& size = sizes_[j];
     if (of_larger == nullptr) {
-      if (cells_around(size, moved).count() > kMostCells) return nullptr;
       (*impulses)[j] = impulses_reaching(static_cast<int>(j), moved);
       continue;
     }
-    const Box wide = widened_by_rounding(moved);
     for (const SpotImpulse& impulse : (*of_larger)[j]) {
-      if (reaches(impulse, size.support, wide)) (*impulses)[j].push_back(impulse);
+      if (reaches(impulse, sizes_[j].support, wide)) (*impulses)[j].push_back(impulse);
     }
   }
   return impulses;
