@@ -73,7 +73,7 @@ TEST(BoulderField, StandsOnTheFinalSurface) {
   recipe.layers.emplace_back(craters);
   recipe.layers.emplace_back(testing::fractal_layer(0.1, 0.3, 2));
   const ImplicitField with(recipe);
-  recipe.layers.erase(recipe.layers.begin());
+  recipe.layers[0] = BoulderLayer{};  // others keep their numbers, which seed them
   const ImplicitField without(recipe);
   const double floor = summit(without, {0, 0, 1}, 10.0);
   EXPECT_LT(floor, -0.2);
@@ -154,9 +154,9 @@ TEST(BoulderField, CulledBoxesHoldNoSurfaceAndBlocksGiveTheBitsOfTheField) {
 }
 
 TEST(BoulderField, MeshesAreClosedManifoldsAndTheSameForAnyThreads) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
     const Recipe recipe = random_body(seed);
-    for (const int resolution : {20, 41, 64}) {
+    for (const int resolution : {20, 33, 50}) {
       std::vector<TriangleMesh> meshes;
       for (const int threads : {1, 3}) {
         const ThreadLimit limit(threads);
