@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-constexpr int kMeshCells = 96;     // areas within 1e-3 of the surface's own
+constexpr int kMeshCells = 64;     // areas within 1e-3 of the surface's own
 constexpr int kRaySamples = 1024;  // along a direction, to find the last crossing
 
 Recipe without_layers(const Recipe& recipe) {
@@ -35,7 +35,13 @@ Vec3d BareSurface::nearer(const Vec3d& p) const {
   return steepness > 0.0 ? p - (field_.value(p) / steepness) * g : p;
 }
 
-Vec3d BareSurface::normal(const Vec3d& p) const { return normalized(-field_.gradient(p)); }
+// Where a kernel's cut-off is the surface no gradient need be.
+Vec3d BareSurface::normal(const Vec3d& p) const {
+  const Vec3d outwards = normalized(-field_.gradient(p));
+  if (squared_norm(outwards) > 0.0) return outwards;
+  const Vec3d from_center = normalized(p - field_.bounds().center());
+  return squared_norm(from_center) > 0.0 ? from_center : Vec3d{0, 0, 1};
+}
 
 Vec3d BareSurface::nearest(const Vec3d& start, const std::string& where) const {
   constexpr int kMaxSteps = 50;
@@ -108,7 +114,8 @@ std::vector<Vec3d> BareSurface::scatter(std::span<const Vec3d> random) const {
   std::vector<Vec3d> points(areas_.empty() ? 0 : random.size());
   parallel_for(0, static_cast<std::int64_t>(points.size()), [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
-    points[k] = nearer(on_mesh(random[k]));
+    const Vec3d start = on_mesh(random[k]), end = nearer(start);
+    points[k] = norm(end - start) < longest_side() / kMeshCells ? end : start;
   });
   return points;
 }

@@ -22,7 +22,7 @@ class BareSurface {
 
   // A point of the surface. Throws InputError, naming `where`, when there is none.
   Vec3d find(const SurfacePlace& place, const std::string& where) const;
-  // Unit, outwards.
+  // Unit, outwards; from the middle of the body where the surface has none.
   Vec3d normal(const Vec3d& p) const;
 
   // For scattering: a mesh stands for the surface. Squared length units.

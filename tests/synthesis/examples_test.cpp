@@ -5,6 +5,7 @@
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/bare_surface.h"
 #include "synthesis/implicit_field.h"
 #include "synthesis/mesher.h"
 #include "tests/synthesis/bodies.h"
@@ -52,28 +53,29 @@ FractalLayer random_fractal(CounterRandom& random) {
   return layer;
 }
 
-Population random_population(CounterRandom& random) {
+Population random_population(CounterRandom& random, double body) {
   Population population;
   population.count = static_cast<int>(random.below(60));
-  population.least_diameter = random.uniform(0.02, 0.1);
-  population.greatest_diameter = random.uniform(0.1, 0.4);
+  population.least_diameter = body * random.uniform(0.02, 0.1);
+  population.greatest_diameter = body * random.uniform(0.1, 0.4);
   return population;
 }
 
-CraterLayer random_craters(CounterRandom& random) {
+CraterLayer random_craters(CounterRandom& random, double body) {
   CraterLayer layer;
-  layer.complex_from = random.uniform(0.05, 0.4);
+  layer.complex_from = body * random.uniform(0.05, 0.4);
   layer.simple.smoothing = random.uniform();
   layer.simple.depth = random.uniform(0.0, 0.3);
-  layer.population = CraterPopulation{random_population(random), 1.0, random.uniform(), random.uniform()};
+  layer.population =
+      CraterPopulation{random_population(random, body), 1.0, random.uniform(), random.uniform()};
   return layer;
 }
 
-BoulderLayer random_boulders(CounterRandom& random) {
+BoulderLayer random_boulders(CounterRandom& random, double body) {
   BoulderLayer layer;
   layer.smoothing = random.uniform();
   layer.roughness = random.uniform(0.0, 0.5);
-  layer.population.emplace().drawn = random_population(random);
+  layer.population.emplace().drawn = random_population(random, body);
   return layer;
 }
 
@@ -86,10 +88,13 @@ SparseLayer random_sparse(CounterRandom& random) {
   return layer;
 }
 
-// Of what stands on the surface. After all else, so that the other layers of a seed stay as they are.
+// What stands on the surface. After all else, so that the other layers of a seed stay as they are.
 void add_features(CounterRandom& random, Recipe& recipe) {
-  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_craters(random));
-  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_boulders(random));
+  const BareSurface surface(recipe);
+  if (surface.empty()) return;
+  const double body = surface.longest_side();
+  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_craters(random, body));
+  if (random.uniform() < 0.25) recipe.layers.emplace_back(random_boulders(random, body));
   if (random.uniform() < 0.25) recipe.layers.emplace_back(random_sparse(random));
 }
 
