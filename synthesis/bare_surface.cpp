@@ -114,7 +114,7 @@ std::vector<Vec3d> BareSurface::scatter(std::span<const Vec3d> random) const {
   std::vector<Vec3d> points(areas_.empty() ? 0 : random.size());
   parallel_for(0, static_cast<std::int64_t>(points.size()), [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
-    const Vec3d start = on_mesh(random[k]), end = nearer(start);
+    const Vec3d start = on_mesh(random[k]), end = nearer(nearer(start));
     points[k] = norm(end - start) < longest_side() / kMeshCells ? end : start;
   });
   return points;

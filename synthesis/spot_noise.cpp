@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "numerics/hash_random.h"
 #include "synthesis/largest_coordinate.h"
@@ -68,6 +69,15 @@ bool reaches(const SpotImpulse& impulse, const Vec3d& half, const Box& box) {
 
 // For the rounding of float positions.
 Box widened_by_rounding(const Box& box) { return widened(box, 2e-6 * largest_coordinate(box)); }
+
+std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses, const Vec3d& half,
+                                        const Box& box) {
+  const Box wide = widened_by_rounding(box);
+  std::vector<SpotImpulse> found;
+  std::copy_if(impulses.begin(), impulses.end(), std::back_inserter(found),
+               [&](const SpotImpulse& impulse) { return reaches(impulse, half, wide); });
+  return found;
+}
 
 // K over squared distances, as spot_profile: one falls, the other rises to its ring and falls.
 Interval bound_profile(const SpotKernel& k, const Range& q2) {
@@ -166,7 +176,7 @@ std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) con
 }
 
 std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
-  const Box moved = moved_into_domain(box), wide = widened_by_rounding(moved);
+  const Box moved = moved_into_domain(box);
   const auto too_many = [&](const Size& size) { return cells_around(size, moved).count() > kMostCells; };
   if (of_larger == nullptr && std::any_of(sizes_.begin(), sizes_.end(), too_many)) return nullptr;
   auto impulses = std::make_shared<SpotImpulses>(sizes_.size());
@@ -175,9 +185,7 @@ std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const Spot
       (*impulses)[j] = impulses_reaching(static_cast<int>(j), moved);
       continue;
     }
-    for (const SpotImpulse& impulse : (*of_larger)[j]) {
-      if (reaches(impulse, sizes_[j].support, wide)) (*impulses)[j].push_back(impulse);
-    }
+    (*impulses)[j] = those_reaching((*of_larger)[j], sizes_[j].support, moved);
   }
   return impulses;
 }
@@ -192,13 +200,16 @@ void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, 
     pz[i] = math::clamp(z[i], domain_min_.z, domain_max_.z);
   }
   std::fill(height, height + n, 0.0f);
+  Box points_box;
+  for (int i = 0; i < n; ++i) points_box.extend({px[i], py[i], pz[i]});
   for (std::size_t j = 0; j < sizes_.size(); ++j) {
     const Size& size = sizes_[j];
     std::fill(sum, sum + n, 0.0f);
     if (impulses == nullptr) {
       add_size(size, n, px, py, pz, sum);
     } else {
-      add_spots(size.kernel, (*impulses)[j].data(), (*impulses)[j].size(), n, px, py, pz, sum);
+      const std::vector<SpotImpulse> near = those_reaching((*impulses)[j], size.support, points_box);
+      add_spots(size.kernel, near.data(), near.size(), n, px, py, pz, sum);
     }
     for (int i = 0; i < n; ++i) height[i] += math::clamp(sum[i], -size.clip, size.clip);
   }
