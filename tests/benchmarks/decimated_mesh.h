@@ -1,0 +1,13 @@
+// Meshes with fewer vertices by quadric error metrics (Garland and Heckbert 1997), as OpenMesh has it.
+#pragma once
+
+#include <cstddef>
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+// Collapses edges until at most `vertices` are left, or none can be collapsed.
+TriangleMesh decimated(const TriangleMesh& mesh, std::size_t vertices);
+
+}  // namespace astrolith
