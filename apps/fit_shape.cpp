@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 
+#include "apps/known_bodies.h"
 #include "apps/program.h"
 #include "estimation/shape/fit_report.h"
 #include "estimation/shape/packing_table.h"
@@ -101,7 +103,7 @@ void add_options(Program& program, Arguments& arguments) {
       ->needs(packing_only)
       ->default_str("");
   app.add_option("--report", arguments.report,
-                 "write pictures of target, fit, distances and convergence here")
+                 "write a page, index.html, with pictures of target, fit, distances and convergence here")
       ->excludes(packing_only)
       ->option_text("DIR");
 }
@@ -193,6 +195,13 @@ void pack(Program& program, const Arguments& arguments, const TargetBody& target
   program.say(arguments.output + ": " + filled);
 }
 
+void say_wrong_unit(const Program& program, const Arguments& arguments, const TargetBody& target) {
+  const std::string name = std::filesystem::path(arguments.mesh).filename().string();
+  const std::string remark =
+      unit_remark(name, target.volume * std::pow(target.diagonal, 3), arguments.unit == "km" ? 1000.0 : 1.0);
+  if (!remark.empty()) program.say("note: " + arguments.mesh + ": " + remark);
+}
+
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
   require_writable(arguments.output);
@@ -202,6 +211,7 @@ void run(Program& program, Arguments& arguments) {
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
   const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
+  say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return pack(program, arguments, target);
 
   const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
@@ -210,7 +220,10 @@ void run(Program& program, Arguments& arguments) {
   if (Program::interrupted()) program.say("stopped by Ctrl-C: this is the best so far");
   if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
   write_recipe(recipe_of(program, arguments, fit), arguments.output);
-  if (!arguments.report.empty()) write_fit_report(target, fit, arguments.report);
+  if (!arguments.report.empty()) {
+    write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),
+                     arguments.report);
+  }
   summarize(program, fit, Program::interrupted() || limit.reached());
   program.summary["diagonal"] = target.diagonal;  // what the distances are fractions of
   program.summary["length_unit"] = arguments.unit;

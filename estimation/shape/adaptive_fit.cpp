@@ -72,7 +72,7 @@ class AdaptiveFit {
 
   // Takes the least useful spheres to where the error is largest; fewer of them after a round in vain.
   void relocate() {
-    int count = static_cast<int>(options_.relocated * options_.spheres);
+    int count = std::max(1, static_cast<int>(options_.relocated * options_.spheres));
     for (int round = 0; round < options_.relocations && count > 0 && !done(); ++round) {
       summary_.model = best_;
       const double before = best_distance_;

@@ -113,6 +113,47 @@ TEST_F(FitShape, SummaryHoldsTheFigures) {
   EXPECT_NEAR(summary["volume_ratio"].get<double>(), 1.0, 0.05);
 }
 
+TEST_F(FitShape, SaysWhenTheNameOfTheBodyDoesNotGoWithTheUnit) {
+  const std::string table = (folder_ / "t.csv").string();
+  const auto errors_for = [&](const std::string& name, std::vector<std::string> more) {
+    std::vector<std::string> arguments{folder_.write(name, testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24)),
+                                       "-o",
+                                       table,
+                                       "--packing-only",
+                                       "--spheres",
+                                       "2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::Outcome outcome = run_program(kFitShape, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return outcome.errors;
+  };
+  EXPECT_EQ(errors_for("eros.obj", {}).find("mean radius"), std::string::npos);
+  EXPECT_NE(errors_for("eros.obj", {"--unit", "m"}).find("mean radius"), std::string::npos);
+  EXPECT_EQ(errors_for("erosion.obj", {"--unit", "m"}).find("mean radius"), std::string::npos);
+}
+
+TEST_F(FitShape, MeshesThatCanBeMendedAreFitted) {
+  const auto errors_for = [&](const std::string& name, const std::string& content) {
+    const testing::Outcome outcome =
+        run_program(kFitShape, {folder_.write(name, content), "-o", (folder_ / "t.csv").string(),
+                                "--packing-only", "--spheres", "2"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return outcome.errors;
+  };
+  const std::string inside_out = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+  EXPECT_NE(errors_for("inside_out.obj", inside_out).find("inside out"), std::string::npos);
+  const std::string twice =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv 1 0 0\nf 1 3 2\nf 5 2 4\nf 1 4 3\nf 6 3 4\n";
+  EXPECT_NE(errors_for("twice.obj", twice).find("2 repeated"), std::string::npos);
+  errors_for("tiny.obj", "v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nv 0 0 1e-6\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+}
+
+TEST_F(FitShape, AReportThatCannotBeMadeIsRefusedBeforeTheWork) {
+  const std::string mesh = folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
+  expect_refusal(folder_, kFitShape,
+                 {mesh, "-o", (folder_ / "o.json").string(), "--report", mesh + "/report"}, "report");
+}
+
 TEST_F(FitShape, BadMeshesAreRefused) {
   const std::string vertices = testing::kTetrahedron.substr(0, testing::kTetrahedron.find('f'));
   expect_mesh_refused("cut.ply", testing::truncated_ply());

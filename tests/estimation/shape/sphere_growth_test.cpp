@@ -34,6 +34,16 @@ TEST(SphereGrowth, IdleAndOutsideSpheresGo) {
       << "the last sphere stays";
 }
 
+TEST(SphereGrowth, TheLeastUsefulSphereGoesFirst) {
+  const std::vector<Vec3d> points = sample_surface(testing::icosphere(3), 500, 1).points;
+  // The second barely touches the surface, the third is a bump on it.
+  MetaballModel model{6.0, {{{0, 0, 0}, 1.0}, {{0.3, 0, 0}, 0.4}, {{0, 0.9, 0}, 0.3}}};
+  remove_least_useful_spheres(model, points, 1);
+  ASSERT_EQ(model.spheres.size(), 2u);
+  EXPECT_EQ(model.spheres[0].radius, 1.0);
+  EXPECT_EQ(model.spheres[1].radius, 0.3);
+}
+
 TEST(IsosurfaceProjection, ArrivesOnASphereWithItsNormals) {
   const MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
   const std::vector<Vec3d> points{{1.2, 0, 0}, {0, 0.7, 0}, {0.5, 0.5, 0.5}};
