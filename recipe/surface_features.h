@@ -88,7 +88,7 @@ struct Boulder {
   Vec3d axes{1, 1, 1};   // full lengths a, b, c, > 0
   double heading = 0.0;  // of axis a on the surface, degrees from east (z x normal) towards north
   double tilt = 0.0;     // of axis c, degrees about axis a
-  double burial = 0.3;   // share of its height that lies below the surface, [0, 1]
+  double burial = 0.3;   // share of its chord along the normal that is below ground, [0, 1]
 };
 
 struct BoulderPopulation {

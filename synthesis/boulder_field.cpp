@@ -31,20 +31,17 @@ Vec3d on_terrain(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain)
   return bare + height * normal;
 }
 
-// Turned by its heading and tilt, and as deep in the ground as its burial says.
-void settle(const Vec3d& ground, const Vec3d& normal, PlacedBoulder& boulder) {
+// Turned by its heading and tilt about the normal.
+void turn(const Vec3d& normal, PlacedBoulder& boulder) {
   Vec3d east = cross(Vec3d{0, 0, 1}, normal);
   east = norm(east) > 1e-6 ? normalized(east) : Vec3d{1, 0, 0};
   const Vec3d north = cross(normal, east);
-  const double turn = boulder.heading * kDegree, tilt = boulder.tilt * kDegree;
+  const double heading = boulder.heading * kDegree, tilt = boulder.tilt * kDegree;
   Vec3d(&axis)[3] = boulder.directions;
-  axis[0] = std::cos(turn) * east + std::sin(turn) * north;
+  axis[0] = std::cos(heading) * east + std::sin(heading) * north;
   const Vec3d level = cross(normal, axis[0]);
   axis[1] = std::cos(tilt) * level + std::sin(tilt) * normal;
   axis[2] = std::cos(tilt) * normal - std::sin(tilt) * level;
-  const Vec3d rise{boulder.axes.x * dot(axis[0], normal), boulder.axes.y * dot(axis[1], normal),
-                   boulder.axes.z * dot(axis[2], normal)};
-  boulder.center = ground + (0.5 * norm(rise) * (1.0 - 2.0 * boulder.burial)) * normal;
 }
 
 struct Placement {
@@ -59,7 +56,7 @@ void find_listed(const BoulderLayer& layer, const BareSurface& surface, const st
     const std::string at = where + ".boulders[" + std::to_string(i) + "].";
     expect_on_body(std::max({b.axes.x, b.axes.y, b.axes.z}), surface, at + "axes");
     const Vec3d bare = surface.find(b.place, at + (b.place.is_direction ? "direction" : "position"));
-    out.push_back({bare, {{}, {}, b.axes, b.heading, b.tilt, b.burial}});
+    out.push_back({bare, {{}, {}, b.axes, b.heading, b.tilt, b.burial, 0}});
   }
 }
 
@@ -88,7 +85,7 @@ Vec3f as_floats(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder, std::uint32_t seed) {
+BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder) {
   const Vec3d half = 0.5 * boulder.axes;
   const double least = std::min({half.x, half.y, half.z});
   // The distance is at least (1 - |u|) times the least half axis.
@@ -101,8 +98,29 @@ BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder,
       static_cast<float>(1e-6 / least),
       static_cast<float>(layer.smoothing * least),
       static_cast<float>(layer.roughness * least),
-      seed,
+      boulder.noise_seed,
       static_cast<float>(reach * reach)};
+}
+
+// How far a boulder about the origin reaches along a direction, its roughness included.
+double extent_along(const BoulderKernel& kernel, const Vec3d& direction, double longest) {
+  double in = 0.0, out = longest;
+  for (int halving = 0; halving < 30; ++halving) {
+    const double middle = 0.5 * (in + out);
+    const Vec3f p = as_floats(middle * direction);
+    (boulder_distance(kernel, boulder_coordinates(kernel, p.x, p.y, p.z)) > 0.0f ? in : out) = middle;
+  }
+  return in;
+}
+
+// As deep in the ground as its burial says, measured along the normal through its centre: whatever its shape,
+// it touches the ground.
+void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& normal, PlacedBoulder& boulder) {
+  turn(normal, boulder);
+  const BoulderKernel kernel = kernel_of(layer, boulder);
+  const double longest = std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
+  const double above = extent_along(kernel, normal, longest), below = extent_along(kernel, -normal, longest);
+  boulder.center = ground + (below - boulder.burial * (above + below)) * normal;
 }
 
 Box reach_of(const PlacedBoulder& boulder, double reach) {
@@ -134,22 +152,22 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
   std::vector<Placement> placements;
   find_listed(layer, surface, where, placements);
   if (layer.population) draw(layer, surface, seed, layer_index, where + ".population", placements);
+  const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   parallel_for(0, static_cast<std::int64_t>(placements.size()), [&](std::int64_t i) {
     Placement& p = placements[static_cast<std::size_t>(i)];
     const Vec3d normal = surface.normal(p.bare);
-    settle(on_terrain(p.bare, normal, terrain), normal, p.boulder);
+    p.boulder.noise_seed = hash_append(layer_seed, static_cast<std::uint32_t>(i));
+    settle(layer, on_terrain(p.bare, normal, terrain), normal, p.boulder);
   });
   std::vector<PlacedBoulder> boulders;
   for (const Placement& p : placements) boulders.push_back(p.boulder);
   return boulders;
 }
 
-void BoulderField::add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders,
-                       std::uint32_t seed) {
-  for (std::size_t i = 0; i < boulders.size(); ++i) {
-    const std::uint32_t number = hash_append(seed, static_cast<std::uint32_t>(i));
-    boulders_.push_back(kernel_of(layer, boulders[i], number));
-    boxes_.push_back(reach_of(boulders[i], 1.0 + layer.smoothing + layer.roughness));
+void BoulderField::add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders) {
+  for (const PlacedBoulder& boulder : boulders) {
+    boulders_.push_back(kernel_of(layer, boulder));
+    boxes_.push_back(reach_of(boulder, 1.0 + layer.smoothing + layer.roughness));
   }
 }
 

@@ -20,6 +20,7 @@ struct PlacedBoulder {
   Vec3d directions[3];  // unit, of the axes
   Vec3d axes;           // full lengths
   double heading = 0.0, tilt = 0.0, burial = 0.0;
+  std::uint32_t noise_seed = 0;
 };
 
 struct LayerBoulders {
@@ -41,7 +42,7 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
 
 class BoulderField {
  public:
-  void add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders, std::uint32_t seed);
+  void add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders);
   // Call it once all are there.
   void finish();
 

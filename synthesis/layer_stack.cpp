@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/bare_surface.h"
 #include "synthesis/field_model_internal.h"
@@ -69,7 +68,7 @@ class LayerStack {
       if (layer == nullptr) continue;
       std::vector<PlacedBoulder> placed =
           place_boulders(*layer, bare(), terrain, recipe_.seed, i, place_of(i));
-      boulders.add(*layer, placed, hash_seed(recipe_.seed, static_cast<std::uint32_t>(i)));
+      boulders.add(*layer, placed);
       model_.placed_boulders.push_back({i, std::move(placed)});
     }
     boulders.finish();

@@ -47,6 +47,26 @@ TEST(BoulderField, BurialSaysHowMuchIsSeen) {
   }
 }
 
+// However rough, tilted and shallow: no boulder hovers.
+TEST(BoulderField, EveryBoulderTouchesTheGround) {
+  BoulderLayer layer;
+  layer.roughness = 0.5;
+  BoulderPopulation& population = layer.population.emplace();
+  population.drawn.count = 60;
+  population.drawn.least_diameter = 0.5;
+  population.drawn.greatest_diameter = 3.0;
+  population.least_burial = 0.05;
+  population.greatest_burial = 0.2;
+  population.greatest_tilt = 90.0;
+  const ImplicitField field(with_boulders(testing::sphere_recipe(10.0), layer));
+  for (const PlacedBoulder& boulder : field.boulders()[0].boulders) {
+    const double height = norm(boulder.center) - 10.0;
+    for (double t = 0.0; t < height; t += 0.02) {
+      ASSERT_TRUE(field.inside(boulder.center - t * normalized(boulder.center))) << t << " of " << height;
+    }
+  }
+}
+
 // At the equator east is +y for a place on +x: axis a lies along it, or along north with a heading of 90.
 TEST(BoulderField, AxesLieAsTheHeadingSays) {
   BoulderLayer layer;
