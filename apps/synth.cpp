@@ -70,13 +70,13 @@ void declare_options(Program& program, Options& options) {
                   "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
       ->option_text("FILE.png");
   program.app
-      .add_option("--features", options.features,
+      .add_option("--feature-list", options.features,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
                   "sizes, ages and angles (degrees), in the recipe's unit")
       ->option_text("FILE.csv|FILE.json");
   declare_texture_options(program, options.texture);
   for (const char* of_mesh :
-       {"--resolution", "--triangles", "--max-memory", "--tile", "--points", "--features"}) {
+       {"--resolution", "--triangles", "--max-memory", "--tile", "--points", "--feature-list"}) {
     program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
   }
   program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");

@@ -58,7 +58,7 @@ TEST_F(Synth, FeaturesAreListedAsDrawn) {
                     json = (folder_ / "f.json").string();
   for (const std::string& list : {csv, json}) {
     const testing::Outcome outcome = run_program(
-        kSynth, {file, "-o", (folder_ / "c.ply").string(), "--resolution", "24", "--features", list});
+        kSynth, {file, "-o", (folder_ / "c.ply").string(), "--resolution", "24", "--feature-list", list});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
   }
   const auto document = nlohmann::json::parse(text_of(json));
