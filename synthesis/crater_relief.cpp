@@ -10,8 +10,9 @@
 namespace astrolith {
 namespace {
 
-constexpr double kSlack = 1e-5;  // relative, for the rounding of distances and heights
-constexpr double kClip = 2.0;    // of craters that pile up, in the greatest relief of one
+constexpr double kSlack = 1e-5;           // relative, for the rounding of distances and heights
+constexpr double kMostOverlaps = 2000.0;  // of craters at a place, on average: what a point may cost
+constexpr double kClip = 2.0;             // of craters that pile up, in the greatest relief of one
 
 const CraterProfile& profile_of(const CraterLayer& layer, bool complex) {
   return complex ? layer.complex : layer.simple;
@@ -57,6 +58,19 @@ void place_drawn(const CraterLayer& layer, const BareSurface& surface, std::uint
     crater.rim_height *= factor;
     out.push_back(crater);
   }
+}
+
+// As often as the craters would cover a ball as wide as the body.
+void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrater>& craters,
+                         const BareSurface& surface, const std::string& where) {
+  double covered = 0.0;
+  for (const PlacedCrater& crater : craters) {
+    const double across = profile_of(layer, crater.complex).extent * crater.diameter / surface.longest_side();
+    covered += 0.25 * across * across;
+  }
+  if (covered <= kMostOverlaps) return;
+  throw InputError(where + ": its craters would cover every place " + std::to_string(covered) +
+                   " times, above 2000; use fewer or smaller ones");
 }
 
 CraterKernel kernel_of(const CraterProfile& profile, const PlacedCrater& crater, const Vec3d& center) {
@@ -146,6 +160,7 @@ std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurf
   if (surface.empty()) return craters;
   place_listed(layer, surface, where, craters);
   if (layer.population) place_drawn(layer, surface, seed, layer_index, where + ".population", craters);
+  expect_few_overlaps(layer, craters, surface, where);
   std::stable_sort(craters.begin(), craters.end(),
                    [](const PlacedCrater& a, const PlacedCrater& b) { return a.age > b.age; });
   return craters;

@@ -301,5 +301,13 @@ TEST(CraterRelief, CratersWiderThanTheBodyAreRefused) {
   }
 }
 
+TEST(CraterRelief, CratersPiledUpWithoutEndAreRefused) {
+  CraterLayer layer;
+  CraterPopulation& population = layer.population.emplace();
+  population.drawn.count = 20000;
+  population.drawn.least_diameter = population.drawn.greatest_diameter = 1.0;
+  EXPECT_THROW(ImplicitField(cratered_sphere(1.0, layer)), InputError);
+}
+
 }  // namespace
 }  // namespace astrolith
