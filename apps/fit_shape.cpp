@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/fit_checkpoint.h"
+#include "apps/fit_shape_details.h"
 #include "apps/known_bodies.h"
 #include "apps/program.h"
 #include "estimation/shape/fit_report.h"
@@ -23,13 +25,14 @@ namespace astrolith {
 namespace {
 
 struct Arguments {
-  std::string mesh, output, report;
+  std::string mesh, output, report, checkpoint;
   std::string optimizer = "pso";
   std::string unit = "km";
   double time_limit = 0.0;  // seconds; 0 = none
   bool packing_only = false;
   double density = 0.0;  // kg / m^3; 0 = no masses
   ShapeFitOptions fit;
+  DetailArguments details;
 };
 
 // Asks a stage to stop when its share of the time, counted from the start of the program's work, is over.
@@ -39,7 +42,7 @@ class TimeLimit {
 
   Progress guard(Progress progress, const std::string& stage) {
     if (seconds_ <= 0.0) return progress;
-    const bool last = stage == "refine";
+    const bool last = stage != "pack" && stage != "search";
     const double end = last ? seconds_ - reserve() : seconds_ * (stage == "pack" ? 0.1 : 0.25);
     return [this, last, end, progress = std::move(progress)](double fraction, std::string_view words) {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
@@ -71,12 +74,11 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{10000000}));
-  app.add_option("--optimizer", arguments.optimizer, "of the global parameters, on the shape histogram")
+  app.add_option("--optimizer", arguments.optimizer,
+                 "of the global parameters of the base, and of the details")
       ->check(CLI::IsMember({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
   app.add_option("--population", arguments.fit.population, "of the optimizer")->check(CLI::Range(1, 10000));
-  app.add_option("--generations", arguments.fit.generations,
-                 "of the optimizer: population x generations evaluations")
-      ->check(CLI::Range(1, 100000));
+  declare_detail_options(program, arguments.details);
   app.add_option(
          "--tolerance", arguments.fit.tolerance,
          "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
@@ -86,6 +88,10 @@ void add_options(Program& program, Arguments& arguments) {
                  "result then "
                  "depends on the machine")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--checkpoint", arguments.checkpoint,
+                 "keep here what a run that is stopped need not do again; where the file exists, go on from "
+                 "there. The result is that of a run without a stop")
+      ->option_text("FILE.json");
   app.add_option("--unit", arguments.unit,
                  "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
       ->check(CLI::IsMember({"km", "m"}));
@@ -93,8 +99,8 @@ void add_options(Program& program, Arguments& arguments) {
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
-  for (const char* option :
-       {"--points", "--optimizer", "--population", "--generations", "--tolerance", "--time-limit"}) {
+  for (const char* option : {"--points", "--optimizer", "--population", "--generations", "--base-only",
+                             "--details", "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
     packing_only->excludes(app.get_option(option));
   }
   app.add_option("--density", arguments.density,
@@ -119,6 +125,7 @@ std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) 
           {"volume_ratio", fit.check.volume_ratio}};
 }
 
+// Without layers, and without what it achieved.
 Recipe recipe_of(const Program& program, const Arguments& arguments, const ShapeFitResult& fit) {
   Recipe recipe;
   recipe.length_unit = arguments.unit;
@@ -127,11 +134,53 @@ Recipe recipe_of(const Program& program, const Arguments& arguments, const Shape
   recipe.provenance.input_name = std::filesystem::path(arguments.mesh).filename().string();
   recipe.provenance.input_sha256 = sha256_of_file(arguments.mesh);
   recipe.provenance.options = program.given_options();
+  recipe.body = fit.body;
+  return recipe;
+}
+
+void note_achieved(const ShapeFitResult& fit, Recipe& recipe) {
+  recipe.provenance.achieved.clear();
   for (auto [name, value] : achieved(fit)) {
     recipe.provenance.achieved.emplace_back(name, round_to_seven_digits(value));
   }
-  recipe.body = fit.body;
-  return recipe;
+}
+
+// The finished base from the checkpoint, or a new one.
+ShapeFitResult fit_base(const Program& program, const Arguments& arguments, const TargetBody& target,
+                        TimeLimit& limit, FitCheckpoint& checkpoint) {
+  if (checkpoint.base() != nullptr) {
+    ShapeFitResult base = *checkpoint.base();
+    measure_fit(target, arguments.fit, base);
+    return base;
+  }
+  const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
+    return limit.guard(program.progress(stage), stage);
+  });
+  if (!Program::interrupted() && !limit.reached()) checkpoint.keep_base(fit);
+  return fit;
+}
+
+// Adds details to the recipe, and to the summary; the fit's figures become those of both together.
+void add_details(Program& program, const Arguments& arguments, const TargetBody& target, TimeLimit& limit,
+                 FitCheckpoint& checkpoint, ShapeFitResult& fit, Recipe& recipe) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  program.summary["base"] = {{"mean_distance", d.mean}, {"p99_distance", d.p99}, {"max_distance", d.max}};
+  const DetailArguments& wanted = arguments.details;
+  if (wanted.micro == "auto") {
+    program.say("micro: " +
+                add_residual_texture(target, arguments.fit.seed, program.progress("micro"), recipe));
+  } else if (!wanted.transfer.empty()) {
+    transfer_details(program, wanted.transfer, recipe);
+  } else if (!wanted.base_only) {
+    const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
+    const DetailsFitResult details =
+        search_details(target, arguments.fit, wanted, checkpoint.log(), progress, recipe);
+    checkpoint.save();
+    program.summary["details"] = details_json(details);
+  }
+  if (!wanted.micro.empty() && wanted.micro != "auto") add_micro_layers(wanted, recipe);
+  fit.check = check_recipe(target, recipe, arguments.fit);
+  measure_similarity(target, arguments.fit, fit);
 }
 
 void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
@@ -151,15 +200,16 @@ void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
   summary["stopped_early"] = stopped;
 }
 
-void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit) {
+void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
+                bool with_details) {
   const SurfaceDistanceReport& d = fit.check.distance;
   char line[200];
   std::snprintf(
       line, sizeof line,
-      "%zu metaballs: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the diagonal; similarity %.2f %% "
+      "%zu metaballs%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the diagonal; similarity %.2f %% "
       "(two samplings of the target: %.2f %%)",
-      fit.body.spheres.size(), 100 * d.mean, 100 * d.p99, 100 * d.max, 100 * fit.similarity,
-      100 * fit.similarity_floor);
+      fit.body.spheres.size(), with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max,
+      100 * fit.similarity, 100 * fit.similarity_floor);
   program.say(line);
   if (fit.check.topology.components != target.components) {
     program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +
@@ -205,6 +255,13 @@ void say_wrong_unit(const Program& program, const Arguments& arguments, const Ta
 void run(Program& program, Arguments& arguments) {
   // Before minutes of work: can the results be written at all?
   require_writable(arguments.output);
+  if (!arguments.checkpoint.empty()) {
+    require_writable(arguments.checkpoint);
+    require_two_files(arguments.checkpoint, arguments.output);
+    require_other_file(arguments.checkpoint, arguments.mesh);
+  }
+  const auto variations = variation_files(arguments.output, arguments.details.variations);
+  check_detail_inputs(arguments.details);
   if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
   TimeLimit limit(arguments.time_limit);
   arguments.fit.seed = program.seed;
@@ -214,12 +271,19 @@ void run(Program& program, Arguments& arguments) {
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return pack(program, arguments, target);
 
-  const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
-    return limit.guard(program.progress(stage), stage);
-  });
+  FitCheckpoint checkpoint(arguments.checkpoint,
+                           {program.tool(), sha256_of_file(arguments.mesh), program.given_options()});
+  if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
+  ShapeFitResult fit = fit_base(program, arguments, target, limit, checkpoint);
+  Recipe recipe = recipe_of(program, arguments, fit);
+  const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
+  if (with_details && !Program::interrupted() && !limit.reached()) {
+    add_details(program, arguments, target, limit, checkpoint, fit, recipe);
+  }
   if (Program::interrupted()) program.say("stopped by Ctrl-C: this is the best so far");
   if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
-  write_recipe(recipe_of(program, arguments, fit), arguments.output);
+  note_achieved(fit, recipe);
+  write_recipe(recipe, arguments.output);
   if (!arguments.report.empty()) {
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),
                      arguments.report);
@@ -227,7 +291,10 @@ void run(Program& program, Arguments& arguments) {
   summarize(program, fit, Program::interrupted() || limit.reached());
   program.summary["diagonal"] = target.diagonal;  // what the distances are fractions of
   program.summary["length_unit"] = arguments.unit;
-  say_result(program, target, fit);
+  if (!variations.empty() && !Program::interrupted()) {
+    program.summary["variations"] = write_variations(program, target, recipe, arguments.details, variations);
+  }
+  say_result(program, target, fit, !recipe.layers.empty());
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // synth: a recipe becomes a closed mesh, a picture of it, or the texture of its Gabor layers.
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <initializer_list>
@@ -11,6 +13,7 @@
 #include "apps/program.h"
 #include "apps/synth_size.h"
 #include "apps/synth_texture.h"
+#include "apps/variations.h"
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_sink.h"
 #include "geometry/ply_stream_writer.h"
@@ -41,6 +44,7 @@ struct Options {
   MeshSizeRequest size;
   std::string tile;  // "3/16"
   bool points = false;
+  double vary = 0.0;  // 0 = the recipe itself
 };
 
 void declare_options(Program& program, Options& options) {
@@ -66,6 +70,12 @@ void declare_options(Program& program, Options& options) {
                        "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
                        "(.ply without faces)");
   program.app
+      .add_option("--vary", options.vary,
+                  "another body of the same kind: the strongest variation that --seed draws whose similarity "
+                  "with the recipe's own body, as `compare` measures it, is at least 1 less this")
+      ->check(CLI::Range(1e-3, 1.0))
+      ->default_str("");
+  program.app
       .add_option("--preview", options.preview,
                   "also a picture of the mesh under sunlight, from +x, +y, +z and obliquely")
       ->option_text("FILE.png");
@@ -76,10 +86,12 @@ void declare_options(Program& program, Options& options) {
       ->option_text("FILE.csv|FILE.json");
   declare_texture_options(program, options.texture);
   for (const char* of_mesh :
-       {"--resolution", "--triangles", "--max-memory", "--tile", "--points", "--feature-list"}) {
+       {"--resolution", "--triangles", "--max-memory", "--tile", "--points", "--feature-list", "--vary"}) {
     program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
   }
-  program.app.get_option("--seed")->description("replaces the recipe's seed when given")->default_str("");
+  program.app.get_option("--seed")
+      ->description("replaces the recipe's seed when given; with --vary the number of the variation")
+      ->default_str("");
 }
 
 void require_extension(const fs::path& file, std::initializer_list<const char*> extensions) {
@@ -246,8 +258,18 @@ Recipe read_input(const Program& program, const Options& options) {
   if (!options.base.empty()) {
     recipe = lay_on_base(recipe, options.recipe.string(), read_recipe(options.base), options.base.string());
   }
-  if (program.app.get_option("--seed")->count() > 0) recipe.seed = program.seed;
+  if (program.app.get_option("--seed")->count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
+}
+
+Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
+  Variation variation =
+      find_variation(recipe, reference_of(recipe), options.vary, program.seed, program.progress("vary"));
+  program.summary["similarity"] = variation.similarity;
+  program.summary["variation_strength"] = variation.strength;
+  program.say("variation " + std::to_string(program.seed) + ": similarity " +
+              fmt::format("{:.4f}", variation.similarity));
+  return std::move(variation.recipe);
 }
 
 void synthesize(Program& program, const Options& options) {
@@ -262,7 +284,7 @@ void synthesize(Program& program, const Options& options) {
                      ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
                      "with --texture WxH");
   }
-  make_mesh(program, options, recipe);
+  make_mesh(program, options, options.vary > 0.0 ? varied(program, options, recipe) : recipe);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ double unit_ratio(const Recipe& details, const std::string& details_name, const 
                    ", which is in \"" + to + "\"; state length_unit \"m\" or \"km\" and the lengths in it");
 }
 
-Layer rescaled(FractalLayer layer, double ratio) {
+Layer scaled(FractalLayer layer, double ratio) {
   layer.amplitude *= ratio;
   layer.frequency /= ratio;
   layer.bias *= ratio;
@@ -27,20 +27,20 @@ Layer rescaled(FractalLayer layer, double ratio) {
   return layer;
 }
 
-Layer rescaled(SpotLayer layer, double ratio) {
+Layer scaled(SpotLayer layer, double ratio) {
   layer.amplitude *= ratio;
   layer.size *= ratio;
   layer.cell_size *= ratio;
   return layer;
 }
 
-Layer rescaled(SparseLayer layer, double ratio) {
+Layer scaled(SparseLayer layer, double ratio) {
   layer.amplitude *= ratio;
   layer.cell_size *= ratio;
   return layer;
 }
 
-Layer rescaled(GaborLayer layer, double ratio) {
+Layer scaled(GaborLayer layer, double ratio) {
   layer.pixel_size *= ratio;
   layer.height_rms *= ratio;
   return layer;
@@ -52,7 +52,7 @@ void rescale(Population& population, double ratio) {
   if (population.density) *population.density /= ratio * ratio;
 }
 
-Layer rescaled(CraterLayer layer, double ratio) {
+Layer scaled(CraterLayer layer, double ratio) {
   if (layer.complex_from) *layer.complex_from *= ratio;
   for (Crater& crater : layer.craters) {
     crater.place.vector *= ratio;
@@ -64,7 +64,7 @@ Layer rescaled(CraterLayer layer, double ratio) {
   return layer;
 }
 
-Layer rescaled(BoulderLayer layer, double ratio) {
+Layer scaled(BoulderLayer layer, double ratio) {
   for (Boulder& boulder : layer.boulders) {
     boulder.place.vector *= ratio;
     boulder.axes *= ratio;
@@ -80,10 +80,12 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
   if (!base.body) throw InputError(base_name + ": body: absent; give a recipe with a body as the base");
   const double ratio = unit_ratio(details, details_name, base, base_name);
   Recipe result = base;
-  for (const Layer& layer : details.layers) {
-    result.layers.push_back(std::visit([ratio](const auto& l) { return rescaled(l, ratio); }, layer));
-  }
+  for (const Layer& layer : details.layers) result.layers.push_back(rescaled(layer, ratio));
   return result;
+}
+
+Layer rescaled(const Layer& layer, double ratio) {
+  return std::visit([ratio](const auto& l) { return scaled(l, ratio); }, layer);
 }
 
 }  // namespace astrolith

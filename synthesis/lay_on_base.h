@@ -14,4 +14,7 @@ namespace astrolith {
 Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,
                    const std::string& base_name);
 
+// The same layer on a body `ratio` times as large, or in a unit 1 / ratio times as long.
+Layer rescaled(const Layer& layer, double ratio);
+
 }  // namespace astrolith

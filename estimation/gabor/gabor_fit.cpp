@@ -17,12 +17,14 @@ namespace {
 
 constexpr int kWidestBandwidth = 2;
 
+void require_sides(int width, int height, const std::string& name) {
+  if (std::min(width, height) >= kSmallestExemplarSide) return;
+  throw InputError(fmt::format("{}: {} x {} pixels are too few for a spectrum; give at least {} x {}", name,
+                               width, height, kSmallestExemplarSide, kSmallestExemplarSide));
+}
+
 void require_texture(const GreyImage& exemplar, const std::string& name) {
-  if (std::min(exemplar.width, exemplar.height) < kSmallestExemplarSide) {
-    throw InputError(fmt::format("{}: {} x {} pixels are too few for a spectrum; give at least {} x {}", name,
-                                 exemplar.width, exemplar.height, kSmallestExemplarSide,
-                                 kSmallestExemplarSide));
-  }
+  require_sides(exemplar.width, exemplar.height, name);
   const auto [low, high] = std::minmax_element(exemplar.values.begin(), exemplar.values.end());
   if (*high - *low <= 1e-9 * std::max(std::abs(*high), std::abs(*low))) {
     throw InputError(name + ": all pixels have the same value; give an image with texture");
@@ -96,11 +98,19 @@ std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, Ga
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress) {
   require_texture(exemplar, name);
-  GaborFit fit;
-  fit.exemplar_mean = mean_of(exemplar);
   const Borders borders =
       options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
-  fit.periodogram = exemplar_periodogram(exemplar, options.largest_side, borders);
+  GaborFit fit = fit_gabor_spectrum(exemplar_periodogram(exemplar, options.largest_side, borders), name,
+                                    options, progress);
+  fit.exemplar_mean = mean_of(exemplar);
+  return fit;
+}
+
+GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
+                            const GaborFitOptions& options, const Progress& progress) {
+  require_sides(periodogram.width, periodogram.height, name);
+  GaborFit fit;
+  fit.periodogram = std::move(periodogram);
   fit.exemplar_rms = std::sqrt(fit.periodogram.variance());
   if (!(fit.exemplar_rms > kSmallestContrast))
     throw InputError(name +

@@ -49,4 +49,9 @@ inline constexpr int kSmallestExemplarSide = 32;
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress = {});
 
+// The same from a periodogram alone, as of patches that make no whole image; the mean is left 0. Throws
+// InputError for sides below 32 and for next to no contrast.
+GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
+                            const GaborFitOptions& options, const Progress& progress = {});
+
 }  // namespace astrolith

@@ -121,7 +121,9 @@ ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
   return describe_shape(mesh, options).histogram;
 }
 
-void measure(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
+}  // namespace
+
+void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
   const std::uint64_t seed = options.seed;
   result.check = check_fit(target, body_in_target_frame(result.body, target), options.check_resolution,
                            options.check_samples, stream_seed(seed, kDistances));
@@ -130,8 +132,6 @@ void measure(const TargetBody& target, const ShapeFitOptions& options, ShapeFitR
   result.similarity_floor =
       similarity(wanted, fresh_histogram(target.surface, stream_seed(seed, kFreshAgain)));
 }
-
-}  // namespace
 
 ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& options,
                          const StageProgress& progress) {
@@ -148,7 +148,7 @@ ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& option
   result.search_history = base.optimization.history;
   result.convergence = std::move(fit.convergence);
   result.interrupted = packing.interrupted || fit.interrupted;
-  measure(target, options, result);
+  measure_fit(target, options, result);
   return result;
 }
 

@@ -54,4 +54,7 @@ ShapeFitResult fit_shape(
     const TargetBody& target, const ShapeFitOptions& options,
     const StageProgress& progress = [](const std::string&) { return Progress(); });
 
+// Sets check, similarity and similarity_floor from the result's body, as fit_shape does at its end.
+void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result);
+
 }  // namespace astrolith

@@ -48,7 +48,7 @@ class FitShape : public ::testing::Test {
 };
 
 TEST_F(FitShape, WritesARecipeWithABody) {
-  fit("egg.json", {});
+  fit("egg.json", {"--base-only"});
   const Recipe recipe = read_recipe(folder_ / "egg.json");
   ASSERT_TRUE(recipe.body.has_value());
   EXPECT_LE(recipe.body->spheres.size(), 12u);
@@ -69,14 +69,17 @@ TEST_F(FitShape, ARealBodyIsFittedClosely) {
   EXPECT_TRUE(summary["closed"].get<bool>());
   EXPECT_TRUE(summary["manifold"].get<bool>());
   EXPECT_EQ(summary["components"].get<int>(), 1);
-  EXPECT_LT(summary["mean_distance"].get<double>(), 0.002);
+  EXPECT_LT(summary["base"]["mean_distance"].get<double>(), 0.002);
   EXPECT_NEAR(summary["volume_ratio"].get<double>(), 1.0, 0.01);
+  EXPECT_EQ(summary["details"]["evaluations"].get<int>(), 32);
+  EXPECT_LT(summary["details"]["best"]["roughness_misfit"].get<double>(),
+            summary["details"]["base"]["roughness_misfit"].get<double>());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "distance_map.png"));
 }
 
 TEST_F(FitShape, PackingOnlyWritesATableOfMascons) {
-  fit("egg.json", {});
-  const std::string mesh = (folder_ / "egg.obj").string(), file = (folder_ / "egg.csv").string();
+  const std::string mesh = folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
+  const std::string file = (folder_ / "egg.csv").string();
   const testing::Outcome outcome =
       run_program(kFitShape, {mesh, "-o", file, "--spheres", "12", "--packing-only", "--density", "2000"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -94,12 +97,106 @@ TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {
   const std::string one = fit("one.json", {"--threads", "1", "--seed", "3"});
   EXPECT_EQ(one, fit("two.json", {"--threads", "2", "--seed", "3"}));
   const Recipe a = parse_recipe(one, "one.json"),
-               b = parse_recipe(fit("other.json", {"--seed", "4"}), "other.json");
+               b = parse_recipe(fit("other.json", {"--base-only", "--seed", "4"}), "other.json");
   EXPECT_NE(a.body->spheres.at(0).radius, b.body->spheres.at(0).radius);
 }
 
+TEST_F(FitShape, AResumedFitIsThatOfARunWithoutAStop) {
+  const std::string file = (folder_ / "stop.checkpoint").string();
+  const std::string whole = fit("whole.json", {"--checkpoint", file});
+  // As if it had stopped after the base and one candidate.
+  auto checkpoint = nlohmann::ordered_json::parse(text_of(file));
+  ASSERT_EQ(checkpoint["evaluations"].size(), 8u);
+  while (checkpoint["evaluations"].size() > 1) checkpoint["evaluations"].erase(1);
+  folder_.write("stop.checkpoint", checkpoint.dump());
+  EXPECT_EQ(fit("resumed.json", {"--checkpoint", file}), whole);
+  EXPECT_EQ(nlohmann::json::parse(text_of(file))["evaluations"].size(), 8u);
+}
+
+TEST_F(FitShape, CheckpointsOfSomethingElseAndDamagedOnesAreRefused) {
+  const std::string file = (folder_ / "stop.checkpoint").string();
+  fit("egg.json", {"--base-only", "--checkpoint", file});
+  const std::string mesh = (folder_ / "egg.obj").string(), good = text_of(file);
+  const auto refuse = [&](const std::string& content) {
+    folder_.write("stop.checkpoint", content);
+    expect_refusal(folder_, kFitShape,
+                   {mesh, "-o", (folder_ / "no.json").string(), "--spheres", "12", "--base-only",
+                    "--population", "4", "--points", "400", "--checkpoint", file},
+                   "stop.checkpoint");
+  };
+  refuse(good);  // --generations was given then
+  refuse(good.substr(0, good.size() / 2));
+  refuse("");
+  refuse("[1, 2, 3]");
+  refuse("{\"astrolith_checkpoint\": 1}");
+  refuse(std::string(100000, '['));
+}
+
+TEST_F(FitShape, DetailsOfAnotherBodyAreScaledToThisOne) {
+  fit("egg.json", {"--base-only"});
+  Recipe other;
+  other.body.emplace().spheres.push_back({{0, 0, 0}, 10.0});
+  FractalLayer hills;
+  hills.amplitude = 1.0;
+  hills.frequency = 0.5;
+  other.layers.push_back(hills);
+  write_recipe(other, folder_ / "other.json");
+  const std::string mesh = (folder_ / "egg.obj").string(), out = (folder_ / "out.json").string();
+  const testing::Outcome outcome =
+      run_program(kFitShape, {mesh, "-o", out, "--spheres", "12", "--points", "400", "--population", "4",
+                              "--details", (folder_ / "other.json").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const Recipe made = read_recipe(out);
+  ASSERT_EQ(made.layers.size(), 1u);
+  const auto& layer = std::get<FractalLayer>(made.layers[0]);
+  // Half axes 1.5, 1.1, 0.9 beside a ball of radius 10.
+  const double ratio = std::sqrt(1.5 * 1.5 + 1.1 * 1.1 + 0.9 * 0.9) / std::sqrt(300.0);
+  EXPECT_NEAR(layer.amplitude, ratio, 0.1 * ratio);
+  EXPECT_NEAR(layer.frequency * layer.amplitude, 0.5, 1e-9);
+  expect_refusal(folder_, kFitShape,
+                 {mesh, "-o", (folder_ / "no.json").string(), "--details", (folder_ / "egg.json").string()},
+                 "egg.json");
+}
+
+TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
+  fit("egg.json", {"--base-only"});
+  Recipe rock;
+  rock.length_unit = "px";
+  GaborLayer gravel;
+  gravel.height_rms = 0.2;
+  gravel.lobes.push_back({4, 0.1, 0.05, 0.04});
+  rock.layers.push_back(gravel);
+  write_recipe(rock, folder_ / "rock.json");
+  const std::string mesh = (folder_ / "egg.obj").string(), out = (folder_ / "out.json").string();
+  std::vector<std::string> arguments{mesh, "-o",          out,       "--spheres",
+                                     "12", "--points",    "400",     "--population",
+                                     "4",  "--base-only", "--micro", (folder_ / "rock.json").string()};
+  arguments[2] = (folder_ / "no.json").string();
+  expect_refusal(folder_, kFitShape, arguments, "--mm-per-px");
+  arguments[2] = out;
+  for (const char* more : {"--mm-per-px", "20000", "--micro-height", "3000"}) arguments.push_back(more);
+  const testing::Outcome outcome = run_program(kFitShape, arguments);
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto& layer = std::get<GaborLayer>(read_recipe(out).layers.at(0));
+  EXPECT_NEAR(layer.pixel_size, 0.02, 1e-12);  // km
+  EXPECT_NEAR(layer.height_rms, 0.003, 1e-12);
+}
+
+TEST_F(FitShape, VariationsAreAsAlikeAsAsked) {
+  const std::string summary_file = (folder_ / "s.json").string();
+  fit("egg.json", {"--base-only", "--variations", "2", "--delta", "0.3", "--summary", summary_file});
+  const auto similarities = nlohmann::json::parse(text_of(summary_file))["variations"];
+  ASSERT_EQ(similarities.size(), 2u);
+  for (int k = 1; k <= 2; ++k) {
+    const Recipe variation = read_recipe(folder_ / ("egg_variation_" + std::to_string(k) + ".json"));
+    ASSERT_EQ(variation.provenance.achieved.size(), 1u);
+    EXPECT_EQ(variation.provenance.achieved[0].first, "similarity");
+    EXPECT_GE(variation.provenance.achieved[0].second, 0.7 - 1e-6);
+  }
+}
+
 TEST_F(FitShape, SummaryHoldsTheFigures) {
-  fit("egg.json", {"--summary", (folder_ / "s.json").string()});
+  fit("egg.json", {"--base-only", "--summary", (folder_ / "s.json").string()});
   const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
   for (const char* field : {"spheres", "similarity", "mean_distance", "p99_distance", "max_distance",
                             "volume_ratio", "evaluations", "seconds"}) {

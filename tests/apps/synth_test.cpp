@@ -106,6 +106,19 @@ TEST_F(Synth, SameBytesForAnyThreadCount) {
   EXPECT_TRUE(one == synthesise("eight.ply", {"--threads", "8"}));
 }
 
+TEST_F(Synth, VariationsAreAsAlikeAsAskedAndStayInOnePiece) {
+  const std::string summary_file = (folder_ / "s.json").string();
+  const std::string itself = synthesise("itself.ply", {});
+  const std::string one = synthesise("one.ply", {"--vary", "0.3", "--seed", "1", "--summary", summary_file});
+  const auto summary = nlohmann::json::parse(text_of(summary_file));
+  EXPECT_GE(summary["similarity"].get<double>(), 0.7);
+  EXPECT_EQ(summary["components"].get<int>(), 1);
+  EXPECT_FALSE(one == itself);
+  expect_refusal(folder_, kSynth,
+                 {(folder_ / "r.json").string(), "-o", (folder_ / "no.ply").string(), "--vary", "1.5"},
+                 "--vary");
+}
+
 TEST_F(Synth, SeedChangesTheMesh) {
   const std::string mesh = synthesise("a.ply", {"--seed", "5"});
   EXPECT_TRUE(mesh == synthesise("b.ply", {"--seed", "5"}));

@@ -1,0 +1,120 @@
+#include "estimation/shape/details/detail_fitness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "descriptor/histogram_distance.h"
+#include "descriptor/local_features.h"
+#include "descriptor/surflet_histogram.h"
+#include "geometry/sample_curvature.h"
+
+namespace astrolith {
+namespace {
+
+// Heights are looked for this far from the base (fraction of the diagonal).
+constexpr double kReach = 0.05;
+
+// Lines that meet a height of so many times the median are not of details but of what the base missed.
+constexpr double kStray = 8.0;
+
+// Amplitudes are searched from and to these parts of the residual's root mean square.
+constexpr double kLeastAmplitude = 0.02, kLargestAmplitude = 20.0;
+constexpr double kTiniestAmplitude = 1e-7;  // fraction of the diagonal: what a float still tells apart
+
+// That of descriptor/shape_description.h.
+constexpr double kCurvatureRadius = 0.2;
+
+double root_mean_square(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+}
+
+double median_magnitude(std::span<const double> values) {
+  std::vector<double> sizes;
+  for (const double v : values) sizes.push_back(std::fabs(v));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+double curvature_radius(const SurfaceSamples& samples) {
+  return kCurvatureRadius * std::sqrt(point_spread(samples.points).mean_square);
+}
+
+ShapeHistogram histogram_of(const TriangleMesh& mesh, const SurfaceSamples& samples) {
+  const SampleCurvature curvature = sample_curvature(mesh, samples, curvature_radius(samples));
+  return ahd_histogram(samples.points, samples.normals, curvature.gaussian);
+}
+
+std::vector<MeshPlace> nearest_places(const TriangleMesh& mesh, const std::vector<Vec3d>& points) {
+  const SurfaceTree tree(mesh);
+  std::vector<MeshPlace> places;
+  for (const Vec3d& p : points) places.push_back(nearest_place(mesh, tree, p));
+  return places;
+}
+
+// First octaves no wider than twice the longest line, no octave finer than two edges a cycle.
+DetailRanges ranges_of(const std::vector<double>& lags, double edge, double residual) {
+  DetailRanges ranges;
+  ranges.highest_frequency = 0.5 / edge;
+  ranges.lowest_frequency = std::min(0.5 / lags.back(), 0.5 * ranges.highest_frequency);
+  ranges.least_amplitude = std::max(kLeastAmplitude * residual, kTiniestAmplitude);
+  ranges.largest_amplitude = std::max(kLargestAmplitude * residual, 2.0 * ranges.least_amplitude);
+  return ranges;
+}
+
+}  // namespace
+
+DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
+                             const FitnessOptions& options)
+    : options_(options),
+      layout_(lay_out_probes(target, base, options.lines, options.seed)),
+      probe_(base, layout_.vertex_points(), kReach),
+      samples_(sample_poisson_disk(target.surface, options.samples, options.seed)),
+      mesh_(layout_.mesh, nearest_places(layout_.mesh, samples_.points), curvature_radius(samples_)),
+      wanted_histogram_(histogram_of(target.surface, samples_)) {
+  std::vector<double> heights = target_heights(target.tree, layout_.place_points(), kReach);
+  // The facets of a finer target are steeper than those of the base's mesh can be: that mesh is then moved to
+  // the target too.
+  if (facet_edge(target) < 0.9 * probe_edge(target)) {
+    const std::vector<double> of_vertices = target_heights(target.tree, layout_.vertex_points(), kReach);
+    wanted_histogram_ = histogram(of_vertices);
+    heights = layout_.at_places(of_vertices);
+  }
+  leave_out_strays(heights);
+  wanted_roughness_ = roughness(heights, layout_.triples);
+  // The roughness is of the residual's size, and knows no strays.
+  ranges_ = ranges_of(layout_.lags, probe_edge(target), root_mean_square(wanted_roughness_));
+}
+
+DetailScore DetailFitness::score(std::span<const FractalLayer> layers) const {
+  const std::vector<double> heights = probe_.heights(layers, options_.recipe_seed);
+  return {similarity(wanted_histogram_, histogram(heights)),
+          roughness_misfit(roughness(layout_.at_places(heights), layout_.triples), wanted_roughness_)};
+}
+
+std::vector<double> DetailFitness::layers_roughness(std::span<const FractalLayer> layers) const {
+  return roughness(layout_.at_places(probe_.heights(layers, options_.recipe_seed)), layout_.triples);
+}
+
+void DetailFitness::leave_out_strays(std::span<const double> heights) {
+  const double most = std::max(kStray * median_magnitude(heights), kTiniestAmplitude);
+  for (std::vector<HeightTriple>& triples : layout_.triples) {
+    std::erase_if(triples, [&](const HeightTriple& t) {
+      return std::max({std::fabs(heights[t.before]), std::fabs(heights[t.middle]),
+                       std::fabs(heights[t.after])}) > most;
+    });
+  }
+}
+
+ShapeHistogram DetailFitness::histogram(const std::vector<double>& heights) const {
+  const TriangleMesh& mesh = layout_.mesh;
+  std::vector<Vec3d> vertices;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    vertices.push_back(mesh.vertices[v] + heights[v] * mesh.normals[v]);
+  }
+  return mesh_.histogram(vertices);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,112 @@
+#include "estimation/shape/details/details_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+void check(const DetailsFitOptions& options) {
+  if (options.population < 1 || options.generations < 1) {
+    throw InputError("--population and --generations: give at least 1");
+  }
+}
+
+struct Start {
+  PlainNoise noise;
+  std::vector<double> parameters;
+  DetailScore score;
+};
+
+// Facets take a part of the amplitude away, of which the closed form knows nothing: what is missing on the
+// mesh is given back.
+void correct_amplitude(const DetailFitness& fitness, PlainNoise& noise) {
+  const std::vector<double> reached =
+      fitness.layers_roughness(detail_layers(detail_parameters(noise, fitness.ranges()), fitness.ranges()));
+  double sum = 0.0;
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    sum += std::log(std::max(fitness.target_roughness()[k], 1e-30) / std::max(reached[k], 1e-30));
+  }
+  const double factor = std::exp(sum / static_cast<double>(reached.size()));
+  noise.amplitude = std::clamp(factor * noise.amplitude, fitness.ranges().least_amplitude,
+                               fitness.ranges().largest_amplitude);
+}
+
+// The best of all plain noises that are as rough as the target.
+Start best_plain_noise(const DetailFitness& fitness) {
+  const RoughnessModel model;
+  Start best;
+  for (std::size_t which = 0; which < 3; ++which) {
+    for (PlainNoise noise :
+         noises_as_rough_as(fitness.target_roughness(), fitness.lags(), which, fitness.ranges(), model)) {
+      correct_amplitude(fitness, noise);
+      const std::vector<double> parameters = detail_parameters(noise, fitness.ranges());
+      const DetailScore score = fitness.score(detail_layers(parameters, fitness.ranges()));
+      if (best.parameters.empty() || score.fitness() < best.score.fitness())
+        best = {noise, parameters, score};
+    }
+  }
+  return best;
+}
+
+Vec3d rounded(const Vec3d& v) {
+  return {round_to_seven_digits(v.x), round_to_seven_digits(v.y), round_to_seven_digits(v.z)};
+}
+
+}  // namespace
+
+DetailsFitResult fit_details(const TargetBody& target, const MetaballBody& base,
+                             const DetailsFitOptions& options, const Progress& progress) {
+  check(options);
+  const DetailFitness fitness(target, base, options.fitness);
+  const Start start = best_plain_noise(fitness);
+  OptimizeOptions optimize;
+  optimize.algorithm = options.optimizer;
+  optimize.population = options.population;
+  optimize.max_evaluations = std::int64_t{options.population} * options.generations;
+  optimize.seed = options.seed;
+  optimize.start = start.parameters;
+  const Objective objective = [&](std::span<const double> x) {
+    return fitness.score(detail_layers(x, fitness.ranges())).fitness();
+  };
+  EvaluationLog own_log;
+  const Objective remembered = logged(objective, options.log != nullptr ? *options.log : own_log);
+
+  DetailsFitResult result;
+  result.start = start.noise;
+  result.ranges = fitness.ranges();
+  result.start_score = start.score;
+  result.base_score = fitness.score({});
+  result.optimization = minimize(remembered, detail_bounds(fitness.ranges()), optimize, progress);
+  result.interrupted = result.optimization.termination == OptimizeTermination::stopped;
+  if (result.optimization.value < result.base_score.fitness()) {
+    result.layers = detail_layers(result.optimization.x, fitness.ranges());
+  }
+  result.score = fitness.score(result.layers);
+  result.lags = fitness.lags();
+  result.target_roughness = fitness.target_roughness();
+  result.roughness = fitness.layers_roughness(result.layers);
+  return result;
+}
+
+// noise(f (scale p + bias)) keeps its argument when p_file = center + diagonal p.
+std::vector<FractalLayer> layers_in_file_frame(std::vector<FractalLayer> layers, const TargetBody& target) {
+  const double d = target.diagonal;
+  const Vec3d& c = target.center;
+  for (FractalLayer& layer : layers) {
+    const Vec3d& s = layer.scale;
+    layer.bias = rounded(d * layer.bias - Vec3d{s.x * c.x, s.y * c.y, s.z * c.z});
+    layer.scale = rounded(s);
+    layer.amplitude = round_to_seven_digits(d * layer.amplitude);
+    layer.frequency = round_to_seven_digits(layer.frequency / d);
+    layer.gain = round_to_seven_digits(layer.gain);
+    layer.weight = round_to_seven_digits(layer.weight);
+    layer.gradient_modulation = round_to_seven_digits(layer.gradient_modulation);
+  }
+  return layers;
+}
+
+}  // namespace astrolith

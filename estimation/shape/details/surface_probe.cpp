@@ -1,0 +1,127 @@
+#include "estimation/shape/details/surface_probe.h"
+
+#include <algorithm>
+
+#include "estimation/shape/point_clusters.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/fractal_noise.h"
+
+namespace astrolith {
+namespace {
+
+// Slopes of some tens of degrees converge by a factor of about four a step.
+constexpr int kSteps = 3;
+constexpr int kTargetSteps = 6;
+
+constexpr std::size_t kPointsPerBlock = 256;
+
+std::vector<FractalNoise> prepare(std::span<const FractalLayer> layers, std::uint64_t seed,
+                                  const Box& domain) {
+  std::vector<FractalNoise> noises;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    noises.emplace_back(layers[i], seed, static_cast<int>(i), domain);
+  }
+  return noises;
+}
+
+// F at the points of one block after they moved by t.
+class BlockEvaluation {
+ public:
+  BlockEvaluation(const PreparedMetaballs& metaballs, const std::vector<FractalNoise>& noises, std::size_t n)
+      : metaballs_(metaballs), noises_(noises) {
+    for (auto& a : arrays_) a.resize(n);
+  }
+
+  const std::vector<float>& at(const std::array<std::vector<float>, 3>& start,
+                               const std::array<std::vector<float>, 3>& direction,
+                               const std::vector<float>& t) {
+    auto& [x, y, z, f, gx, gy, gz, height] = arrays_;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      x[i] = start[0][i] + t[i] * direction[0][i];
+      y[i] = start[1][i] + t[i] * direction[1][i];
+      z[i] = start[2][i] + t[i] * direction[2][i];
+    }
+    const int n = static_cast<int>(t.size());
+    evaluate_metaballs(metaballs_, n, x.data(), y.data(), z.data(), f.data(), gx.data(), gy.data(),
+                       gz.data());
+    for (const FractalNoise& noise : noises_) {
+      noise.evaluate(n, x.data(), y.data(), z.data(), height.data());
+      for (std::size_t i = 0; i < t.size(); ++i) f[i] += height[i];
+    }
+    return f;
+  }
+
+ private:
+  const PreparedMetaballs& metaballs_;
+  const std::vector<FractalNoise>& noises_;
+  std::array<std::vector<float>, 8> arrays_;
+};
+
+}  // namespace
+
+SurfaceProbe::SurfaceProbe(const MetaballBody& base, const std::vector<ProbePoint>& points, double reach)
+    : size_(points.size()), reach_(reach) {
+  const PreparedMetaballs prepared = prepare_metaballs(base);
+  domain_ = support_bounds(prepared);
+  std::vector<Vec3d> starts;
+  for (const ProbePoint& p : points) starts.push_back(p.start);
+  for (PointCluster& cluster : cluster_points(starts, kPointsPerBlock)) {
+    add_block(prepared, points, std::move(cluster.points));
+  }
+}
+
+void SurfaceProbe::add_block(const PreparedMetaballs& base, const std::vector<ProbePoint>& points,
+                             std::vector<std::int32_t> indices) {
+  Block block;
+  Box box;
+  for (const std::int32_t i : indices) {
+    const ProbePoint& p = points[static_cast<std::size_t>(i)];
+    box.extend(p.start);
+    const double start[] = {p.start.x, p.start.y, p.start.z};
+    const double direction[] = {p.direction.x, p.direction.y, p.direction.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      block.start[axis].push_back(static_cast<float>(start[axis]));
+      block.direction[axis].push_back(static_cast<float>(direction[axis]));
+    }
+  }
+  block.metaballs = metaballs_reaching(base, widened(box, reach_));
+  block.points = std::move(indices);
+  blocks_.push_back(std::move(block));
+}
+
+std::vector<double> SurfaceProbe::heights(std::span<const FractalLayer> layers, std::uint64_t seed) const {
+  const std::vector<FractalNoise> noises = prepare(layers, seed, domain_);
+  const float reach = static_cast<float>(reach_);
+  std::vector<double> result(size_);
+  parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
+    const Block& block = blocks_[static_cast<std::size_t>(b)];
+    const std::size_t n = block.points.size();
+    BlockEvaluation evaluation(block.metaballs, noises, n);
+    std::vector<float> t(n, 0.0f);
+    for (int step = 0; step < kSteps; ++step) {
+      const std::vector<float>& f = evaluation.at(block.start, block.direction, t);
+      for (std::size_t i = 0; i < n; ++i) t[i] = std::clamp(t[i] + f[i], -reach, reach);
+    }
+    for (std::size_t i = 0; i < n; ++i) result[static_cast<std::size_t>(block.points[i])] = double{t[i]};
+  });
+  return result;
+}
+
+std::vector<double> target_heights(const SurfaceTree& target, std::span<const ProbePoint> points,
+                                   double reach) {
+  std::vector<double> result(points.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(points.size()),
+      [&](std::int64_t i) {
+        const ProbePoint& p = points[static_cast<std::size_t>(i)];
+        double t = 0.0;
+        for (int step = 0; step < kTargetSteps; ++step) {
+          t = std::clamp(t + target.signed_distance(p.start + t * p.direction), -reach, reach);
+        }
+        result[static_cast<std::size_t>(i)] = t;
+      },
+      64);
+  return result;
+}
+
+}  // namespace astrolith

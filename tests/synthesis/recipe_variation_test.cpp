@@ -1,0 +1,59 @@
+#include "synthesis/recipe_variation.h"
+
+#include <cmath>
+
+#include "geometry/mesh_topology.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/implicit_field.h"
+#include "synthesis/mesher.h"
+
+namespace astrolith {
+namespace {
+
+// Forty spheres along a curve, and hills.
+Recipe worm() {
+  Recipe recipe;
+  MetaballBody& body = recipe.body.emplace();
+  body.blend_exponent = 3.0;
+  for (int i = 0; i < 40; ++i) {
+    const double t = 0.1 * i;
+    body.spheres.push_back({{t, 0.4 * std::sin(t), 0.2 * std::cos(2 * t)}, 0.35 + 0.1 * std::sin(3 * t)});
+  }
+  FractalLayer hills;
+  hills.amplitude = 0.02;
+  hills.frequency = 5.0;
+  recipe.layers.push_back(hills);
+  return recipe;
+}
+
+TEST(RecipeVariation, IsValidAndDeterministic) {
+  const Recipe recipe = worm();
+  for (const double strength : {0.0, 0.3, 1.0}) {
+    const Recipe varied = vary_recipe(recipe, strength, 7);
+    EXPECT_NO_THROW(validate_recipe(varied, "varied"));
+    EXPECT_EQ(recipe_to_json(varied), recipe_to_json(vary_recipe(recipe, strength, 7)));
+    EXPECT_NE(recipe_to_json(varied), recipe_to_json(vary_recipe(recipe, strength, 8)));
+    EXPECT_NE(varied.seed, recipe.seed);
+  }
+}
+
+TEST(RecipeVariation, WithoutStrengthOnlyTheNoiseIsNew) {
+  const Recipe recipe = worm(), varied = vary_recipe(recipe, 0.0, 7);
+  for (std::size_t i = 0; i < recipe.body->spheres.size(); ++i) {
+    EXPECT_NEAR(norm(varied.body->spheres[i].center - recipe.body->spheres[i].center), 0.0, 1e-5);
+    EXPECT_NEAR(varied.body->spheres[i].radius / recipe.body->spheres[i].radius, 1.0, 1e-4);
+  }
+  EXPECT_EQ(std::get<FractalLayer>(varied.layers[0]).amplitude, 0.02);
+}
+
+TEST(RecipeVariation, WhatWasJoinedStaysJoined) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const ImplicitField field(vary_recipe(worm(), 0.6, seed));
+    MeshCollector collector;
+    mesh_field(field, field.bounds(), 64, collector);
+    EXPECT_EQ(analyze_topology(collector.mesh).components, 1) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace astrolith
