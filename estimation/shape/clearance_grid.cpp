@@ -19,13 +19,13 @@ struct Seed {
 
 class GridBuilder {
  public:
-  GridBuilder(const TriangleMesh& body, const SurfaceTree& tree, double inner_cells)
+  GridBuilder(const TriangleMesh& body, const SurfaceTree& tree, double inner_cells, double max_cells)
       : body_(body), tree_(tree) {
     const Box box = body.bounds();
     const Vec3d e = box.extent();
     const auto cells_along = [&](double length) { return std::ceil(length / grid_.step) + 3.0; };
     grid_.step = std::cbrt(volume(body) / inner_cells);
-    while (cells_along(e.x) * cells_along(e.y) * cells_along(e.z) > kMaxGridCells) grid_.step *= 1.05;
+    while (cells_along(e.x) * cells_along(e.y) * cells_along(e.z) > max_cells) grid_.step *= 1.05;
     const auto along = [&](double length) { return static_cast<int>(cells_along(length)); };
     grid_.cells = {along(e.x), along(e.y), along(e.z)};
     const auto half = [&](int cells) { return 0.5 * grid_.step * (cells - 1); };
@@ -182,8 +182,9 @@ Vec3d ClearanceGrid::center(std::size_t index) const {
                 static_cast<int>(index / (nx * ny)));
 }
 
-ClearanceGrid make_clearance_grid(const TriangleMesh& body, const SurfaceTree& tree, double inner_cells) {
-  return GridBuilder(body, tree, inner_cells).build();
+ClearanceGrid make_clearance_grid(const TriangleMesh& body, const SurfaceTree& tree, double inner_cells,
+                                  double max_cells) {
+  return GridBuilder(body, tree, inner_cells, max_cells).build();
 }
 
 }  // namespace astrolith

@@ -29,10 +29,11 @@ struct ClearanceGrid {
   Vec3d center(std::size_t index) const;
 };
 
-// A grid whose cells inside the body are about `inner_cells`, fewer where the body's box would then hold more
-// than kMaxGridCells. `body` is closed with positive volume; `tree` was made of it.
-ClearanceGrid make_clearance_grid(const TriangleMesh& body, const SurfaceTree& tree, double inner_cells);
-
 inline constexpr double kMaxGridCells = 4e7;
+
+// A grid whose cells inside the body are about `inner_cells`, fewer where the body's box would then hold more
+// than `max_cells`. `body` is closed with positive volume; `tree` was made of it.
+ClearanceGrid make_clearance_grid(const TriangleMesh& body, const SurfaceTree& tree, double inner_cells,
+                                  double max_cells = kMaxGridCells);
 
 }  // namespace astrolith
