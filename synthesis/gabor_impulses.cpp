@@ -4,61 +4,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "numerics/hash_random.h"
+#include "numerics/scalar_math.h"
 
 namespace astrolith {
 namespace {
-
-struct Frame {
-  Vec3f u, v, n;
-};
-
-// East, south and outward for a body whose field grows along `inward`; where the normal is within a degree of
-// the z axis, x takes the place of east. Any unit vectors do where there is no gradient.
-Frame tangent_frame(const Vec3f& inward) {
-  const float length = math::sqrt(dot(inward, inward));
-  const Vec3f n = length > 1e-18f ? inward * (-1.0f / length) : Vec3f{0.0f, 0.0f, 1.0f};
-  const bool polar = n.x * n.x + n.y * n.y < 3e-4f;
-  const Vec3f east = polar ? Vec3f{1.0f - n.x * n.x, -n.x * n.y, -n.x * n.z} : Vec3f{-n.y, n.x, 0.0f};
-  const Vec3f u = east * (1.0f / math::sqrt(dot(east, east)));
-  return {u, cross(u, n), n};
-}
-
-Vec3f cell_center(const std::array<int, 3>& c, float cell) {
-  return {(static_cast<float>(c[0]) + 0.5f) * cell, (static_cast<float>(c[1]) + 0.5f) * cell,
-          (static_cast<float>(c[2]) + 0.5f) * cell};
-}
-
-// Ten bits of a hash place an impulse along each axis, to a thousandth of a cell.
-Vec3f point_in_cell(std::uint32_t hash, const std::array<int, 3>& c, float cell) {
-  const auto at = [&](std::size_t axis, int shift) {
-    const std::uint32_t bits = (hash >> shift) & 1023u;
-    return (static_cast<float>(c[axis]) + (static_cast<float>(bits) + 0.5f) * 0x1p-10f) * cell;
-  };
-  return {at(0, 2), at(1, 12), at(2, 22)};
-}
-
-GaborImpulse make_impulse(const SurfaceBand& band, const Vec3f& p, const Frame& f, std::uint32_t hash) {
-  // Sixteen bits choose the lobe, sixteen the phase.
-  const std::uint32_t bits = hash_append(hash, 0);
-  const GaborBand::Lobe& lobe = band.band.draw(static_cast<float>(bits >> 16) * 0x1p-16f);
-  const float a = band.a;
-  return {p.x,
-          p.y,
-          p.z,
-          a * f.u.x,
-          a * f.u.y,
-          a * f.u.z,
-          a * f.v.x,
-          a * f.v.y,
-          a * f.v.z,
-          a * f.n.x,
-          a * f.n.y,
-          a * f.n.z,
-          lobe.frequency_x,
-          lobe.frequency_y,
-          static_cast<float>(bits & 0xffffu) * 0x1p-16f};
-}
 
 // The cells of a box widened by `reach` and some slack for rounding.
 CellRange cells_within(const Box& box, const Vec3d& reach, double cell) {
@@ -85,21 +34,6 @@ Vec3d half_extents(const GaborImpulse& k, double a) {
     return (double{kGaborReach} * tangential + double{kGaborSlabReach} * std::fabs(double{n})) / (a * a);
   };
   return {along(k.ux, k.vx, k.nx), along(k.uy, k.vy, k.ny), along(k.uz, k.vz, k.nz)};
-}
-
-// The impulses of one cell, whose centre is `height` outside the surface.
-void draw_cell(const SurfaceBand& band, const std::array<int, 3>& c, float height, const Vec3f& inward,
-               std::vector<GaborImpulse>& impulses) {
-  if (std::fabs(height) > band.farthest + band.cell) return;
-  const Frame frame = tangent_frame(inward);
-  const Vec3f center = cell_center(c, band.cell);
-  const std::uint32_t cell_hash = hash_cell(band.seed, c[0], c[1], c[2]);
-  for (int j = 0; j < band.impulses_per_cell; ++j) {
-    const std::uint32_t hash = hash_append(cell_hash, static_cast<std::uint32_t>(j));
-    const Vec3f p = point_in_cell(hash, c, band.cell);
-    const float above = height + dot(frame.n, p - center);
-    if (!(std::fabs(above) > band.farthest)) impulses.push_back(make_impulse(band, p, frame, hash));
-  }
 }
 
 // kernel[i] = impulse i at one point; `impulses` holds one array of `stride` floats for each member.
@@ -137,26 +71,11 @@ std::vector<float> arrays_of(const std::vector<GaborImpulse>& impulses) {
   return arrays;
 }
 
-// Centres of cells and the body's field there.
-struct Centers {
-  std::vector<std::array<int, 3>> cell;
-  std::vector<float> x, y, z, distance, gx, gy, gz;
+// Largest i with i * divisor <= n.
+int floor_divided(int n, int divisor) { return n >= 0 ? n / divisor : -((-n + divisor - 1) / divisor); }
 
-  void add(const std::array<int, 3>& c, float side) {
-    const Vec3f p = cell_center(c, side);
-    cell.push_back(c);
-    x.push_back(p.x);
-    y.push_back(p.y);
-    z.push_back(p.z);
-  }
-  void evaluate(const PreparedMetaballs& body) {
-    Box box;
-    for (std::size_t i = 0; i < x.size(); ++i) box.extend({double{x[i]}, double{y[i]}, double{z[i]}});
-    for (std::vector<float>* v : {&distance, &gx, &gy, &gz}) v->resize(x.size());
-    evaluate_metaballs(metaballs_reaching(body, box), static_cast<int>(x.size()), x.data(), y.data(),
-                       z.data(), distance.data(), gx.data(), gy.data(), gz.data());
-  }
-};
+// A box of so many cells for each point is worth drawing whole, by tiles that others can use too.
+constexpr std::int64_t kCellsPerPoint = 100;
 
 }  // namespace
 
@@ -164,25 +83,70 @@ CellRange cells_around(const SurfaceBand& band, const Box& box) {
   return cells_within(box, Vec3d{1, 1, 1} * double{band.reach}, double{band.cell});
 }
 
-GaborImpulses::GaborImpulses(const SurfaceBand& band, const PreparedMetaballs& body, int n, const float* x,
-                             const float* y, const float* z)
-    : band_(band), n_(n), x_(x), y_(y), z_(z) {
+GaborImpulses::GaborImpulses(const GaborTiles& tiles, int n, const float* x, const float* y, const float* z)
+    : band_(tiles.band()), n_(n), x_(x), y_(y), z_(z) {
   Box box;
   around_.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     const Vec3d p{double{x[i]}, double{y[i]}, double{z[i]}};
     box.extend(p);
-    around_.push_back(cells_around(band, Box{p, p}));
+    around_.push_back(cells_around(band_, Box{p, p}));
   }
-  range_ = cells_around(band, box);
-  mark_cells();
-  draw_cells(body);
+  range_ = cells_around(band_, box);
+  if (range_.cells() <= kCellsPerPoint * n) {
+    collect_tiles(tiles);
+  } else {
+    mark_cells();
+    draw_marked(tiles.body());
+  }
 }
 
 std::size_t GaborImpulses::row(int cy, int cz) const {
   const auto y = static_cast<std::size_t>(cy - range_.first[1]);
   const auto z = static_cast<std::size_t>(cz - range_.first[2]);
   return (z * static_cast<std::size_t>(range_.size(1)) + y) * static_cast<std::size_t>(range_.size(0));
+}
+
+// Row by row of the range, a run of cells from each tile that the row crosses.
+void GaborImpulses::collect_tiles(const GaborTiles& tiles) {
+  std::array<int, 3> first, count;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] = floor_divided(range_.first[axis], kTileCells);
+    count[axis] = floor_divided(range_.last[axis], kTileCells) - first[axis] + 1;
+  }
+  std::vector<std::shared_ptr<const DrawnCells>> held;
+  for (int z = 0; z < count[2]; ++z) {
+    for (int y = 0; y < count[1]; ++y) {
+      for (int x = 0; x < count[0]; ++x)
+        held.push_back(tiles.tile({first[0] + x, first[1] + y, first[2] + z}));
+    }
+  }
+  start_.reserve(static_cast<std::size_t>(range_.cells()) + 1);
+  for (int cz = range_.first[2]; cz <= range_.last[2]; ++cz) {
+    const int tz = floor_divided(cz, kTileCells), z = cz - tz * kTileCells;
+    for (int cy = range_.first[1]; cy <= range_.last[1]; ++cy) {
+      const int ty = floor_divided(cy, kTileCells), y = cy - ty * kTileCells;
+      for (int tx = first[0]; tx < first[0] + count[0]; ++tx) {
+        const int begin = std::max(range_.first[0] - tx * kTileCells, 0);
+        const int end = std::min(range_.last[0] - tx * kTileCells + 1, kTileCells);
+        const auto tile =
+            static_cast<std::size_t>(((tz - first[2]) * count[1] + ty - first[1]) * count[0] + tx - first[0]);
+        const auto row = static_cast<std::size_t>((z * kTileCells + y) * kTileCells);
+        append(*held[tile], row + static_cast<std::size_t>(begin), row + static_cast<std::size_t>(end));
+      }
+    }
+  }
+  start_.push_back(static_cast<std::uint32_t>(impulses_.size()));
+  drawn_ = range_.cells();
+}
+
+void GaborImpulses::append(const DrawnCells& tile, std::size_t begin, std::size_t end) {
+  const auto size = static_cast<std::uint32_t>(impulses_.size());
+  for (std::size_t cell = begin; cell < end; ++cell) {
+    start_.push_back(size + tile.start[cell] - tile.start[begin]);
+  }
+  impulses_.insert(impulses_.end(), tile.impulses.begin() + tile.start[begin],
+                   tile.impulses.begin() + tile.start[end]);
 }
 
 void GaborImpulses::mark_cells() {
@@ -197,33 +161,31 @@ void GaborImpulses::mark_cells() {
   }
 }
 
-void GaborImpulses::draw_cells(const PreparedMetaballs& body) {
-  Centers centers;
+void GaborImpulses::draw_marked(const PreparedMetaballs& body) {
+  std::vector<GaborCell> cells;
   std::size_t slot = 0;
   for (int cz = range_.first[2]; cz <= range_.last[2]; ++cz) {
     for (int cy = range_.first[1]; cy <= range_.last[1]; ++cy) {
       for (int cx = range_.first[0]; cx <= range_.last[0]; ++cx) {
-        if (start_[slot++] != 0) centers.add({cx, cy, cz}, band_.cell);
+        if (start_[slot++] != 0) cells.push_back({cx, cy, cz});
       }
     }
   }
-  centers.evaluate(body);
-  marked_ = static_cast<std::int64_t>(centers.cell.size());
-  std::size_t i = 0;
+  DrawnCells drawn = draw_cells(band_, body, cells);
+  drawn_ = static_cast<std::int64_t>(cells.size());
+  std::size_t next = 0;
   for (std::uint32_t& start : start_) {
     const bool marked = start != 0;
-    start = static_cast<std::uint32_t>(impulses_.size());
-    if (!marked) continue;
-    draw_cell(band_, centers.cell[i], -centers.distance[i], {centers.gx[i], centers.gy[i], centers.gz[i]},
-              impulses_);
-    ++i;
+    start = drawn.start[next];
+    if (marked) ++next;
   }
+  impulses_ = std::move(drawn.impulses);
 }
 
 double GaborImpulses::points_per_cell() const {
   double visits = 0.0;
   for (const CellRange& r : around_) visits += static_cast<double>(r.cells());
-  return visits / static_cast<double>(std::max<std::int64_t>(marked_, 1));
+  return visits / static_cast<double>(std::max<std::int64_t>(drawn_, 1));
 }
 
 Vec3d GaborImpulses::largest_half_extents() const {

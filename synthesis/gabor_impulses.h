@@ -1,5 +1,4 @@
-// The impulses of one bandwidth of surface noise (gabor_surface_noise.h): which cells of space hold those
-// that reach some points, and what they are. They follow from the seed, the cell and the body alone.
+// The impulses of one bandwidth of surface noise (gabor_surface_noise.h) that reach some points.
 #pragma once
 
 #include <array>
@@ -7,23 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "synthesis/gabor_bands.h"
-#include "synthesis/gabor_kernel.h"
-#include "synthesis/metaball_body.h"
+#include "synthesis/gabor_tiles.h"
 
 namespace astrolith {
-
-// A band of a layer at the body's scale.
-struct SurfaceBand {
-  GaborBand band;
-  std::uint32_t seed;
-  float a;      // cycles per length unit
-  float cell;   // side, length units
-  float reach;  // of a kernel from its impulse, length units
-  int impulses_per_cell;
-  float amplitude;  // of a kernel, length units
-  float farthest;   // impulses farther than this from the surface, to first order, are left out; length units
-};
 
 // Cells first .. last along x, y, z.
 struct CellRange {
@@ -39,8 +24,7 @@ CellRange cells_around(const SurfaceBand& band, const Box& box);
 // The impulses that reach any of some points, in the order of their cells (z, then y, then x).
 class GaborImpulses {
  public:
-  GaborImpulses(const SurfaceBand& band, const PreparedMetaballs& body, int n, const float* x, const float* y,
-                const float* z);
+  GaborImpulses(const GaborTiles& tiles, int n, const float* x, const float* y, const float* z);
 
   const std::vector<GaborImpulse>& all() const { return impulses_; }
   // How many points a cell serves on average: few where kernels are small beside the points' spacing.
@@ -51,8 +35,10 @@ class GaborImpulses {
   void add_by_cells(float* height) const;
 
  private:
+  void collect_tiles(const GaborTiles& tiles);
+  void append(const DrawnCells& tile, std::size_t begin, std::size_t end);
   void mark_cells();
-  void draw_cells(const PreparedMetaballs& body);
+  void draw_marked(const PreparedMetaballs& body);
   Vec3d largest_half_extents() const;
   std::size_t row(int cy, int cz) const;  // where a row of cells along x begins
 
@@ -63,7 +49,7 @@ class GaborImpulses {
   std::vector<CellRange> around_;     // each point
   std::vector<std::uint32_t> start_;  // by cell: its first impulse; marks before there are impulses
   std::vector<GaborImpulse> impulses_;
-  std::int64_t marked_ = 0;
+  std::int64_t drawn_ = 0;  // cells
 };
 
 }  // namespace astrolith

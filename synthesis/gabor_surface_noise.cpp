@@ -100,7 +100,7 @@ struct GaborSurfaceNoise::Points {
 };
 
 GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
-                                     const Box& domain)
+                                     const PreparedMetaballs& body, const Box& domain)
     : domain_min_(to_float(domain.min)),
       domain_max_(to_float(domain.max)),
       clip_(static_cast<float>(kGaborClip * layer.height_rms)) {
@@ -122,14 +122,14 @@ GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed
     const double farthest_impulse = 1.0 / a < kSmallKernel * longest_side(domain)
                                         ? kFarthestReach / a
                                         : std::numeric_limits<double>::infinity();
-    bands_.push_back({std::move(band), band_seed, static_cast<float>(a), static_cast<float>(cell),
-                      static_cast<float>(kCornerReach / a), count, static_cast<float>(amplitude),
-                      static_cast<float>(farthest_impulse)});
+    bands_.emplace_back(SurfaceBand{std::move(band), band_seed, static_cast<float>(a),
+                                    static_cast<float>(cell), static_cast<float>(kCornerReach / a), count,
+                                    static_cast<float>(amplitude), static_cast<float>(farthest_impulse)},
+                        body);
   }
 }
 
-void GaborSurfaceNoise::evaluate(const PreparedMetaballs& body, int n, const float* x, const float* y,
-                                 const float* z, float* height) const {
+void GaborSurfaceNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
   Points points;
   const auto clamped = [n](const float* c, float low, float high) {
     std::vector<float> copy(c, c + n);
@@ -141,7 +141,7 @@ void GaborSurfaceNoise::evaluate(const PreparedMetaballs& body, int n, const flo
   points.z = clamped(z, domain_min_.z, domain_max_.z);
   points.height.assign(static_cast<std::size_t>(n), 0.0f);
   for (int i = 0; i < n; ++i) points.index.push_back(i);
-  for (const SurfaceBand& band : bands_) add_band(band, body, points, 0, n);
+  for (const GaborTiles& band : bands_) add_band(band, points, 0, n);
   for (std::size_t i = 0; i < points.index.size(); ++i) {
     height[points.index[i]] = math::clamp(points.height[i], -clip_, clip_);
   }
@@ -160,18 +160,18 @@ std::vector<GaborImpulse> reaching(const std::vector<GaborImpulse>& impulses, co
 
 }  // namespace
 
-void GaborSurfaceNoise::add_band(const SurfaceBand& band, const PreparedMetaballs& body, Points& points,
-                                 int begin, int end) const {
+void GaborSurfaceNoise::add_band(const GaborTiles& tiles, Points& points, int begin, int end) const {
   if (begin == end) return;
+  const SurfaceBand& band = tiles.band();
   const Box box = points.bounds(begin, end);
   const int middle = cells_around(band, box).cells() > kMostCells ? points.halve(begin, end, box) : begin;
   if (middle != begin) {
-    add_band(band, body, points, begin, middle);
-    add_band(band, body, points, middle, end);
+    add_band(tiles, points, begin, middle);
+    add_band(tiles, points, middle, end);
     return;
   }
   const auto first = static_cast<std::size_t>(begin);
-  const GaborImpulses impulses(band, body, end - begin, &points.x[first], &points.y[first], &points.z[first]);
+  const GaborImpulses impulses(tiles, end - begin, &points.x[first], &points.y[first], &points.z[first]);
   if (impulses.points_per_cell() < kDensePoints) {
     impulses.add_by_cells(&points.height[first]);
   } else {

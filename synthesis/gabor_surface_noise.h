@@ -20,12 +20,12 @@ class GaborSurfaceNoise {
  public:
   // Points outside `domain` are moved to its border; bands so fine that float coordinates within it could not
   // tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
-  GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
+  GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
+                    const PreparedMetaballs& body, const Box& domain);
 
   // height[i] at points *on* the body's surface, in length units, 0 on average, standard deviation
   // layer.height_rms.
-  void evaluate(const PreparedMetaballs& body, int n, const float* x, const float* y, const float* z,
-                float* height) const;
+  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
 
   // 6 times the standard deviation, where heights are cut.
   double height_bound() const { return static_cast<double>(clip_); }
@@ -33,13 +33,12 @@ class GaborSurfaceNoise {
  private:
   struct Points;
 
-  void add_band(const SurfaceBand& band, const PreparedMetaballs& body, Points& points, int begin,
-                int end) const;
+  void add_band(const GaborTiles& tiles, Points& points, int begin, int end) const;
   void add_group(const SurfaceBand& band, const std::vector<GaborImpulse>& impulses, Points& points,
                  int begin, int end) const;
 
   Vec3f domain_min_, domain_max_;
-  std::vector<SurfaceBand> bands_;
+  std::vector<GaborTiles> bands_;
   float clip_;
 };
 

@@ -39,10 +39,9 @@ struct FlatPatch {
     Box domain;
     domain.extend({-2, -2, -2});
     domain.extend({2, 2, 2});
-    const GaborSurfaceNoise noise(layer, seed, 0, domain);
+    const GaborSurfaceNoise noise(layer, seed, 0, prepare_metaballs(*sphere_recipe(1.0).body), domain);
     std::vector<float> h(px.size());
-    noise.evaluate(prepare_metaballs(*sphere_recipe(1.0).body), n * n, px.data(), py.data(), pz.data(),
-                   h.data());
+    noise.evaluate(n * n, px.data(), py.data(), pz.data(), h.data());
     return h;
   }
 
@@ -172,15 +171,15 @@ TEST(GaborSurfaceNoise, OtherLayersMoveItNotChangeIt) {
   domain.extend({2, 2, 2});
   const GaborLayer layer = layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 1.0);
   const PreparedMetaballs body = prepare_metaballs(*sphere_recipe(1.0).body);
-  const GaborSurfaceNoise first(layer, 1, 0, domain), second(layer, 1, 1, domain);
+  const GaborSurfaceNoise first(layer, 1, 0, body, domain), second(layer, 1, 1, body, domain);
   CounterRandom random(6);
   double product = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const Vec3d p = normalized(Vec3d{random.normal(), random.normal(), random.normal()});
     const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
     float a, b;
-    first.evaluate(body, 1, &x, &y, &z, &a);
-    second.evaluate(body, 1, &x, &y, &z, &b);
+    first.evaluate(1, &x, &y, &z, &a);
+    second.evaluate(1, &x, &y, &z, &b);
     product += static_cast<double>(a * b) / 1000;
   }
   EXPECT_NEAR(product, 0.0, 0.1);

@@ -1,0 +1,40 @@
+// Draws the impulses of cells of one bandwidth of surface noise (gabor_surface_noise.h). They follow from the
+// seed, the cell and the body alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "synthesis/gabor_bands.h"
+#include "synthesis/gabor_kernel.h"
+#include "synthesis/metaball_body.h"
+
+namespace astrolith {
+
+// A band of a layer at the body's scale.
+struct SurfaceBand {
+  GaborBand band;
+  std::uint32_t seed;
+  float a;      // cycles per length unit
+  float cell;   // side, length units
+  float reach;  // of a kernel from its impulse, length units
+  int impulses_per_cell;
+  float amplitude;  // of a kernel, length units
+  float farthest;   // impulses farther than this from the surface, to first order, are left out; length units
+};
+
+using GaborCell = std::array<int, 3>;
+
+// Impulses by cell: those of cell i are impulses[start[i]] .. impulses[start[i + 1] - 1].
+struct DrawnCells {
+  std::vector<std::uint32_t> start;  // one more than cells
+  std::vector<GaborImpulse> impulses;
+};
+
+// A cell has the tangent frame of the body's level set through its centre.
+DrawnCells draw_cells(const SurfaceBand& band, const PreparedMetaballs& body,
+                      std::span<const GaborCell> cells);
+
+}  // namespace astrolith
