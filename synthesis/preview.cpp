@@ -41,11 +41,23 @@ struct Tangents {
 
 // Orthographic, in the unit ball of the scene.
 struct Camera {
-  Vec3d right, up, from;                                               // orthonormal
+  Vec3s to_viewer, sun;         // unit vectors
+  Vec3s sun_first, sun_second;  // across the sun's disk, as long as its radius seen from the body
+  Vec3d right, up, from;        // orthonormal
   double center_x = 0, center_y = 0, half_width = 0, half_height = 0;  // of the body in the picture plane
 };
 
-Camera make_camera(const PreviewView& view, const RayScene& scene, const TriangleMesh& mesh) {
+void light(Camera& camera, const PreviewOptions& options) {
+  const Vec3d sun = normalized(options.sun);
+  camera.sun = to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from);
+  const auto radius = static_cast<float>(std::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
+  const Tangents tangents(camera.sun);
+  camera.sun_first = radius * tangents.first;
+  camera.sun_second = radius * tangents.second;
+}
+
+Camera make_camera(const PreviewView& view, const PreviewOptions& options, const RayScene& scene,
+                   const TriangleMesh& mesh) {
   Camera camera;
   camera.from = normalized(view.from);
   camera.right = normalized(cross(view.up, camera.from));
@@ -62,6 +74,8 @@ Camera make_camera(const PreviewView& view, const RayScene& scene, const Triangl
   camera.center_y = box.center().y;
   camera.half_width = 0.5 * box.extent().x;
   camera.half_height = 0.5 * box.extent().y;
+  camera.to_viewer = to_float(camera.from);
+  light(camera, options);
   return camera;
 }
 
@@ -92,7 +106,8 @@ class Painter {
         normals_(mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh)),
         columns_(static_cast<int>(std::ceil(std::sqrt(double(options.views.size()))))),
         rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_) {
-    for (const PreviewView& view : options.views) cameras_.push_back(make_camera(view, scene_, mesh));
+    for (const PreviewView& view : options.views)
+      cameras_.push_back(make_camera(view, options, scene_, mesh));
     for (const Camera& camera : cameras_) {
       pixel_ = std::max({pixel_, 2 * camera.half_width / (kFilled * tile_width()),
                          2 * camera.half_height / (kFilled * tile_height())});
@@ -100,15 +115,20 @@ class Painter {
   }
 
   std::array<unsigned char, 3> pixel(int x, int y) const {
-    const int n = options_.oversampling;
+    const int n = options_.oversampling, rays = n * n;
     Vec3s sum;
-    for (int ray = 0; ray < n * n; ++ray) {
+    bool is_hit = false;
+    for (int k = 0; k < rays; ++k) {
+      // Two opposite corners first: where both miss, so does the pixel.
+      const int ray = k == 1 ? rays - 1 : k > 1 ? k - 1 : 0;
       RayRandom random(options_.seed, x, y, ray);
       const double px = x + (ray % n + double(random.next())) / n;
       const double py = y + (ray / n + double(random.next())) / n;
-      sum += radiance(px, py, random);
+      sum += radiance(px, py, random, is_hit);
+      if (k == 1 && !is_hit)
+        return {srgb_byte(kBackground.x), srgb_byte(kBackground.y), srgb_byte(kBackground.z)};
     }
-    sum *= 1.0f / static_cast<float>(n * n);
+    sum *= 1.0f / static_cast<float>(rays);
     return {srgb_byte(sum.x), srgb_byte(sum.y), srgb_byte(sum.z)};
   }
 
@@ -116,7 +136,7 @@ class Painter {
   double tile_width() const { return double(options_.width) / columns_; }
   double tile_height() const { return double(options_.height) / rows_; }
 
-  Vec3s radiance(double px, double py, RayRandom& random) const {
+  Vec3s radiance(double px, double py, RayRandom& random, bool& is_hit) const {
     const int column = std::min(columns_ - 1, static_cast<int>(px / tile_width()));
     const int row = std::min(rows_ - 1, static_cast<int>(py / tile_height()));
     const auto view = static_cast<std::size_t>(row * columns_ + column);
@@ -125,9 +145,10 @@ class Painter {
     const double u = (px - (column + 0.5) * tile_width()) * pixel_ + camera.center_x;
     const double v = ((row + 0.5) * tile_height() - py) * pixel_ + camera.center_y;
     const Vec3s origin = to_float(u * camera.right + v * camera.up + 2.0 * camera.from);
-    const RayHit hit = scene_.first_hit(origin, to_float(-camera.from));
+    const RayHit hit = scene_.first_hit(origin, -camera.to_viewer);
     if (!hit.found) return kBackground;
-    return shade(camera, origin - hit.distance * to_float(camera.from), hit, random);
+    is_hit = true;
+    return shade(camera, origin - hit.distance * camera.to_viewer, hit, random);
   }
 
   // A value at the corners of the hit triangle, interpolated.
@@ -140,7 +161,7 @@ class Painter {
   }
 
   Vec3s shade(const Camera& camera, const Vec3s& point, const RayHit& hit, RayRandom& random) const {
-    const Vec3s to_viewer = to_float(camera.from);
+    const Vec3s& to_viewer = camera.to_viewer;
     Vec3s face = hit.normal;
     Vec3s normal = normalized(interpolate(normals_, hit));
     if (squared_norm(normal) < 0.5f) normal = face;
@@ -156,12 +177,8 @@ class Painter {
 
   float sunlight(const Camera& camera, const Vec3s& start, const Vec3s& normal, const Vec3s& to_viewer,
                  RayRandom& random) const {
-    const Vec3d sun = normalized(options_.sun);
-    const Vec3s center = to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from);
     const auto [dx, dy] = disk_point(random);
-    const auto spread = static_cast<float>(std::tan(options_.sun_radius_degrees * std::numbers::pi / 180.0));
-    const Tangents tangents(center);
-    const Vec3s towards = normalized(center + spread * (dx * tangents.first + dy * tangents.second));
+    const Vec3s towards = normalized(camera.sun + dx * camera.sun_first + dy * camera.sun_second);
     const float incidence = dot(normal, towards);
     if (incidence <= 0.0f || scene_.occluded(start, towards)) return 0.0f;
     const float emission = std::max(dot(normal, to_viewer), 1e-3f);
