@@ -5,6 +5,7 @@
 
 #include "apps/fit_gabor_outputs.h"
 #include "apps/memory_use.h"
+#include "apps/option_checks.h"
 #include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/photo_fit.h"
@@ -68,7 +69,7 @@ void add_options(Program& program, Options& o) {
   app.add_option(
          "--mm-per-px", o.mm_per_px,
          "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->default_str("");
   app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
       ->check(CLI::IsMember({"m", "km"}));
@@ -77,7 +78,7 @@ void add_options(Program& program, Options& o) {
          "standard deviation of the layer's height in the recipe's length unit. Brightness is not height: "
          "without this the layer has the image's own contrast (full scale = 1), which is a height only if "
          "the image is a height map in that unit")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zero_or_more())
       ->default_str("");
   app.add_option("--spectrum-estimate", o.target,
                  "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
@@ -94,7 +95,7 @@ void add_options(Program& program, Options& o) {
   app.add_option("--max-memory", o.max_memory_gb,
                  "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
                  "of the machine's")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->default_str("");
   app.add_option("--report", o.report_folder,
                  "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "

@@ -82,12 +82,12 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option(
          "--tolerance", arguments.fit.tolerance,
          "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more());
   app.add_option("--time-limit", arguments.time_limit,
                  "seconds after which the best so far is written, measured figures included; 0 = none. The "
                  "result then "
                  "depends on the machine")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more());
   app.add_option("--checkpoint", arguments.checkpoint,
                  "keep here what a run that is stopped need not do again; where the file exists, go on from "
                  "there. The result is that of a run without a stop")
@@ -105,7 +105,7 @@ void add_options(Program& program, Arguments& arguments) {
   }
   app.add_option("--density", arguments.density,
                  "of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(packing_only)
       ->default_str("");
   app.add_option("--report", arguments.report,

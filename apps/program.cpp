@@ -27,6 +27,7 @@ std::atomic<bool> g_bar_open{false};
 
 void on_interrupt(int signal_number) {
   if (g_interrupts.fetch_add(1) > 0) {
+    remove_temporary_files();
     std::signal(signal_number, SIG_DFL);
     std::raise(signal_number);
   }
@@ -145,6 +146,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   }
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
   const ThreadLimit limit(threads);
   try {
     timed(work);

@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +15,20 @@
 #include "numerics/errors.h"
 
 namespace astrolith {
+
+// The temporary files that there are, for a signal that ends the program at once; those beyond the first 64
+// are not known here.
+inline std::array<std::atomic<const char*>, 64>& temporary_files() {
+  static std::array<std::atomic<const char*>, 64> names{};
+  return names;
+}
+
+// Safe in a signal's handler, which the program does not return from.
+inline void remove_temporary_files() {
+  for (const std::atomic<const char*>& name : temporary_files()) {
+    if (const char* file = name.load()) ::unlink(file);
+  }
+}
 
 //   OutputFile file("rock.json");
 //   file.write(text.data(), text.size());
@@ -37,12 +53,20 @@ class OutputFile {
       throw InputError(target_.string() + ": cannot write (" + std::strerror(errno) +
                        "); choose a folder that exists and is writable");
     }
+    for (std::atomic<const char*>& name : temporary_files()) {
+      const char* nobody = nullptr;
+      if (name.compare_exchange_strong(nobody, temporary_.c_str())) {
+        known_as_ = &name;
+        break;
+      }
+    }
   }
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile() {
     if (file_ != nullptr) std::fclose(file_);
     if (!committed_) std::remove(temporary_.c_str());
+    forget();
   }
 
   void write(const void* data, std::size_t bytes) {
@@ -61,9 +85,14 @@ class OutputFile {
     file_ = nullptr;
     if (!flushed || !closed || std::rename(temporary_.c_str(), target_.c_str()) != 0) fail();
     committed_ = true;
+    forget();
   }
 
  private:
+  void forget() {
+    if (known_as_ != nullptr) known_as_->store(nullptr);
+    known_as_ = nullptr;
+  }
   [[noreturn]] void fail() {
     throw WorkError(target_.string() + ": writing failed (" + std::strerror(errno) + "); is the disk full?");
   }
@@ -72,6 +101,7 @@ class OutputFile {
   std::string temporary_;
   std::FILE* file_ = nullptr;
   bool committed_ = false;
+  std::atomic<const char*>* known_as_ = nullptr;
 };
 
 // Throws InputError when the file could not be written: to be called before long work rather than found

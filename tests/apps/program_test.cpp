@@ -1,12 +1,14 @@
 // What all programs share, with small pieces of work in place of a program's own.
 #include "apps/program.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 
+#include "apps/option_checks.h"
 #include "numerics/errors.h"
 #include "numerics/output_file.h"
 
@@ -65,6 +67,20 @@ TEST(Program, APartThatFailedIsNamedAndTheRestGoesOn) {
   EXPECT_EQ(outcome.errors, "tool: a.obj: is empty; left out\n");
 }
 
+TEST(Program, RangesAreStatedInWords) {
+  double number = 1.0;
+  for (const char* wrong : {"0", "-1", "nan", "much"}) {
+    Program program("tool", "A program for tests.");
+    program.app.add_option("--size", number)->check(above_zero());
+    std::vector<std::string> arguments{"tool", "--size", wrong};
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(program.run(3, argv.data(), [] { FAIL(); }), 2);
+    EXPECT_LT(::testing::internal::GetCapturedStderr().size(), 100u);
+  }
+}
+
 TEST(Program, NothingIsDrawnInAPipe) {
   EXPECT_EQ(run({}, [](Program& p) { p.progress("fit")(0.5, "half"); }).errors, "");
   EXPECT_EQ(run({}, [](Program& p) { p.say("done"); }).errors, "done\n");
@@ -121,6 +137,35 @@ TEST(ProgramDeathTest, ASecondCtrlCEndsAtOnce) {
     std::raise(SIGINT);
   };
   EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGINT), "");
+}
+
+TEST(ProgramDeathTest, ASecondCtrlCLeavesNoTemporaryFile) {
+  const auto folder = temporary("astrolith_second_");
+  std::filesystem::create_directory(folder);
+  const auto work = [&](Program&) {
+    const OutputFile unfinished(folder / "mesh.ply");
+    std::raise(SIGINT);
+    std::raise(SIGINT);
+  };
+  EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGINT), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(ProgramDeathTest, AFullQuotaIsAnErrorOfWriting) {
+  const auto folder = temporary("astrolith_quota_");
+  std::filesystem::create_directory(folder);
+  const auto work = [&](Program&) {
+    const rlimit limit{1000, 1000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    OutputFile file(folder / "mesh.ply");
+    const std::string bytes(5000, 'x');
+    file.write(bytes.data(), bytes.size());
+    file.commit();
+  };
+  EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(1), "writing failed");
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(ProgramDeathTest, AClosedStderrIsNoReasonToCrash) {
