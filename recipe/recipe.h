@@ -146,6 +146,15 @@ struct SpotLayer {
 inline constexpr double kMaxSpotDensity = 64.0;
 inline constexpr double kMaxSpotCells = 4.0;
 
+// Thermal erosion of the finished surface (thesis eq. 5.12): slopes steeper than the talus angle, measured
+// against the gravity of a body of uniform density that may turn about +z, slide down until they are not.
+struct Erosion {
+  double talus_angle = 35.0;  // degrees, [1, 85]
+  int iterations = 1000;  // sweeps over the surface at most, 1 .. 100000; it ends before when all has settled
+  double density = 2000.0;       // kg / m^3, [1, 30000]
+  double rotation_period = 0.0;  // hours, 0 (at rest) or [0.01, 1e6]
+};
+
 // White noise of cells that is mostly zero, upscaled from level to level by quadratic interpolation: round
 // pits where cells are not zero, each level's half as wide as the last one's.
 //   N_l(p) = upscaled noise of cells cell_size / 2^l wide; a lone value v has its peak v
@@ -182,6 +191,7 @@ struct Recipe {
   Provenance provenance;
   std::optional<MetaballBody> body;  // absent in what fit_gabor writes
   std::vector<Layer> layers;
+  std::optional<Erosion> erosion;  // of a body with its layers
 };
 
 }  // namespace astrolith

@@ -213,6 +213,15 @@ void read_layer(const json& value, const Place& place, Layer& out) {
   object.finish();
 }
 
+void read_erosion(const json& value, const Place& place, Erosion& out) {
+  ObjectReader object(value, place);
+  object.require("talus_angle", out.talus_angle);
+  object.allow("iterations", out.iterations);
+  object.allow("density", out.density);
+  object.allow("rotation_period", out.rotation_period);
+  object.finish();
+}
+
 void read_provenance(const json& value, const Place& place, Provenance& out) {
   ObjectReader object(value, place);
   object.allow("tool", out.tool);
@@ -251,6 +260,8 @@ Recipe read_document(const json& document, const Place& place) {
   if (const json* body = object.find("body")) read_body(*body, object.at("body"), recipe.body.emplace());
   if (const json* layers = object.find("layers"))
     read_elements(*layers, object.at("layers"), recipe.layers, read_layer);
+  if (const json* erosion = object.find("erosion"))
+    read_erosion(*erosion, object.at("erosion"), recipe.erosion.emplace());
   object.finish();
   return recipe;
 }

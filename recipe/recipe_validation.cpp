@@ -144,6 +144,15 @@ void check(const SparseLayer& layer, const Place& place) {
   expect_range(layer.gain, place.field("gain"), 0.0, 4.0);
 }
 
+void check(const Erosion& erosion, const Place& place) {
+  expect_range(erosion.talus_angle, place.field("talus_angle"), 1.0, 85.0);
+  expect_integer(erosion.iterations, place.field("iterations"), 1, 100000);
+  expect_range(erosion.density, place.field("density"), 1.0, 30000.0);
+  if (erosion.rotation_period != 0.0) {
+    expect_range(erosion.rotation_period, place.field("rotation_period"), 0.01, 1e6);
+  }
+}
+
 template <typename T>
 void expect_sorted(const std::vector<std::pair<std::string, T>>& named, const Place& place) {
   for (std::size_t i = 1; i < named.size(); ++i) {
@@ -193,6 +202,9 @@ void validate_recipe(const Recipe& recipe, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     std::visit([&](const auto& layer) { check(layer, layers.element(i)); }, recipe.layers[i]);
   }
+  if (!recipe.erosion) return;
+  check(*recipe.erosion, place.field("erosion"));
+  if (!recipe.body) place.field("erosion").fail("needs a body; add one, or leave it out");
 }
 
 }  // namespace astrolith

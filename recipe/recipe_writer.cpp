@@ -133,6 +133,13 @@ ordered_json to_json(const Provenance& provenance) {
           {"achieved", to_json(provenance.achieved)}};
 }
 
+ordered_json to_json(const Erosion& erosion) {
+  return {{"talus_angle", erosion.talus_angle},
+          {"iterations", erosion.iterations},
+          {"density", erosion.density},
+          {"rotation_period", erosion.rotation_period}};
+}
+
 ordered_json to_json(const Recipe& recipe) {
   ordered_json document{{"format_version", recipe.format_version}};
   if (!recipe.description.empty()) document["description"] = recipe.description;
@@ -145,6 +152,7 @@ ordered_json to_json(const Recipe& recipe) {
   for (const Layer& layer : recipe.layers) {
     document["layers"].push_back(std::visit([](const auto& l) { return to_json(l); }, layer));
   }
+  if (recipe.erosion) document["erosion"] = to_json(*recipe.erosion);
   return document;
 }
 

@@ -44,7 +44,8 @@ inline const std::string kCompleteRecipe = R"({
      "boulders": [{"direction": [0, 1, 1], "axes": [0.3, 0.2, 0.15], "heading": 30, "tilt": 10, "burial": 0.4}],
      "population": {"density": 2.5, "least_diameter": 0.02, "greatest_diameter": 0.125, "least_burial": 0.2}},
     {"type": "sparse", "amplitude": 0.05, "cell_size": 0.5, "levels": 3, "threshold": 0.25, "merged": true}
-  ]
+  ],
+  "erosion": {"talus_angle": 35, "iterations": 500, "density": 1500, "rotation_period": 4.3}
 }
 )";
 
@@ -144,6 +145,13 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("lacunarity": 2.5)", R"("lacunarity": 0.5)", R"(body.warp.lacunarity: must be above 1)"},
       {R"("frequency": 4)", R"("frequency": -4)", R"(layers[2].warp.frequency: must be above 0)"},
       {R"("frequency": 4)", R"("frequenzy": 4)", R"(layers[2].warp.frequenzy: unknown field)"},
+      {R"("talus_angle": 35, )", R"()", R"(erosion.talus_angle: is missing)"},
+      {R"("talus_angle": 35)", R"("talus_angle": 90)", R"(erosion.talus_angle: must be from 1 to 85, is 90)"},
+      {R"("iterations": 500)", R"("iterations": 0)",
+       R"(erosion.iterations: must be an integer from 1 to 100000)"},
+      {R"("density": 1500)", R"("density": 0)", R"(erosion.density: must be from 1 to 30000, is 0)"},
+      {R"("rotation_period": 4.3)", R"("rotation_period": 1e-3)",
+       R"(erosion.rotation_period: must be from 0.01 to 1e+06)"},
       {R"("inverted": true)", R"("inverted": 1)", R"(layers[4].inverted: must be true or false, is 1)"},
       {R"("density": 2)", R"("density": 1e9)", R"(layers[4].density: must be at most 64 impulses a cell)"},
       {R"("exponent": 3)", R"("exponent": 6)", R"(layers[4].density: must be at most 64)", false},
