@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/memory_use.h"
+#include "apps/option_checks.h"
 #include "numerics/errors.h"
 #include "synthesis/mesh_prediction.h"
 #include "synthesis/sample_grid.h"
@@ -25,11 +26,12 @@ struct OutputCost {
   double memory;
 };
 
-OutputCost output_cost(const std::filesystem::path& output, bool preview) {
+OutputCost output_cost(const std::filesystem::path& output, MeshUse use) {
   const std::string extension = output.extension().string();
   const double collected = 36.0 * 1.5;  // vertices and normals as doubles, triangles; grown by doubling
-  const double rendered = preview ? 120.0 : 0.0;
-  if (extension == ".ply") return {25.0, preview ? collected + rendered : 0.0};
+  // Verticals, heights and edges of an erosion are gone before a picture is drawn.
+  const double rendered = std::max(use.preview ? 120.0 : 0.0, use.erosion ? 80.0 : 0.0);
+  if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
   if (extension == ".stl") return {50.0, collected + rendered};
   if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
   return {75.0, collected + rendered};
@@ -58,17 +60,23 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
           "--max-memory", request.max_memory_gb,
           "refuse meshes that are predicted to need more gigabytes of memory; without it three quarters of "
           "the machine's")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->default_str("");
+  program.app.add_flag(
+      "--predict", request.only_predict,
+      "only say how many triangles, bytes and seconds the mesh would take; nothing is written but "
+      "the summary");
 }
 
-int choose_resolution(Program& program, const MeshSizeRequest& request, const ImplicitField& field,
-                      const std::filesystem::path& output, bool preview, int tiles) {
+int choose_resolution(Program& program, const MeshSizeRequest& request,
+                      const std::function<MeshStatistics(int resolution)>& mesh_at,
+                      const std::filesystem::path& output, MeshUse use, int tiles) {
   const bool by_triangles = request.triangles > 0.0;
-  if (!by_triangles && request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting) {
+  const bool small = request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting;
+  if (!by_triangles && !request.only_predict && small) {
     return request.resolution;
   }
-  const MeshGrowth growth(field, program.progress("prediction"));
+  const MeshGrowth growth(mesh_at);
 
   MeshPrediction mesh =
       growth.at(by_triangles ? growth.resolution_for(request.triangles) : request.resolution);
@@ -83,11 +91,13 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Im
     mesh.triangles *= share;
     mesh.evaluations *= share;
   }
-  const OutputCost cost = output_cost(output, preview);
+  const OutputCost cost = output_cost(output, use);
   const double memory = kBytesAnyway + mesh.working_bytes + cost.memory * mesh.triangles;
   program.summary["resolution"] = mesh.resolution;
-  program.summary["predicted"] = {
-      {"triangles", mesh.triangles}, {"file_bytes", cost.file * mesh.triangles}, {"peak_bytes", memory}};
+  program.summary["predicted"] = {{"triangles", mesh.triangles},
+                                  {"file_bytes", cost.file * mesh.triangles},
+                                  {"peak_bytes", memory},
+                                  {"seconds", growth.seconds(mesh)}};
   if (memory > memory_limit(request.max_memory_gb)) {
     throw InputError(fmt::format(
         "{}: the mesh of about {} triangles needs {:.1f} GB of memory, more than {:.1f} GB; "
@@ -96,9 +106,9 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Im
         cost.memory > 0.0 ? ", or write .ply without --preview, which is streamed" : ""));
   }
   program.say(
-      fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, up to {:.0f} s",
+      fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, up to {:.0f} s{}",
                   mesh.resolution, rounded(mesh.triangles), cost.file * mesh.triangles / 1e6, memory / 1e6,
-                  std::ceil(growth.seconds(mesh))));
+                  std::ceil(growth.seconds(mesh)), use.gabor_noise ? " and its Gabor noise" : ""));
   return mesh.resolution;
 }
 

@@ -1,6 +1,7 @@
 #include "geometry/mesh_io.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,18 @@ namespace {
 
 // Squares of coordinates must stay finite in float32, which renderers and distance trees compute in.
 constexpr double kLargestCoordinate = 1e18;
+
+// The shortest decimals that read back as the same doubles.
+std::string point_text(const Vec3d& p) {
+  std::string text;
+  for (const double coordinate : {p.x, p.y, p.z}) {
+    char digits[32];
+    char* const end = std::to_chars(digits, digits + sizeof digits, coordinate).ptr;
+    if (!text.empty()) text += ' ';
+    text.append(digits, end);
+  }
+  return text;
+}
 
 bool usable(const Vec3d& p) {
   const auto small = [](double c) { return std::fabs(c) <= kLargestCoordinate; };
@@ -116,6 +129,7 @@ std::vector<std::string> info_lines(const MeshFileInfo& info) {
     lines.push_back(label + text);
   };
   add("length unit: ", info.length_unit);
+  if (info.origin) add("origin, to be added to all coordinates: ", point_text(*info.origin));
   add("frame: ", info.frame);
   add("", info.comment);
   lines.push_back("written by Astrolith");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "geometry/triangle_mesh.h"
@@ -32,6 +33,8 @@ struct MeshFileInfo {
   std::string length_unit;  // "m", "km", ...: what one unit of a coordinate is
   std::string frame;        // "body-fixed, +z spin pole, +x prime meridian"
   std::string comment;      // anything else, one line
+  // In that frame, of coordinates that are relative to a point of it; absent: the frame's own.
+  std::optional<Vec3d> origin;
 };
 
 // Writes .ply (binary little endian, float32), .obj (text, exact), .stl (binary, float32) or .glb (glTF 2.0,

@@ -22,6 +22,13 @@ class MeshSink {
   virtual void add_triangles(std::span<const Triangle> triangles) = 0;
 };
 
+// For counts alone.
+class MeshDiscard : public MeshSink {
+ public:
+  void add_vertices(std::span<const MeshVertex>) override {}
+  void add_triangles(std::span<const Triangle>) override {}
+};
+
 // Collects everything in memory.
 class MeshCollector : public MeshSink {
  public:

@@ -45,7 +45,9 @@ class GlbDocument {
 
  private:
   static Json extras(const MeshFileInfo& info) {
-    return {{"length_unit", info.length_unit}, {"frame", info.frame}, {"comment", info.comment}};
+    Json extras = {{"length_unit", info.length_unit}, {"frame", info.frame}, {"comment", info.comment}};
+    if (info.origin) extras["origin"] = {info.origin->x, info.origin->y, info.origin->z};
+    return extras;
   }
 
   // A quarter turn about x takes +z up into +y up: quaternion (x y z w).

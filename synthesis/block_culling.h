@@ -10,6 +10,7 @@
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/block_field.h"
+#include "synthesis/block_layer.h"
 #include "synthesis/sample_grid.h"
 
 namespace astrolith {
@@ -22,12 +23,58 @@ struct BlockNode {
   Block field;
 };
 
+// What a block sees of a window, in its local coordinates: bits of rows along x.
+template <int B>
+struct BlockWindow {
+  std::array<int, 3> first, last;
+
+  // Bit x set where the cell with upper corner x, y, z is meshed.
+  SignRow cells(int y, int z) const {
+    return within(y, first[1], last[1]) && within(z, first[2], last[2]) ? bits(first[0], last[0]) : 0;
+  }
+  // Bit x set where the edge along axis that ends at x, y, z belongs to such a cell.
+  SignRow edges(int y, int z, int axis) const {
+    const auto start = [&](int a) { return first[static_cast<unsigned>(a)] - (a == axis ? 0 : 1); };
+    return within(y, start(1), last[1]) && within(z, start(2), last[2]) ? bits(start(0), last[0]) : 0;
+  }
+  // Of those, the edges that lie in the window's sides: the mesh is open there.
+  SignRow cut_edges(int y, int z, int axis) const {
+    const auto in_side = [&](int a, int c) {
+      const auto i = static_cast<unsigned>(a);
+      return a != axis && (c == first[i] - 1 || c == last[i]);
+    };
+    if (in_side(1, y) || in_side(2, z)) return edges(y, z, axis);
+    const SignRow sides = bits(first[0] - 1, first[0] - 1) | bits(last[0], last[0]);
+    return axis == 0 ? 0 : edges(y, z, axis) & sides;
+  }
+
+ private:
+  static bool within(int c, int low, int high) { return c >= low && c <= high; }
+  // Bits low .. high, as far as they are local coordinates.
+  static SignRow bits(int low, int high) {
+    low = std::max(low, 0);
+    high = std::min(high, B);
+    return low > high ? 0 : ((SignRow{2} << high) - 1) & ~((SignRow{1} << low) - 1);
+  }
+};
+
 // Splits a grid into blocks of B^3 cells, and layers of such blocks along z.
 template <int B>
 struct BlockGrid {
   SampleGrid samples;
+  CellWindow window;
+  bool closed;  // the surface keeps off the grid's border
 
   int blocks(unsigned axis) const { return (samples.cells[axis] + B - 1) / B; }
+  BlockWindow<B> window_of(int x, int y, int z) const {
+    BlockWindow<B> local;
+    const std::array<int, 3> block{x, y, z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      local.first[axis] = window.first[axis] - block[axis] * B;
+      local.last[axis] = window.last[axis] - block[axis] * B;
+    }
+    return local;
+  }
   // Half a step wider than its samples, so that normals can be taken at its border.
   Box box(int x, int y, int z, int size) const {
     const auto last = [&](unsigned axis, int block) { return std::min(block * B, samples.cells[axis]); };
@@ -56,7 +103,7 @@ std::vector<BlockNode<Block>> mixed_quarters(const BlockGrid<B>& grid, int z, co
     for (int x = node.x; x < std::min(node.x + node.size, grid.blocks(0)); x += half) {
       BlockNode<Block> quarter{x, y, half, node.field.restricted_to(grid.box(x, y, z, half))};
       const BlockContent content = quarter.field.content();
-      if (content == BlockContent::kInside) check_inside_node(grid, z, quarter);
+      if (content == BlockContent::kInside && grid.closed) check_inside_node(grid, z, quarter);
       if (content == BlockContent::kMixed) quarters.push_back(std::move(quarter));
     }
   }

@@ -58,9 +58,10 @@ class BlockLayer {
     blocks.emplace_back(x, y);
   }
 
+  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   // Null where the layer has no active block, or no block at all.
   const LayerBlock<B>* find(int x, int y) const {
-    if (x < 0 || y < 0 || x >= width_ || y >= height_) return nullptr;
+    if (!contains(x, y)) return nullptr;
     const std::int32_t i = index_[slot(x, y)];
     return i == kAbsent ? nullptr : &blocks[static_cast<std::size_t>(i)];
   }

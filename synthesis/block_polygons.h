@@ -51,45 +51,32 @@ void for_each_bit(SignRow bits, const Visit& visit) {
   for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
 }
 
-// Which of a block's vertices and triangles are wanted: all, or the vertices in its top plane alone, which
-// the layer above shares.
-enum class BlockPart { kAll, kTopPlane };
-
-// The edges along axis whose vertices are wanted of row z.
+// The edges along axis of row y, z that hold vertices of the mesh.
 template <int B>
-SignRow wanted_edges(const CellRow<B>& cells, int z, int axis, BlockPart part) {
-  const bool wanted = part == BlockPart::kAll || (z == B && axis != 2);
-  return wanted ? cells.crossed_edges(axis) : SignRow{0};
+SignRow meshed_edges(const CellRow<B>& cells, const BlockWindow<B>& window, int y, int z, int axis) {
+  return cells.crossed_edges(axis) & window.edges(y, z, axis);
 }
 
+// Returns how many of the block's vertices lie in the window's sides.
 template <int B>
-void count_rows(LayerBlock<B>& block, BlockPart part) {
+std::int64_t count_rows(const BlockWindow<B>& window, LayerBlock<B>& block) {
   const MarchingCubesTable& table = marching_cubes_table();
+  std::int64_t cut_vertices = 0;
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
       const CellRow<B> cells(block, y, z);
       std::uint32_t vertices = 0, triangles = 0;
-      if (part == BlockPart::kAll) {
-        for_each_bit(cells.crossed_cells(), [&](int x) { triangles += table[cells.cell_signs(x)].count; });
-      }
+      for_each_bit(cells.crossed_cells() & window.cells(y, z),
+                   [&](int x) { triangles += table[cells.cell_signs(x)].count; });
       for (int axis = 0; axis < 3; ++axis) {
-        vertices += static_cast<std::uint32_t>(std::popcount(wanted_edges(cells, z, axis, part)));
+        vertices += static_cast<std::uint32_t>(std::popcount(meshed_edges(cells, window, y, z, axis)));
+        cut_vertices += std::popcount(cells.crossed_edges(axis) & window.cut_edges(y, z, axis));
       }
       block.vertex_rows[LayerBlock<B>::row(y, z)] = vertices;
       block.triangle_rows[LayerBlock<B>::row(y, z)] = triangles;
     }
   }
-}
-
-// Vertices in a block's top plane.
-template <int B>
-std::int64_t count_top_plane(const LayerBlock<B>& block) {
-  std::int64_t vertices = 0;
-  for (int y = 1; y <= B; ++y) {
-    const CellRow<B> cells(block, y, B);
-    for (int axis = 0; axis < 2; ++axis) vertices += std::popcount(cells.crossed_edges(axis));
-  }
-  return vertices;
+  return cut_vertices;
 }
 
 struct LayerCounts {
@@ -189,14 +176,15 @@ void take_normals(const Block& field, float h, VertexBatch& batch) {
   }
 }
 
-// Calls visit(x, y, z, axis) for the wanted crossed edges that a block owns, in the order of their vertices.
+// Calls visit(x, y, z, axis) for the meshed edges that a block owns, in the order of their vertices.
 template <int B, typename Visit>
-void for_each_crossed_edge(const LayerBlock<B>& block, BlockPart part, const Visit& visit) {
+void for_each_meshed_edge(const LayerBlock<B>& block, const BlockWindow<B>& window, const Visit& visit) {
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
       const CellRow<B> cells(block, y, z);
-      const std::array<SignRow, 3> edges = {wanted_edges(cells, z, 0, part), wanted_edges(cells, z, 1, part),
-                                            wanted_edges(cells, z, 2, part)};
+      const std::array<SignRow, 3> edges = {meshed_edges(cells, window, y, z, 0),
+                                            meshed_edges(cells, window, y, z, 1),
+                                            meshed_edges(cells, window, y, z, 2)};
       for_each_bit(edges[0] | edges[1] | edges[2], [&](int x) {
         for (int axis = 0; axis < 3; ++axis) {
           if ((edges[static_cast<unsigned>(axis)] >> x & 1u) != 0) visit(x, y, z, axis);
@@ -210,7 +198,7 @@ void for_each_crossed_edge(const LayerBlock<B>& block, BlockPart part, const Vis
 // Returns the number of evaluations.
 template <int B, FieldBlockLike Block>
 std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& field,
-                           std::uint32_t layer_first, BlockPart part, LayerBlock<B>& block,
+                           std::uint32_t layer_first, LayerBlock<B>& block,
                            std::span<MeshVertex> layer_vertices) {
   // A quarter of a step: near enough for O(h^2), far enough for differences of floats.
   const auto h = static_cast<float>(0.25 * grid.samples.step);
@@ -223,7 +211,8 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
     batch.size = 0;
   };
   std::array<std::uint32_t, B* B> next = block.vertex_rows;
-  for_each_crossed_edge(block, part, [&](int x, int y, int z, int axis) {
+  const BlockWindow<B> window = grid.window_of(block.x, block.y, layer_z);
+  for_each_meshed_edge(block, window, [&](int x, int y, int z, int axis) {
     const std::uint32_t slot = next[LayerBlock<B>::row(y, z)]++;
     block.vertices[3 * LayerBlock<B>::sample(x, y, z) + static_cast<unsigned>(axis)] = layer_first + slot;
     batch.vertices[batch.size] = place_vertex(grid, layer_z, block, x, y, z, axis);
@@ -236,11 +225,12 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
 
 // Copies the numbers of the vertices on edges that lower neighbours own.
 template <int B>
-void borrow_vertices(const Owners<B>& owners, LayerBlock<B>& block) {
+void borrow_vertices(const Owners<B>& owners, const BlockWindow<B>& window, LayerBlock<B>& block) {
   for_each_borrowed<B>([&](int x, int y, int z, unsigned owner) {
     for (int axis = 0; axis < 3; ++axis) {
       const int lx = x - (axis == 0), ly = y - (axis == 1), lz = z - (axis == 2);
       if (lx < 0 || ly < 0 || lz < 0) continue;  // no cell of this block has the edge
+      if ((window.edges(y, z, axis) >> x & 1u) == 0) continue;
       const SignRow upper = block.signs[LayerBlock<B>::sign_row(y, z)] >> x;
       const SignRow lower = block.signs[LayerBlock<B>::sign_row(ly, lz)] >> lx;
       if (((upper ^ lower) & 1u) == 0) continue;
@@ -268,14 +258,15 @@ constexpr std::array<std::ptrdiff_t, 12> edge_offsets() {
 }
 
 template <int B>
-void make_triangles(const LayerBlock<B>& block, std::span<Triangle> layer_triangles) {
+void make_triangles(const LayerBlock<B>& block, const BlockWindow<B>& window,
+                    std::span<Triangle> layer_triangles) {
   static constexpr std::array<std::ptrdiff_t, 12> kOffsets = edge_offsets<B>();
   const MarchingCubesTable& table = marching_cubes_table();
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
       const CellRow<B> cells(block, y, z);
       std::size_t next = block.triangle_rows[LayerBlock<B>::row(y, z)];
-      for_each_bit(cells.crossed_cells(), [&](int x) {
+      for_each_bit(cells.crossed_cells() & window.cells(y, z), [&](int x) {
         const CellTriangles& cell = table[cells.cell_signs(x)];
         const std::uint32_t* numbers = block.vertices.data() + 3 * LayerBlock<B>::sample(x, y, z);
         for (unsigned t = 0; t < cell.count; ++t) {

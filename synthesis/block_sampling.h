@@ -105,7 +105,7 @@ std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block
       block.values[LayerBlock<B>::sample(x, y, z)] = batch.value(next++);
     }
   });
-  if (is_at_border(grid, layer_z, block)) check_border(grid, layer_z, block);
+  if (grid.closed && is_at_border(grid, layer_z, block)) check_border(grid, layer_z, block);
   return static_cast<std::int64_t>(batch.size());
 }
 
@@ -144,15 +144,17 @@ void take_signs(LayerBlock<B>& block) {
   }
 }
 
-// Whether the surface crosses side 0 .. 5 (axis, then low or high) of a block.
+// Whether the surface crosses side 0 .. 5 (axis, then low or high) of a block. `last` holds the last local
+// samples that lie in the grid.
 template <int B>
-bool is_side_crossed(const LayerBlock<B>& block, int side) {
-  const int axis = side / 2;
+bool is_side_crossed(const LayerBlock<B>& block, int side, const std::array<int, 3>& last) {
+  const auto axis = static_cast<std::size_t>(side / 2);
   const int fixed = side % 2 != 0 ? B : 0;
-  const SignRow mask = axis == 0 ? SignRow{1} << fixed : LayerBlock<B>::kWholeRow;
+  if (fixed > last[axis]) return false;
+  const SignRow mask = axis == 0 ? SignRow{1} << fixed : (SignRow{2} << last[0]) - 1;
   SignRow any = 0, all = mask;
-  for (int v = 0; v <= B; ++v) {
-    for (int u = 0; u <= (axis == 0 ? B : 0); ++u) {
+  for (int v = 0; v <= last[axis == 2 ? 1 : 2]; ++v) {
+    for (int u = 0; u <= (axis == 0 ? last[1] : 0); ++u) {
       const SignRow row = block.signs[axis == 0   ? LayerBlock<B>::sign_row(u, v)
                                       : axis == 1 ? LayerBlock<B>::sign_row(fixed, v)
                                                   : LayerBlock<B>::sign_row(v, fixed)];
@@ -163,23 +165,26 @@ bool is_side_crossed(const LayerBlock<B>& block, int side) {
   return any != 0 && all != mask;
 }
 
-struct Sides {
-  int first, last;
-};
-inline constexpr Sides kAllSides = {0, 5}, kAllButTop = {0, 4}, kTop = {5, 5};
-
 // Throws WorkError when the surface crosses a side of a block whose neighbour there was proved free of
-// surface: the mesh would have a hole. Above's blocks are known by now.
+// surface: the mesh would have a hole. The layers below and above are null where they are not made.
 template <int B>
-void check_open_sides(const BlockLayer<B>& layer, const BlockLayer<B>& below, const BlockLayer<B>& above,
-                      Sides sides = kAllSides) {
+void check_open_sides(const BlockGrid<B>& grid, int layer_z, const BlockLayer<B>& layer,
+                      const BlockLayer<B>* below, const BlockLayer<B>* above) {
+  const auto last = [&](unsigned axis, int block) {
+    return std::min(B, grid.samples.cells[axis] - block * B);
+  };
+  const auto lacks_block = [](const BlockLayer<B>* there, int x, int y) {
+    return there != nullptr && there->contains(x, y) && there->find(x, y) == nullptr;
+  };
   parallel_for(0, static_cast<std::int64_t>(layer.blocks.size()), [&](std::int64_t i) {
     const LayerBlock<B>& block = layer.blocks[static_cast<std::size_t>(i)];
-    const std::array<const LayerBlock<B>*, 6> neighbours = {
-        layer.find(block.x - 1, block.y), layer.find(block.x + 1, block.y), layer.find(block.x, block.y - 1),
-        layer.find(block.x, block.y + 1), below.find(block.x, block.y),     above.find(block.x, block.y)};
-    for (int side = sides.first; side <= sides.last; ++side) {
-      if (neighbours[static_cast<unsigned>(side)] == nullptr && is_side_crossed(block, side)) {
+    const int x = block.x, y = block.y;
+    const std::array<bool, 6> lacking = {lacks_block(&layer, x - 1, y), lacks_block(&layer, x + 1, y),
+                                         lacks_block(&layer, x, y - 1), lacks_block(&layer, x, y + 1),
+                                         lacks_block(below, x, y),      lacks_block(above, x, y)};
+    const std::array<int, 3> last_samples = {last(0, x), last(1, y), last(2, layer_z)};
+    for (int side = 0; side < 6; ++side) {
+      if (lacking[static_cast<unsigned>(side)] && is_side_crossed(block, side, last_samples)) {
         throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
       }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "numerics/hash_random.h"
 #include "numerics/scalar_math.h"
@@ -76,15 +77,36 @@ void FractalNoise::evaluate_chunk(int n, const float* x, const float* y, const f
   place(n, x, domain_min_.x, domain_max_.x, scale_.x, bias_.x, qx.data());
   place(n, y, domain_min_.y, domain_max_.y, scale_.y, bias_.y, qy.data());
   place(n, z, domain_min_.z, domain_max_.z, scale_.z, bias_.z, qz.data());
+  add_octaves(octaves_, n, qx.data(), qy.data(), qz.data(), height);
+}
+
+void FractalNoise::evaluate_near(const Vec3d& origin, int n, const float* x, const float* y, const float* z,
+                                 float* height) const {
+  constexpr float kEverywhere = std::numeric_limits<float>::max();
+  const Vec3d scale{scale_.x, scale_.y, scale_.z}, bias{bias_.x, bias_.y, bias_.z};
+  const Vec3d q{scale.x * origin.x + bias.x, scale.y * origin.y + bias.y, scale.z * origin.z + bias.z};
+  const std::vector<NoiseOctave> octaves = octaves_near(noise_, octaves_, q);
+  for (int begin = 0; begin < n; begin += kChunk) {
+    const int size = std::min(kChunk, n - begin);
+    Chunk qx, qy, qz;
+    place(size, x + begin, -kEverywhere, kEverywhere, scale_.x, 0.0f, qx.data());
+    place(size, y + begin, -kEverywhere, kEverywhere, scale_.y, 0.0f, qy.data());
+    place(size, z + begin, -kEverywhere, kEverywhere, scale_.z, 0.0f, qz.data());
+    add_octaves(octaves, size, qx.data(), qy.data(), qz.data(), height + begin);
+  }
+}
+
+void FractalNoise::add_octaves(const std::vector<NoiseOctave>& octaves, int n, const float* x, const float* y,
+                               const float* z, float* height) const {
   std::fill(height, height + n, 0.0f);
   if (gradient_modulation_ == 0.0f) {
-    for (const NoiseOctave& o : octaves_) add_octave(noise_, o, n, qx.data(), qy.data(), qz.data(), height);
+    for (const NoiseOctave& o : octaves) add_octave(noise_, o, n, x, y, z, height);
     return;
   }
   Chunk dx{}, dy{}, dz{};
-  for (const NoiseOctave& o : octaves_) {
-    add_modulated_octave(noise_, o, gradient_modulation_, n, qx.data(), qy.data(), qz.data(), dx.data(),
-                         dy.data(), dz.data(), height);
+  for (const NoiseOctave& o : octaves) {
+    add_modulated_octave(noise_, o, gradient_modulation_, n, x, y, z, dx.data(), dy.data(), dz.data(),
+                         height);
   }
 }
 

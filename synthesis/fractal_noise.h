@@ -21,6 +21,12 @@ class FractalNoise {
   // height[i] = n(p_i), length units.
   void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
 
+  // The same at the points origin + (x, y, z) to the digits of x, y and z: cells of the lattices are counted
+  // from the origin's. Expects points within the domain, and a layer that has this form: one without a warp.
+  void evaluate_near(const Vec3d& origin, int n, const float* x, const float* y, const float* z,
+                     float* height) const;
+  bool has_near_form() const { return !warp_; }
+
   // |n(p)| never exceeds this.
   double height_bound() const { return height_bound_; }
 
@@ -29,6 +35,9 @@ class FractalNoise {
 
  private:
   void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;
+  // The sum over octaves at coordinates of the noise.
+  void add_octaves(const std::vector<NoiseOctave>& octaves, int n, const float* x, const float* y,
+                   const float* z, float* height) const;
 
   Noise noise_;
   std::optional<CoordinateWarp> warp_;

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "synthesis/field_model_internal.h"
+#include "synthesis/metaballs_near.h"
 
 namespace astrolith {
 static_assert(BlockField<ImplicitField>);
@@ -26,6 +29,8 @@ struct Batch {
   std::array<float, kBatch> px, py, pz;  // projected on the bare surface
   bool is_projected = false;             // for the first layer that asks
   const SpotImpulses* spots = nullptr;   // of the layer, that reach the points; null where none were drawn
+  std::array<float, kBatch> lx, ly, lz;  // of points near an origin: their local coordinates
+  const Vec3d* origin = nullptr;         // null: there is none
 };
 
 // First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
@@ -65,7 +70,11 @@ void project(const FieldModel& model, Batch& b) {
 }
 
 void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+  if (b.origin != nullptr && noise.has_near_form()) {
+    noise.evaluate_near(*b.origin, b.n, b.lx.data(), b.ly.data(), b.lz.data(), b.height.data());
+  } else {
+    noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+  }
 }
 
 void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
@@ -78,7 +87,7 @@ void layer_heights(const FieldModel&, const SparseNoise& noise, Batch& b) {
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
   project(model, b);
-  noise.evaluate(model.metaballs, b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+  noise.evaluate(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
 }
 
 template <typename Noise>
@@ -96,11 +105,18 @@ struct PointArrays {
   const float *x, *y, *z;
 };
 
+// The same points in coordinates local to an origin.
+struct NearPoints {
+  Vec3d origin;
+  PointArrays local;
+};
+
 // Keeps the points whose F the heights may bring into the band and those that boulders reach, and where the
 // metaballs were evaluated for them; returns how many, and where they were.
 template <typename Reach>
 int keep_near_surface(int n, float reach, const Reach& boulders_reach, const PointArrays& at,
-                      const PointArrays& metaballs_at, Batch& b, std::array<int, kBatch>& origin) {
+                      const PointArrays& metaballs_at, const NearPoints* near, Batch& b,
+                      std::array<int, kBatch>& origin) {
   int kept = 0;
   for (int i = 0; i < n; ++i) {
     const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(kept);
@@ -108,10 +124,63 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
     b.x[to] = at.x[i], b.y[to] = at.y[i], b.z[to] = at.z[i];
     b.mx[to] = metaballs_at.x[i], b.my[to] = metaballs_at.y[i], b.mz[to] = metaballs_at.z[i];
     for (auto* a : {&b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
+    if (near != nullptr) {
+      b.lx[to] = near->local.x[i], b.ly[to] = near->local.y[i], b.lz[to] = near->local.z[i];
+    }
     origin[to] = i;
     ++kept;
   }
   return kept;
+}
+
+// The most by which the layers from number `first` on may change an elevation; craters replace it.
+float change_bound(const FieldModel& model, std::size_t first) {
+  double bound = 0.0;
+  for (std::size_t i = first; i < model.layers.size(); ++i) {
+    if (std::holds_alternative<CraterRelief>(model.layers[i])) return std::numeric_limits<float>::infinity();
+    std::visit(
+        [&](const auto& l) {
+          if constexpr (!std::is_same_v<decltype(l), const CraterRelief&>) bound += l.height_bound();
+        },
+        model.layers[i]);
+  }
+  return static_cast<float>(bound * (1.0 + 1e-5));
+}
+
+// Keeps the points whose F, as far as it is known, may still come within `reach` of 0, and those that
+// boulders reach: fine layers are the dearest, and coarse ones have told by then where the surface is not.
+// The others' F is left as known.
+template <typename Reach>
+void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::array<int, kBatch>& origin,
+                    float* value) {
+  int kept = 0;
+  for (std::size_t from = 0; from < static_cast<std::size_t>(b.n); ++from) {
+    if (std::fabs(b.distance[from] + b.elevation[from]) > reach && !boulders_reach(origin[from])) {
+      value[origin[from]] += b.elevation[from];
+      continue;
+    }
+    const auto to = static_cast<std::size_t>(kept++);
+    if (to == from) continue;
+    for (auto* a : {&b.x, &b.y, &b.z, &b.mx, &b.my, &b.mz, &b.lx, &b.ly, &b.lz, &b.distance, &b.gx, &b.gy,
+                    &b.gz, &b.elevation, &b.px, &b.py, &b.pz}) {
+      (*a)[to] = (*a)[from];
+    }
+    origin[to] = origin[from];
+  }
+  b.n = kept;
+}
+
+// s and grad L of the body near an origin; `metaballs_at` holds the points `at` displaced by the body's warp.
+void evaluate_body_near(const PreparedMetaballs& metaballs, int n, const NearPoints& near,
+                        const PointArrays& at, const PointArrays& metaballs_at, Batch& b) {
+  const auto displaced = [n](const float* local, const float* from, const float* to, float* out) {
+    for (int i = 0; i < n; ++i) out[i] = local[i] + (to[i] - from[i]);
+  };
+  displaced(near.local.x, at.x, metaballs_at.x, b.lx.data());
+  displaced(near.local.y, at.y, metaballs_at.y, b.ly.data());
+  displaced(near.local.z, at.z, metaballs_at.z, b.lz.data());
+  evaluate_metaballs_near(metaballs, near.origin, n, b.lx.data(), b.ly.data(), b.lz.data(), b.distance.data(),
+                          b.gx.data(), b.gy.data(), b.gz.data());
 }
 
 // What reaches the points of a block.
@@ -122,16 +191,19 @@ struct BlockParts {
 
 // Adds what the layers make of the surface, near to it and wherever boulders reach.
 void add_elevations(const FieldModel& model, const BlockParts& parts, const PointArrays& at,
-                    const PointArrays& metaballs_at, float band, Batch& b, float* value) {
+                    const PointArrays& metaballs_at, const NearPoints* near, float band, Batch& b,
+                    float* value) {
   std::array<int, kBatch> origin;
   const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
   const auto boulders_reach = [&](int i) {
     return model.boulders.reach(parts.boulders, at.x[i], at.y[i], at.z[i]);
   };
-  b.n = keep_near_surface(b.n, reach, boulders_reach, at, metaballs_at, b, origin);
+  b.n = keep_near_surface(b.n, reach, boulders_reach, at, metaballs_at, near, b, origin);
   if (b.n == 0) return;
   std::fill_n(b.elevation.data(), b.n, 0.0f);
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    keep_undecided(change_bound(model, i) + band, boulders_reach, b, origin, value);
+    if (b.n == 0) return;
     b.spots = spots_of(parts.spots, i);
     std::visit([&](const auto& l) { add_layer(model, l, b); }, model.layers[i]);
   }
@@ -139,7 +211,8 @@ void add_elevations(const FieldModel& model, const BlockParts& parts, const Poin
 }
 
 void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
-                    int n, const PointArrays& at, float band, float* value) {
+                    int n, const PointArrays& at, float band, float* value,
+                    const NearPoints* near = nullptr) {
   Batch b;
   b.n = n;
   PointArrays metaballs_at = at;
@@ -148,11 +221,16 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
     metaballs_at = {b.mx.data(), b.my.data(), b.mz.data()};
     band *= static_cast<float>(model.warp->stretch());  // s changes so much faster than a distance does
   }
-  evaluate_metaballs(metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(),
-                     b.gx.data(), b.gy.data(), b.gz.data());
+  if (near != nullptr) {
+    b.origin = &near->origin;
+    evaluate_body_near(metaballs, n, *near, at, metaballs_at, b);
+  } else {
+    evaluate_metaballs(metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(),
+                       b.gx.data(), b.gy.data(), b.gz.data());
+  }
   std::copy_n(b.distance.data(), n, value);
   const BlockParts parts{spots, model.boulders.near(n, at.x, at.y, at.z)};
-  if (!model.layers.empty()) add_elevations(model, parts, at, metaballs_at, band, b, value);
+  if (!model.layers.empty()) add_elevations(model, parts, at, metaballs_at, near, band, b, value);
   model.boulders.join(parts.boulders, n, at.x, at.y, at.z, value);
 }
 
@@ -177,6 +255,22 @@ void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, st
   for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
     const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
     evaluate_batch(*model_, metaballs_, spots_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
+  }
+}
+
+void FieldBlock::evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
+                               std::span<const float> z, std::span<float> value, float band) const {
+  std::array<float, kBatch> bx, by, bz;
+  for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
+    const std::size_t n = std::min<std::size_t>(kBatch, value.size() - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      bx[i] = static_cast<float>(origin.x + double{x[begin + i]});
+      by[i] = static_cast<float>(origin.y + double{y[begin + i]});
+      bz[i] = static_cast<float>(origin.z + double{z[begin + i]});
+    }
+    const NearPoints near{origin, {&x[begin], &y[begin], &z[begin]}};
+    evaluate_batch(*model_, metaballs_, spots_, static_cast<int>(n), {bx.data(), by.data(), bz.data()}, band,
+                   &value[begin], &near);
   }
 }
 

@@ -44,10 +44,16 @@ class FieldBlock {
   // For a box within this one. Cheaper than gathering from the field, and the same block.
   FieldBlock restricted_to(const Box& child) const;
 
-  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size. Where the bare body's
-  // |s| > height_bound() + band, no height can bring F into the band (length units) and value[i] = s.
+  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size. Layers are added in
+  // their order until those to come cannot bring F into the band (length units): there value[i] lacks them.
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band = kExactEverywhere) const;
+
+  // The same at the points origin + (x, y, z), which are within the box but for the rounding of its
+  // coordinates to float. The body and fractal layers are evaluated to the digits of x, y and z, the other
+  // layers to those of float coordinates in the body's frame.
+  void evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
+                     std::span<const float> z, std::span<float> value, float band) const;
 
   const Box& box() const { return box_; }
 

@@ -43,7 +43,8 @@ class LayerStack {
   void add(const SparseLayer& layer) { push(SparseNoise(layer, recipe_.seed, index_, domain_)); }
   void add(const GaborLayer& layer) {
     // A layer of colour alone has no height.
-    if (layer.height_rms > 0.0) push(GaborSurfaceNoise(layer, recipe_.seed, index_, supports_));
+    if (layer.height_rms > 0.0)
+      push(GaborSurfaceNoise(layer, recipe_.seed, index_, model_.metaballs, supports_));
   }
   void add(const CraterLayer& layer) {
     std::vector<PlacedCrater> craters = place_craters(layer, bare(), recipe_.seed, index_, place_of(index_));

@@ -5,25 +5,16 @@
 #include <cmath>
 
 #include "numerics/errors.h"
-#include "synthesis/mesher.h"
 
 namespace astrolith {
 namespace {
 
 constexpr int kCoarseCells = 48;
 constexpr int kFineCells = 96;
-// Cells along the longest side that are not border.
+// Cells along the longest side that are not border, as a whole mesh has them.
 double body_cells(int resolution) { return resolution - 2; }
 
-class Discard : public MeshSink {
- public:
-  void add_vertices(std::span<const MeshVertex>) override {}
-  void add_triangles(std::span<const Triangle>) override {}
-};
-
-MeshPrediction measure(const ImplicitField& field, int resolution, const Progress& progress) {
-  Discard sink;
-  const MeshStatistics s = mesh_field(field, field.bounds(), resolution, sink, progress);
+MeshPrediction measured(const MeshStatistics& s, int resolution) {
   return {resolution, double(s.triangles), double(s.evaluations), double(s.working_bytes)};
 }
 
@@ -37,10 +28,10 @@ double continued(double a, double b, double step, double ratio) {
 
 }  // namespace
 
-MeshGrowth::MeshGrowth(const ImplicitField& field, const Progress& progress)
-    : coarse_(measure(field, kCoarseCells, progress)) {
+MeshGrowth::MeshGrowth(const std::function<MeshStatistics(int resolution)>& mesh)
+    : coarse_(measured(mesh(kCoarseCells), kCoarseCells)) {
   const auto start = std::chrono::steady_clock::now();
-  fine_ = measure(field, kFineCells, progress);
+  fine_ = measured(mesh(kFineCells), kFineCells);
   fine_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

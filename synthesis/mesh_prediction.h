@@ -1,5 +1,5 @@
-// How large a mesh will be, before it is made: the field is meshed at two low resolutions, nothing is kept,
-// and the counts are continued as powers of the resolution N:
+// How large a mesh will be, before it is made: it is made at two low resolutions, nothing is kept, and the
+// counts are continued as powers of the resolution N:
 //
 //   triangles ~ N^p, evaluations ~ N^q   with p and q from the two counts: 2 where the surface is smooth
 //   working memory ~ N                   the mesher holds single layers of blocks
@@ -8,9 +8,9 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 
-#include "numerics/progress.h"
-#include "synthesis/implicit_field.h"
+#include "synthesis/mesher.h"
 
 namespace astrolith {
 
@@ -23,8 +23,8 @@ struct MeshPrediction {
 
 class MeshGrowth {
  public:
-  // Costs as much as two small meshes. Throws what mesh_field throws.
-  explicit MeshGrowth(const ImplicitField& field, const Progress& progress = {});
+  // Makes two small meshes. Throws what `mesh` throws.
+  explicit MeshGrowth(const std::function<MeshStatistics(int resolution)>& mesh);
 
   MeshPrediction at(int resolution) const;
   // The resolution with the number of triangles nearest to the one asked for; the largest there is when even

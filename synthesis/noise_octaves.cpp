@@ -52,15 +52,19 @@ float noise_at(Noise noise, float x, float y, float z, std::uint32_t seed) {
 }
 
 // One loop a noise: a choice inside it would keep it from vectorising.
-#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
-  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x, \
-                                  const float* __restrict y, const float* __restrict z,        \
-                                  float* __restrict sum) {                                     \
-    const float f = octave.frequency, amplitude = octave.amplitude;                            \
-    const std::uint32_t seed = octave.seed;                                                    \
-    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                          \
-      sum[i] = math::fma(amplitude, noise(f * x[i], f * y[i], f * z[i], seed), sum[i]);        \
-    }                                                                                          \
+#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                           \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x,       \
+                                  const float* __restrict y, const float* __restrict z,              \
+                                  float* __restrict sum) {                                           \
+    const float f = octave.frequency, amplitude = octave.amplitude;                                  \
+    const std::uint32_t seed = octave.seed;                                                          \
+    const Vec3f at = octave.offset;                                                                  \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                \
+      sum[i] = math::fma(                                                                            \
+          amplitude,                                                                                 \
+          noise(math::fma(f, x[i], at.x), math::fma(f, y[i], at.y), math::fma(f, z[i], at.z), seed), \
+          sum[i]);                                                                                   \
+    }                                                                                                \
   }
 ASTROLITH_OCTAVE_LOOP(add_simplex, simplex_noise)
 ASTROLITH_OCTAVE_LOOP(add_perlin, perlin_noise)
@@ -76,7 +80,9 @@ ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
                                   float* __restrict dz, float* __restrict sum) {                         \
     const NoiseOctave o = octave;                                                                        \
     _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                    \
-      const NoiseSample s = noise(o.frequency * x[i], o.frequency * y[i], o.frequency * z[i], o.seed);   \
+      const NoiseSample s =                                                                              \
+          noise(math::fma(o.frequency, x[i], o.offset.x), math::fma(o.frequency, y[i], o.offset.y),      \
+                math::fma(o.frequency, z[i], o.offset.z), o.seed);                                       \
       dx[i] = math::fma(o.slope, s.gradient.x, dx[i]);                                                   \
       dy[i] = math::fma(o.slope, s.gradient.y, dy[i]);                                                   \
       dz[i] = math::fma(o.slope, s.gradient.z, dz[i]);                                                   \
@@ -111,12 +117,33 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
   for (int o = 0; o < count; ++o) {
     if (!(frequency * farthest <= kLargestLatticeCoordinate)) break;
     const std::uint32_t stream = seeds.first_stream + static_cast<std::uint32_t>(o) * seeds.stream_step;
-    octaves.push_back({static_cast<float>(frequency), static_cast<float>(amplitude),
+    octaves.push_back({static_cast<float>(frequency),
+                       static_cast<float>(amplitude),
                        static_cast<float>(std::min(slope, kSteepestOctave)),
-                       hash_append(seeds.seed, stream)});
+                       hash_append(seeds.seed, stream),
+                       {}});
     frequency *= lacunarity;
     amplitude *= gain;
     slope *= lacunarity * gain;
+  }
+  return octaves;
+}
+
+std::vector<NoiseOctave> octaves_near(Noise noise, std::vector<NoiseOctave> octaves, const Vec3d& q) {
+  for (NoiseOctave& o : octaves) {
+    const Vec3d at = static_cast<double>(o.frequency) * q;
+    Vec3d cell{std::floor(at.x), std::floor(at.y), std::floor(at.z)};
+    Vec3d lattice = cell;
+    if (noise == Noise::kSimplex) {
+      // Its lattice is skewed by a third of the coordinates' sum, which is to stay whole.
+      cell.z -= std::fmod(std::fmod(cell.x + cell.y + cell.z, 3.0) + 3.0, 3.0);
+      const double skew = (cell.x + cell.y + cell.z) / 3.0;
+      lattice = cell + Vec3d{skew, skew, skew};
+    }
+    const Vec3d rest = at - cell;
+    o.offset = {static_cast<float>(rest.x), static_cast<float>(rest.y), static_cast<float>(rest.z)};
+    o.seed = lattice_point(static_cast<float>(lattice.x), static_cast<float>(lattice.y),
+                           static_cast<float>(lattice.z), o.seed);
   }
   return octaves;
 }

@@ -18,6 +18,7 @@ struct NoiseOctave {
   float amplitude;  // length units
   float slope;      // of this octave over the first's, were both noises equally steep
   std::uint32_t seed;
+  Vec3f offset{};  // of the coordinates, cells
 };
 
 // The octaves of a sum whose argument has no coordinate above `farthest`; those so fine that float
@@ -29,12 +30,16 @@ struct OctaveSeeds {
 std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int count, double gain,
                                       double lacunarity, const OctaveSeeds& seeds, double farthest);
 
+// The same sum for arguments that are counted from `q`: octaves whose lattices are, by their seeds, a whole
+// number of cells away.
+std::vector<NoiseOctave> octaves_near(Noise noise, std::vector<NoiseOctave> octaves, const Vec3d& q);
+
 // Of |sum|.
 double sum_bound(const std::vector<NoiseOctave>& octaves);
 // Of |grad sum|, per unit of the argument.
 double slope_bound(Noise noise, const std::vector<NoiseOctave>& octaves);
 
-// sum[i] += amplitude noise(frequency p_i).
+// sum[i] += amplitude noise(frequency p_i + offset).
 void add_octave(Noise noise, const NoiseOctave& octave, int n, const float* x, const float* y, const float* z,
                 float* sum);
 

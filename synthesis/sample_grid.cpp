@@ -19,6 +19,13 @@ void check_positions_are_distinct(const Box& bounds, double step) {
   }
 }
 
+void check_resolution(int resolution) {
+  if (resolution < kMinResolution || resolution > kMaxResolution) {
+    throw InputError("resolution: " + std::to_string(resolution) + " is outside " +
+                     std::to_string(kMinResolution) + " .. " + std::to_string(kMaxResolution));
+  }
+}
+
 }  // namespace
 
 Box SampleGrid::box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const {
@@ -33,10 +40,7 @@ Box SampleGrid::box(const std::array<int, 3>& first, const std::array<int, 3>& l
 }
 
 SampleGrid make_sample_grid(const Box& bounds, int resolution) {
-  if (resolution < kMinResolution || resolution > kMaxResolution) {
-    throw InputError("resolution: " + std::to_string(resolution) + " is outside " +
-                     std::to_string(kMinResolution) + " .. " + std::to_string(kMaxResolution));
-  }
+  check_resolution(resolution);
   const Vec3d extent = bounds.extent();
   const double longest = std::max({extent.x, extent.y, extent.z});
   if (bounds.empty() || !(longest > 0.0) || !std::isfinite(longest)) {
@@ -53,5 +57,18 @@ SampleGrid make_sample_grid(const Box& bounds, int resolution) {
                 0.5 * grid.step * Vec3d{double(grid.cells[0]), double(grid.cells[1]), double(grid.cells[2])};
   return grid;
 }
+
+SampleGrid make_patch_grid(double size, int resolution) {
+  check_resolution(resolution);
+  if (!(size > 0.0) || !std::isfinite(size)) throw InputError("patch: its size must be a length above 0");
+  SampleGrid grid;
+  grid.step = size / resolution;
+  grid.cells = {resolution + 1, resolution + 1, resolution + 1};
+  const double first = -0.5 * size - grid.step;
+  grid.origin = {first, first, first};
+  return grid;
+}
+
+CellWindow window_of_patch(const SampleGrid& grid) { return {{2, 2, 2}, grid.cells}; }
 
 }  // namespace astrolith

@@ -21,6 +21,12 @@ struct SampleGrid {
   Box box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const;
 };
 
+// The cells that are meshed, by the samples of their upper corners: first .. last along each axis. Around a
+// window that does not fill its grid the mesh is open.
+struct CellWindow {
+  std::array<int, 3> first, last;
+};
+
 inline constexpr int kMinResolution = 4;
 inline constexpr int kMaxResolution = 8192;
 
@@ -29,5 +35,11 @@ inline constexpr int kMaxResolution = 8192;
 // finite, the resolution is outside [kMinResolution, kMaxResolution], or neighbouring positions could not be
 // told apart in 32-bit floats.
 SampleGrid make_sample_grid(const Box& bounds, int resolution);
+
+// A cube of `size` around the origin, `resolution` cells along its sides, with one more cell below each,
+// which owns the samples in the cube's lower sides; window_of_patch leaves it out. Throws InputError when the
+// size is not positive and finite or the resolution is out of range.
+SampleGrid make_patch_grid(double size, int resolution);
+CellWindow window_of_patch(const SampleGrid& grid);
 
 }  // namespace astrolith

@@ -184,6 +184,106 @@ TEST_F(Synth, TilesMakeTheWholeMesh) {
   }
 }
 
+TEST_F(Synth, PatchesAreOpenAndStateTheirOrigin) {
+  const std::string summary = (folder_ / "s.json").string();
+  const std::string bytes =
+      synthesise("patch.ply", {"--patch", "-1.05", "0", "0.125", "0.3", "--summary", summary});
+  EXPECT_NE(bytes.find("comment origin, to be added to all coordinates: -1.05 0 0.125\n"), std::string::npos);
+  const auto figures = nlohmann::json::parse(text_of(summary));
+  EXPECT_FALSE(figures.at("closed").get<bool>());
+  EXPECT_EQ(figures.at("origin"), nlohmann::json({-1.05, 0.0, 0.125}));
+  EXPECT_NEAR(figures.at("cell").get<double>(), 0.3 / 32, 1e-12);
+  const Box box = read_mesh(folder_ / "patch.ply").bounds();
+  EXPECT_LE(box.max.x, 0.1501);
+  EXPECT_GE(box.min.y, -0.1501);
+  EXPECT_GT(box.extent().y, 0.299);
+  EXPECT_NE(synthesise("patch.glb", {"--patch", "-1.05", "0", "0.125", "0.3"}).find("\"origin\":[-1.05,0"),
+            std::string::npos);
+}
+
+TEST_F(Synth, PatchesWithoutSurfaceSayWhereThereIsSome) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  const auto refuse = [&](std::vector<std::string> patch, const std::string& culprit) {
+    std::vector<std::string> arguments{recipe,         "-o", (folder_ / "x.ply").string(),
+                                       "--resolution", "16", "--patch"};
+    arguments.insert(arguments.end(), patch.begin(), patch.end());
+    expect_refusal(folder_, kSynth, arguments, culprit);
+  };
+  refuse({"-1.5", "0", "0", "0.1"}, "there is some near -1.");
+  refuse({"-1", "0", "0", "0"}, "--patch: has no centre or no side");
+  refuse({"-1", "0", "0"}, "--patch");
+  refuse({"-1", "0", "0", "0.1", "--tile", "1/2"}, "--tile");
+}
+
+TEST_F(Synth, PredictionWritesNothing) {
+  const std::string summary = (folder_ / "s.json").string();
+  const testing::Outcome outcome =
+      run_program(kSynth, {folder_.write("r.json", kTwoSpheres), "-o", (folder_ / "x.ply").string(),
+                           "--resolution", "64", "--predict", "--summary", summary});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("triangles"), std::string::npos);
+  EXPECT_EQ(folder_.files(), (std::set<std::string>{"r.json", "s.json"}));
+  const auto predicted = nlohmann::json::parse(text_of(summary)).at("predicted");
+  for (const char* figure : {"triangles", "file_bytes", "peak_bytes", "seconds"}) {
+    EXPECT_GT(predicted.at(figure).get<double>(), 0.0) << figure;
+  }
+}
+
+TEST_F(Synth, SmallPiecesAreLeftOut) {
+  const std::string crumbs = replaced(kTwoSpheres, "[1, 0, 0, 0.75]", "[1, 0, 0, 0.75], [2.6, 0, 0, 0.15]");
+  const std::string recipe = folder_.write("crumbs.json", crumbs), summary = (folder_ / "s.json").string();
+  const auto components = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{
+        recipe, "-o", (folder_ / "x.ply").string(), "--resolution", "64", "--summary", summary};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(kSynth, arguments).status, 0);
+    return nlohmann::json::parse(text_of(summary)).at("components").get<int>();
+  };
+  EXPECT_EQ(components({}), 2);
+  EXPECT_EQ(components({"--min-component", "0.01"}), 1);
+  EXPECT_EQ(analyze_topology(read_mesh(folder_ / "x.ply")).components, 1);
+}
+
+TEST_F(Synth, ErosionSettlesAndIsOfTheWhole) {
+  const std::string eroded =
+      replaced(kTwoSpheres, "\"layers\"", "\"erosion\": {\"talus_angle\": 30}, \"layers\"");
+  const std::string recipe = folder_.write("eroded.json", eroded), summary = (folder_ / "s.json").string();
+  const auto bytes = [&](const std::string& threads) {
+    const std::string file = (folder_ / "x.ply").string();
+    const testing::Outcome outcome = run_program(
+        kSynth, {recipe, "-o", file, "--resolution", "40", "--threads", threads, "--summary", summary});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(file);
+  };
+  EXPECT_TRUE(bytes("1") == bytes("4"));
+  const auto figures = nlohmann::json::parse(text_of(summary));
+  EXPECT_TRUE(figures.at("closed").get<bool>());
+  EXPECT_TRUE(figures.at("erosion").at("settled").get<bool>());
+  EXPECT_LE(figures.at("erosion").at("steepest_after").get<double>(), 30.0);
+  EXPECT_GT(figures.at("erosion").at("steepest_before").get<double>(), 31.0);
+  expect_refusal(folder_, kSynth,
+                 {recipe, "-o", (folder_ / "x.ply").string(), "--resolution", "40", "--tile", "1/2"},
+                 "--tile");
+}
+
+TEST_F(Synth, PicturesCanBeTakenFromElsewhere) {
+  const auto picture = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{"--preview", (folder_ / "p.png").string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    synthesise("out.ply", arguments);
+    return text_of(folder_ / "p.png");
+  };
+  const std::string one = picture({"--view", "1", "0", "0"});
+  EXPECT_FALSE(one == picture({"--view", "1", "0", "0", "--view", "0", "0", "1"}));
+  EXPECT_FALSE(one == picture({"--view", "1", "0", "0", "--sun", "0", "0", "1"}));
+  std::filesystem::remove(folder_ / "p.png");
+  const std::string recipe = folder_.write("r.json", kTwoSpheres), out = (folder_ / "x.ply").string();
+  expect_refusal(folder_, kSynth, {recipe, "-o", out, "--sun", "1", "0", "0"}, "--preview");
+  expect_refusal(folder_, kSynth,
+                 {recipe, "-o", out, "--preview", (folder_ / "p.png").string(), "--sun", "0", "0", "0"},
+                 "--sun");
+}
+
 TEST_F(Synth, NoOutputIsTheInputOrAnotherOutput) {
   const std::string recipe = folder_.write("r.json", kTwoSpheres);
   const std::string output = (folder_ / "out.ply").string();

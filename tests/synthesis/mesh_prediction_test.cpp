@@ -1,5 +1,6 @@
 #include "synthesis/mesh_prediction.h"
 
+#include "synthesis/implicit_field.h"
 #include "synthesis/mesher.h"
 #include "tests/synthesis/bodies.h"
 
@@ -11,9 +12,13 @@ MeshStatistics statistics_at(const ImplicitField& field, int resolution) {
   return mesh_field(field, field.bounds(), resolution, sink);
 }
 
+MeshGrowth growth_of(const ImplicitField& field) {
+  return MeshGrowth([&](int resolution) { return statistics_at(field, resolution); });
+}
+
 TEST(MeshPrediction, MeetsTheMeshOfASmoothBody) {
   const ImplicitField field(testing::potato_recipe(20, 3));
-  const MeshGrowth growth(field);
+  const MeshGrowth growth = growth_of(field);
   for (const int resolution : {150, 300}) {
     const MeshStatistics made = statistics_at(field, resolution);
     const MeshPrediction predicted = growth.at(resolution);
@@ -25,7 +30,7 @@ TEST(MeshPrediction, MeetsTheMeshOfASmoothBody) {
 
 TEST(MeshPrediction, ChoosesTheResolutionOfATriangleCount) {
   const ImplicitField field(testing::potato_recipe(20, 3));
-  const MeshGrowth growth(field);
+  const MeshGrowth growth = growth_of(field);
   const int resolution = growth.resolution_for(200e3);
   EXPECT_NEAR(static_cast<double>(statistics_at(field, resolution).triangles), 200e3, 6e3);
   EXPECT_EQ(growth.resolution_for(1e15), kMaxResolution);
@@ -35,7 +40,7 @@ TEST(MeshPrediction, ChoosesTheResolutionOfATriangleCount) {
 TEST(MeshPrediction, NothingToContinueIsAnError) {
   Recipe recipe = testing::potato_recipe(1, 3);
   recipe.body->iso_value = 1e6;  // no point of the body reaches it
-  EXPECT_ANY_THROW(MeshGrowth(ImplicitField(recipe)).resolution_for(1000.0));
+  EXPECT_ANY_THROW(growth_of(ImplicitField(recipe)).resolution_for(1000.0));
 }
 
 }  // namespace

@@ -179,6 +179,48 @@ TEST(Mesher, TilesThatThereAreNotAreInputErrors) {
   }
 }
 
+// Where local coordinates have their origin: on a surface with caves, and a sample of the grids below.
+const Vec3d kPatchCenter{0.5, -0.25, 0.75};
+constexpr double kPatchSize = 0.625;  // 20 cells of 1/32
+constexpr int kPatchCells = 20;
+
+template <int B = kBlockCells>
+TriangleMesh gyroid_patch() {
+  const AnalyticField local([](const Vec3d& p) { return gyroid_sphere(p + kPatchCenter); }, kGyroidLipschitz);
+  MeshCollector collector;
+  ManifoldCheck check;
+  const MeshStatistics statistics = mesh_patch<B>(local, kPatchSize, kPatchCells, collector);
+  mesh_patch<B>(local, kPatchSize, kPatchCells, check);
+  const ManifoldReport report = check.finish();
+  EXPECT_GT(statistics.cut_vertices, 0);
+  EXPECT_EQ(report.open_vertices, statistics.cut_vertices);
+  EXPECT_EQ(report.non_manifold_vertices, 0);
+  return std::move(collector.mesh);
+}
+
+TEST(Mesher, PatchesAreOpenOnlyWhereCutWhateverTheBlocks) {
+  const TriangleMesh reference = gyroid_patch();
+  EXPECT_TRUE(same_bytes(reference, gyroid_patch<4>()));
+  EXPECT_TRUE(same_bytes(reference, gyroid_patch<16>()));
+  const Box box = reference.bounds();
+  EXPECT_GE(box.min.x, -0.5 * kPatchSize);
+  EXPECT_LE(box.max.z, 0.5 * kPatchSize);
+}
+
+TEST(Mesher, PatchesHaveTheVerticesOfTheWholeMeshOnItsGrid) {
+  const TriangleMesh whole = mesh_of(field_of(gyroid_sphere, kGyroidLipschitz), cube(1.0), 66);
+  const TriangleMesh patch = gyroid_patch();
+  std::vector<Vec3d> inside;
+  for (const Vec3d& p : whole.vertices) {
+    const Vec3d local = p - kPatchCenter;
+    const double farthest = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
+    if (farthest <= 0.5 * kPatchSize) inside.push_back(local);
+  }
+  ASSERT_EQ(inside.size(), patch.vertices.size());
+  // Both are in rows of the grid.
+  for (std::size_t i = 0; i < inside.size(); ++i) ASSERT_LT(norm(inside[i] - patch.vertices[i]), 1e-6);
+}
+
 TEST(Mesher, FlatBoxesUseFewerCellsAlongShortSides) {
   const Box flat{{-1.0, -0.95, -0.25}, {1.0, 0.95, 0.25}};
   const AnalyticField disk([](const Vec3d& p) { return 0.2 - norm(Vec3d{p.x / 4, p.y / 4, p.z}); }, 1.0);
@@ -259,6 +301,8 @@ TEST(Mesher, BadResolutionsAndBoundsAreInputErrors) {
   EXPECT_THROW(mesh_field(field, cube(0.0), 32, sink), InputError);
   const Box far_away{{1e6, 1e6, 1e6}, {1e6 + 1, 1e6 + 1, 1e6 + 1}};
   EXPECT_THROW(mesh_field(field, far_away, 256, sink), InputError);
+  EXPECT_THROW(mesh_patch(field, 0.0, 64, sink), InputError);
+  EXPECT_THROW(mesh_patch(field, 1.0, 3, sink), InputError);
 }
 
 TEST(Mesher, StopsWhenAsked) {

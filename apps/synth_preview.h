@@ -1,0 +1,29 @@
+// The picture of synth's mesh.
+#pragma once
+
+#include <filesystem>
+#include <tuple>
+#include <vector>
+
+#include "apps/program.h"
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+using Direction = std::tuple<double, double, double>;
+
+struct PreviewRequest {
+  std::filesystem::path file;    // empty = none
+  std::vector<Direction> views;  // from the body to the viewer; empty = the standard ones
+  Direction sun{-0.75, 0.45, 0.55};
+};
+
+void declare_preview_options(Program& program, PreviewRequest& request);
+
+// Throws InputError when the picture that was asked for cannot be written, or was not asked for and
+// described.
+void check_preview(const Program& program, const PreviewRequest& request);
+
+void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);
+
+}  // namespace astrolith

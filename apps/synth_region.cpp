@@ -1,0 +1,72 @@
+#include "apps/synth_region.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "numerics/errors.h"
+#include "recipe/recipe.h"
+#include "synthesis/patch_field.h"
+
+namespace astrolith {
+namespace {
+
+MeshTile parse_tile(const std::string& text) {
+  if (text.empty()) return {};
+  MeshTile tile;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%c", &tile.index, &tile.count, &rest) != 2 || tile.index < 1 ||
+      tile.index > tile.count) {
+    throw InputError("--tile: \"" + text + "\" is no tile; write I/N with I from 1 to N, such as 3/16");
+  }
+  --tile.index;
+  return tile;
+}
+
+// A point of the surface near p, by Newton's steps along the gradient; p itself where they lead nowhere.
+Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
+  Vec3d q = p;
+  for (int step = 0; step < 64; ++step) {
+    const Vec3d gradient = field.gradient(q);
+    const double slope = squared_norm(gradient);
+    if (!(slope > 0.0)) return p;
+    q -= field.value(q) / slope * gradient;
+    if (!std::isfinite(squared_norm(q))) return p;
+  }
+  return q;
+}
+
+}  // namespace
+
+Region parse_region(const std::string& tile, const std::vector<double>& patch) {
+  Region region{parse_tile(tile), !patch.empty(), {}, 0.0};
+  if (!region.is_patch) return region;
+  region.center = {patch[0], patch[1], patch[2]};
+  region.size = patch[3];
+  if (!(region.size >= kMinPositive) || !(region.size <= kMaxNumber) ||
+      !(squared_norm(region.center) <= kMaxNumber * kMaxNumber)) {
+    throw InputError(
+        "--patch: has no centre or no side above 0; write X Y Z SIDE in the recipe's length unit");
+  }
+  return region;
+}
+
+MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
+                           const Progress& progress) {
+  return region.is_patch
+             ? mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress)
+             : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
+}
+
+void fail_empty(const ImplicitField& field, const Region& region, const std::filesystem::path& file) {
+  if (!region.is_patch) {
+    throw WorkError(file.string() + ": the recipe's surface is empty at this resolution" +
+                    (region.is_cut() ? " in this tile" : "; raise it"));
+  }
+  const Vec3d p = nearby_surface_point(field, region.center);
+  throw InputError(fmt::format(
+      "--patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
+}
+
+}  // namespace astrolith
