@@ -149,8 +149,8 @@ inline constexpr double kMaxSpotCells = 4.0;
 // Thermal erosion of the finished surface (thesis eq. 5.12): slopes steeper than the talus angle, measured
 // against the gravity of a body of uniform density that may turn about +z, slide down until they are not.
 struct Erosion {
-  double talus_angle = 35.0;  // degrees, [1, 85]
-  int iterations = 1000;  // sweeps over the surface at most, 1 .. 100000; it ends before when all has settled
+  double talus_angle = 35.0;     // degrees, [1, 85]
+  int iterations = 10000;        // sweeps over the surface at most, 1 .. 100000; ends when all has settled
   double density = 2000.0;       // kg / m^3, [1, 30000]
   double rotation_period = 0.0;  // hours, 0 (at rest) or [0.01, 1e6]
 };

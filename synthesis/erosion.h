@@ -6,10 +6,10 @@
 // stays what it is while neighbours move along theirs. An edge from v down to u that is too high by e, at its
 // horizontal length l,
 //   e = (h_v - h_u) - l tan T > 0,
-// lets the volume c e / (1/a_v + 1/a_u) pass from v to u, with c = 1: the edge is then at the talus angle.
-// Edges take their turns in the mesh's order until none is too high. The surface stays a graph over the
-// horizontal wherever it was one, so that it cannot run into itself; vertices under overhangs and on walls,
-// of which a face leans over or stands within 5 degrees of the vertical, are rock and stay.
+// lets the volume c e / (1/a_v + 1/a_u) pass from v to u (with c = 1 the edge would then be at the talus
+// angle). Edges take their turns in the mesh's order until none is too high. The surface stays a graph over
+// the horizontal wherever it was one, so that it cannot run into itself; vertices under overhangs and on
+// walls, of which a face leans over or stands within 5 degrees of the vertical, are rock and stay.
 #pragma once
 
 #include <cstdint>
