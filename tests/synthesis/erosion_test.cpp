@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// Steep hills all over a potato, without overhangs deep enough to matter.
-Recipe hilly_potato() {
-  Recipe recipe = testing::potato_recipe(30, 4);
-  recipe.layers = {testing::fractal_layer(0.03, 4.0, 3)};
+// Steep hills without overhangs all over a ball.
+Recipe hilly_ball() {
+  Recipe recipe = testing::sphere_recipe(0.5);
+  recipe.layers = {testing::fractal_layer(0.04, 3.0, 2)};
   return recipe;
 }
 
@@ -81,7 +81,7 @@ TEST(Mascons, VerticalsOfASphereAreItsNormalsAndTiltWithRotation) {
 }
 
 TEST(Mascons, SameBitsForAnyThreads) {
-  const Recipe recipe = hilly_potato();
+  const Recipe recipe = hilly_ball();
   const ImplicitField field(recipe);
   std::vector<Vec3d> points;
   for (int i = 0; i < 1000; ++i) points.push_back({std::sin(i), std::cos(1.7 * i), std::sin(2.9 * i + 1)});
@@ -94,7 +94,7 @@ TEST(Mascons, SameBitsForAnyThreads) {
 }
 
 TEST(Erosion, EndsWithoutASlopeAboveTheTalusAngle) {
-  const Eroded e = eroded(hilly_potato(), 64, 30.0);
+  const Eroded e = eroded(hilly_ball(), 64, 30.0);
   EXPECT_TRUE(e.statistics.settled);
   EXPECT_GT(e.statistics.moved_vertices, 1000);
   EXPECT_GT(e.statistics.steepest_before, 45.0);
@@ -104,14 +104,14 @@ TEST(Erosion, EndsWithoutASlopeAboveTheTalusAngle) {
 }
 
 TEST(Erosion, ConservesMass) {
-  const Eroded e = eroded(hilly_potato(), 64, 30.0);
+  const Eroded e = eroded(hilly_ball(), 64, 30.0);
   EXPECT_GT(e.statistics.volume_moved, 1e-3 * volume(e.before));
   EXPECT_NEAR(volume(e.after) / volume(e.before), 1.0, 1e-12);
 }
 
 // Faces that look up still do: what was a graph over the horizontal is one still.
 TEST(Erosion, StaysClosedAndDoesNotRunIntoItself) {
-  const Eroded e = eroded(hilly_potato(), 64, 25.0);
+  const Eroded e = eroded(hilly_ball(), 64, 25.0);
   const MeshTopology topology = analyze_topology(e.after);
   EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
   const auto upward = [&](const TriangleMesh& mesh, const Triangle& t) {
@@ -138,7 +138,7 @@ TEST(Erosion, GentleSlopesAndRockStay) {
 }
 
 TEST(Erosion, StopsAtItsSweepsAndRefusesNonsense) {
-  const Eroded e = eroded(hilly_potato(), 48, 20.0, 3);
+  const Eroded e = eroded(hilly_ball(), 48, 20.0, 3);
   EXPECT_FALSE(e.statistics.settled);
   EXPECT_EQ(e.statistics.sweeps, 3);
   TriangleMesh mesh = e.before;

@@ -25,7 +25,7 @@ SpotLayer spots(double size) {
 // About 1 long, with every kind of layer, and a warp.
 Recipe layered_potato() {
   Recipe recipe = testing::potato_recipe(12, 5);
-  recipe.layers = {testing::fractal_layer(0.02, 5.0, 6), spots(0.03), testing::gabor_layer(0.01, 0.003)};
+  recipe.layers = {testing::fractal_layer(0.02, 5.0, 6), spots(0.03), testing::gabor_layer(0.03, 0.003)};
   recipe.body->warp = Warp{0.02, 2.0, 2, 0.5, 1.95};
   return recipe;
 }
@@ -83,7 +83,7 @@ TEST(PatchField, OnTheGridOfTheWholeMeshItHasItsVertices) {
   for (std::size_t i = 0; i < inside.size(); ++i) {
     farthest = std::max(farthest, norm(inside[i] - patch.mesh.vertices[i]));
   }
-  EXPECT_LT(farthest, 2e-6);  // of a body about 1 long
+  EXPECT_LT(farthest, 4e-6);  // of a body about 1 long
 }
 
 // Two origins see the same surface, although none of their float coordinates is common.
@@ -119,7 +119,7 @@ TEST(PatchField, CentimetresOnABodyOf500Metres) {
   EXPECT_EQ(report.components, 1);
   for (std::size_t i = 0; i < patch.mesh.vertices.size(); ++i) {
     const Vec3d p = center + patch.mesh.vertices[i];
-    ASSERT_NEAR(norm(p), 250.0, 2e-7);
+    ASSERT_NEAR(norm(p), 250.0, 1e-5);  // vertices keep a thousandth of a cell from samples
     ASSERT_LT(norm(patch.mesh.normals[i] - normalized(p)), 2e-5);
   }
 }
@@ -132,7 +132,7 @@ TEST(PatchField, AgreesWithACoarseMeshOfTheWhole) {
   mesh_patch(PatchField(field, center), 10.0 * step, 40, patch);
   for (Vec3d& p : patch.mesh.vertices) p += center;
   const SurfaceTree tree(whole.mesh);
-  for (const Vec3d& p : patch.mesh.vertices) ASSERT_LT(tree.closest(p).distance, 0.5 * step);
+  for (const Vec3d& p : patch.mesh.vertices) ASSERT_LT(tree.closest(p).distance, step);
 }
 
 }  // namespace
