@@ -10,6 +10,7 @@
 #include "apps/fit_checkpoint.h"
 #include "apps/fit_shape_details.h"
 #include "apps/known_bodies.h"
+#include "apps/option_checks.h"
 #include "apps/program.h"
 #include "estimation/shape/fit_report.h"
 #include "estimation/shape/packing_table.h"
