@@ -1,7 +1,8 @@
-#include "apps/fit_shape_details.h"
+#include "apps/option_checks.h"
 
 #include <fmt/format.h>
 
+#include "apps/option_checks.h"
 #include "apps/variations.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
@@ -59,14 +60,14 @@ void declare_micro_options(Program& program, DetailArguments& arguments) {
   program.app
       .add_option("--mm-per-px", arguments.mm_per_px,
                   "size of a pixel of the photo on the rock, with --micro")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->default_str("")
       ->needs(micro);
   program.app
       .add_option("--micro-height", arguments.micro_height_mm,
                   "root mean square height of the first layer of --micro in mm, the others in proportion: a "
                   "photo does not say it")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->default_str("")
       ->needs(micro);
 }
