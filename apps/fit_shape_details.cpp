@@ -1,4 +1,4 @@
-#include "apps/option_checks.h"
+#include "apps/fit_shape_details.h"
 
 #include <fmt/format.h>
 
