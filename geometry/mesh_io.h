@@ -34,7 +34,7 @@ struct MeshFileInfo {
   std::string frame;        // "body-fixed, +z spin pole, +x prime meridian"
   std::string comment;      // anything else, one line
   // In that frame, of coordinates that are relative to a point of it; absent: the frame's own.
-  std::optional<Vec3d> origin;
+  std::optional<Vec3d> origin = std::nullopt;
 };
 
 // Writes .ply (binary little endian, float32), .obj (text, exact), .stl (binary, float32) or .glb (glTF 2.0,
