@@ -209,7 +209,7 @@ TEST_F(Synth, PatchesWithoutSurfaceSayWhereThereIsSome) {
     arguments.insert(arguments.end(), patch.begin(), patch.end());
     expect_refusal(folder_, kSynth, arguments, culprit);
   };
-  refuse({"-1.5", "0", "0", "0.1"}, "there is some near -1.");
+  refuse({"-1.5", "0", "0", "0.1"}, "there is some near -");
   refuse({"-1", "0", "0", "0"}, "--patch: has no centre or no side");
   refuse({"-1", "0", "0"}, "--patch");
   refuse({"-1", "0", "0", "0.1", "--tile", "1/2"}, "--tile");
