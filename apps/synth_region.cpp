@@ -54,6 +54,9 @@ Region parse_region(const std::string& tile, const std::vector<double>& patch) {
 
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress) {
+  if (region.is_patch && !field.has_near_form()) {
+    throw InputError("--patch: body.operations: a combined body has no patches; leave out --patch");
+  }
   return region.is_patch
              ? mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress)
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);

@@ -138,4 +138,25 @@ ASTROLITH_HD inline double cos_turns(double x) {
   return std::cos(6.283185307179586476925 * (x - std::round(x)));
 }
 
+// atan2(y, x) / (2 pi), in [-1/2, 1/2], for finite arguments; 0 where both are 0. Absolute error < 5e-8.
+ASTROLITH_HD inline float atan2_turns(float y, float x) {
+  const float a = abs(x), b = abs(y);
+  const float t = min(a, b) / max(max(a, b), 1e-37f);
+  const float z = t * t;
+  float p = -2.77518663e-4f;  // Chebyshev: atan(t) / (2 pi t) over t^2 in [0, 1]
+  p = fma(p, z, 1.69988933e-3f);
+  p = fma(p, z, -4.88884344e-3f);
+  p = fma(p, z, 9.14560934e-3f);
+  p = fma(p, z, -1.33245536e-2f);
+  p = fma(p, z, 1.74118674e-2f);
+  p = fma(p, z, -2.26979995e-2f);
+  p = fma(p, z, 3.18281726e-2f);
+  p = fma(p, z, -5.30515665e-2f);
+  p = fma(p, z, 1.59154943e-1f);
+  const float octant = p * t;
+  const float quadrant = b > a ? 0.25f - octant : octant;
+  const float half = x < 0.0f ? 0.5f - quadrant : quadrant;
+  return y < 0.0f ? -half : half;
+}
+
 }  // namespace astrolith::math

@@ -75,20 +75,99 @@ void read_warp(ObjectReader& parent, std::optional<Warp>& out) {
   object.finish();
 }
 
+void read_kernel(ObjectReader& object, Kernel& out) {
+  std::string word(kernel_word(out));
+  object.allow("kernel", word);
+  for (const Kernel kernel : kKernels) {
+    if (word == kernel_word(kernel)) {
+      out = kernel;
+      return;
+    }
+  }
+  object.at("kernel").fail(
+      "must be \"gaussian\", \"metaball\", \"soft_object\", \"wyvill\" or \"cauchy\", is " +
+      quote_text(word));
+}
+
+void read_groups(const json& value, const Place& place, std::vector<SphereGroup>& out) {
+  ObjectReader object(value, place);  // any names
+  for (const auto& [name, spheres] : value.items()) {
+    out.push_back({name, {}});
+    read_elements(spheres, place.field(name), out.back().spheres, read_value);
+  }
+  std::sort(out.begin(), out.end(),
+            [](const SphereGroup& a, const SphereGroup& b) { return a.name < b.name; });
+}
+
+// The fields that every kind of layer has.
+void read_use(ObjectReader& layer, LayerUse& out) {
+  if (const json* value = layer.find("locality")) {
+    const Place place = layer.at("locality");
+    ObjectReader object(*value, place);
+    Locality& locality = out.locality.emplace();
+    object.require("group", locality.group);
+    object.require("width", locality.width);
+    object.finish();
+  }
+}
+
+void read_body(const json& value, const Place& place, MetaballBody& out);
+
+void read_operator(ObjectReader& object, Operator& out) {
+  std::string word;
+  object.require("type", word);
+  for (const Operator op : kOperators) {
+    if (word == operator_word(op)) {
+      out = op;
+      return;
+    }
+  }
+  object.at("type").fail(
+      "must be \"union\", \"intersection\", \"difference\", \"blend\" or \"clean_union\", is " +
+      quote_text(word));
+}
+
+void read_operation(const json& value, const Place& place, BodyOperation& out) {
+  ObjectReader object(value, place);
+  read_operator(object, out.kind);
+  if (out.kind == Operator::kBlend) {
+    object.require("width", out.width);
+    object.allow("exponent", out.exponent);
+  } else if (out.kind == Operator::kCleanUnion) {
+    object.allow("bulge", out.bulge);
+    if (const json* row = object.find("reach")) {
+      expect_row(*row, object.at("reach"), {"a1", "a2"});
+      read_value((*row)[0], object.at("reach").field("a1"), out.reach[0]);
+      read_value((*row)[1], object.at("reach").field("a2"), out.reach[1]);
+    }
+  } else {
+    object.allow("alpha", out.alpha);
+  }
+  if (const json* body = object.find("body")) {
+    read_body(*body, object.at("body"), out.operand.emplace_back());
+  } else {
+    object.note_missing("body");
+  }
+  object.finish();
+}
+
 void read_body(const json& value, const Place& place, MetaballBody& out) {
   ObjectReader object(value, place);
-  std::string type = "metaballs", kernel = "gaussian";
+  std::string type = "metaballs";
   object.require("type", type);
   expect_word(type, object.at("type"), "metaballs");
-  object.allow("kernel", kernel);
-  expect_word(kernel, object.at("kernel"), "gaussian");
+  read_kernel(object, out.kernel);
   object.allow("a", out.a);
   object.allow("b", out.b);
   object.allow("blend_exponent", out.blend_exponent);
   object.allow("iso_value", out.iso_value);
   object.allow("cutoff_radii", out.cutoff_radii);
   require_elements(object, "spheres", out.spheres, read_sphere);
+  if (const json* groups = object.find("groups")) read_groups(*groups, object.at("groups"), out.groups);
   read_warp(object, out.warp);
+  if (const json* list = object.find("operations")) {
+    read_elements(*list, object.at("operations"), out.operations, read_operation);
+  }
   object.finish();
 }
 
@@ -178,8 +257,47 @@ void read_fields(ObjectReader& object, SparseLayer& out) {
   object.allow("merged", out.merged);
 }
 
+void read_fields(ObjectReader& object, RandomPhaseLayer& out) {
+  object.allow("name", out.name);
+  object.allow("height_rms", out.height_rms);
+  object.allow("cell_size", out.cell_size);
+  object.allow("waves", out.waves);
+  object.allow("frequency_min", out.frequency_min);
+  object.allow("frequency_max", out.frequency_max);
+  object.allow("exponent", out.exponent);
+  object.allow("direction", out.direction);
+  object.allow("spread", out.spread);
+  object.allow("randomness", out.randomness);
+}
+
+void read_profile(ObjectReader& object, PhasorProfile& out) {
+  std::string word(profile_word(out));
+  object.allow("profile", word);
+  for (const PhasorProfile profile : kPhasorProfiles) {
+    if (word == profile_word(profile)) {
+      out = profile;
+      return;
+    }
+  }
+  object.at("profile").fail("must be \"sine\", \"triangle\", \"sawtooth\" or \"square\", is " +
+                            quote_text(word));
+}
+
+void read_fields(ObjectReader& object, PhasorLayer& out) {
+  object.allow("name", out.name);
+  object.allow("amplitude", out.amplitude);
+  object.allow("frequency", out.frequency);
+  object.allow("cell_size", out.cell_size);
+  object.allow("impulses_per_cell", out.impulses_per_cell);
+  object.allow("direction", out.direction);
+  object.allow("spread", out.spread);
+  read_profile(object, out.profile);
+}
+
 constexpr const char* kLayerTypes =
-    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"sparse\", \"craters\", \"boulders\" and \"gabor\"";
+    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"sparse\", \"craters\", \"boulders\", "
+    "\"random_phase\", "
+    "\"phasor\" and \"gabor\"";
 
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
@@ -205,11 +323,16 @@ void read_layer(const json& value, const Place& place, Layer& out) {
     read_fields(object, out.emplace<CraterLayer>());
   } else if (type == "boulders") {
     read_fields(object, out.emplace<BoulderLayer>());
+  } else if (type == "random_phase") {
+    read_fields(object, out.emplace<RandomPhaseLayer>());
+  } else if (type == "phasor") {
+    read_fields(object, out.emplace<PhasorLayer>());
   } else if (type == "gabor") {
     read_fields(object, out.emplace<GaborLayer>());
   } else {
     object.at("type").fail(std::string("must be one of ") + kLayerTypes + ", is " + quote_text(type));
   }
+  if (LayerUse* use = use_of(out)) read_use(object, *use);
   object.finish();
 }
 

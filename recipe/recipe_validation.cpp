@@ -34,6 +34,77 @@ void check(const Warp& warp, const Place& place) {
   check_octaves(warp.frequency, warp.octaves, warp.gain, warp.lacunarity, place);
 }
 
+// What a kernel that ends continuously asks for.
+void check_profile(const MetaballBody& body, const Place& place) {
+  const std::string kernel = quote_text(kernel_word(body.kernel));
+  if (body.blend_exponent < 1.0) {
+    place.field("blend_exponent")
+        .fail(fmt::format("must be at least 1 for kernel {}, is {}; raise it", kernel, body.blend_exponent));
+  }
+  if (body.a > kMaxTension) {
+    place.field("a").fail(
+        fmt::format("must be at most {} for kernel {}, is {}; lower it", kMaxTension, kernel, body.a));
+  }
+  if (const double least = least_tension(body) + 1e-5; !(body.a >= least)) {
+    place.field("a").fail(
+        fmt::format("must be at least {:.6g} for kernel {} and these b and cutoff_radii, is {}; raise a, b "
+                    "or cutoff_radii",
+                    least, kernel, body.a));
+  }
+}
+
+void check_groups(const MetaballBody& body, const Place& place) {
+  for (std::size_t g = 0; g < body.groups.size(); ++g) {
+    const SphereGroup& group = body.groups[g];
+    const Place at = place.field(group.name);
+    if (g > 0 && !(body.groups[g - 1].name < group.name)) {
+      place.fail("must be sorted by name, each name once: " + quote_text(group.name) + " is not");
+    }
+    if (group.spheres.empty()) at.fail("must hold at least one sphere's place in the list of spheres");
+    std::vector<bool> seen(body.spheres.size());
+    for (std::size_t i = 0; i < group.spheres.size(); ++i) {
+      expect_integer(group.spheres[i], at.element(i), 0, static_cast<int>(body.spheres.size()) - 1);
+      const auto sphere = static_cast<std::size_t>(group.spheres[i]);
+      if (seen[sphere]) at.element(i).fail(fmt::format("sphere {} is there already; leave it out", sphere));
+      seen[sphere] = true;
+    }
+  }
+}
+
+// How many there are in all, and how deep.
+struct OperationCount {
+  int operations = 0, depth = 0;
+};
+OperationCount count_operations(const MetaballBody& body) {
+  OperationCount all;
+  for (const BodyOperation& operation : body.operations) {
+    ++all.operations;
+    for (const MetaballBody& operand : operation.operand) {
+      const OperationCount inner = count_operations(operand);
+      all.operations += inner.operations;
+      all.depth = std::max(all.depth, inner.depth + 1);
+    }
+  }
+  return all;
+}
+
+void check(const MetaballBody& body, const Place& place);
+
+void check(const BodyOperation& operation, const Place& place) {
+  expect_range(operation.alpha, place.field("alpha"), -0.9, 1.0);
+  expect_range(operation.exponent, place.field("exponent"), 1.0, 64.0);
+  expect_positive(operation.width, place.field("width"));
+  expect_number(operation.bulge, place.field("bulge"));
+  expect_positive(operation.reach[0], place.field("reach").field("a1"));
+  expect_positive(operation.reach[1], place.field("reach").field("a2"));
+  if (operation.operand.size() != 1) place.field("body").fail("must be one body");
+  const MetaballBody& operand = operation.operand.front();
+  if (!operand.groups.empty()) {
+    place.field("body").field("groups").fail("only the first body's spheres can be grouped; leave them out");
+  }
+  check(operand, place.field("body"));
+}
+
 void check(const MetaballBody& body, const Place& place) {
   expect_positive(body.a, place.field("a"));
   expect_positive(body.b, place.field("b"));
@@ -45,10 +116,30 @@ void check(const MetaballBody& body, const Place& place) {
   }
   expect_positive(body.iso_value, place.field("iso_value"));
   expect_above_one(body.cutoff_radii, place.field("cutoff_radii"), kMaxNumber);
+  if (body.kernel != Kernel::kGaussian) check_profile(body, place);
   const Place spheres = place.field("spheres");
   if (body.spheres.empty()) spheres.fail("must hold at least one [x, y, z, radius]");
   for (std::size_t i = 0; i < body.spheres.size(); ++i) check(body.spheres[i], spheres.element(i));
+  check_groups(body, place.field("groups"));
   if (body.warp) check(*body.warp, place.field("warp"));
+  const Place operations = place.field("operations");
+  const OperationCount count = count_operations(body);
+  if (count.operations > kMaxOperations || count.depth > kMaxOperationDepth) {
+    operations.fail(fmt::format("must be at most {} in all and {} deep, are {} and {}; leave some out",
+                                kMaxOperations, kMaxOperationDepth, count.operations, count.depth));
+  }
+  for (std::size_t i = 0; i < body.operations.size(); ++i) check(body.operations[i], operations.element(i));
+}
+
+// A recipe without a body is laid on one later.
+void check(const LayerUse& use, const std::optional<MetaballBody>& body, const Place& place) {
+  if (!use.locality) return;
+  const Place locality = place.field("locality");
+  expect_positive(use.locality->width, locality.field("width"));
+  if (body && body->find_group(use.locality->group) == nullptr) {
+    locality.field("group").fail("the body has no group " + quote_text(use.locality->group) +
+                                 "; name one of body.groups");
+  }
 }
 
 void check(const FractalLayer& layer, const Place& place) {
@@ -153,6 +244,42 @@ void check(const Erosion& erosion, const Place& place) {
   }
 }
 
+void expect_direction(const Vec3d& v, const Place& place) {
+  expect_vector(v, place);
+  if (norm(v) < kMinPositive) place.fail("must not be zero; give the direction");
+}
+
+void check(const RandomPhaseLayer& layer, const Place& place) {
+  expect_not_negative(layer.height_rms, place.field("height_rms"));
+  expect_positive(layer.cell_size, place.field("cell_size"));
+  expect_integer(layer.waves, place.field("waves"), 1, 128);
+  expect_positive(layer.frequency_min, place.field("frequency_min"));
+  expect_positive(layer.frequency_max, place.field("frequency_max"));
+  if (layer.frequency_max < layer.frequency_min) {
+    place.field("frequency_max")
+        .fail(fmt::format("must be at least frequency_min, {}, is {}; swap them", layer.frequency_min,
+                          layer.frequency_max));
+  }
+  expect_range(layer.exponent, place.field("exponent"), -8.0, 8.0);
+  expect_direction(layer.direction, place.field("direction"));
+  expect_range(layer.spread, place.field("spread"), 0.0, 1.0);
+  expect_range(layer.randomness, place.field("randomness"), 0.0, 1.0);
+}
+
+void check(const PhasorLayer& layer, const Place& place) {
+  expect_number(layer.amplitude, place.field("amplitude"));
+  expect_positive(layer.frequency, place.field("frequency"));
+  expect_positive(layer.cell_size, place.field("cell_size"));
+  if (!(layer.frequency * layer.cell_size <= kMaxPhasorTurns)) {
+    place.field("cell_size")
+        .fail(fmt::format("frequency * cell_size must be at most {:g}, is {:.3g}; use smaller cells",
+                          kMaxPhasorTurns, layer.frequency * layer.cell_size));
+  }
+  expect_integer(layer.impulses_per_cell, place.field("impulses_per_cell"), 1, 16);
+  expect_direction(layer.direction, place.field("direction"));
+  expect_range(layer.spread, place.field("spread"), 0.0, 1.0);
+}
+
 template <typename T>
 void expect_sorted(const std::vector<std::pair<std::string, T>>& named, const Place& place) {
   for (std::size_t i = 1; i < named.size(); ++i) {
@@ -200,7 +327,9 @@ void validate_recipe(const Recipe& recipe, const std::string& name) {
   if (recipe.body) check(*recipe.body, place.field("body"));
   const Place layers = place.field("layers");
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    std::visit([&](const auto& layer) { check(layer, layers.element(i)); }, recipe.layers[i]);
+    const Place at = layers.element(i);
+    std::visit([&](const auto& layer) { check(layer, at); }, recipe.layers[i]);
+    if (const LayerUse* use = use_of(recipe.layers[i])) check(*use, recipe.body, at);
   }
   if (!recipe.erosion) return;
   check(*recipe.erosion, place.field("erosion"));

@@ -23,21 +23,45 @@ ordered_json to_json(const Warp& warp) {
           {"lacunarity", warp.lacunarity}};
 }
 
+ordered_json to_json(const MetaballBody& body);
+
+ordered_json to_json(const BodyOperation& operation) {
+  ordered_json object{{"type", operator_word(operation.kind)}};
+  if (operation.kind == Operator::kBlend) {
+    object["width"] = operation.width;
+    object["exponent"] = operation.exponent;
+  } else if (operation.kind == Operator::kCleanUnion) {
+    object["bulge"] = operation.bulge;
+    object["reach"] = {operation.reach[0], operation.reach[1]};
+  } else {
+    object["alpha"] = operation.alpha;
+  }
+  object["body"] = to_json(operation.operand.front());
+  return object;
+}
+
 ordered_json to_json(const MetaballBody& body) {
   ordered_json spheres = ordered_json::array();
   for (const Sphere& s : body.spheres) {
     spheres.push_back(ordered_json::array({s.center.x, s.center.y, s.center.z, s.radius}));
   }
   ordered_json object{{"type", "metaballs"},
-                      {"kernel", "gaussian"},
+                      {"kernel", kernel_word(body.kernel)},
                       {"a", body.a},
                       {"b", body.b},
                       {"blend_exponent", body.blend_exponent},
                       {"iso_value", body.iso_value},
                       {"cutoff_radii", body.cutoff_radii},
                       {"spheres", std::move(spheres)}};
+  for (const SphereGroup& group : body.groups) object["groups"][group.name] = group.spheres;
   if (body.warp) object["warp"] = to_json(*body.warp);
+  for (const BodyOperation& operation : body.operations) object["operations"].push_back(to_json(operation));
   return object;
+}
+
+// A layer's own fields, then those that every kind has.
+void add_use(const LayerUse& use, ordered_json& layer) {
+  if (use.locality) layer["locality"] = {{"group", use.locality->group}, {"width", use.locality->width}};
 }
 
 const char* type_of(Noise noise) {
@@ -118,6 +142,32 @@ ordered_json to_json(const SparseLayer& layer) {
           {"merged", layer.merged}};
 }
 
+ordered_json to_json(const RandomPhaseLayer& layer) {
+  return {{"type", "random_phase"},
+          {"name", layer.name},
+          {"height_rms", layer.height_rms},
+          {"cell_size", layer.cell_size},
+          {"waves", layer.waves},
+          {"frequency_min", layer.frequency_min},
+          {"frequency_max", layer.frequency_max},
+          {"exponent", layer.exponent},
+          {"direction", to_json(layer.direction)},
+          {"spread", layer.spread},
+          {"randomness", layer.randomness}};
+}
+
+ordered_json to_json(const PhasorLayer& layer) {
+  return {{"type", "phasor"},
+          {"name", layer.name},
+          {"amplitude", layer.amplitude},
+          {"frequency", layer.frequency},
+          {"cell_size", layer.cell_size},
+          {"impulses_per_cell", layer.impulses_per_cell},
+          {"direction", to_json(layer.direction)},
+          {"spread", layer.spread},
+          {"profile", profile_word(layer.profile)}};
+}
+
 template <typename T>
 ordered_json to_json(const std::vector<std::pair<std::string, T>>& named) {
   ordered_json object = ordered_json::object();
@@ -151,6 +201,7 @@ ordered_json to_json(const Recipe& recipe) {
   document["layers"] = ordered_json::array();
   for (const Layer& layer : recipe.layers) {
     document["layers"].push_back(std::visit([](const auto& l) { return to_json(l); }, layer));
+    if (const LayerUse* use = use_of(layer)) add_use(*use, document["layers"].back());
   }
   if (recipe.erosion) document["erosion"] = to_json(*recipe.erosion);
   return document;

@@ -36,11 +36,18 @@ Interval bound_elevation(const CraterRelief& relief, const LayerBox& at, const I
 }
 
 // A point is projected by its |s|, which no surface has above the bound of all heights.
-Box projected_box(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& at,
+Box projected_box(const FieldModel& model, const PreparedBody& body, const Box& at,
                   const MetaballInterval& bound) {
   const double level = std::max(std::fabs(bound.level_min), std::fabs(bound.level_max));
-  const double distance = std::min(model.height_bound, level / smallest_gradient(metaballs, at));
+  const double distance = std::min(model.height_bound, level / smallest_gradient(body.metaballs, at));
   return widened(at, distance * (1.0 + kRoundingSlack) + 2e-6 * largest_coordinate(at));
+}
+
+// What a layer makes of elevations counts for its weight, the elevations themselves for the rest.
+Interval weighted(const Interval& weight, const Interval& before, const Interval& after) {
+  const auto mixed = [](double w, double a, double b) { return (1.0 - w) * a + w * b; };
+  return {std::min(mixed(weight.low, before.low, after.low), mixed(weight.high, before.low, after.low)),
+          std::max(mixed(weight.low, before.high, after.high), mixed(weight.high, before.high, after.high))};
 }
 
 Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const Box& box,
@@ -48,7 +55,10 @@ Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const B
   Interval elevation;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const LayerBox at{box, projected, spots_of(spots, i)};
-    elevation = std::visit([&](const auto& l) { return bound_elevation(l, at, elevation); }, model.layers[i]);
+    const PlacedLayer& layer = model.layers[i];
+    const Interval after =
+        std::visit([&](const auto& l) { return bound_elevation(l, at, elevation); }, layer.noise);
+    elevation = layer.weight ? weighted(layer.weight->bound(box), elevation, after) : after;
   }
   const double slack = kRoundingSlack * model.height_bound;
   return {elevation.low - slack, elevation.high + slack};
@@ -66,15 +76,29 @@ BlockContent content_by_height_bound(const FieldModel& model, const MetaballInte
   return content_by(bound, model.height_bound * bound.gradient_max * (1.0 + kRoundingSlack));
 }
 
+// Of a body with operations: F is s plus heights.
+BlockContent content_by_distance(const Interval& distance, const Interval& heights) {
+  if (distance.high + heights.high < 0.0) return BlockContent::kOutside;
+  if (distance.low + heights.low > 0.0) return BlockContent::kInside;
+  return BlockContent::kMixed;
+}
+
+// The same of either kind of body, near the surface or far.
+BlockContent content_by_height_bound(const FieldModel& model, const PreparedBody& body, const Box& at) {
+  if (body.plain()) return content_by_height_bound(model, bound_metaballs(body.metaballs, at));
+  const double height = model.height_bound * (1.0 + kRoundingSlack);
+  return content_by_distance(bound_distance(body, at, height), {-height, height});
+}
+
 // By what the heights are in this box.
-BlockContent content_by_heights(const PreparedMetaballs& metaballs, const Box& at,
-                                const MetaballInterval& bound, const Interval& heights) {
+BlockContent content_by_heights(const PreparedBody& body, const Box& at, const MetaballInterval& bound,
+                                const Interval& heights) {
   const double divisor_max = bound.gradient_max;
   if (heights.high >= 0.0 && bound.level_max < -heights.high * divisor_max) return BlockContent::kOutside;
   if (heights.low <= 0.0 && bound.level_min > -heights.low * divisor_max) return BlockContent::kInside;
   if (heights.high >= 0.0 && heights.low <= 0.0) return BlockContent::kMixed;
   // All heights have one sign: now the smallest divisor counts.
-  const double divisor_min = smallest_gradient(metaballs, at);
+  const double divisor_min = smallest_gradient(body.metaballs, at);
   if (heights.high < 0.0 && bound.level_max < -heights.high * divisor_min) return BlockContent::kOutside;
   if (heights.low > 0.0 && bound.level_min > -heights.low * divisor_min) return BlockContent::kInside;
   return BlockContent::kMixed;
@@ -98,12 +122,12 @@ bool within(const Box& inner, const Box& outer) {
 
 // Extends `bounds` by the smallest boxes of an octree that are not proved empty. The grid of a mesh depends
 // on the result: it is a promise that it does not change.
-void extend_bounds(const FieldModel& model, const PreparedMetaballs& metaballs, const Box& box, int depth,
+void extend_bounds(const FieldModel& model, const PreparedBody& body, const Box& box, int depth,
                    Box& bounds) {
   if (!bounds.empty() && within(box, bounds)) return;
-  const Box at = metaball_box(model, box);
-  const PreparedMetaballs reaching = metaballs_reaching(metaballs, at);
-  const BlockContent content = content_by_height_bound(model, bound_metaballs(reaching, at));
+  const Box at = body_box(model, box);
+  const PreparedBody reaching = body_reaching(body, at);
+  const BlockContent content = content_by_height_bound(model, reaching, at);
   if (content == BlockContent::kOutside) return;
   if (depth == 0 || content == BlockContent::kInside) {
     bounds.extend(box.min);
@@ -115,28 +139,39 @@ void extend_bounds(const FieldModel& model, const PreparedMetaballs& metaballs, 
 
 }  // namespace
 
-Box metaball_box(const FieldModel& model, const Box& box) {
-  return model.warp ? model.warp->image(box) : box;
-}
+Box body_box(const FieldModel& model, const Box& box) { return model.warp ? model.warp->image(box) : box; }
 
 namespace {
 
-BlockContent content_without_boulders(const FieldModel& model, const PreparedMetaballs& metaballs,
+// A point is projected by its |s|, here as there.
+BlockContent content_of_combined(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,
+                                 const Box& box) {
+  const double height = model.height_bound * (1.0 + kRoundingSlack);
+  const Interval distance = bound_distance(body, box, height);
+  const BlockContent content = content_by_distance(distance, {-height, height});
+  if (content != BlockContent::kMixed || model.layers.empty()) return content;
+  const double farthest = std::min(height, std::max(std::fabs(distance.low), std::fabs(distance.high)));
+  const Box projected = widened(box, farthest + 2e-6 * largest_coordinate(box));
+  return content_by_distance(distance, bound_heights(model, spots, box, projected));
+}
+
+BlockContent content_without_boulders(const FieldModel& model, const PreparedBody& body,
                                       const DrawnSpots& spots, const Box& box) {
-  const Box at = metaball_box(model, box);
-  const MetaballInterval bound = bound_metaballs(metaballs, at, model.height_bound);
+  if (!body.plain()) return content_of_combined(model, body, spots, box);
+  const Box at = body_box(model, box);
+  const MetaballInterval bound = bound_metaballs(body.metaballs, at, model.height_bound);
   const BlockContent content = content_by_height_bound(model, bound);
   if (content != BlockContent::kMixed || model.layers.empty()) return content;
-  const Box projected = model.craters.empty() ? at : projected_box(model, metaballs, at, bound);
-  return content_by_heights(metaballs, at, bound, bound_heights(model, spots, box, projected));
+  const Box projected = model.craters.empty() ? at : projected_box(model, body, at, bound);
+  return content_by_heights(body, at, bound, bound_heights(model, spots, box, projected));
 }
 
 }  // namespace
 
 // A union only adds.
-BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
+BlockContent content_of(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,
                         const Box& box) {
-  const BlockContent content = content_without_boulders(model, metaballs, spots, box);
+  const BlockContent content = content_without_boulders(model, body, spots, box);
   const bool boulders = content == BlockContent::kOutside && model.boulders.touches(box);
   return boulders ? BlockContent::kMixed : content;
 }
@@ -144,7 +179,7 @@ BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaba
 DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger) {
   DrawnSpots spots;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
-    const auto* noise = std::get_if<SpotNoise>(&model.layers[i]);
+    const auto* noise = std::get_if<SpotNoise>(&model.layers[i].noise);
     if (noise == nullptr) continue;
     spots.resize(model.layers.size());
     spots[i] = noise->gather(box, spots_of(of_larger, i));
@@ -155,11 +190,11 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
 // Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
 Box surface_bounds(const FieldModel& model) {
   constexpr int kDepth = 6;
-  Box box = support_bounds(model.metaballs);
+  Box box = support_bounds(model.body);
   if (model.warp) box = widened(box, model.warp->bound());
   for (int pass = 0; pass < 4; ++pass) {
     Box tighter;
-    extend_bounds(model, model.metaballs, box, kDepth, tighter);
+    extend_bounds(model, model.body, box, kDepth, tighter);
     if (tighter.empty()) return tighter;
     const bool shrunk = norm(tighter.extent()) < 0.7 * norm(box.extent());
     box = tighter;

@@ -8,23 +8,34 @@
 
 #include "synthesis/block_field.h"
 #include "synthesis/boulder_field.h"
+#include "synthesis/combined_body.h"
 #include "synthesis/coordinate_warp.h"
 #include "synthesis/crater_relief.h"
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/implicit_field.h"
-#include "synthesis/metaball_body.h"
+#include "synthesis/local_weight.h"
+#include "synthesis/phasor_noise.h"
+#include "synthesis/random_phase_noise.h"
 #include "synthesis/sparse_noise.h"
 #include "synthesis/spot_noise.h"
 
 namespace astrolith {
 
-using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise, SparseNoise, CraterRelief>;
+using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise, SparseNoise, CraterRelief,
+                                 RandomPhaseNoise, PhasorNoise>;
+
+// A layer, and where it counts.
+struct PlacedLayer {
+  HeightLayer noise;
+  std::optional<LocalWeight> weight;
+};
 
 struct FieldModel {
-  PreparedMetaballs metaballs;
-  std::optional<CoordinateWarp> warp;  // of the metaballs' coordinates
-  std::vector<HeightLayer> layers;     // in the recipe's order
+  PreparedBody body;
+  std::optional<CoordinateWarp> warp;  // of the coordinates of a body without operations
+  float stretch = 1.0f;                // of a body with operations
+  std::vector<PlacedLayer> layers;     // in the recipe's order
   double height_bound = 0.0;           // of the |elevation| that all layers make
   std::vector<LayerCraters> craters;   // that the layers hold
   BoulderField boulders;               // on the surface that the layers make
@@ -38,8 +49,8 @@ void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model
 // F at a point.
 float value_at(const FieldModel& model, const Vec3d& p);
 
-// Where the metaballs are evaluated for the points of a box.
-Box metaball_box(const FieldModel& model, const Box& box);
+// Where the body is evaluated for the points of a box.
+Box body_box(const FieldModel& model, const Box& box);
 
 // The spots that reach a box, from those of a larger one or, where that has none, drawn.
 DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger);
@@ -49,9 +60,9 @@ inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) 
   return spots.empty() ? nullptr : spots[layer].get();
 }
 
-// Whether F keeps one sign over the box; `metaballs` must hold what reaches metaball_box(model, box), `spots`
-// what reaches the box.
-BlockContent content_of(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
+// Whether F keeps one sign over the box; `body` must hold what reaches body_box(model, box), `spots` what
+// reaches the box.
+BlockContent content_of(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,
                         const Box& box);
 
 // A box that holds the whole surface, within about 1/64 of its longest side. Uses all of the model but

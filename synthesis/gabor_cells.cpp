@@ -77,7 +77,7 @@ void draw_cell(const SurfaceBand& band, const GaborCell& c, float height, const 
 struct Centers {
   std::vector<float> x, y, z, distance, gx, gy, gz;
 
-  Centers(std::span<const GaborCell> cells, float side, const PreparedMetaballs& body) {
+  Centers(std::span<const GaborCell> cells, float side, const PreparedBody& body) {
     Box box;
     for (const GaborCell& c : cells) {
       const Vec3f p = cell_center(c, side);
@@ -87,15 +87,14 @@ struct Centers {
       z.push_back(p.z);
     }
     for (std::vector<float>* v : {&distance, &gx, &gy, &gz}) v->resize(x.size());
-    evaluate_metaballs(metaballs_reaching(body, box), static_cast<int>(x.size()), x.data(), y.data(),
-                       z.data(), distance.data(), gx.data(), gy.data(), gz.data());
+    evaluate_body(body_reaching(body, box), static_cast<int>(x.size()), x.data(), y.data(), z.data(),
+                  distance.data(), gx.data(), gy.data(), gz.data());
   }
 };
 
 }  // namespace
 
-DrawnCells draw_cells(const SurfaceBand& band, const PreparedMetaballs& body,
-                      std::span<const GaborCell> cells) {
+DrawnCells draw_cells(const SurfaceBand& band, const PreparedBody& body, std::span<const GaborCell> cells) {
   const Centers centers(cells, band.cell, body);
   DrawnCells drawn;
   drawn.start.reserve(cells.size() + 1);

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "synthesis/combined_body.h"
 #include "synthesis/gabor_bands.h"
 #include "synthesis/gabor_kernel.h"
-#include "synthesis/metaball_body.h"
 
 namespace astrolith {
 
@@ -34,7 +34,6 @@ struct DrawnCells {
 };
 
 // A cell has the tangent frame of the body's level set through its centre.
-DrawnCells draw_cells(const SurfaceBand& band, const PreparedMetaballs& body,
-                      std::span<const GaborCell> cells);
+DrawnCells draw_cells(const SurfaceBand& band, const PreparedBody& body, std::span<const GaborCell> cells);
 
 }  // namespace astrolith

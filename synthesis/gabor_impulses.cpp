@@ -161,7 +161,7 @@ void GaborImpulses::mark_cells() {
   }
 }
 
-void GaborImpulses::draw_marked(const PreparedMetaballs& body) {
+void GaborImpulses::draw_marked(const PreparedBody& body) {
   std::vector<GaborCell> cells;
   std::size_t slot = 0;
   for (int cz = range_.first[2]; cz <= range_.last[2]; ++cz) {

@@ -38,7 +38,7 @@ class GaborImpulses {
   void collect_tiles(const GaborTiles& tiles);
   void append(const DrawnCells& tile, std::size_t begin, std::size_t end);
   void mark_cells();
-  void draw_marked(const PreparedMetaballs& body);
+  void draw_marked(const PreparedBody& body);
   Vec3d largest_half_extents() const;
   std::size_t row(int cy, int cz) const;  // where a row of cells along x begins
 

@@ -100,7 +100,7 @@ struct GaborSurfaceNoise::Points {
 };
 
 GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
-                                     const PreparedMetaballs& body, const Box& domain)
+                                     const PreparedBody& body, const Box& domain)
     : domain_min_(to_float(domain.min)),
       domain_max_(to_float(domain.max)),
       clip_(static_cast<float>(kGaborClip * layer.height_rms)) {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "recipe/recipe.h"
+#include "synthesis/combined_body.h"
 #include "synthesis/gabor_impulses.h"
-#include "synthesis/metaball_body.h"
 
 namespace astrolith {
 
@@ -20,8 +20,8 @@ class GaborSurfaceNoise {
  public:
   // Points outside `domain` are moved to its border; bands so fine that float coordinates within it could not
   // tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
-  GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
-                    const PreparedMetaballs& body, const Box& domain);
+  GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const PreparedBody& body,
+                    const Box& domain);
 
   // height[i] at points *on* the body's surface, in length units, 0 on average, standard deviation
   // layer.height_rms.

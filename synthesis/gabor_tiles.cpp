@@ -21,7 +21,7 @@ std::size_t bytes_of(const DrawnCells& tile) {
 
 }  // namespace
 
-GaborTiles::GaborTiles(SurfaceBand band, const PreparedMetaballs& body)
+GaborTiles::GaborTiles(SurfaceBand band, const PreparedBody& body)
     : band_(std::move(band)), body_(body), shelves_(std::make_unique<std::array<Shelf, kShelves>>()) {}
 
 std::shared_ptr<const DrawnCells> GaborTiles::tile(const std::array<int, 3>& index) const {

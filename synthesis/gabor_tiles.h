@@ -18,10 +18,10 @@ inline constexpr int kTileCells = 4;
 
 class GaborTiles {
  public:
-  GaborTiles(SurfaceBand band, const PreparedMetaballs& body);
+  GaborTiles(SurfaceBand band, const PreparedBody& body);
 
   const SurfaceBand& band() const { return band_; }
-  const PreparedMetaballs& body() const { return body_; }
+  const PreparedBody& body() const { return body_; }
 
   // The tile whose first cell is kTileCells times the index; its cells are counted along x, then y, then z.
   // May be called from many threads.
@@ -40,7 +40,7 @@ class GaborTiles {
   DrawnCells make_tile(const std::array<int, 3>& index) const;
 
   SurfaceBand band_;
-  PreparedMetaballs body_;
+  PreparedBody body_;
   std::unique_ptr<std::array<Shelf, kShelves>> shelves_;
 };
 

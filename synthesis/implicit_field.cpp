@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "numerics/errors.h"
-#include "numerics/hash_random.h"
 #include "synthesis/field_model_internal.h"
 #include "synthesis/metaballs_near.h"
 
@@ -18,8 +17,6 @@ namespace {
 
 // Points evaluated together: a block of 9^3 samples and some, on the stack.
 constexpr int kBatch = 1024;
-
-constexpr std::uint32_t kBodyStream = 0xffffffffu;  // of the recipe's seed; layers have their numbers
 
 // Points, where the metaballs are evaluated for them, s and grad L there, what the layers so far have made of
 // the surface, and a layer's heights.
@@ -58,7 +55,7 @@ void project(const FieldModel& model, Batch& b) {
   if (b.is_projected) return;
   b.is_projected = true;
   std::array<float, kBatch> length;
-  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.metaballs.parameters.gradient_floor,
+  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.body.metaballs.parameters.gradient_floor,
                    length.data());
   const float longest_step = static_cast<float>(model.height_bound);
   const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
@@ -77,12 +74,14 @@ void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
   }
 }
 
-void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data(), b.spots);
+// Of a noise in space.
+template <typename Noise>
+void layer_heights(const FieldModel&, const Noise& noise, Batch& b) {
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
 }
 
-void layer_heights(const FieldModel&, const SparseNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
+  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data(), b.spots);
 }
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
@@ -91,12 +90,15 @@ void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batc
 }
 
 template <typename Noise>
-void add_layer(const FieldModel& model, const Noise& noise, Batch& b) {
+void add_layer(const FieldModel& model, const Noise& noise, const std::optional<LocalWeight>& weight,
+               Batch& b) {
   layer_heights(model, noise, b);
+  if (weight) weight->multiply(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) b.elevation[i] += b.height[i];
 }
 
-void add_layer(const FieldModel& model, const CraterRelief& craters, Batch& b) {
+void add_layer(const FieldModel& model, const CraterRelief& craters, const std::optional<LocalWeight>&,
+               Batch& b) {
   project(model, b);
   craters.apply(b.n, b.px.data(), b.py.data(), b.pz.data(), b.elevation.data());
 }
@@ -137,12 +139,13 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
 float change_bound(const FieldModel& model, std::size_t first) {
   double bound = 0.0;
   for (std::size_t i = first; i < model.layers.size(); ++i) {
-    if (std::holds_alternative<CraterRelief>(model.layers[i])) return std::numeric_limits<float>::infinity();
+    if (std::holds_alternative<CraterRelief>(model.layers[i].noise))
+      return std::numeric_limits<float>::infinity();
     std::visit(
         [&](const auto& l) {
           if constexpr (!std::is_same_v<decltype(l), const CraterRelief&>) bound += l.height_bound();
         },
-        model.layers[i]);
+        model.layers[i].noise);
   }
   return static_cast<float>(bound * (1.0 + 1e-5));
 }
@@ -205,14 +208,14 @@ void add_elevations(const FieldModel& model, const BlockParts& parts, const Poin
     keep_undecided(change_bound(model, i) + band, boulders_reach, b, origin, value);
     if (b.n == 0) return;
     b.spots = spots_of(parts.spots, i);
-    std::visit([&](const auto& l) { add_layer(model, l, b); }, model.layers[i]);
+    const PlacedLayer& layer = model.layers[i];
+    std::visit([&](const auto& l) { add_layer(model, l, layer.weight, b); }, layer.noise);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }
 
-void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs, const DrawnSpots& spots,
-                    int n, const PointArrays& at, float band, float* value,
-                    const NearPoints* near = nullptr) {
+void evaluate_batch(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots, int n,
+                    const PointArrays& at, float band, float* value, const NearPoints* near = nullptr) {
   Batch b;
   b.n = n;
   PointArrays metaballs_at = at;
@@ -221,12 +224,13 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
     metaballs_at = {b.mx.data(), b.my.data(), b.mz.data()};
     band *= static_cast<float>(model.warp->stretch());  // s changes so much faster than a distance does
   }
+  if (!body.plain()) band *= model.stretch;
   if (near != nullptr) {
     b.origin = &near->origin;
-    evaluate_body_near(metaballs, n, *near, at, metaballs_at, b);
+    evaluate_body_near(body.metaballs, n, *near, at, metaballs_at, b);
   } else {
-    evaluate_metaballs(metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(),
-                       b.gx.data(), b.gy.data(), b.gz.data());
+    evaluate_body(body, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(), b.gx.data(),
+                  b.gy.data(), b.gz.data());
   }
   std::copy_n(b.distance.data(), n, value);
   const BlockParts parts{spots, model.boulders.near(n, at.x, at.y, at.z)};
@@ -239,22 +243,22 @@ void evaluate_batch(const FieldModel& model, const PreparedMetaballs& metaballs,
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
-  evaluate_batch(model, model.metaballs, {}, 1, {&x, &y, &z}, kExactEverywhere, &f);
+  evaluate_batch(model, model.body, {}, 1, {&x, &y, &z}, kExactEverywhere, &f);
   return f;
 }
 
-BlockContent FieldBlock::content() const { return content_of(*model_, metaballs_, spots_, box_); }
+BlockContent FieldBlock::content() const { return content_of(*model_, body_, spots_, box_); }
 
 FieldBlock FieldBlock::restricted_to(const Box& child) const {
-  return {*model_, metaballs_reaching(metaballs_, metaball_box(*model_, child)),
-          spots_reaching(*model_, child, spots_), child};
+  return {*model_, body_reaching(body_, body_box(*model_, child)), spots_reaching(*model_, child, spots_),
+          child};
 }
 
 void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                           std::span<float> value, float band) const {
   for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
     const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
-    evaluate_batch(*model_, metaballs_, spots_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
+    evaluate_batch(*model_, body_, spots_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
   }
 }
 
@@ -269,7 +273,7 @@ void FieldBlock::evaluate_near(const Vec3d& origin, std::span<const float> x, st
       bz[i] = static_cast<float>(origin.z + double{z[begin + i]});
     }
     const NearPoints near{origin, {&x[begin], &y[begin], &z[begin]}};
-    evaluate_batch(*model_, metaballs_, spots_, static_cast<int>(n), {bx.data(), by.data(), bz.data()}, band,
+    evaluate_batch(*model_, body_, spots_, static_cast<int>(n), {bx.data(), by.data(), bz.data()}, band,
                    &value[begin], &near);
   }
 }
@@ -279,10 +283,10 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
     throw InputError(name + ": body: is missing; give a body, or lay these layers on one");
   }
   FieldModel model;
-  model.metaballs = prepare_metaballs(*recipe.body);
-  if (recipe.body->warp) {
-    model.warp.emplace(*recipe.body->warp, hash_seed(recipe.seed, kBodyStream),
-                       support_bounds(model.metaballs));
+  model.body = prepare_body(*recipe.body, recipe.seed);
+  model.stretch = static_cast<float>(body_stretch(model.body));
+  if (recipe.body->warp && model.body.plain()) {
+    model.warp.emplace(*recipe.body->warp, body_warp_seed(recipe.seed, 0), support_bounds(model.body));
   }
   add_layers(recipe, name, model);
   model.bounds = surface_bounds(model);
@@ -292,8 +296,8 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
 double ImplicitField::value(const Vec3d& p) const { return static_cast<double>(value_at(*model_, p)); }
 
 Vec3d ImplicitField::gradient(const Vec3d& p) const {
-  if (model_->layers.empty() && model_->boulders.empty() && !model_->warp)
-    return distance_gradient(model_->metaballs, p);
+  const bool bare = model_->layers.empty() && model_->boulders.empty() && !model_->warp;
+  if (bare && model_->body.plain()) return distance_gradient(model_->body.metaballs, p);
   const double h = gradient_step();
   const auto slope = [&](const Vec3d& d) { return (value(p + d) - value(p - d)) / (2.0 * h); };
   return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
@@ -306,6 +310,8 @@ double ImplicitField::gradient_step() const {
 
 Box ImplicitField::bounds() const { return model_->bounds; }
 
+bool ImplicitField::has_near_form() const { return model_->body.plain(); }
+
 double ImplicitField::height_bound() const { return model_->height_bound; }
 
 std::span<const LayerCraters> ImplicitField::craters() const { return model_->craters; }
@@ -313,8 +319,8 @@ std::span<const LayerCraters> ImplicitField::craters() const { return model_->cr
 std::span<const LayerBoulders> ImplicitField::boulders() const { return model_->placed_boulders; }
 
 FieldBlock ImplicitField::gather(const Box& box) const {
-  return {*model_, metaballs_reaching(model_->metaballs, metaball_box(*model_, box)),
-          spots_reaching(*model_, box, {}), box};
+  return {*model_, body_reaching(model_->body, body_box(*model_, box)), spots_reaching(*model_, box, {}),
+          box};
 }
 
 }  // namespace astrolith

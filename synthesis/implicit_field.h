@@ -21,7 +21,7 @@
 
 #include "recipe/recipe.h"
 #include "synthesis/block_field.h"
-#include "synthesis/metaball_body.h"
+#include "synthesis/combined_body.h"
 #include "synthesis/spot_noise.h"
 
 namespace astrolith {
@@ -49,9 +49,9 @@ class FieldBlock {
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band = kExactEverywhere) const;
 
-  // The same at the points origin + (x, y, z), which are within the box but for the rounding of its
-  // coordinates to float. The body and fractal layers are evaluated to the digits of x, y and z, the other
-  // layers to those of float coordinates in the body's frame.
+  // The same, of a field that has_near_form(), at the points origin + (x, y, z), which are within the box but
+  // for the rounding of its coordinates to float. The body and fractal layers are evaluated to the digits of
+  // x, y and z, the other layers to those of float coordinates in the body's frame.
   void evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                      std::span<const float> z, std::span<float> value, float band) const;
 
@@ -59,11 +59,11 @@ class FieldBlock {
 
  private:
   friend class ImplicitField;
-  FieldBlock(const FieldModel& model, PreparedMetaballs metaballs, DrawnSpots spots, const Box& box)
-      : model_(&model), metaballs_(std::move(metaballs)), spots_(std::move(spots)), box_(box) {}
+  FieldBlock(const FieldModel& model, PreparedBody body, DrawnSpots spots, const Box& box)
+      : model_(&model), body_(std::move(body)), spots_(std::move(spots)), box_(box) {}
 
   const FieldModel* model_;
-  PreparedMetaballs metaballs_;
+  PreparedBody body_;
   DrawnSpots spots_;
   Box box_;
 };
@@ -80,6 +80,9 @@ class ImplicitField {
   Vec3d gradient(const Vec3d& p) const;
   // 2^-11 of the longest side of bounds(), in length units.
   double gradient_step() const;
+
+  // Whether blocks can be evaluated near an origin: not where operations combine bodies.
+  bool has_near_form() const;
 
   // Holds the whole surface, within about 1/64 of its longest side; empty where the body is.
   Box bounds() const;

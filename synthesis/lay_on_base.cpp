@@ -40,6 +40,21 @@ Layer scaled(SparseLayer layer, double ratio) {
   return layer;
 }
 
+Layer scaled(RandomPhaseLayer layer, double ratio) {
+  layer.height_rms *= ratio;
+  layer.cell_size *= ratio;
+  layer.frequency_min /= ratio;
+  layer.frequency_max /= ratio;
+  return layer;
+}
+
+Layer scaled(PhasorLayer layer, double ratio) {
+  layer.amplitude *= ratio;
+  layer.cell_size *= ratio;
+  layer.frequency /= ratio;
+  return layer;
+}
+
 Layer scaled(GaborLayer layer, double ratio) {
   layer.pixel_size *= ratio;
   layer.height_rms *= ratio;
@@ -85,7 +100,9 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
 }
 
 Layer rescaled(const Layer& layer, double ratio) {
-  return std::visit([ratio](const auto& l) { return scaled(l, ratio); }, layer);
+  Layer result = std::visit([ratio](const auto& l) { return scaled(l, ratio); }, layer);
+  if (LayerUse* use = use_of(result); use != nullptr && use->locality) use->locality->width *= ratio;
+  return result;
 }
 
 }  // namespace astrolith

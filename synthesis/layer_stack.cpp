@@ -27,7 +27,7 @@ class LayerStack {
       : recipe_(recipe),
         name_(name),
         model_(model),
-        supports_(support_bounds(model.metaballs)),
+        supports_(support_bounds(model.body)),
         domain_(model.warp ? widened(supports_, model.warp->bound()) : supports_) {}
 
   void add_all() {
@@ -41,10 +41,11 @@ class LayerStack {
   void add(const FractalLayer& layer) { push(FractalNoise(layer, recipe_.seed, index_, domain_)); }
   void add(const SpotLayer& layer) { push(SpotNoise(layer, recipe_.seed, index_, domain_)); }
   void add(const SparseLayer& layer) { push(SparseNoise(layer, recipe_.seed, index_, domain_)); }
+  void add(const RandomPhaseLayer& layer) { push(RandomPhaseNoise(layer, recipe_.seed, index_, domain_)); }
+  void add(const PhasorLayer& layer) { push(PhasorNoise(layer, recipe_.seed, index_, domain_)); }
   void add(const GaborLayer& layer) {
     // A layer of colour alone has no height.
-    if (layer.height_rms > 0.0)
-      push(GaborSurfaceNoise(layer, recipe_.seed, index_, model_.metaballs, supports_));
+    if (layer.height_rms > 0.0) push(GaborSurfaceNoise(layer, recipe_.seed, index_, model_.body, supports_));
   }
   void add(const CraterLayer& layer) {
     std::vector<PlacedCrater> craters = place_craters(layer, bare(), recipe_.seed, index_, place_of(index_));
@@ -54,7 +55,7 @@ class LayerStack {
     if (model_.warp) centers = warped(centers);
     CraterRelief relief(layer, craters, centers, elevations, model_.height_bound);
     model_.height_bound = relief.elevation_bound();
-    model_.layers.emplace_back(std::move(relief));
+    model_.layers.push_back({std::move(relief), std::nullopt});
     model_.craters.push_back({index_, std::move(craters)});
   }
 
@@ -85,7 +86,10 @@ class LayerStack {
   template <typename Noise>
   void push(Noise noise) {
     model_.height_bound += noise.height_bound();
-    model_.layers.emplace_back(std::move(noise));
+    PlacedLayer& layer = model_.layers.emplace_back(PlacedLayer{std::move(noise), std::nullopt});
+    const LayerUse* use = use_of(recipe_.layers[static_cast<std::size_t>(index_)]);
+    if (use != nullptr && use->locality)
+      layer.weight.emplace(*use->locality, *recipe_.body, place_of(index_));
   }
 
   std::vector<Vec3d> warped(std::vector<Vec3d> points) const {

@@ -11,41 +11,17 @@ namespace {
 // Exponent, relative to the surface's, below which a kernel is cut off.
 constexpr double kNegligibleExponent = 20.0;
 
-ASTROLITH_SIMD_CLONES void accumulate_spheres(const MetaballParameters<float>& body,
-                                              const MetaballSphere<float>* spheres, std::size_t num_spheres,
-                                              int n, const float* __restrict x, const float* __restrict y,
-                                              const float* __restrict z, float* __restrict kernel,
-                                              float* __restrict wx, float* __restrict wy,
-                                              float* __restrict wz) {
-  const MetaballParameters<float> parameters = body;
-  for (std::size_t j = 0; j < num_spheres; ++j) {
-    const MetaballSphere<float> sphere = spheres[j];
-#pragma omp simd
-    for (int i = 0; i < n; ++i) {
-      MetaballSums<float> sums{kernel[i], {wx[i], wy[i], wz[i]}};
-      accumulate_metaball(parameters, sphere, Vec3f{x[i], y[i], z[i]}, sums);
-      kernel[i] = sums.kernel;
-      wx[i] = sums.weighted.x;
-      wy[i] = sums.weighted.y;
-      wz[i] = sums.weighted.z;
-    }
-  }
-}
-
-// Turns the sums into s and grad L in place.
-ASTROLITH_SIMD_CLONES void finish_distances(const MetaballParameters<float>& body, int n,
-                                            float* __restrict kernel, float* __restrict wx,
-                                            float* __restrict wy, float* __restrict wz) {
-  const MetaballParameters<float> parameters = body;
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const SurfaceDistance<float> d =
-        metaball_distance(parameters, MetaballSums<float>{kernel[i], {wx[i], wy[i], wz[i]}});
-    kernel[i] = d.distance;
-    wx[i] = d.log_gradient.x;
-    wy[i] = d.log_gradient.y;
-    wz[i] = d.log_gradient.z;
-  }
+// Of a kernel other than the Gaussian, all but the gradient's floor.
+MetaballParameters<float> profile_parameters(const MetaballBody& body) {
+  double cutoff_squared = body.cutoff_radii * body.cutoff_radii;
+  const KernelProfile<double> profile = scaled_kernel(body.kernel, body.a, body.a / body.b, cutoff_squared);
+  MetaballParameters<float> parameters;
+  parameters.m = static_cast<float>(body.blend_exponent);
+  parameters.inverse_m = static_cast<float>(1.0 / body.blend_exponent);
+  parameters.cutoff_squared = static_cast<float>(cutoff_squared);
+  parameters.profile = {profile.kernel, static_cast<float>(profile.scale), static_cast<float>(profile.low),
+                        static_cast<float>(profile.height / body.iso_value)};
+  return parameters;
 }
 
 }  // namespace
@@ -61,15 +37,22 @@ PreparedMetaballs prepare_metaballs(const MetaballBody& body) {
                        static_cast<float>(s.center.z)};
     prepared.spheres.push_back({center, static_cast<float>(1.0 / (s.radius * s.radius))});
   }
+  const double gradient_floor = 1e-3 / largest_radius;
+  if (body.kernel != Kernel::kGaussian) {
+    prepared.parameters = profile_parameters(body);
+    prepared.parameters.gradient_floor = static_cast<float>(gradient_floor * gradient_floor);
+    return prepared;
+  }
   const double negligible = (body.a - log_iso + kNegligibleExponent / m) / body.b;
   const double cutoff_squared = std::max(0.0, std::min(body.cutoff_radii * body.cutoff_radii, negligible));
-  const double gradient_floor = 1e-3 / largest_radius;
   prepared.parameters = {static_cast<float>(m * (body.a - log_iso)),
                          static_cast<float>(m * body.b),
                          static_cast<float>(1.0 / m),
                          0.0f,
                          static_cast<float>(cutoff_squared),
-                         static_cast<float>(gradient_floor * gradient_floor)};
+                         static_cast<float>(gradient_floor * gradient_floor),
+                         {},
+                         0.0f};
   return prepared;
 }
 
@@ -96,22 +79,39 @@ Box support_bounds(const PreparedMetaballs& metaballs) {
   return box;
 }
 
-void evaluate_metaballs(const PreparedMetaballs& metaballs, int n, const float* x, const float* y,
-                        const float* z, float* distance, float* gradient_x, float* gradient_y,
-                        float* gradient_z) {
-  constexpr int kBatch = 256;  // seven arrays of so many floats stay in the first cache over all spheres
-  for (float* sum : {distance, gradient_x, gradient_y, gradient_z}) std::fill(sum, sum + n, 0.0f);
-  for (int begin = 0; begin < n; begin += kBatch) {
-    const int size = std::min(kBatch, n - begin);
-    float *s = distance + begin, *gx = gradient_x + begin, *gy = gradient_y + begin, *gz = gradient_z + begin;
-    accumulate_spheres(metaballs.parameters, metaballs.spheres.data(), metaballs.spheres.size(), size,
-                       x + begin, y + begin, z + begin, s, gx, gy, gz);
-    finish_distances(metaballs.parameters, size, s, gx, gy, gz);
+namespace {
+
+// Of kernels other than the Gaussian. With f_i = K_i^m, S = sum_i f_i, u_i = (p - c_i)/r_i^2 and M = S^(1/m),
+//   grad S = sum_i 2 f_i' u_i,    H_S = sum_i 4 f_i'' u_i u_i' + 2 f_i' / r_i^2 I,
+//   grad M = M grad S / (m S),    H_M = M / (m S) (H_S + (1/m - 1) grad S grad S' / S).
+Vec3d profile_distance_gradient(const PreparedMetaballs& metaballs, const Vec3d& p) {
+  const MetaballParameters<double> body = in_double(metaballs.parameters);
+  double sum = kKernelFloor, curvature = 0.0;
+  Vec3d gradient, xx, yy;  // xx: the products (x x, x y, x z) of H_S; yy: (y y, y z, z z)
+  for (const MetaballSphere<float>& s : metaballs.spheres) {
+    const double inverse = s.inverse_radius_squared;
+    const Vec3d d = p - Vec3d{s.center.x, s.center.y, s.center.z}, u = d * inverse;
+    const ProfileValue<double> f = kernel_power(body, squared_norm(d) * inverse);
+    sum += f.value;
+    gradient += -2.0 * f.slope * u;
+    curvature += -2.0 * f.slope * inverse;
+    xx += 4.0 * f.curvature * u.x * u;
+    yy += 4.0 * f.curvature * Vec3d{u.y * u.y, u.y * u.z, u.z * u.z};
   }
+  const double norm = std::pow(sum, 1.0 / body.m), factor = norm / (body.m * sum);
+  const Vec3d g = factor * gradient;
+  const Vec3d outer_g{dot(xx, g), xx.y * g.x + yy.x * g.y + yy.y * g.z, xx.z * g.x + yy.y * g.y + yy.z * g.z};
+  const Vec3d hessian_g =
+      factor * (outer_g + curvature * g + (1.0 / body.m - 1.0) / sum * dot(gradient, g) * gradient);
+  const double n = std::sqrt(squared_norm(g) + body.gradient_floor);
+  return g * (1.0 / n) - (norm - 1.0) / (n * n * n) * hessian_g;
 }
+
+}  // namespace
 
 Vec3d distance_gradient(const PreparedMetaballs& metaballs, const Vec3d& p) {
   const MetaballParameters<float>& body = metaballs.parameters;
+  if (body.profile.kernel != Kernel::kGaussian) return profile_distance_gradient(metaballs, p);
   const double m_b = body.m_b, inverse_m = body.inverse_m, cutoff = body.cutoff_squared;
   // Sums over spheres of f, f v, f/r^2 and f v v', with v = (p - c)/r^2.
   double total = kKernelFloor, curvature = 0.0;

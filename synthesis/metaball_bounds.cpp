@@ -1,4 +1,4 @@
-// What is certain about metaballs over a box.
+// What is certain about metaballs over a box. Kernels other than the Gaussian: profile_bounds.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -102,6 +102,7 @@ Vec3d outward_direction(const PreparedMetaballs& metaballs, const Vec3d& p) {
 
 MetaballInterval bound_metaballs(const PreparedMetaballs& metaballs, const Box& box, double height) {
   const MetaballParameters<float>& body = metaballs.parameters;
+  if (body.profile.kernel != Kernel::kGaussian) return bound_profiles(metaballs, box, height);
   const double m_a = body.m_a, m = 1.0 / static_cast<double>(body.inverse_m);
   thread_local KernelIntervals bounds;
   bound_kernels(metaballs, box, bounds);
@@ -126,6 +127,7 @@ MetaballInterval bound_metaballs(const PreparedMetaballs& metaballs, const Box& 
 
 double smallest_gradient(const PreparedMetaballs& metaballs, const Box& box) {
   const MetaballParameters<float>& body = metaballs.parameters;
+  if (body.profile.kernel != Kernel::kGaussian) return smallest_profile_gradient(metaballs, box);
   const double b = static_cast<double>(body.m_b) * static_cast<double>(body.inverse_m);
   thread_local KernelIntervals bounds;
   bound_kernels(metaballs, box, bounds);

@@ -1,11 +1,11 @@
-// How far the points of a box are from a metaball's centre.
+// How far the points of a box are from a metaball's centre, and bounds of kernels other than the Gaussian.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "numerics/vec3.h"
-#include "synthesis/metaballs.h"
+#include "synthesis/metaball_body.h"
 
 namespace astrolith {
 
@@ -33,5 +33,10 @@ inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, c
 
 // Relative slack on squared distances: float points and float arithmetic differ from ours by less.
 inline constexpr double kDistanceSlack = 1e-5;
+
+// bound_metaballs and smallest_gradient for kernels other than the Gaussian, with M(p) - 1 and |grad M| in
+// the place of L and |grad L|.
+MetaballInterval bound_profiles(const PreparedMetaballs& metaballs, const Box& box, double height);
+double smallest_profile_gradient(const PreparedMetaballs& metaballs, const Box& box);
 
 }  // namespace astrolith

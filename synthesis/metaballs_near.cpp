@@ -3,9 +3,6 @@
 namespace astrolith {
 namespace {
 
-MetaballParameters<double> in_double(const MetaballParameters<float>& p) {
-  return {p.m_a, p.m_b, p.inverse_m, p.log_iso, p.cutoff_squared, p.gradient_floor};
-}
 MetaballSphere<double> in_double(const MetaballSphere<float>& s) {
   return {{s.center.x, s.center.y, s.center.z}, s.inverse_radius_squared};
 }

@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "numerics/errors.h"
 #include "recipe/recipe.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/metaballs.h"
@@ -51,7 +53,13 @@ inline MetaballBody metaball_body(const MetaballModel& model) {
   return body;
 }
 
+// Throws InputError for kernels other than the Gaussian, which the fit does not know.
 inline MetaballModel model_of(const MetaballBody& body) {
+  if (body.kernel != Kernel::kGaussian) {
+    throw InputError("body: kernel: is " + std::string(kernel_word(body.kernel)) +
+                     ", the fit knows gaussian alone");
+  }
+  if (!body.operations.empty()) throw InputError("body: operations: the fit knows metaballs alone");
   MetaballModel model{body.blend_exponent * body.a, body.spheres};
   const double scale = std::sqrt(body.a / body.b);
   for (Sphere& s : model.spheres) s.radius *= scale;

@@ -45,6 +45,18 @@ TEST(ScalarMath, SineAndCosineInTurns) {
   }
 }
 
+TEST(ScalarMath, AnglesInTurns) {
+  for (float turn = -0.4999f; turn < 0.5f; turn += 0.000137f) {
+    for (const float length : {1e-18f, 0.3f, 1e15f}) {
+      const float y = length * math::sin_turns(turn), x = length * math::cos_turns(turn);
+      const double exact = std::atan2(double{y}, double{x}) / (2 * 3.14159265358979323846);
+      ASSERT_NEAR(math::atan2_turns(y, x), exact, 6e-8) << turn;
+    }
+  }
+  EXPECT_EQ(math::atan2_turns(0.0f, 0.0f), 0.0f);
+  EXPECT_EQ(math::atan2_turns(3e38f, 0.0f), 0.25f);
+}
+
 TEST(ScalarMath, RoundAndFloor) {
   EXPECT_EQ(math::round_even(2.5f), 2.0f);
   EXPECT_EQ(math::round_even(-3.5f), -4.0f);

@@ -208,6 +208,19 @@ TEST(RecipeJson, InvalidRecipesAreNotWritten) {
   EXPECT_THROW(recipe_to_json(recipe), WorkError);
 }
 
+TEST(RecipeJson, OperationsAreBoundedInDepth) {
+  const auto nested = [](int depth) {
+    std::string body = R"({"type": "metaballs", "spheres": [[0, 0, 0, 1]]})";
+    for (int i = 0; i < depth; ++i) {
+      body = R"({"type": "metaballs", "spheres": [[0, 0, 0, 1]], "operations": [{"type": "union", "body": )" +
+             body + "}]}";
+    }
+    return R"({"format_version": 1, "length_unit": "m", "body": )" + body + "}";
+  };
+  EXPECT_EQ(parse_recipe(nested(5), "r").body->operations.size(), 1u);
+  expect_error(nested(9), "body.operations: must be at most 256 in all and 8 deep");
+}
+
 TEST(RecipeJson, Files) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("astrolith_recipe_" + std::to_string(::getpid()));

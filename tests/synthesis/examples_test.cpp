@@ -98,19 +98,73 @@ void add_features(CounterRandom& random, Recipe& recipe) {
   if (random.uniform() < 0.25) recipe.layers.emplace_back(random_sparse(random));
 }
 
+RandomPhaseLayer random_waves(CounterRandom& random) {
+  RandomPhaseLayer layer;
+  layer.height_rms = random.uniform(0.0, 0.03);
+  layer.cell_size = random.uniform(0.1, 0.6);
+  layer.frequency_max = random.uniform(1.0, 9.0);
+  layer.randomness = random.uniform();
+  layer.spread = random.uniform();
+  return layer;
+}
+
+PhasorLayer random_phasor(CounterRandom& random) {
+  PhasorLayer layer;
+  layer.amplitude = random.uniform(-0.05, 0.05);
+  layer.frequency = random.uniform(1.0, 8.0);
+  layer.cell_size = random.uniform(0.1, 0.6);
+  layer.profile = kPhasorProfiles[random.below(4)];
+  return layer;
+}
+
+// Any kernel, with a tension that it can have.
+void choose_kernel(CounterRandom& random, MetaballBody& body) {
+  body.kernel = kKernels[random.below(5)];
+  if (body.kernel == Kernel::kGaussian) return;
+  body.blend_exponent = std::max(1.0, body.blend_exponent);
+  body.a = body.b = std::max(random.uniform(0.3, 3.0), least_tension(body) + 0.01);
+}
+
+void add_operation(CounterRandom& random, MetaballBody& body) {
+  BodyOperation operation;
+  operation.kind = kOperators[random.below(5)];
+  operation.alpha = random.uniform(-0.5, 1.0);
+  operation.width = random.uniform(0.02, 0.2);
+  operation.bulge = random.uniform(-0.02, 0.02);
+  operation.reach[0] = operation.reach[1] = 0.1;
+  operation.operand = {*testing::potato_recipe(5, random.next()).body};
+  for (Sphere& s : operation.operand[0].spheres) s.center.x += 0.3;
+  body.operations.push_back(std::move(operation));
+}
+
 Recipe random_recipe(std::uint64_t seed) {
   CounterRandom random(seed);
   Recipe recipe =
       testing::potato_recipe(1 + static_cast<int>(random.below(60)), seed, random.uniform(0.7, 12.0));
   recipe.body->cutoff_radii = random.uniform(1.2, 5.0);
+  choose_kernel(random, *recipe.body);
   if (random.uniform() < 0.3) recipe.body->warp = Warp{random.uniform(-0.15, 0.15), random.uniform(1, 6), 2};
   for (auto layers = random.below(4); layers > 0; --layers) {
-    if (random.uniform() < 0.3) {
+    const double kind = random.uniform();
+    if (kind < 0.3) {
       recipe.layers.emplace_back(random_spots(random));
+    } else if (kind < 0.4) {
+      recipe.layers.emplace_back(random_waves(random));
+    } else if (kind < 0.5) {
+      recipe.layers.emplace_back(random_phasor(random));
     } else {
       recipe.layers.emplace_back(random_fractal(random));
     }
   }
+  if (random.uniform() < 0.4) {
+    const int half = static_cast<int>(recipe.body->spheres.size() + 1) / 2;
+    SphereGroup& group = recipe.body->groups.emplace_back(SphereGroup{"first", {}});
+    for (int i = 0; i < half; ++i) group.spheres.push_back(i);
+    for (Layer& layer : recipe.layers) {
+      use_of(layer)->locality = Locality{"first", random.uniform(0.001, 0.1)};
+    }
+  }
+  if (random.uniform() < 0.25) add_operation(random, *recipe.body);
   add_features(random, recipe);
   return recipe;
 }

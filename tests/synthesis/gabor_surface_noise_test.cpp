@@ -39,7 +39,7 @@ struct FlatPatch {
     Box domain;
     domain.extend({-2, -2, -2});
     domain.extend({2, 2, 2});
-    const GaborSurfaceNoise noise(layer, seed, 0, prepare_metaballs(*sphere_recipe(1.0).body), domain);
+    const GaborSurfaceNoise noise(layer, seed, 0, prepare_body(*sphere_recipe(1.0).body, 1), domain);
     std::vector<float> h(px.size());
     noise.evaluate(n * n, px.data(), py.data(), pz.data(), h.data());
     return h;
@@ -170,7 +170,7 @@ TEST(GaborSurfaceNoise, OtherLayersMoveItNotChangeIt) {
   domain.extend({-2, -2, -2});
   domain.extend({2, 2, 2});
   const GaborLayer layer = layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 1.0);
-  const PreparedMetaballs body = prepare_metaballs(*sphere_recipe(1.0).body);
+  const PreparedBody body = prepare_body(*sphere_recipe(1.0).body, 1);
   const GaborSurfaceNoise first(layer, 1, 0, body, domain), second(layer, 1, 1, body, domain);
   CounterRandom random(6);
   double product = 0.0;

@@ -1,0 +1,74 @@
+// How two bodies become one (thesis 2.2), on their signed distances f and g, positive inside: plain scalar
+// code for floats and, in bounds, doubles. Every operator grows with both operands, but for the bulge of
+// Pasko's union.
+//
+// The R-functions (f + g +- sqrt(f^2 + g^2 - 2 alpha f g)) / (1 + alpha) are exact on the surfaces and, off
+// them, the smoother the smaller alpha is: 1 gives max and min, 0 the clean union (eq. 2.17).
+#pragma once
+
+#include "numerics/host_device.h"
+#include "numerics/scalar_math.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+// An operator's parameters; which ones count depends on the operator.
+template <typename T>
+struct OperatorParameters {
+  Operator kind = Operator::kUnion;
+  T alpha = T(1);
+  T exponent{}, width{};                     // of the super-elliptic blend
+  T bulge{}, inverse_reach[2] = {T(), T()};  // of Pasko's union
+};
+
+template <typename T>
+ASTROLITH_KERNEL T larger(T a, T b) {
+  return a > b ? a : b;
+}
+
+// Written without the difference of nearly equal numbers where one operand is far below 0.
+template <typename T>
+ASTROLITH_KERNEL T r_union(T f, T g, T alpha) {
+  const T sum = f + g;
+  const T square = math::fma(f, f, math::fma(g, g, T(-2) * alpha * (f * g)));
+  const T root = math::sqrt(larger(square, T(0)));
+  const T below = T(2) * f * (g / (sum < T(0) ? sum - root : T(-1)));
+  return sum < T(0) ? below : (sum + root) / (T(1) + alpha);
+}
+
+// (f'^n + g'^n)^(1/n) of f' = 1 + f / width where that is positive: a blend that ends `width` outside of
+// either body. Written as what it adds to the union.
+template <typename T>
+ASTROLITH_KERNEL T super_elliptic(T f, T g, T exponent, T width) {
+  const T high = larger(f, g), low = f > g ? g : f;
+  const T a = larger(T(1) + high / width, T(0)), b = larger(T(1) + low / width, T(0));
+  const T ratio = b / larger(a, T(1e-30));
+  const T power = ratio > T(0) ? math::exp(exponent * math::log(larger(ratio, T(1e-30)))) : T(0);
+  const T factor = math::exp(math::log(T(1) + power) / exponent);
+  return high + width * a * (factor - T(1));
+}
+
+// a0 / (1 + (f/a1)^2 + (g/a2)^2), eq. 2.16.
+template <typename T>
+ASTROLITH_KERNEL T bulge(const OperatorParameters<T>& o, T f, T g) {
+  const T u = f * o.inverse_reach[0], v = g * o.inverse_reach[1];
+  return o.bulge / math::fma(u, u, math::fma(v, v, T(1)));
+}
+
+template <typename T>
+ASTROLITH_KERNEL T combined(const OperatorParameters<T>& o, T f, T g) {
+  switch (o.kind) {
+    case Operator::kIntersection:
+      return -r_union(-f, -g, o.alpha);
+    case Operator::kDifference:
+      return -r_union(-f, g, o.alpha);
+    case Operator::kBlend:
+      return super_elliptic(f, g, o.exponent, o.width);
+    case Operator::kCleanUnion:
+      return r_union(f, g, T(0)) + bulge(o, f, g);
+    default:
+      return r_union(f, g, o.alpha);
+  }
+}
+
+}  // namespace astrolith

@@ -1,0 +1,82 @@
+// The kernels of thesis 2.1 other than the Gaussian, as functions of the squared distance: plain scalar code
+// for the float evaluation, the GPU and fits in double precision.
+//
+//   K(q) = height (k(scale q) - low) for q below the cut-off, else 0,     q = |p - c|^2 / r^2
+//
+// with k of unit height and, but for Cauchy's, unit support:
+//   metaball (eq. 2.6)     k(x) = 1 - 3x for x <= 1/9, 3/2 (1 - sqrt x)^2 for x <= 1
+//   soft object (eq. 2.7)  k(x) = (1 - x)^2 (1 - 4x/9) = 1 - 22/9 x + 17/9 x^2 - 4/9 x^3
+//   Wyvill (eq. 2.8)       k(x) = (1 - x)^3
+//   Cauchy (eq. 2.9)       k(x) = 1 / (1 + x)
+// `low` is k at the cut-off, so that K ends there continuously.
+#pragma once
+
+#include "numerics/host_device.h"
+#include "numerics/scalar_math.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+// k and its derivatives: k(x), -k'(x) >= 0 and k''(x).
+template <typename T>
+struct ProfileValue {
+  T value, slope, curvature;
+};
+
+template <Kernel kernel, typename T>
+ASTROLITH_KERNEL ProfileValue<T> unit_profile(T x) {
+  const T rest = x < T(1) ? T(1) - x : T(0);
+  if constexpr (kernel == Kernel::kMetaball) {
+    const bool core = x < T(1) / T(9);
+    const T t = math::sqrt(core ? T(1) / T(9) : x), left = t < T(1) ? T(1) - t : T(0);
+    return {core ? T(1) - T(3) * x : T(1.5) * left * left, core ? T(3) : T(1.5) * left / t,
+            core ? T(0) : T(0.75) / (t * t * t)};
+  } else if constexpr (kernel == Kernel::kSoftObject) {
+    constexpr T kNinth = T(1) / T(9);
+    return {rest * rest * (T(1) - T(4) * kNinth * x), rest * kNinth * (T(22) - T(12) * x),
+            kNinth * (T(34) - T(24) * x)};
+  } else if constexpr (kernel == Kernel::kWyvill) {
+    return {rest * rest * rest, T(3) * rest * rest, T(6) * rest};
+  } else {
+    static_assert(kernel == Kernel::kCauchy);
+    const T k = T(1) / (T(1) + x);
+    return {k, k * k, T(2) * k * k * k};
+  }
+}
+
+// Which kernel, and how it is scaled.
+template <typename T>
+struct KernelProfile {
+  Kernel kernel = Kernel::kGaussian;
+  T scale{}, low{}, height{};
+};
+
+// K(q), -dK/dq and d^2K/dq^2.
+template <Kernel kernel, typename T>
+ASTROLITH_KERNEL ProfileValue<T> kernel_value(const KernelProfile<T>& profile, T q) {
+  const ProfileValue<T> k = unit_profile<kernel>(q * profile.scale);
+  const T per_q = profile.height * profile.scale;
+  return {profile.height * (k.value - profile.low), per_q * k.slope, per_q * profile.scale * k.curvature};
+}
+
+// The same for a kernel that is known at run time only; not the Gaussian.
+template <typename T>
+ASTROLITH_KERNEL ProfileValue<T> kernel_value(const KernelProfile<T>& profile, T q) {
+  switch (profile.kernel) {
+    case Kernel::kMetaball:
+      return kernel_value<Kernel::kMetaball>(profile, q);
+    case Kernel::kSoftObject:
+      return kernel_value<Kernel::kSoftObject>(profile, q);
+    case Kernel::kWyvill:
+      return kernel_value<Kernel::kWyvill>(profile, q);
+    default:
+      return kernel_value<Kernel::kCauchy>(profile, q);
+  }
+}
+
+// A kernel that is e^tension at its centre and 1 where q = surface, and ends at `cutoff_squared` or before;
+// that becomes its own end. Expects what validation does: 0 < surface < cutoff_squared and
+// e^-tension < 1 - surface / cutoff_squared, the flattest kernel with that end.
+KernelProfile<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared);
+
+}  // namespace astrolith
