@@ -179,9 +179,10 @@ TEST(RandomRecipes, BecomeClosedManifolds) {
     if (field.bounds().empty()) continue;
     MeshCollector collector;
     mesh_field(field, field.bounds(), 12 + static_cast<int>(seed % 9), collector);
+    if (collector.mesh.triangles.empty()) continue;  // a difference may leave nothing
     const MeshTopology topology = analyze_topology(collector.mesh);
     ASSERT_TRUE(topology.closed && topology.manifold && topology.oriented);
-    meshes += !collector.mesh.triangles.empty();
+    ++meshes;
   }
   EXPECT_GT(meshes, 150);
 }
