@@ -91,7 +91,8 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
 DetailScore DetailFitness::score(std::span<const FractalLayer> layers) const {
   const std::vector<double> heights = probe_.heights(layers, options_.recipe_seed);
   return {similarity(wanted_histogram_, histogram(heights)),
-          roughness_misfit(roughness(layout_.at_places(heights), layout_.triples), wanted_roughness_)};
+          roughness_misfit(roughness(layout_.at_places(heights), layout_.triples), wanted_roughness_),
+          steepness(layers)};
 }
 
 std::vector<double> DetailFitness::layers_roughness(std::span<const FractalLayer> layers) const {

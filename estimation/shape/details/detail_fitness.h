@@ -1,6 +1,7 @@
 // How well candidates for the details reproduce a target, without meshing them.
 //
 //   fitness = (1 - similarity(H_target, H_candidate)) + kRoughnessWeight * roughness_misfit
+//             + max(0, steepness - kSteepest)
 // H are histograms of the adaptive hybrid descriptor. The base is meshed once, about as finely as the target;
 // for a candidate the vertices of that mesh move along the base's normals to the candidate's surface, and the
 // samples, which lie where the target's own samples are nearest, move with their triangles. So normals and
@@ -9,6 +10,7 @@
 // of heights over the base, so what the base fits already is not asked for twice.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +26,10 @@ namespace astrolith {
 // 1 %: both count alike for what they are worth when the weight is about a half.
 inline constexpr double kRoughnessWeight = 0.5;
 
+// Vertices that move find the surface nearest to the base and see no islands beyond it, so details that may
+// make some are kept away. Bounds of slopes are seldom met, and never by all octaves in one place.
+inline constexpr double kSteepest = 1.5;
+
 struct FitnessOptions {
   std::int64_t samples = 4000;    // of the histogram; a fitness costs the square of it
   int lines = 2000;               // for the roughness
@@ -34,7 +40,10 @@ struct FitnessOptions {
 struct DetailScore {
   double similarity = 0.0;
   double roughness_misfit = 0.0;
-  double fitness() const { return 1.0 - similarity + kRoughnessWeight * roughness_misfit; }
+  double steepness = 0.0;
+  double fitness() const {
+    return 1.0 - similarity + kRoughnessWeight * roughness_misfit + std::max(0.0, steepness - kSteepest);
+  }
 };
 
 class DetailFitness {

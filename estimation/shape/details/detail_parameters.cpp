@@ -20,6 +20,11 @@ int resolved_octaves(double frequency, double wanted, double highest) {
   return std::clamp(static_cast<int>(std::lround(wanted)), 1, static_cast<int>(most + 1e-9));
 }
 
+// The greatest slopes of synthesis/noise_octaves.h.
+double greatest_slope(Noise noise) {
+  return noise == Noise::kSimplex ? 7.0 : noise == Noise::kPerlin ? 3.65 : 1.0;
+}
+
 Vec3d exp_of(std::span<const double> x) { return {std::exp(x[0]), std::exp(x[1]), std::exp(x[2])}; }
 
 }  // namespace
@@ -78,6 +83,18 @@ std::vector<FractalLayer> detail_layers(std::span<const double> x, const DetailR
     layers.push_back(layer);
   }
   return layers;
+}
+
+double steepness(std::span<const FractalLayer> layers) {
+  double sum = 0.0;
+  for (const FractalLayer& layer : layers) {
+    const double stretch =
+        std::max({std::fabs(layer.scale.x), std::fabs(layer.scale.y), std::fabs(layer.scale.z)});
+    double slope = greatest_slope(layer.noise) * std::fabs(layer.amplitude * layer.weight) * layer.frequency *
+                   stretch * (layer.gradient_modulation > 0.0 ? 2.0 : 1.0);
+    for (int o = 0; o < layer.octaves; ++o, slope *= layer.gain * layer.lacunarity) sum += slope;
+  }
+  return sum;
 }
 
 }  // namespace astrolith

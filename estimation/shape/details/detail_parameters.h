@@ -51,4 +51,9 @@ std::vector<double> detail_parameters(const PlainNoise& noise, const DetailRange
 // a thousandth are left out.
 std::vector<FractalLayer> detail_layers(std::span<const double> parameters, const DetailRanges& ranges);
 
+// A bound of the slope of all layers' heights together; twice that of the noises' slopes where they are
+// modulated, since heights then fall off faster. Above 1 a height may grow faster than the way outwards, and
+// leave islands in the air.
+double steepness(std::span<const FractalLayer> layers);
+
 }  // namespace astrolith

@@ -42,6 +42,17 @@ TEST(DetailParameters, NoOctaveIsFinerThanTheRangesAllow) {
   EXPECT_EQ(layers[0].octaves, 2);  // 30 and 58.5; 114 would be above 80
 }
 
+TEST(DetailParameters, SteepnessBoundsTheSlope) {
+  FractalLayer layer;
+  layer.amplitude = 0.01;
+  layer.frequency = 10.0;
+  layer.octaves = 2;
+  layer.gain = 0.5;
+  layer.lacunarity = 2.0;
+  EXPECT_NEAR(steepness(std::vector<FractalLayer>{layer}), 2 * 7.0 * 0.1, 1e-12);
+  EXPECT_EQ(steepness({}), 0.0);
+}
+
 TEST(DetailParameters, EveryCornerOfTheBoxIsAValidRecipe) {
   const Bounds bounds = detail_bounds(some_ranges());
   for (const auto& corner : {bounds.lower, bounds.upper}) {
