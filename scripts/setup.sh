@@ -9,8 +9,14 @@ packages=(
   libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev
   libgtest-dev libbenchmark-dev
 )
-# With --format also the formatter that CI checks with.
-[[ "${1:-}" == "--format" ]] && packages+=(clang-format-14)
+# With --format also the formatter that CI checks with, with --notebooks what the notebooks run on.
+for option in "$@"; do
+  case $option in
+    --format) packages+=(clang-format-14) ;;
+    --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;
+    *) echo "setup.sh: unknown option $option" >&2; exit 2 ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do
