@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Executes the notebooks headless: notebooks.sh [--full] [NN ...]
 #   quick (default): small sizes, some minutes in all; results, figures and pages in build/notebooks/
-#   --full:          the thesis's sizes, hours; the figures go to docs/figures/ and the table of claims to docs/claims.md
+#   --full:          the thesis's sizes, much longer; the figures go to docs/figures/ and the table of claims to docs/claims.md
 #   NN ...:          only the notebooks with these numbers, such as 01 12
 # Installs what is missing, builds the programs and benchmarks. Says which notebooks failed; exit status 1 if any did.
 set -euo pipefail

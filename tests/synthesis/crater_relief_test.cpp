@@ -8,6 +8,7 @@
 #include "numerics/parallel_for.h"
 #include "synthesis/mesher.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/mesh_checks.h"
 
 namespace astrolith {
 namespace {
@@ -272,20 +273,7 @@ TEST(CraterRelief, CulledBoxesHoldNoSurface) {
 
 TEST(CraterRelief, MeshesAreClosedManifoldsAndTheSameForAnyThreads) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    const Recipe recipe = random_body(seed);
-    for (const int resolution : {20, 33, 50}) {
-      std::vector<TriangleMesh> meshes;
-      for (const int threads : {1, 3}) {
-        const ThreadLimit limit(threads);
-        const ImplicitField field(recipe);
-        MeshCollector collector;
-        mesh_field(field, field.bounds(), resolution, collector);
-        meshes.push_back(std::move(collector.mesh));
-      }
-      const MeshTopology topology = analyze_topology(meshes[0]);
-      ASSERT_TRUE(topology.closed && topology.manifold && topology.oriented);
-      ASSERT_TRUE(meshes[0].vertices == meshes[1].vertices && meshes[0].triangles == meshes[1].triangles);
-    }
+    testing::expect_closed_manifold_for_any_threads(random_body(seed));
   }
 }
 

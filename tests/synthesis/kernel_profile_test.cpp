@@ -7,10 +7,13 @@
 #include "synthesis/mesher.h"
 #include "synthesis/metaball_body.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/point_value.h"
 
 namespace astrolith {
 namespace {
 
+using testing::evaluate_one;
+using testing::PointValue;
 constexpr Kernel kProfiles[] = {Kernel::kMetaball, Kernel::kSoftObject, Kernel::kWyvill, Kernel::kCauchy};
 
 double unit_value(Kernel kernel, double x) { return kernel_value<double>({kernel, 1.0, 0.0, 1.0}, x).value; }
@@ -89,17 +92,6 @@ MetaballBody random_body(CounterRandom& random, int spheres) {
   body.iso_value = std::pow(10.0, random.uniform(-0.3, 0.3));
   body.a = body.b = std::max(body.a, least_tension(body) + 0.01);
   return body;
-}
-
-struct PointValue {
-  float distance, gx, gy, gz;
-};
-
-PointValue evaluate_one(const PreparedMetaballs& metaballs, const Vec3d& p) {
-  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-  PointValue v{};
-  evaluate_metaballs(metaballs, 1, &x, &y, &z, &v.distance, &v.gx, &v.gy, &v.gz);
-  return v;
 }
 
 TEST(Kernels, DistanceGradientIsTheDerivativeOfTheDistance) {

@@ -3,22 +3,14 @@
 #include <array>
 
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/point_value.h"
 
 namespace astrolith {
 namespace {
 
+using testing::evaluate_one;
+using testing::PointValue;
 using testing::potato_recipe;
-
-struct PointValue {
-  float distance, gx, gy, gz;
-};
-
-PointValue evaluate_one(const PreparedMetaballs& metaballs, const Vec3d& p) {
-  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-  PointValue v{};
-  evaluate_metaballs(metaballs, 1, &x, &y, &z, &v.distance, &v.gx, &v.gy, &v.gz);
-  return v;
-}
 
 TEST(MetaballBody, IsoValueOnlyScalesTheField) {
   // m >= T is the same body as m/T >= 1: for one kernel T = e^-c moves the surface to q = 1 + c/b.

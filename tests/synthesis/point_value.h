@@ -1,0 +1,19 @@
+// Metaballs at a single point.
+#pragma once
+
+#include "synthesis/metaball_body.h"
+
+namespace astrolith::testing {
+
+struct PointValue {
+  float distance, gx, gy, gz;
+};
+
+inline PointValue evaluate_one(const PreparedMetaballs& metaballs, const Vec3d& p) {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  PointValue v{};
+  evaluate_metaballs(metaballs, 1, &x, &y, &z, &v.distance, &v.gx, &v.gy, &v.gz);
+  return v;
+}
+
+}  // namespace astrolith::testing
