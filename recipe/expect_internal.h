@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "numerics/vec3.h"
+#include "recipe/limits.h"
 #include "recipe/place_internal.h"
-#include "recipe/recipe.h"
 
 namespace astrolith {
 

@@ -24,6 +24,17 @@ void expect_array(const nlohmann::json& value, const Place& place);
 // An array of as many elements as there are names.
 void expect_row(const nlohmann::json& value, const Place& place, const std::vector<std::string_view>& names);
 
+template <typename T>
+using ReadElement = void (*)(const nlohmann::json&, const Place&, T&);
+
+template <typename T>
+void read_elements(const nlohmann::json& value, const Place& place, std::vector<T>& out,
+                   ReadElement<T> read_element) {
+  expect_array(value, place);
+  out.resize(value.size());
+  for (std::size_t i = 0; i < out.size(); ++i) read_element(value[i], place.element(i), out[i]);
+}
+
 //   ObjectReader object(value, place);
 //   object.require("spheres", spheres);
 //   object.allow("iso_value", body.iso_value);   // keeps the default when absent
@@ -60,5 +71,13 @@ class ObjectReader {
   std::vector<std::string_view> known_;
   std::vector<std::string_view> missing_;
 };
+
+template <typename T>
+void require_elements(ObjectReader& object, std::string_view name, std::vector<T>& out,
+                      ReadElement<T> read_element) {
+  if (const nlohmann::json* value = object.find(name))
+    return read_elements(*value, object.at(name), out, read_element);
+  object.note_missing(name);
+}
 
 }  // namespace astrolith

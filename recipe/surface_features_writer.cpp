@@ -1,11 +1,10 @@
+#include "recipe/body_internal.h"
 #include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json to_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 void write_place(const SurfacePlace& place, ordered_json& object) {
   object[place.is_direction ? "direction" : "position"] = to_json(place.vector);

@@ -1,0 +1,119 @@
+// The body of a recipe: metaballs, and how bodies are combined. Lengths are in the recipe's unit. Included by
+// recipe/recipe.h.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+inline constexpr double kMaxKernelExponent = 80.0;  // e^80 times a million spheres is still a float
+inline constexpr double kMaxTension = 10.0;         // of kernels other than the Gaussian
+
+struct Sphere {
+  Vec3d center;
+  double radius = 1.0;  // > 0
+};
+
+// A displacement of coordinates by three fractal sums of simplex noise, one along each axis (thesis eq. 4.6):
+//   warp_k(p) = amplitude * sum_o gain^o simplex_k(lacunarity^o * frequency * p)
+struct Warp {
+  double amplitude = 0.0;    // length units
+  double frequency = 1.0;    // cycles per length unit of the first octave, > 0
+  int octaves = 3;           // 1 .. 24; the last octave's frequency is at most kMaxNumber
+  double gain = 0.5;         // [0, 4]
+  double lacunarity = 1.95;  // (1, 16]
+};
+
+// The kernels of thesis 2.1, eq. 2.5 to 2.9.
+enum class Kernel { kGaussian, kMetaball, kSoftObject, kWyvill, kCauchy };
+inline constexpr Kernel kKernels[] = {Kernel::kGaussian, Kernel::kMetaball, Kernel::kSoftObject,
+                                      Kernel::kWyvill, Kernel::kCauchy};
+
+// As recipes and command lines name it.
+constexpr std::string_view kernel_word(Kernel kernel) {
+  constexpr std::string_view kWords[] = {"gaussian", "metaball", "soft_object", "wyvill", "cauchy"};
+  return kWords[static_cast<int>(kernel)];
+}
+
+// Spheres, by their place in the body's list, that layers can be tied to.
+struct SphereGroup {
+  std::string name;
+  std::vector<int> spheres;  // at least one, each below the number of spheres and once
+};
+
+// How a body is combined with another (thesis 2.2), both by their signed distances f and g, positive inside:
+//   union, intersection   (f + g +- sqrt(f^2 + g^2 - 2 alpha f g)) / (1 + alpha)       (R-functions)
+//   difference            the intersection of f and -g
+//   blend                 (f'^n + g'^n)^(1/n) = 1 with f' = max(0, 1 + f / width)      (super-elliptic)
+//   clean union           f + g + sqrt(f^2 + g^2) + a0 / (1 + (f/a1)^2 + (g/a2)^2)     (eq. 2.16, 2.17)
+// All but blend and bulge are exact on the surfaces; alpha < 1 rounds the field off them, and so what layers
+// build on it.
+enum class Operator { kUnion, kIntersection, kDifference, kBlend, kCleanUnion };
+inline constexpr Operator kOperators[] = {Operator::kUnion, Operator::kIntersection, Operator::kDifference,
+                                          Operator::kBlend, Operator::kCleanUnion};
+constexpr std::string_view operator_word(Operator op) {
+  constexpr std::string_view kWords[] = {"union", "intersection", "difference", "blend", "clean_union"};
+  return kWords[static_cast<int>(op)];
+}
+
+struct MetaballBody;
+struct BodyOperation {
+  Operator kind = Operator::kUnion;
+  double alpha = 1.0;                 // of the three R-functions, [-0.9, 1]
+  double exponent = 2.0;              // n of the blend, [1, 64]
+  double width = 1.0;                 // of the blend, length units, > 0: it ends this far from either body
+  double bulge = 0.0;                 // a0 of the clean union, length units; below 0 it carves
+  double reach[2] = {1.0, 1.0};       // a1, a2 of the clean union, length units, > 0
+  std::vector<MetaballBody> operand;  // exactly one
+};
+inline constexpr int kMaxOperationDepth = 8;  // of operands within operands
+inline constexpr int kMaxOperations = 256;    // in a whole recipe
+
+// m(p) = (sum_i f_i(p)^m)^(1/m),  f_i = exp(a - b |p - c_i|^2 / r_i^2)     (thesis eq. 4.3 to 4.5, per
+// sphere) with f_i = 0 beyond cutoff_radii * r_i. The bare body is the set where m(p) >= iso_value. With a =
+// b and iso_value = 1 a lone sphere's surface has its own radius.
+//
+// The other kernels are scaled to the same two values: f_i is e^a at the centre and 1 where |p - c_i|^2 is
+// a/b r_i^2. They end continuously: where their own support does or, lowered by what is left there, at
+// cutoff_radii, whichever comes first (synthesis/kernel_profile.h). That needs a tension of
+// least_tension(body) at least. Their blend is a p-norm with m >= 1.
+//
+// With a warp, m is taken at p + warp(p) instead of p: low frequencies and high amplitudes make caves,
+// tunnels and arches.
+struct MetaballBody {
+  Kernel kernel = Kernel::kGaussian;
+  double a = 1.0;                   // tension, > 0; at most kMaxTension for kernels other than the Gaussian
+  double b = 1.0;                   // tension, > 0
+  double blend_exponent = 1.0;      // the thesis's m, > 0 or >= 1; blend_exponent * a <= kMaxKernelExponent
+  double iso_value = 1.0;           // the thesis's T, > 0
+  double cutoff_radii = 5.0;        // support of each kernel in its own radii, > 1
+  std::vector<Sphere> spheres;      // at least one
+  std::vector<SphereGroup> groups;  // sorted by name, each name once
+  std::vector<BodyOperation> operations;  // done to these metaballs, in order
+  std::optional<Warp> warp;
+
+  // Null where there is none of that name.
+  const SphereGroup* find_group(std::string_view name) const {
+    for (const SphereGroup& group : groups) {
+      if (group.name == name) return &group;
+    }
+    return nullptr;
+  }
+};
+
+// The flattest kernel with its end at cutoff_radii is a parabola: below its tension there is none. Infinite
+// where the surface lies beyond the end.
+inline double least_tension(const MetaballBody& body) {
+  const double surface = body.a / body.b, end = body.cutoff_radii * body.cutoff_radii;
+  if (body.kernel == Kernel::kGaussian) return 0.0;
+  return surface < end ? -std::log1p(-surface / end) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace astrolith
