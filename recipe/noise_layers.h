@@ -22,10 +22,54 @@ struct Locality {
       1.0;  // length units, > 0: the weight falls from 3/4 to 1/4 where D - E goes from -width to width
 };
 
+// How a layer's height h, times its weight w, changes the elevation E that the layers before it made:
+//   add      E + w h
+//   replace  E + w (h - E)
+//   blend    E + w (U - E),  U = max(E, h) + (sqrt((E - h)^2 + width^2) - |E - h|) / 2
+//   warp     not at all: layers of noise after it are taken at p + w h direction instead of p
+//   mask     not at all: it is there for the masks of layers after it
+// U is the union of thesis 2.2 (an R-function with alpha = 1) of the surfaces at both heights, its joint
+// rounded over about `width`; an intersection is -U of -E and -h. Gabor layers are bound to the surface: none
+// stands after a warp.
+enum class Combine { kAdd, kReplace, kBlend, kWarp, kMask };
+inline constexpr Combine kCombines[] = {Combine::kAdd, Combine::kReplace, Combine::kBlend, Combine::kWarp,
+                                        Combine::kMask};
+constexpr std::string_view combine_word(Combine combine) {
+  constexpr std::string_view kWords[] = {"add", "replace", "blend", "warp", "mask"};
+  return kWords[static_cast<int>(combine)];
+}
+struct Combination {
+  Combine kind = Combine::kAdd;
+  double width = 0.0;         // of a blend, length units, >= 0
+  bool intersection = false;  // of a blend
+  Vec3d direction;            // of a warp: displacement a unit of height
+};
+
+// Multiplies a layer's weight by t^2 (3 - 2 t), t = (n - from) / (to - from) within [0, 1], where n is the
+// height of another layer.
+struct LayerMask {
+  std::string layer;  // the last of this name before; not craters or boulders
+  double from = 0.0;  // length units
+  double to = 1.0;    // length units; may lie below `from`, but not within a millionth of it
+};
+
 // What every kind of layer has but explicit craters and boulders, which have places of their own.
 struct LayerUse {
   std::optional<Locality> locality;  // absent: the same everywhere
+  std::optional<LayerMask> mask;     // absent: none
+  Combination combination;
 };
+
+// Instead of a layer's place in the list, in what its random numbers depend on: with one of its own a layer
+// stays as it is wherever it moves. Layers of one kind and one seed draw the same numbers.
+using LayerSeed = std::optional<int>;  // 0 .. kMaxLayerSeed
+inline constexpr int kMaxLayerSeed = (1 << 30) - 1;
+
+// What a layer's random numbers depend on beside the recipe's seed: its own, or its place in the list, which
+// is below kMaxLayerSeed.
+constexpr int layer_number(const LayerSeed& seed, int index) {
+  return seed ? kMaxLayerSeed + 1 + *seed : index;
+}
 
 // Simplex and Perlin noise lie in [-1, 1]. Worley noise is the distance to the nearest feature point, to the
 // second nearest, or their difference, less its mean, in a range of length 1. All have zero mean.
@@ -40,6 +84,7 @@ inline constexpr bool is_worley(Noise noise) { return noise != Noise::kSimplex &
 // A height in length units, added along the outward normal.
 struct FractalLayer {
   std::string name;
+  LayerSeed seed;
   LayerUse use;
   Noise noise = Noise::kSimplex;
   double amplitude = 0.0;      // length units
@@ -77,6 +122,7 @@ struct LayerColor {
 // Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
 struct GaborLayer {
   std::string name;
+  LayerSeed seed;
   LayerUse use;
   double pixel_size = 1.0;       // length units per exemplar pixel, > 0
   double height_rms = 0.0;       // length units, >= 0: brightness is not height, so the user states it
@@ -96,6 +142,7 @@ struct GaborLayer {
 // size falls as the size to the power -exponent, by density_j = density * lacunarity^(j (exponent - 2)).
 struct SpotLayer {
   std::string name;
+  LayerSeed seed;
   LayerUse use;
   double amplitude = 0.0;     // length units
   bool inverted = false;      // without the minus
@@ -128,6 +175,7 @@ inline constexpr double kMaxSpotCells = 4.0;
 // or, merged, n(p) = -amplitude max(sum_l gain^l N_l - threshold, 0). The threshold cuts a crisp border.
 struct SparseLayer {
   std::string name;
+  LayerSeed seed;
   LayerUse use;
   double amplitude = 0.0;     // length units
   double cell_size = 1.0;     // of the first level, length units, > 0
@@ -145,6 +193,7 @@ struct SparseLayer {
 // cells and make a regular pattern, at 1 nothing but the spectrum is left of it.
 struct RandomPhaseLayer {
   std::string name;
+  LayerSeed seed;
   LayerUse use;
   double height_rms = 0.0;     // length units, >= 0: the standard deviation
   double cell_size = 1.0;      // length units, > 0
@@ -170,6 +219,7 @@ constexpr std::string_view profile_word(PhasorProfile profile) {
 // a profile. Stripes, ridges, hatches and ripples whose contrast never fades.
 struct PhasorLayer {
   std::string name;
+  LayerSeed seed;
   LayerUse use;
   double amplitude = 0.0;     // length units
   double frequency = 1.0;     // cycles per length unit, > 0

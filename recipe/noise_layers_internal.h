@@ -2,17 +2,17 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "recipe/noise_layers.h"
 #include "recipe/object_reader_internal.h"
 #include "recipe/place_internal.h"
+#include "recipe/recipe.h"
 
 namespace astrolith {
 
 // The fields that every kind of layer has, beside its own.
 void read_use(ObjectReader& layer, LayerUse& out);
-void check(const LayerUse& use, const std::optional<MetaballBody>& body, const Place& place);
+// Of the recipe's layer of this number.
+void check_use(const Recipe& recipe, std::size_t index, const Place& place);
 void add_use(const LayerUse& use, nlohmann::ordered_json& layer);
 
 void read_fields(ObjectReader& object, FractalLayer& out);

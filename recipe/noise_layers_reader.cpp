@@ -54,18 +54,6 @@ void read_profile(ObjectReader& object, PhasorProfile& out) {
 
 }  // namespace
 
-// The fields that every kind of layer has.
-void read_use(ObjectReader& layer, LayerUse& out) {
-  if (const json* value = layer.find("locality")) {
-    const Place place = layer.at("locality");
-    ObjectReader object(*value, place);
-    Locality& locality = out.locality.emplace();
-    object.require("group", locality.group);
-    object.require("width", locality.width);
-    object.finish();
-  }
-}
-
 void read_fields(ObjectReader& object, FractalLayer& out) {
   if (is_worley(out.noise)) {
     read_worley_distance(object, out.noise);
@@ -73,6 +61,7 @@ void read_fields(ObjectReader& object, FractalLayer& out) {
     object.allow("gradient_modulation", out.gradient_modulation);
   }
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("frequency", out.frequency);
   object.allow("octaves", out.octaves);
@@ -86,6 +75,7 @@ void read_fields(ObjectReader& object, FractalLayer& out) {
 
 void read_fields(ObjectReader& object, GaborLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("pixel_size", out.pixel_size);
   object.allow("height_rms", out.height_rms);
   object.allow("impulses_per_kernel", out.impulses_per_kernel);
@@ -97,6 +87,7 @@ void read_fields(ObjectReader& object, GaborLayer& out) {
 
 void read_fields(ObjectReader& object, SpotLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("inverted", out.inverted);
   object.allow("size", out.size);
@@ -120,6 +111,7 @@ void read_fields(ObjectReader& object, SpotLayer& out) {
 
 void read_fields(ObjectReader& object, SparseLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("cell_size", out.cell_size);
   object.allow("levels", out.levels);
@@ -131,6 +123,7 @@ void read_fields(ObjectReader& object, SparseLayer& out) {
 
 void read_fields(ObjectReader& object, RandomPhaseLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("height_rms", out.height_rms);
   object.allow("cell_size", out.cell_size);
   object.allow("waves", out.waves);
@@ -144,6 +137,7 @@ void read_fields(ObjectReader& object, RandomPhaseLayer& out) {
 
 void read_fields(ObjectReader& object, PhasorLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("frequency", out.frequency);
   object.allow("cell_size", out.cell_size);

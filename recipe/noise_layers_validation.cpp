@@ -50,17 +50,6 @@ void expect_direction(const Vec3d& v, const Place& place) {
 
 }  // namespace
 
-// A recipe without a body is laid on one later.
-void check(const LayerUse& use, const std::optional<MetaballBody>& body, const Place& place) {
-  if (!use.locality) return;
-  const Place locality = place.field("locality");
-  expect_positive(use.locality->width, locality.field("width"));
-  if (body && body->find_group(use.locality->group) == nullptr) {
-    locality.field("group").fail("the body has no group " + quote_text(use.locality->group) +
-                                 "; name one of body.groups");
-  }
-}
-
 void check(const FractalLayer& layer, const Place& place) {
   expect_number(layer.amplitude, place.field("amplitude"));
   check_octaves(layer.frequency, layer.octaves, layer.gain, layer.lacunarity, place);

@@ -15,11 +15,23 @@ const char* distance_of(Noise noise) {
   return noise == Noise::kWorleyF1 ? "f1" : noise == Noise::kWorleyF2 ? "f2" : "f2-f1";
 }
 
+ordered_json to_json(const Combination& combination) {
+  ordered_json object{{"type", combine_word(combination.kind)}};
+  if (combination.kind == Combine::kBlend) {
+    object["operator"] = combination.intersection ? "intersection" : "union";
+    object["width"] = combination.width;
+  } else if (combination.kind == Combine::kWarp) {
+    object["direction"] = to_json(combination.direction);
+  }
+  return object;
+}
+
 }  // namespace
 
-// A layer's own fields, then those that every kind has.
 void add_use(const LayerUse& use, ordered_json& layer) {
   if (use.locality) layer["locality"] = {{"group", use.locality->group}, {"width", use.locality->width}};
+  if (use.mask) layer["mask"] = {{"layer", use.mask->layer}, {"from", use.mask->from}, {"to", use.mask->to}};
+  if (use.combination.kind != Combine::kAdd) layer["combine"] = to_json(use.combination);
 }
 
 ordered_json to_json(const FractalLayer& layer) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,6 +54,13 @@ class ObjectReader {
     const nlohmann::json* value = find(name);
     if (value != nullptr) read_value(*value, at(name), out);
     return value != nullptr;
+  }
+  template <typename T>
+  bool allow(std::string_view name, std::optional<T>& out) {
+    T value{};
+    const bool there = allow(name, value);
+    if (there) out = value;
+    return there;
   }
   template <typename T>
   void require(std::string_view name, T& out) {

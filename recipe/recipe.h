@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -37,6 +38,9 @@ inline LayerUse* use_of(Layer& layer) {
       layer);
 }
 inline const LayerUse* use_of(const Layer& layer) { return use_of(const_cast<Layer&>(layer)); }
+
+// The last of this name; -1 where there is none.
+int find_layer(std::span<const Layer> layers, const std::string& name);
 
 // Thermal erosion of the finished surface (thesis eq. 5.12): slopes steeper than the talus angle, measured
 // against the gravity of a body of uniform density that may turn about +z, slide down until they are not.

@@ -71,7 +71,7 @@ void validate_recipe(const Recipe& recipe, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     const Place at = layers.element(i);
     std::visit([&](const auto& layer) { check(layer, at); }, recipe.layers[i]);
-    if (const LayerUse* use = use_of(recipe.layers[i])) check(*use, recipe.body, at);
+    check_use(recipe, i, at);
   }
   if (!recipe.erosion) return;
   check(*recipe.erosion, place.field("erosion"));

@@ -48,7 +48,13 @@ ordered_json to_json(const Recipe& recipe) {
   document["layers"] = ordered_json::array();
   for (const Layer& layer : recipe.layers) {
     document["layers"].push_back(std::visit([](const auto& l) { return to_json(l); }, layer));
-    if (const LayerUse* use = use_of(layer)) add_use(*use, document["layers"].back());
+    ordered_json& written = document["layers"].back();
+    std::visit(
+        [&](const auto& l) {
+          if (l.seed) written["seed"] = *l.seed;
+        },
+        layer);
+    if (const LayerUse* use = use_of(layer)) add_use(*use, written);
   }
   if (recipe.erosion) document["erosion"] = to_json(*recipe.erosion);
   return document;

@@ -74,6 +74,7 @@ struct CraterPopulation {
 // have the profile `complex`, others `simple`.
 struct CraterLayer {
   std::string name;
+  std::optional<int> seed;  // as of all layers, recipe/noise_layers.h
   CraterProfile simple;
   CraterProfile complex{0.06, 0.03, 2.5, 3.0, 1.8, 0.1, 0.03, 0.25, 3};
   std::optional<double> complex_from;  // > 0; all are simple when absent
@@ -103,8 +104,9 @@ struct BoulderPopulation {
 // Boulders join the body as a smooth union with the joint k = smoothing * (half the shortest axis).
 struct BoulderLayer {
   std::string name;
-  double smoothing = 0.0;  // [0, 1]
-  double roughness = 0.0;  // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
+  std::optional<int> seed;  // as of all layers, recipe/noise_layers.h
+  double smoothing = 0.0;   // [0, 1]
+  double roughness = 0.0;   // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
   std::vector<Boulder> boulders;
   std::optional<BoulderPopulation> population;
 };

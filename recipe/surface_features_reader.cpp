@@ -5,12 +5,6 @@ namespace {
 
 using nlohmann::json;
 
-template <typename T>
-void allow(ObjectReader& object, std::string_view name, std::optional<T>& out) {
-  T value{};
-  if (object.allow(name, value)) out = value;
-}
-
 void read_place(ObjectReader& object, SurfacePlace& out) {
   const bool position = object.allow("position", out.vector);
   out.is_direction = object.find("direction") != nullptr;
@@ -19,8 +13,8 @@ void read_place(ObjectReader& object, SurfacePlace& out) {
 }
 
 void read_population_fields(ObjectReader& object, Population& out) {
-  allow(object, "count", out.count);
-  allow(object, "density", out.density);
+  object.allow("count", out.count);
+  object.allow("density", out.density);
   object.require("least_diameter", out.least_diameter);
   object.require("greatest_diameter", out.greatest_diameter);
   object.allow("exponent", out.exponent);
@@ -47,8 +41,8 @@ void read_crater(const json& value, const Place& place, Crater& out) {
   ObjectReader object(value, place);
   read_place(object, out.place);
   object.require("diameter", out.diameter);
-  allow(object, "depth", out.depth);
-  allow(object, "rim_height", out.rim_height);
+  object.allow("depth", out.depth);
+  object.allow("rim_height", out.rim_height);
   object.allow("age", out.age);
   object.finish();
 }
@@ -78,9 +72,10 @@ void read_list(ObjectReader& parent, std::string_view name, std::vector<T>& out,
 
 void read_fields(ObjectReader& object, CraterLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   read_profile(object, "simple", out.simple);
   read_profile(object, "complex", out.complex);
-  allow(object, "complex_from", out.complex_from);
+  object.allow("complex_from", out.complex_from);
   read_list(object, "craters", out.craters, read_crater);
   if (const json* value = object.find("population")) {
     const Place place = object.at("population");
@@ -96,6 +91,7 @@ void read_fields(ObjectReader& object, CraterLayer& out) {
 
 void read_fields(ObjectReader& object, BoulderLayer& out) {
   object.allow("name", out.name);
+  object.allow("seed", out.seed);
   object.allow("smoothing", out.smoothing);
   object.allow("roughness", out.roughness);
   read_list(object, "boulders", out.boulders, read_boulder);

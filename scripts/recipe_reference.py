@@ -109,7 +109,7 @@ def rows(names, omitted):
         if name in omitted:
             continue
         only = [n for n in names if name in definition(n)["properties"]]
-        meaning = field["description"]
+        meaning = resolved(field)["description"]
         if len(only) < len(names):
             types = [t for n in only for t in definition(n)["properties"]["type"]["enum"]]
             meaning += f"; {' and '.join(types)} only"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "synthesis/field_model_internal.h"
 #include "synthesis/largest_coordinate.h"
@@ -20,18 +21,43 @@ struct LayerBox {
   const SpotImpulses* spots;  // of the layer, that reach the box; null where none were drawn
 };
 
+// A layer's heights over a box.
+template <typename Noise>
+Interval bound_layer(const Noise& noise, const LayerBox& at) {
+  return noise.bound_heights(at.box);
+}
+Interval bound_layer(const SpotNoise& noise, const LayerBox& at) {
+  return noise.bound_heights(at.box, at.spots);
+}
+Interval bound_layer(const GaborSurfaceNoise& noise, const LayerBox&) {
+  return {-noise.height_bound(), noise.height_bound()};
+}
+
+// Heights over a box that masks ask for, by slot.
+using KeptIntervals = std::vector<Interval>;
+
+Interval product(const Interval& a, const Interval& b) { return {a.low * b.low, a.high * b.high}; }
+
+// Weights over a box; neither is below 0.
+Interval bound_weight(const LayerJoin& join, const Box& box, const KeptIntervals& kept) {
+  const Interval all{1.0, 1.0};
+  return product(join.locality ? join.locality->bound(box) : all,
+                 join.mask ? join.mask->bound(kept[static_cast<std::size_t>(join.mask->slot)]) : all);
+}
+
 // Elevations over a box from those that the layers before made.
 template <typename Noise>
-Interval bound_elevation(const Noise& noise, const LayerBox& at, const Interval& before) {
-  return plus(before, noise.bound_heights(at.box));
+Interval bound_elevation(const Noise& noise, const LayerJoin& join, const LayerBox& at, const Box& box,
+                         const Interval& before, KeptIntervals& kept) {
+  const Interval heights = bound_layer(noise, at);
+  if (join.keeps >= 0) {
+    const double slack = kRoundingSlack * join.height_bound;
+    kept[static_cast<std::size_t>(join.keeps)] = plus(heights, {-slack, slack});
+  }
+  return join.changes_elevation() ? joined(join.how, bound_weight(join, box, kept), before, heights) : before;
 }
-Interval bound_elevation(const SpotNoise& noise, const LayerBox& at, const Interval& before) {
-  return plus(before, noise.bound_heights(at.box, at.spots));
-}
-Interval bound_elevation(const GaborSurfaceNoise& noise, const LayerBox&, const Interval& before) {
-  return plus(before, {-noise.height_bound(), noise.height_bound()});
-}
-Interval bound_elevation(const CraterRelief& relief, const LayerBox& at, const Interval& before) {
+Interval bound_elevation(const CraterRelief& relief, const LayerJoin&, const LayerBox& at, const Box&,
+                         const Interval& before, KeptIntervals&) {
   return relief.bound(at.projected, before);
 }
 
@@ -43,22 +69,16 @@ Box projected_box(const FieldModel& model, const PreparedBody& body, const Box& 
   return widened(at, distance * (1.0 + kRoundingSlack) + 2e-6 * largest_coordinate(at));
 }
 
-// What a layer makes of elevations counts for its weight, the elevations themselves for the rest.
-Interval weighted(const Interval& weight, const Interval& before, const Interval& after) {
-  const auto mixed = [](double w, double a, double b) { return (1.0 - w) * a + w * b; };
-  return {std::min(mixed(weight.low, before.low, after.low), mixed(weight.high, before.low, after.low)),
-          std::max(mixed(weight.low, before.high, after.high), mixed(weight.high, before.high, after.high))};
-}
-
 Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const Box& box,
                        const Box& projected) {
   Interval elevation;
+  KeptIntervals kept(static_cast<std::size_t>(model.kept_heights));
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
-    const LayerBox at{box, projected, spots_of(spots, i)};
     const PlacedLayer& layer = model.layers[i];
-    const Interval after =
-        std::visit([&](const auto& l) { return bound_elevation(l, at, elevation); }, layer.noise);
-    elevation = layer.weight ? weighted(layer.weight->bound(box), elevation, after) : after;
+    const Box where = layer_box(layer, box);
+    const LayerBox at{where, projected, spots_of(spots, i)};
+    elevation = std::visit(
+        [&](const auto& l) { return bound_elevation(l, layer.join, at, box, elevation, kept); }, layer.noise);
   }
   const double slack = kRoundingSlack * model.height_bound;
   return {elevation.low - slack, elevation.high + slack};
@@ -182,7 +202,7 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
     const auto* noise = std::get_if<SpotNoise>(&model.layers[i].noise);
     if (noise == nullptr) continue;
     spots.resize(model.layers.size());
-    spots[i] = noise->gather(box, spots_of(of_larger, i));
+    spots[i] = noise->gather(layer_box(model.layers[i], box), spots_of(of_larger, i));
   }
   return spots;
 }

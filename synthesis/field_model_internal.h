@@ -14,7 +14,8 @@
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/implicit_field.h"
-#include "synthesis/local_weight.h"
+#include "synthesis/largest_coordinate.h"
+#include "synthesis/layer_join.h"
 #include "synthesis/phasor_noise.h"
 #include "synthesis/random_phase_noise.h"
 #include "synthesis/sparse_noise.h"
@@ -25,11 +26,19 @@ namespace astrolith {
 using HeightLayer = std::variant<FractalNoise, GaborSurfaceNoise, SpotNoise, SparseNoise, CraterRelief,
                                  RandomPhaseNoise, PhasorNoise>;
 
-// A layer, and where it counts.
+// A layer, and how it joins those before it; craters join by themselves.
 struct PlacedLayer {
   HeightLayer noise;
-  std::optional<LocalWeight> weight;
+  LayerJoin join;
 };
+
+// Where a layer is evaluated for the float points of a box.
+inline Box layer_box(const PlacedLayer& layer, const Box& box) {
+  const Vec3d& d = layer.join.displaced;
+  if (d.x == 0.0 && d.y == 0.0 && d.z == 0.0) return box;
+  const Box moved{box.min - d, box.max + d};
+  return widened(moved, 1e-6 * largest_coordinate(moved));
+}
 
 struct FieldModel {
   PreparedBody body;
@@ -37,6 +46,7 @@ struct FieldModel {
   float stretch = 1.0f;                // of a body with operations
   std::vector<PlacedLayer> layers;     // in the recipe's order
   double height_bound = 0.0;           // of the |elevation| that all layers make
+  int kept_heights = 0;                // slots for heights that masks ask for
   std::vector<LayerCraters> craters;   // that the layers hold
   BoulderField boulders;               // on the surface that the layers make
   std::vector<LayerBoulders> placed_boulders;

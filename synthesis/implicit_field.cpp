@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <type_traits>
 
 #include "numerics/errors.h"
 #include "synthesis/field_model_internal.h"
@@ -28,6 +26,11 @@ struct Batch {
   const SpotImpulses* spots = nullptr;   // of the layer, that reach the points; null where none were drawn
   std::array<float, kBatch> lx, ly, lz;  // of points near an origin: their local coordinates
   const Vec3d* origin = nullptr;         // null: there is none
+  std::array<float, kBatch> weight;
+  // Displacements by the layers that warp those after them, and displaced coordinates; of a model with such.
+  bool is_displaced = false;
+  std::array<float, kBatch> dx, dy, dz, qx, qy, qz;
+  std::vector<std::array<float, kBatch>> kept;  // heights that masks ask for, by slot
 };
 
 // First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
@@ -66,22 +69,42 @@ void project(const FieldModel& model, Batch& b) {
   along(b.mz, b.gz, b.pz.data());
 }
 
+struct PointArrays {
+  const float *x, *y, *z;
+};
+
+// The points as far as layers have displaced them.
+PointArrays displaced(Batch& b, const PointArrays& p) {
+  if (!b.is_displaced) return p;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+    b.qx[i] = p.x[i] + b.dx[i];
+    b.qy[i] = p.y[i] + b.dy[i];
+    b.qz[i] = p.z[i] + b.dz[i];
+  }
+  return {b.qx.data(), b.qy.data(), b.qz.data()};
+}
+PointArrays layer_points(Batch& b) { return displaced(b, {b.x.data(), b.y.data(), b.z.data()}); }
+
 void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
   if (b.origin != nullptr && noise.has_near_form()) {
-    noise.evaluate_near(*b.origin, b.n, b.lx.data(), b.ly.data(), b.lz.data(), b.height.data());
+    const PointArrays p = displaced(b, {b.lx.data(), b.ly.data(), b.lz.data()});
+    noise.evaluate_near(*b.origin, b.n, p.x, p.y, p.z, b.height.data());
   } else {
-    noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+    const PointArrays p = layer_points(b);
+    noise.evaluate(b.n, p.x, p.y, p.z, b.height.data());
   }
 }
 
 // Of a noise in space.
 template <typename Noise>
 void layer_heights(const FieldModel&, const Noise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
+  const PointArrays p = layer_points(b);
+  noise.evaluate(b.n, p.x, p.y, p.z, b.height.data());
 }
 
 void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
-  noise.evaluate(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data(), b.spots);
+  const PointArrays p = layer_points(b);
+  noise.evaluate(b.n, p.x, p.y, p.z, b.height.data(), b.spots);
 }
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
@@ -89,23 +112,50 @@ void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batc
   noise.evaluate(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
 }
 
-template <typename Noise>
-void add_layer(const FieldModel& model, const Noise& noise, const std::optional<LocalWeight>& weight,
-               Batch& b) {
-  layer_heights(model, noise, b);
-  if (weight) weight->multiply(b.n, b.x.data(), b.y.data(), b.z.data(), b.height.data());
-  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) b.elevation[i] += b.height[i];
+// Null where the layer counts fully everywhere.
+const float* layer_weights(const LayerJoin& join, Batch& b) {
+  if (!join.locality && !join.mask) return nullptr;
+  std::fill_n(b.weight.data(), b.n, 1.0f);
+  if (join.mask) {
+    join.mask->multiply(b.n, b.kept[static_cast<std::size_t>(join.mask->slot)].data(), b.weight.data());
+  }
+  if (join.locality) {
+    join.locality->multiply(b.n, b.x.data(), b.y.data(), b.z.data(), b.weight.data());
+  }
+  return b.weight.data();
 }
 
-void add_layer(const FieldModel& model, const CraterRelief& craters, const std::optional<LocalWeight>&,
-               Batch& b) {
+void displace(const Vec3d& direction, const float* weight, Batch& b) {
+  if (!b.is_displaced) {
+    b.is_displaced = true;
+    for (auto* d : {&b.dx, &b.dy, &b.dz}) std::fill_n(d->data(), b.n, 0.0f);
+  }
+  const auto along = [&](double per_height, std::array<float, kBatch>& d) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+      const float height = weight == nullptr ? b.height[i] : weight[i] * b.height[i];
+      d[i] = math::fma(static_cast<float>(per_height), height, d[i]);
+    }
+  };
+  along(direction.x, b.dx);
+  along(direction.y, b.dy);
+  along(direction.z, b.dz);
+}
+
+template <typename Noise>
+void apply_layer(const FieldModel& model, const Noise& noise, const LayerJoin& join, Batch& b) {
+  layer_heights(model, noise, b);
+  if (join.keeps >= 0) {
+    std::copy_n(b.height.data(), b.n, b.kept[static_cast<std::size_t>(join.keeps)].data());
+  }
+  const float* weight = layer_weights(join, b);
+  if (join.how.kind == Combine::kWarp) displace(join.how.direction, weight, b);
+  if (join.changes_elevation()) join_elevation(join.how, b.n, weight, b.height.data(), b.elevation.data());
+}
+
+void apply_layer(const FieldModel& model, const CraterRelief& craters, const LayerJoin&, Batch& b) {
   project(model, b);
   craters.apply(b.n, b.px.data(), b.py.data(), b.pz.data(), b.elevation.data());
 }
-
-struct PointArrays {
-  const float *x, *y, *z;
-};
 
 // The same points in coordinates local to an origin.
 struct NearPoints {
@@ -135,18 +185,10 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
   return kept;
 }
 
-// The most by which the layers from number `first` on may change an elevation; craters replace it.
+// The most by which the layers from number `first` on may change an elevation.
 float change_bound(const FieldModel& model, std::size_t first) {
   double bound = 0.0;
-  for (std::size_t i = first; i < model.layers.size(); ++i) {
-    if (std::holds_alternative<CraterRelief>(model.layers[i].noise))
-      return std::numeric_limits<float>::infinity();
-    std::visit(
-        [&](const auto& l) {
-          if constexpr (!std::is_same_v<decltype(l), const CraterRelief&>) bound += l.height_bound();
-        },
-        model.layers[i].noise);
-  }
+  for (std::size_t i = first; i < model.layers.size(); ++i) bound += model.layers[i].join.change_bound;
   return static_cast<float>(bound * (1.0 + 1e-5));
 }
 
@@ -168,6 +210,10 @@ void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::arr
                     &b.gz, &b.elevation, &b.px, &b.py, &b.pz}) {
       (*a)[to] = (*a)[from];
     }
+    if (b.is_displaced) {
+      for (auto* a : {&b.dx, &b.dy, &b.dz}) (*a)[to] = (*a)[from];
+    }
+    for (auto& heights : b.kept) heights[to] = heights[from];
     origin[to] = origin[from];
   }
   b.n = kept;
@@ -204,12 +250,13 @@ void add_elevations(const FieldModel& model, const BlockParts& parts, const Poin
   b.n = keep_near_surface(b.n, reach, boulders_reach, at, metaballs_at, near, b, origin);
   if (b.n == 0) return;
   std::fill_n(b.elevation.data(), b.n, 0.0f);
+  b.kept.resize(static_cast<std::size_t>(model.kept_heights));
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     keep_undecided(change_bound(model, i) + band, boulders_reach, b, origin, value);
     if (b.n == 0) return;
     b.spots = spots_of(parts.spots, i);
     const PlacedLayer& layer = model.layers[i];
-    std::visit([&](const auto& l) { add_layer(model, l, layer.weight, b); }, layer.noise);
+    std::visit([&](const auto& l) { apply_layer(model, l, layer.join, b); }, layer.noise);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }

@@ -101,7 +101,14 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
 
 Layer rescaled(const Layer& layer, double ratio) {
   Layer result = std::visit([ratio](const auto& l) { return scaled(l, ratio); }, layer);
-  if (LayerUse* use = use_of(result); use != nullptr && use->locality) use->locality->width *= ratio;
+  LayerUse* use = use_of(result);
+  if (use == nullptr) return result;
+  if (use->locality) use->locality->width *= ratio;
+  if (use->mask) {
+    use->mask->from *= ratio;
+    use->mask->to *= ratio;
+  }
+  use->combination.width *= ratio;
   return result;
 }
 

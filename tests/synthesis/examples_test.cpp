@@ -125,6 +125,19 @@ void choose_kernel(CounterRandom& random, MetaballBody& body) {
   body.a = body.b = std::max(random.uniform(0.3, 3.0), least_tension(body) + 0.01);
 }
 
+// How layers join those before them, and masks. The layers have names for these.
+void choose_joins(CounterRandom& random, Recipe& recipe) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    std::visit([&](auto& l) { l.name = std::to_string(i); }, recipe.layers[i]);
+    LayerUse& use = *use_of(recipe.layers[i]);
+    use.combination.kind = kCombines[random.below(5)];
+    use.combination.width = random.uniform(0.0, 0.05);
+    use.combination.intersection = random.uniform() < 0.5;
+    use.combination.direction = {random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)};
+    if (i > 0) use.mask = LayerMask{std::to_string(random.below(i)), -0.03, 0.03};
+  }
+}
+
 void add_operation(CounterRandom& random, MetaballBody& body) {
   BodyOperation operation;
   operation.kind = kOperators[random.below(5)];
@@ -165,6 +178,7 @@ Recipe random_recipe(std::uint64_t seed) {
     }
   }
   if (random.uniform() < 0.25) add_operation(random, *recipe.body);
+  if (CounterRandom own(seed, 1); own.uniform() < 0.3) choose_joins(own, recipe);
   add_features(random, recipe);
   return recipe;
 }
