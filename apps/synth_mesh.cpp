@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
@@ -16,6 +18,7 @@
 #include "synthesis/feature_list.h"
 #include "synthesis/manifold_check.h"
 #include "synthesis/mesh_components.h"
+#include "synthesis/surface_labels.h"
 
 namespace astrolith {
 namespace {
@@ -42,6 +45,11 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
                                         : "--points") +
                      ", or take erosion out of the recipe");
   }
+  if (recipe.erosion && request.labels) {
+    throw InputError(file.string() +
+                     ": erosion: moves what layers made; leave out --labels, or take erosion out of the "
+                     "recipe");
+  }
   if (request.least_component > 0.0 && region.is_cut()) {
     throw InputError(
         "--min-component: the size of a piece that is cut is not known; leave out --tile and "
@@ -51,7 +59,7 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
 
 void check_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
   check_mesh_extension(output);
-  if (request.points) require_extension(output, {".ply"});
+  if (request.points || request.labels) require_extension(output, {".ply"});
   require_writable(output);
   check_preview(program, request.preview);
   if (request.features.empty()) return;
@@ -115,6 +123,15 @@ MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field,
   return statistics;
 }
 
+// Where they are asked for; notes in the file's header what they mean.
+std::optional<SurfaceLabels> labels_of(const MeshRequest& request, const Recipe& recipe, const fs::path& file,
+                                       MeshFileInfo& info) {
+  if (!request.labels) return std::nullopt;
+  std::optional<SurfaceLabels> labels(std::in_place, recipe, file.string());
+  info.notes = labels->legend();
+  return labels;
+}
+
 }  // namespace
 
 void declare_mesh_options(Program& program, MeshRequest& request) {
@@ -145,6 +162,11 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
   program.app.add_flag("--points", request.points,
                        "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
                        "(.ply without faces)");
+  program.app.add_flag(
+      "--labels", request.labels,
+      "with each vertex the layer that changed the surface most there (0 = the bare body, 1 = "
+      "the recipe's first layer; the file's header says which is which) and the height of "
+      "all layers (.ply)");
   declare_preview_options(program, request.preview);
   program.app
       .add_option("--feature-list", request.features,
@@ -183,8 +205,11 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   if (!streamed || use.preview) sinks.add(collector);
   std::unique_ptr<PlyStreamWriter> writer;
   std::unique_ptr<PointsOnly> points;
+  const std::optional<SurfaceLabels> labels = labels_of(request, recipe, file, info);
   if (streamed) {
-    writer = std::make_unique<PlyStreamWriter>(output, info);
+    VertexLabeller labeller;
+    if (labels) labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
+    writer = std::make_unique<PlyStreamWriter>(output, info, std::move(labeller));
     points = std::make_unique<PointsOnly>(*writer);
     sinks.add(request.points ? static_cast<MeshSink&>(*points) : *writer);
   }

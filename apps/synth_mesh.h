@@ -20,6 +20,7 @@ struct MeshRequest {
   std::vector<double> patch;       // centre and side; empty = the whole
   double least_component = 0.0;    // share of the largest one's volume; 0 = all stay
   bool points = false;
+  bool labels = false;
 };
 
 void declare_mesh_options(Program& program, MeshRequest& request);

@@ -132,6 +132,7 @@ std::vector<std::string> info_lines(const MeshFileInfo& info) {
   if (info.origin) add("origin, to be added to all coordinates: ", point_text(*info.origin));
   add("frame: ", info.frame);
   add("", info.comment);
+  for (const std::string& note : info.notes) add("", note);
   lines.push_back("written by Astrolith");
   return lines;
 }

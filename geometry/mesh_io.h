@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/triangle_mesh.h"
 
@@ -35,6 +36,7 @@ struct MeshFileInfo {
   std::string comment;      // anything else, one line
   // In that frame, of coordinates that are relative to a point of it; absent: the frame's own.
   std::optional<Vec3d> origin = std::nullopt;
+  std::vector<std::string> notes = {};  // further lines
 };
 
 // Writes .ply (binary little endian, float32), .obj (text, exact), .stl (binary, float32) or .glb (glTF 2.0,

@@ -14,8 +14,10 @@ namespace astrolith {
 static_assert(std::endian::native == std::endian::little, "vertices are written as they lie in memory");
 static_assert(sizeof(MeshVertex) == 6 * sizeof(float), "a vertex is six floats without gaps");
 
+static_assert(sizeof(VertexLabel) == 8, "a label is an int32 and a float without gaps");
+
 std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
-                       bool with_normals) {
+                       bool with_normals, bool with_labels) {
   std::string header = "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& line : info_lines(info)) header += "comment " + line + "\n";
   const std::string vertices = std::to_string(num_vertices);
@@ -28,6 +30,7 @@ std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std
   if (with_normals) {
     for (const char* name : {"nx", "ny", "nz"}) header += std::string("property float ") + name + "\n";
   }
+  if (with_labels) header += "property int label\nproperty float elevation\n";
   header += "element face " + triangles + "\nproperty list uchar uint vertex_indices\n";
   return header + "end_header\n";
 }
@@ -39,15 +42,20 @@ std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle) {
   return bytes;
 }
 
-PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info)
-    : target_(file), info_(info), out_(file) {
+PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info,
+                                 VertexLabeller labeller)
+    : target_(file), info_(info), labeller_(std::move(labeller)), out_(file) {
   const std::string spill_name = out_.temporary_name() + ".faces";
   spill_.reset(std::fopen(spill_name.c_str(), "w+b"));
   if (!spill_) fail_spill();
   // Without a name it is gone when the process ends, however that happens.
   std::remove(spill_name.c_str());
-  const std::string header = ply_header(info_, 0, 0, true);
-  out_.write(header.data(), header.size());
+  const std::string text = header();
+  out_.write(text.data(), text.size());
+}
+
+std::string PlyStreamWriter::header() const {
+  return ply_header(info_, num_vertices_, num_triangles_, true, labeller_ != nullptr);
 }
 
 void PlyStreamWriter::add_vertices(std::span<const MeshVertex> vertices) {
@@ -55,7 +63,22 @@ void PlyStreamWriter::add_vertices(std::span<const MeshVertex> vertices) {
   if (num_vertices_ > static_cast<std::uint64_t>(kMaxVertices)) {
     throw WorkError(target_.string() + ": more than 2^32 - 1 vertices; choose a smaller resolution");
   }
-  out_.write(vertices.data(), vertices.size_bytes());
+  if (labeller_) {
+    write_labelled(vertices);
+  } else {
+    out_.write(vertices.data(), vertices.size_bytes());
+  }
+}
+
+void PlyStreamWriter::write_labelled(std::span<const MeshVertex> vertices) {
+  std::vector<VertexLabel> labels(vertices.size());
+  labeller_(vertices, labels);
+  BufferedOutput buffer(out_);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    buffer.append_value(vertices[i]);
+    buffer.append_value(labels[i]);
+  }
+  buffer.flush();
 }
 
 void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
@@ -74,9 +97,9 @@ void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
 
 void PlyStreamWriter::finish() {
   append_spill();
-  const std::string header = ply_header(info_, num_vertices_, num_triangles_, true);
+  const std::string text = header();
   out_.seek(0);
-  out_.write(header.data(), header.size());
+  out_.write(text.data(), text.size());
   out_.commit();
 }
 
@@ -102,7 +125,7 @@ void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   OutputFile out(file);
   BufferedOutput buffer(out);
   const bool with_normals = !mesh.normals.empty();
-  buffer.append(ply_header(info, mesh.vertices.size(), mesh.triangles.size(), with_normals));
+  buffer.append(ply_header(info, mesh.vertices.size(), mesh.triangles.size(), with_normals, false));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     buffer.append_value(to_float(mesh.vertices[i]));
     if (with_normals) buffer.append_value(to_float(mesh.normals[i]));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +14,15 @@
 #include "numerics/output_file.h"
 
 namespace astrolith {
+
+// Where a vertex came from.
+struct VertexLabel {
+  std::int32_t label = 0;
+  float elevation = 0.0f;  // length units
+};
+
+// Labels of as many vertices.
+using VertexLabeller = std::function<void(std::span<const MeshVertex>, std::span<VertexLabel>)>;
 
 //   PlyStreamWriter writer("bennu.ply", {.length_unit = "km"});
 //   mesh_field(field, bounds, 512, writer);
@@ -24,7 +34,8 @@ namespace astrolith {
 class PlyStreamWriter : public MeshSink {
  public:
   // Throws InputError when the folder cannot be written.
-  PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info);
+  // With a labeller, int32 label and float32 elevation stand behind the normal of each vertex.
+  PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info, VertexLabeller labeller = {});
 
   // Both throw WorkError when the disk is full; the one for more than 2^32 - 1 vertices, the other for a
   // triangle that names a vertex not yet given.
@@ -43,9 +54,12 @@ class PlyStreamWriter : public MeshSink {
   };
   [[noreturn]] void fail_spill() const;
   void append_spill();
+  std::string header() const;
+  void write_labelled(std::span<const MeshVertex> vertices);
 
   std::filesystem::path target_;
   MeshFileInfo info_;
+  VertexLabeller labeller_;  // null: no labels
   OutputFile out_;
   std::unique_ptr<std::FILE, FileCloser> spill_;
   std::uint64_t num_vertices_ = 0;

@@ -168,6 +168,19 @@ TEST_F(Synth, PointsAreTheVerticesAlone) {
   expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "out.obj").string(), "--points"}, ".ply");
 }
 
+TEST_F(Synth, LabelsStandBesideTheNormals) {
+  const std::string bytes = synthesise("labels.ply", {"--labels"});
+  EXPECT_NE(bytes.find("comment label 0: the bare body\ncomment label 1: simplex\n"), std::string::npos);
+  EXPECT_NE(bytes.find("property float nz\nproperty int label\nproperty float elevation\n"),
+            std::string::npos);
+  synthesise("plain.ply", {});
+  const TriangleMesh labelled = read_mesh(folder_ / "labels.ply"), plain = read_mesh(folder_ / "plain.ply");
+  EXPECT_TRUE(labelled.vertices == plain.vertices && labelled.triangles == plain.triangles);
+  EXPECT_NE(synthesise("points.ply", {"--labels", "--points"}).find("element face 0\n"), std::string::npos);
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "out.obj").string(), "--labels"}, ".ply");
+}
+
 TEST_F(Synth, TilesMakeTheWholeMesh) {
   synthesise("whole.ply", {});
   std::size_t triangles = 0;
