@@ -131,9 +131,18 @@ ASTROLITH_HD inline double sin_turns(double x) {
   return std::sin(6.283185307179586476925 * (x - std::round(x)));
 }
 
-// cos(2 pi x), as sin_turns. The shift by a quarter turn is made after the reduction, where it is exact
-// enough.
-ASTROLITH_HD inline float cos_turns(float x) { return sin_turns((x - round_even(x)) + 0.25f); }
+// cos(2 pi x) = 1 - 2 sin^2(pi x), as sin_turns: no quadrant to fold.
+ASTROLITH_HD inline float cos_turns(float x) {
+  const float r = x - round_even(x);  // [-1/2, 1/2]
+  const float z = r * r;
+  float p = 7.76559123e-2f;  // Chebyshev: sin(pi r) / r over z in [0, 1/4], within 2e-8
+  p = fma(p, z, -5.98290411e-1f);
+  p = fma(p, z, 2.55007739f);
+  p = fma(p, z, -5.16771008f);
+  p = fma(p, z, 3.14159264f);
+  const float s = r * p;
+  return fma(-2.0f * s, s, 1.0f);
+}
 ASTROLITH_HD inline double cos_turns(double x) {
   return std::cos(6.283185307179586476925 * (x - std::round(x)));
 }

@@ -94,17 +94,14 @@ struct Centers {
 
 }  // namespace
 
-DrawnCells draw_cells(const SurfaceBand& band, const PreparedBody& body, std::span<const GaborCell> cells) {
+std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const PreparedBody& body,
+                                     std::span<const GaborCell> cells) {
   const Centers centers(cells, band.cell, body);
-  DrawnCells drawn;
-  drawn.start.reserve(cells.size() + 1);
+  std::vector<GaborImpulse> impulses;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    drawn.start.push_back(static_cast<std::uint32_t>(drawn.impulses.size()));
-    draw_cell(band, cells[i], -centers.distance[i], {centers.gx[i], centers.gy[i], centers.gz[i]},
-              drawn.impulses);
+    draw_cell(band, cells[i], -centers.distance[i], {centers.gx[i], centers.gy[i], centers.gz[i]}, impulses);
   }
-  drawn.start.push_back(static_cast<std::uint32_t>(drawn.impulses.size()));
-  return drawn;
+  return impulses;
 }
 
 }  // namespace astrolith

@@ -27,13 +27,9 @@ struct SurfaceBand {
 
 using GaborCell = std::array<int, 3>;
 
-// Impulses by cell: those of cell i are impulses[start[i]] .. impulses[start[i + 1] - 1].
-struct DrawnCells {
-  std::vector<std::uint32_t> start;  // one more than cells
-  std::vector<GaborImpulse> impulses;
-};
-
-// A cell has the tangent frame of the body's level set through its centre.
-DrawnCells draw_cells(const SurfaceBand& band, const PreparedBody& body, std::span<const GaborCell> cells);
+// The impulses of cells, one cell after another. A cell has the tangent frame of the body's level set through
+// its centre.
+std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const PreparedBody& body,
+                                     std::span<const GaborCell> cells);
 
 }  // namespace astrolith

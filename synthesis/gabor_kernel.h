@@ -9,6 +9,7 @@
 
 #include "numerics/host_device.h"
 #include "numerics/scalar_math.h"
+#include "numerics/vec3.h"
 
 namespace astrolith {
 
@@ -67,6 +68,51 @@ ASTROLITH_KERNEL float gabor_kernel(const GaborImpulse& impulse, float x, float 
   const float turns = math::fma(impulse.frequency_u, u, math::fma(impulse.frequency_v, v, impulse.phase));
   // Outside the windows the exponent is kept small enough for exp and the angle is of no account.
   return envelope * math::exp(-3.14159265f * (u2 + v2)) * math::cos_turns(turns);
+}
+
+// A kernel and its gradient, per length unit.
+struct GaborSample {
+  float value;
+  Vec3f slope;
+};
+
+// The window w(u) and its derivative.
+struct WindowSample {
+  float value, slope;
+};
+ASTROLITH_KERNEL WindowSample gabor_window_with_slope(float u) {
+  constexpr float kReach2 = kGaborReach * kGaborReach;
+  constexpr float kScale = 1.0f / (kReach2 * (1.0f - 0.49f));
+  const float t = math::clamp((kReach2 - u * u) * kScale, 0.0f, 1.0f);
+  return {t * t * math::fma(-2.0f, t, 3.0f), -12.0f * kScale * u * (t * (1.0f - t))};
+}
+
+// The same bits, with the gradient: d/du (w exp(-pi u^2) cos) = exp(-pi u^2) ((w' - 2 pi u w) cos - 2 pi f w
+// sin).
+ASTROLITH_KERNEL GaborSample gabor_kernel_with_slope(const GaborImpulse& impulse, float x, float y, float z) {
+  constexpr float kTwoPi = 6.28318531f;
+  const float dx = x - impulse.x, dy = y - impulse.y, dz = z - impulse.z;
+  const float u = math::fma(dx, impulse.ux, math::fma(dy, impulse.uy, dz * impulse.uz));
+  const float v = math::fma(dx, impulse.vx, math::fma(dy, impulse.vy, dz * impulse.vz));
+  const float n = math::fma(dx, impulse.nx, math::fma(dy, impulse.ny, dz * impulse.nz));
+  const WindowSample wu = gabor_window_with_slope(u), wv = gabor_window_with_slope(v);
+  const float slab = math::max(math::fma(-n, n, 1.0f), 0.0f), slab2 = slab * slab;
+  const float gaussian = math::exp(-3.14159265f * (u * u + v * v));
+  const float turns = math::fma(impulse.frequency_u, u, math::fma(impulse.frequency_v, v, impulse.phase));
+  const float cosine = math::cos_turns(turns), sine = kTwoPi * math::sin_turns(turns);
+  const float windows = wu.value * wv.value;
+  const float along_u =
+      math::fma(math::fma(-kTwoPi * u, wu.value, wu.slope), cosine, -impulse.frequency_u * wu.value * sine);
+  const float along_v =
+      math::fma(math::fma(-kTwoPi * v, wv.value, wv.slope), cosine, -impulse.frequency_v * wv.value * sine);
+  const float gu = gaussian * slab2 * wv.value * along_u, gv = gaussian * slab2 * wu.value * along_v;
+  const float gn = gaussian * windows * cosine * (-4.0f * n * slab);
+  const auto slope = [&](float ax, float ay, float az) {
+    return math::fma(gu, ax, math::fma(gv, ay, gn * az));
+  };
+  return {windows * slab2 * gaussian * cosine,
+          {slope(impulse.ux, impulse.vx, impulse.nx), slope(impulse.uy, impulse.vy, impulse.ny),
+           slope(impulse.uz, impulse.vz, impulse.nz)}};
 }
 
 }  // namespace astrolith

@@ -20,41 +20,6 @@ constexpr double kFarthestReach = 1.25;       // in units of 1/a
 const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborReach} +
                                       double{kGaborSlabReach} * double{kGaborSlabReach});
 
-// Impulses are drawn for a group of points of bounded size, so that memory is. Where many points share the
-// impulses of a cell, loops over points add them: impulses are handed down to halves of the group, each
-// keeping what reaches it, since small groups waste fewer kernel evaluations on points out of reach (sizes in
-// kernel reaches). Where few do, loops over the impulses of cells do. Either gives the same bits.
-constexpr std::int64_t kMostCells = 1 << 17;
-constexpr double kDensePoints = 32.0;
-constexpr double kSmallestReaches = 0.4;
-constexpr int kSmallestGroup = 32;  // points: two vectors of the widest machine
-
-ASTROLITH_SIMD_CLONES void add_impulses(const GaborImpulse* impulses, std::size_t num_impulses,
-                                        float amplitude, int n, const float* __restrict x,
-                                        const float* __restrict y, const float* __restrict z,
-                                        float* __restrict height) {
-  for (std::size_t j = 0; j < num_impulses; ++j) {
-    const GaborImpulse impulse = impulses[j];
-#pragma omp simd
-    for (int i = 0; i < n; ++i) {
-      height[i] = math::fma(amplitude, gabor_kernel(impulse, x[i], y[i], z[i]), height[i]);
-    }
-  }
-}
-
-// Whether a kernel reaches the box, by the box's extents along the kernel's axes; never wrongly says no.
-bool reaches(const GaborImpulse& k, const Vec3d& center, const Vec3d& half) {
-  constexpr double kSlack = 1.0 + 1e-3;
-  const double dx = center.x - double{k.x}, dy = center.y - double{k.y}, dz = center.z - double{k.z};
-  const auto far = [&](double ax, double ay, double az, double reach) {
-    const double spread = std::fabs(ax) * half.x + std::fabs(ay) * half.y + std::fabs(az) * half.z;
-    return std::fabs(ax * dx + ay * dy + az * dz) > reach * kSlack + spread;
-  };
-  return !far(double{k.ux}, double{k.uy}, double{k.uz}, double{kGaborReach}) &&
-         !far(double{k.vx}, double{k.vy}, double{k.vz}, double{kGaborReach}) &&
-         !far(double{k.nx}, double{k.ny}, double{k.nz}, double{kGaborSlabReach});
-}
-
 double longest_side(const Box& box) {
   const Vec3d e = box.extent();
   return std::max({e.x, e.y, e.z});
@@ -65,39 +30,6 @@ Vec3f to_float(const Vec3d& v) {
 }
 
 }  // namespace
-
-// A copy of the caller's points that may be reordered.
-struct GaborSurfaceNoise::Points {
-  std::vector<float> x, y, z, height;
-  std::vector<int> index;
-
-  double coordinate(int axis, int i) const {
-    const std::vector<float>& c = axis == 0 ? x : axis == 1 ? y : z;
-    return static_cast<double>(c[static_cast<std::size_t>(i)]);
-  }
-  void swap(int i, int j) {
-    const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-    for (std::vector<float>* c : {&x, &y, &z, &height}) std::swap((*c)[a], (*c)[b]);
-    std::swap(index[a], index[b]);
-  }
-  Box bounds(int begin, int end) const {
-    Box box;
-    for (int i = begin; i < end; ++i) box.extend({coordinate(0, i), coordinate(1, i), coordinate(2, i)});
-    return box;
-  }
-  // Moves the points of one half of their box to the front; returns where the others begin, or `begin` when
-  // all points are in one place.
-  int halve(int begin, int end, const Box& box) {
-    const Vec3d e = box.extent(), c = box.center();
-    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-    const double border = axis == 0 ? c.x : axis == 1 ? c.y : c.z;
-    int middle = begin;
-    for (int i = begin; i < end; ++i) {
-      if (coordinate(axis, i) < border) swap(i, middle++);
-    }
-    return middle == end ? begin : middle;
-  }
-};
 
 GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
                                      const PreparedBody& body, const Box& domain)
@@ -129,70 +61,44 @@ GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed
   }
 }
 
+GaborSurfacePoints GaborSurfaceNoise::add_bands(int n, const float* x, const float* y, const float* z,
+                                                bool with_slopes) const {
+  std::vector<float> clamped(static_cast<std::size_t>(3 * n));
+  float *px = clamped.data(), *py = px + n, *pz = py + n;
+  for (int i = 0; i < n; ++i) {
+    px[i] = math::clamp(x[i], domain_min_.x, domain_max_.x);
+    py[i] = math::clamp(y[i], domain_min_.y, domain_max_.y);
+    pz[i] = math::clamp(z[i], domain_min_.z, domain_max_.z);
+  }
+  GaborSurfacePoints points(n, px, py, pz, with_slopes);
+  for (const GaborTiles& band : bands_) points.add_band(band);
+  return points;
+}
+
 void GaborSurfaceNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
-  Points points;
-  const auto clamped = [n](const float* c, float low, float high) {
-    std::vector<float> copy(c, c + n);
-    for (float& v : copy) v = math::clamp(v, low, high);
-    return copy;
-  };
-  points.x = clamped(x, domain_min_.x, domain_max_.x);
-  points.y = clamped(y, domain_min_.y, domain_max_.y);
-  points.z = clamped(z, domain_min_.z, domain_max_.z);
-  points.height.assign(static_cast<std::size_t>(n), 0.0f);
-  for (int i = 0; i < n; ++i) points.index.push_back(i);
-  for (const GaborTiles& band : bands_) add_band(band, points, 0, n);
-  for (std::size_t i = 0; i < points.index.size(); ++i) {
-    height[points.index[i]] = math::clamp(points.height[i], -clip_, clip_);
-  }
+  add_bands(n, x, y, z, false).store_heights(height);
+  for (int i = 0; i < n; ++i) height[i] = math::clamp(height[i], -clip_, clip_);
 }
 
-namespace {
-
-std::vector<GaborImpulse> reaching(const std::vector<GaborImpulse>& impulses, const Box& box) {
-  const Vec3d center = box.center(), half = 0.5 * box.extent();
-  std::vector<GaborImpulse> kept;
-  for (const GaborImpulse& impulse : impulses) {
-    if (reaches(impulse, center, half)) kept.push_back(impulse);
+void GaborSurfaceNoise::evaluate_tetrahedra(int n, const float* x, const float* y, const float* z,
+                                            float* height) const {
+  const auto count = static_cast<std::size_t>(n / 4);
+  const auto center_of = [](const float* c) { return 0.25f * ((c[0] + c[1]) + (c[2] + c[3])); };
+  std::vector<float> values(7 * count);
+  float *cx = values.data(), *cy = cx + count, *cz = cy + count, *middle = cz + count, *sx = middle + count,
+        *sy = sx + count, *sz = sy + count;
+  for (std::size_t t = 0; t < count; ++t) {
+    cx[t] = center_of(x + 4 * t);
+    cy[t] = center_of(y + 4 * t);
+    cz[t] = center_of(z + 4 * t);
   }
-  return kept;
-}
-
-}  // namespace
-
-void GaborSurfaceNoise::add_band(const GaborTiles& tiles, Points& points, int begin, int end) const {
-  if (begin == end) return;
-  const SurfaceBand& band = tiles.band();
-  const Box box = points.bounds(begin, end);
-  const int middle = cells_around(band, box).cells() > kMostCells ? points.halve(begin, end, box) : begin;
-  if (middle != begin) {
-    add_band(tiles, points, begin, middle);
-    add_band(tiles, points, middle, end);
-    return;
-  }
-  const auto first = static_cast<std::size_t>(begin);
-  const GaborImpulses impulses(tiles, end - begin, &points.x[first], &points.y[first], &points.z[first]);
-  if (impulses.points_per_cell() < kDensePoints) {
-    impulses.add_by_cells(&points.height[first]);
-  } else {
-    add_group(band, impulses.all(), points, begin, end);
-  }
-}
-
-void GaborSurfaceNoise::add_group(const SurfaceBand& band, const std::vector<GaborImpulse>& impulses,
-                                  Points& points, int begin, int end) const {
-  const Box box = points.bounds(begin, end);
-  const std::vector<GaborImpulse> near = reaching(impulses, box);
-  const bool divisible =
-      end - begin > kSmallestGroup && longest_side(box) > kSmallestReaches * double{band.reach};
-  const int middle = divisible ? points.halve(begin, end, box) : begin;
-  if (middle == begin) {
-    const auto first = static_cast<std::size_t>(begin);
-    add_impulses(near.data(), near.size(), band.amplitude, end - begin, &points.x[first], &points.y[first],
-                 &points.z[first], &points.height[first]);
-  } else {
-    add_group(band, near, points, begin, middle);
-    add_group(band, near, points, middle, end);
+  const GaborSurfacePoints points = add_bands(n / 4, cx, cy, cz, true);
+  points.store_heights(middle);
+  points.store_slopes(sx, sy, sz);
+  for (std::size_t i = 0; i < 4 * count; ++i) {
+    const std::size_t t = i / 4;
+    const float rise = math::fma(x[i] - cx[t], sx[t], math::fma(y[i] - cy[t], sy[t], (z[i] - cz[t]) * sz[t]));
+    height[i] = math::clamp(middle[t] + rise, -clip_, clip_);
   }
 }
 

@@ -12,7 +12,7 @@
 
 #include "recipe/recipe.h"
 #include "synthesis/combined_body.h"
-#include "synthesis/gabor_impulses.h"
+#include "synthesis/gabor_surface_points.h"
 
 namespace astrolith {
 
@@ -27,15 +27,15 @@ class GaborSurfaceNoise {
   // layer.height_rms.
   void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
 
+  // The same at the corners of small tetrahedra, four after four, to first order about their centres: for
+  // differences, and about as dear as one point each.
+  void evaluate_tetrahedra(int n, const float* x, const float* y, const float* z, float* height) const;
+
   // 6 times the standard deviation, where heights are cut.
   double height_bound() const { return static_cast<double>(clip_); }
 
  private:
-  struct Points;
-
-  void add_band(const GaborTiles& tiles, Points& points, int begin, int end) const;
-  void add_group(const SurfaceBand& band, const std::vector<GaborImpulse>& impulses, Points& points,
-                 int begin, int end) const;
+  GaborSurfacePoints add_bands(int n, const float* x, const float* y, const float* z, bool with_slopes) const;
 
   Vec3f domain_min_, domain_max_;
   std::vector<GaborTiles> bands_;

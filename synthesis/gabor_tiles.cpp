@@ -1,5 +1,8 @@
 #include "synthesis/gabor_tiles.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "numerics/hash_random.h"
 
 namespace astrolith {
@@ -14,9 +17,8 @@ std::uint64_t key_of(const std::array<int, 3>& index) {
   return key;
 }
 
-std::size_t bytes_of(const DrawnCells& tile) {
-  return sizeof(tile) + tile.impulses.capacity() * sizeof(GaborImpulse) +
-         tile.start.capacity() * sizeof(std::uint32_t);
+std::size_t bytes_of(const GaborTile& tile) {
+  return sizeof(tile) + tile.chunks.capacity() * sizeof(ImpulseChunk);
 }
 
 }  // namespace
@@ -24,7 +26,7 @@ std::size_t bytes_of(const DrawnCells& tile) {
 GaborTiles::GaborTiles(SurfaceBand band, const PreparedBody& body)
     : band_(std::move(band)), body_(body), shelves_(std::make_unique<std::array<Shelf, kShelves>>()) {}
 
-std::shared_ptr<const DrawnCells> GaborTiles::tile(const std::array<int, 3>& index) const {
+std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& index) const {
   const std::uint64_t key = key_of(index);
   Shelf& shelf = (*shelves_)[hash_cell(0, index[0], index[1], index[2]) % kShelves];
   {
@@ -32,7 +34,7 @@ std::shared_ptr<const DrawnCells> GaborTiles::tile(const std::array<int, 3>& ind
     const auto known = shelf.tiles.find(key);
     if (known != shelf.tiles.end()) return known->second;
   }
-  auto made = std::make_shared<const DrawnCells>(make_tile(index));
+  const std::shared_ptr<const GaborTile> made = draw(index, kWholeTile);
   const std::lock_guard lock(shelf.mutex);
   const auto [place, is_new] = shelf.tiles.emplace(key, made);
   if (!is_new) return place->second;  // another thread was faster
@@ -47,18 +49,25 @@ std::shared_ptr<const DrawnCells> GaborTiles::tile(const std::array<int, 3>& ind
   return made;
 }
 
-DrawnCells GaborTiles::make_tile(const std::array<int, 3>& index) const {
+std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& index, TileCells wanted) const {
   std::vector<GaborCell> cells;
-  for (int z = 0; z < kTileCells; ++z) {
-    for (int y = 0; y < kTileCells; ++y) {
-      for (int x = 0; x < kTileCells; ++x) {
-        cells.push_back({index[0] * kTileCells + x, index[1] * kTileCells + y, index[2] * kTileCells + z});
-      }
+  for (int i = 0; i < kTileCells * kTileCells * kTileCells; ++i) {
+    if ((wanted >> i & 1u) == 0) continue;
+    cells.push_back({index[0] * kTileCells + i % kTileCells,
+                     index[1] * kTileCells + i / kTileCells % kTileCells,
+                     index[2] * kTileCells + i / (kTileCells * kTileCells)});
+  }
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  GaborTile tile{make_chunks(draw_cells(band_, body_, cells), double{band_.a}),
+                 {kInfinity, kInfinity, kInfinity},
+                 {-kInfinity, -kInfinity, -kInfinity}};
+  for (const ImpulseChunk& chunk : tile.chunks) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      tile.low[axis] = std::min(tile.low[axis], chunk.low[axis]);
+      tile.high[axis] = std::max(tile.high[axis], chunk.high[axis]);
     }
   }
-  DrawnCells tile = draw_cells(band_, body_, cells);
-  tile.impulses.shrink_to_fit();
-  return tile;
+  return std::make_shared<const GaborTile>(std::move(tile));
 }
 
 }  // namespace astrolith
