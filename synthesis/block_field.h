@@ -30,6 +30,14 @@ concept FieldBlockLike = requires(const Block& block, const Box& child, std::spa
   block.evaluate(coordinates, coordinates, coordinates, values, band);
 };
 
+// A field that can give F at the corners of small tetrahedra, four after four, to first order about their
+// centres, for less than as many points take: what depends on a tetrahedron does on its corners alone.
+template <class Block>
+concept HasTetrahedra = requires(const Block& block, std::span<const float> coordinates,
+                                 std::span<float> values) {
+  block.evaluate_tetrahedra(coordinates, coordinates, coordinates, values);
+};
+
 template <class Field>
 concept BlockField = requires(const Field& field, const Box& box) {
   { field.gather(box) } -> FieldBlockLike;

@@ -144,7 +144,7 @@ MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, const LayerBlock<
 }
 
 // Finished together: enough to keep a field's vector loops busy, few enough for the stack.
-inline constexpr std::size_t kVerticesPerBatch = 128;
+inline constexpr std::size_t kVerticesPerBatch = 256;
 
 // Vertices on their way into a layer's array.
 struct VertexBatch {
@@ -161,16 +161,14 @@ template <FieldBlockLike Block>
 void take_normals(const Block& field, float h, VertexBatch& batch) {
   constexpr std::array<Vec3<float>, 4> kCorners = {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   batch.points.clear();
-  for (const Vec3<float>& k : kCorners) {
-    for (std::size_t i = 0; i < batch.size; ++i) {
-      const Vec3<float>& p = batch.vertices[i].position;
-      batch.points.add(p.x + h * k.x, p.y + h * k.y, p.z + h * k.z);
-    }
+  for (std::size_t i = 0; i < batch.size; ++i) {
+    const Vec3<float>& p = batch.vertices[i].position;
+    for (const Vec3<float>& k : kCorners) batch.points.add(p.x + h * k.x, p.y + h * k.y, p.z + h * k.z);
   }
-  batch.points.evaluate(field);
+  batch.points.evaluate_tetrahedra(field);
   for (std::size_t i = 0; i < batch.size; ++i) {
     Vec3<float> gradient{};
-    for (std::size_t k = 0; k < 4; ++k) gradient += kCorners[k] * batch.points.value(k * batch.size + i);
+    for (std::size_t k = 0; k < 4; ++k) gradient += kCorners[k] * batch.points.value(4 * i + k);
     const float length = norm(gradient);
     if (length > 0.0f && std::isfinite(length)) batch.vertices[i].normal = gradient * (-1.0f / length);
   }

@@ -31,6 +31,16 @@ class PointBatch {
     const auto points = [this](const auto& v) { return std::span(v).first(size_); };
     if (size_ > 0) field.evaluate(points(x_), points(y_), points(z_), std::span(value_).first(size_), band);
   }
+  // Of points that are the corners of tetrahedra, four after four.
+  template <FieldBlockLike Block>
+  void evaluate_tetrahedra(const Block& field) {
+    if constexpr (HasTetrahedra<Block>) {
+      const auto points = [this](const auto& v) { return std::span(v).first(size_); };
+      field.evaluate_tetrahedra(points(x_), points(y_), points(z_), std::span(value_).first(size_));
+    } else {
+      evaluate(field);
+    }
+  }
 
  private:
   std::size_t size_ = 0;

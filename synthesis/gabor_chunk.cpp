@@ -131,11 +131,16 @@ ASTROLITH_SIMD_CLONES void slopes_at_point(const ImpulseChunk& chunk, float x, f
   }
 }
 
-// One after the other, as a loop over impulses adds them; zeros change nothing.
+// One after the other, as a loop over impulses adds them; zeros change nothing and are left out first, since
+// each addition waits for the one before.
 ASTROLITH_SIMD_CLONES float sum_of(const float* kernel, float amplitude, float sum) {
+  std::array<float, kLanes> nonzero;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < kLanes; ++i) {
-    if (kernel[i] != 0.0f) sum = math::fma(amplitude, kernel[i], sum);
+    nonzero[count] = kernel[i];
+    count += kernel[i] != 0.0f ? 1 : 0;
   }
+  for (std::size_t i = 0; i < count; ++i) sum = math::fma(amplitude, nonzero[i], sum);
   return sum;
 }
 

@@ -13,10 +13,9 @@ constexpr int kCluster = 4 * kGroup;
 
 // Cells around so many points are drawn at once: memory is bounded.
 constexpr std::int64_t kMostCells = 1 << 17;
-// Up to so many cells for each point, groups of points share impulses well.
-constexpr std::int64_t kDenseCellsPerPoint = 10;
-// A box of so many cells for each point is worth drawing whole, by tiles that others can use too.
-constexpr std::int64_t kCellsPerPoint = 100;
+// Around up to so many cells for each point all are drawn, by tiles that others can use too, and groups of
+// points share their impulses. Beyond, only those around each point are.
+constexpr std::int64_t kCellsPerPoint = 300;
 
 // The cells whose impulses may reach a point of the box.
 CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
@@ -173,7 +172,7 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
     const int middle = begin + ((end - begin) / 2 + unit - 1) / unit * unit;
     add_band(tiles, begin, middle);
     add_band(tiles, middle, end);
-  } else if (range.cells() <= kDenseCellsPerPoint * (end - begin)) {
+  } else if (range.cells() <= kCellsPerPoint * (end - begin)) {
     add_to_dense(tiles, range, begin, end);
   } else {
     add_to_scattered(tiles, range, begin, end);
@@ -203,15 +202,11 @@ void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, const CellRan
                                           int end) {
   const TileRange tile_range(range);
   HeldTiles held;
-  if (range.cells() <= kCellsPerPoint * (end - begin)) {
-    held = whole_tiles(tiles, tile_range);
-  } else {
-    std::vector<TileCells> marks(tile_range.size());
-    for (int i = begin; i < end; ++i) mark(cells_around(tiles.band(), box_of(i, i + 1)), tile_range, marks);
-    held.resize(marks.size());
-    for (std::size_t t = 0; t < marks.size(); ++t) {
-      if (marks[t] != 0) held[t] = tiles.draw(tile_range.index(t), marks[t]);
-    }
+  std::vector<TileCells> marks(tile_range.size());
+  for (int i = begin; i < end; ++i) mark(cells_around(tiles.band(), box_of(i, i + 1)), tile_range, marks);
+  held.resize(marks.size());
+  for (std::size_t t = 0; t < marks.size(); ++t) {
+    if (marks[t] != 0) held[t] = tiles.draw(tile_range.index(t), marks[t]);
   }
   Chunks near, nearest;
   for (int cluster = begin; cluster < end; cluster += kCluster) {

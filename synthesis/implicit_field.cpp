@@ -31,6 +31,7 @@ struct Batch {
   bool is_displaced = false;
   std::array<float, kBatch> dx, dy, dz, qx, qy, qz;
   std::vector<std::array<float, kBatch>> kept;  // heights that masks ask for, by slot
+  bool tetrahedra = false;               // whether points are the corners of such, and none may be left out
 };
 
 // First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
@@ -109,7 +110,11 @@ void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
 
 void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
   project(model, b);
-  noise.evaluate(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+  if (b.tetrahedra) {
+    noise.evaluate_tetrahedra(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+  } else {
+    noise.evaluate(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+  }
 }
 
 // Null where the layer counts fully everywhere.
@@ -261,10 +266,19 @@ void add_elevations(const FieldModel& model, const BlockParts& parts, const Poin
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }
 
+// How well F is asked for.
+struct Accuracy {
+  float band = kExactEverywhere;
+  bool tetrahedra = false;
+};
+
 void evaluate_batch(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots, int n,
-                    const PointArrays& at, float band, float* value, const NearPoints* near = nullptr) {
+                    const PointArrays& at, const Accuracy& accuracy, float* value,
+                    const NearPoints* near = nullptr) {
+  float band = accuracy.band;
   Batch b;
   b.n = n;
+  b.tetrahedra = accuracy.tetrahedra;
   PointArrays metaballs_at = at;
   if (model.warp) {
     model.warp->evaluate(n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
@@ -290,7 +304,7 @@ void evaluate_batch(const FieldModel& model, const PreparedBody& body, const Dra
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
-  evaluate_batch(model, model.body, {}, 1, {&x, &y, &z}, kExactEverywhere, &f);
+  evaluate_batch(model, model.body, {}, 1, {&x, &y, &z}, {}, &f);
   return f;
 }
 
@@ -301,28 +315,64 @@ FieldBlock FieldBlock::restricted_to(const Box& child) const {
           child};
 }
 
+namespace {
+
+// Calls evaluate(first, count) for batches of n points.
+template <typename Evaluate>
+void for_each_batch(std::size_t n, const Evaluate& evaluate) {
+  for (std::size_t begin = 0; begin < n; begin += kBatch)
+    evaluate(begin, std::min<std::size_t>(kBatch, n - begin));
+}
+
+// The body's float coordinates of points near an origin.
+struct BodyPoints {
+  std::array<float, kBatch> x, y, z;
+
+  BodyPoints(const NearPoints& near, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = static_cast<float>(near.origin.x + double{near.local.x[i]});
+      y[i] = static_cast<float>(near.origin.y + double{near.local.y[i]});
+      z[i] = static_cast<float>(near.origin.z + double{near.local.z[i]});
+    }
+  }
+  PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
+};
+
+}  // namespace
+
 void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                           std::span<float> value, float band) const {
-  for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
-    const int n = static_cast<int>(std::min<std::size_t>(kBatch, value.size() - begin));
-    evaluate_batch(*model_, body_, spots_, n, {&x[begin], &y[begin], &z[begin]}, band, &value[begin]);
-  }
+  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
+    evaluate_batch(*model_, body_, spots_, static_cast<int>(n), {&x[i], &y[i], &z[i]}, {band}, &value[i]);
+  });
+}
+
+void FieldBlock::evaluate_tetrahedra(std::span<const float> x, std::span<const float> y,
+                                     std::span<const float> z, std::span<float> value) const {
+  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
+    evaluate_batch(*model_, body_, spots_, static_cast<int>(n), {&x[i], &y[i], &z[i]},
+                   {kExactEverywhere, true}, &value[i]);
+  });
 }
 
 void FieldBlock::evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                                std::span<const float> z, std::span<float> value, float band) const {
-  std::array<float, kBatch> bx, by, bz;
-  for (std::size_t begin = 0; begin < value.size(); begin += kBatch) {
-    const std::size_t n = std::min<std::size_t>(kBatch, value.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      bx[i] = static_cast<float>(origin.x + double{x[begin + i]});
-      by[i] = static_cast<float>(origin.y + double{y[begin + i]});
-      bz[i] = static_cast<float>(origin.z + double{z[begin + i]});
-    }
-    const NearPoints near{origin, {&x[begin], &y[begin], &z[begin]}};
-    evaluate_batch(*model_, body_, spots_, static_cast<int>(n), {bx.data(), by.data(), bz.data()}, band,
-                   &value[begin], &near);
-  }
+  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
+    const NearPoints near{origin, {&x[i], &y[i], &z[i]}};
+    const BodyPoints at(near, n);
+    evaluate_batch(*model_, body_, spots_, static_cast<int>(n), at.arrays(), {band}, &value[i], &near);
+  });
+}
+
+void FieldBlock::evaluate_tetrahedra_near(const Vec3d& origin, std::span<const float> x,
+                                          std::span<const float> y, std::span<const float> z,
+                                          std::span<float> value) const {
+  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
+    const NearPoints near{origin, {&x[i], &y[i], &z[i]}};
+    const BodyPoints at(near, n);
+    evaluate_batch(*model_, body_, spots_, static_cast<int>(n), at.arrays(), {kExactEverywhere, true},
+                   &value[i], &near);
+  });
 }
 
 ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {

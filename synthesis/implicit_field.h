@@ -49,11 +49,18 @@ class FieldBlock {
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band = kExactEverywhere) const;
 
-  // The same, of a field that has_near_form(), at the points origin + (x, y, z), which are within the box but
-  // for the rounding of its coordinates to float. The body and fractal layers are evaluated to the digits of
-  // x, y and z, the other layers to those of float coordinates in the body's frame.
+  // The same everywhere at the corners of small tetrahedra, four after four, whose differences give the slope
+  // of F: what is dear is evaluated once for all four, to first order about their centre.
+  void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                           std::span<float> value) const;
+
+  // The first, of a field that has_near_form(), at the points origin + (x, y, z), which are within the box
+  // but for the rounding of its coordinates to float. The body and fractal layers are evaluated to the digits
+  // of x, y and z, the other layers to those of float coordinates in the body's frame.
   void evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                      std::span<const float> z, std::span<float> value, float band) const;
+  void evaluate_tetrahedra_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
+                                std::span<const float> z, std::span<float> value) const;
 
   const Box& box() const { return box_; }
 

@@ -26,6 +26,10 @@ class PatchBlock {
                 std::span<float> value, float band) const {
     block_.evaluate_near(origin_, x, y, z, value, band);
   }
+  void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                           std::span<float> value) const {
+    block_.evaluate_tetrahedra_near(origin_, x, y, z, value);
+  }
 
   // Holds the body's float coordinates of every point of a local box.
   static Box in_body(const Box& local, const Vec3d& origin) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <functional>
 
+#include "numerics/hash_random.h"
+
 namespace astrolith {
 namespace {
 
@@ -73,6 +75,26 @@ TEST(GaborKernel, EndsWithZeroValueAndSlopeOnAllSides) {
   EXPECT_LT(std::fabs(gabor_kernel(impulse, 0.7f - h, 0.02f, 0.0f)), 1e-5f);
   EXPECT_LT(std::fabs(gabor_kernel(impulse, 0.02f, 0.0f, 0.5f - h)), 5e-5f);
   EXPECT_GT(std::fabs(gabor_kernel(impulse, 0.02f, 0.0f, 0.0f)), 0.1f);
+}
+
+TEST(GaborKernel, SlopeIsTheDerivativeAndTheValueTheSame) {
+  const GaborImpulse impulse{0.1f, 0, 0, 2, 0.3f, 0, -0.3f, 2, 0, 0, 0, 2, 1.5f, -0.7f, 0.1f};
+  CounterRandom random(2);
+  for (int i = 0; i < 500; ++i) {
+    const auto coordinate = [&] { return static_cast<float>(random.uniform(-0.8, 0.8)); };
+    const Vec3f p{coordinate(), coordinate(), coordinate()};
+    const GaborSample sample = gabor_kernel_with_slope(impulse, p.x, p.y, p.z);
+    ASSERT_EQ(sample.value, gabor_kernel(impulse, p.x, p.y, p.z));
+    constexpr float h = 1e-3f;
+    const auto difference = [&](float dx, float dy, float dz) {
+      return (gabor_kernel(impulse, p.x + dx, p.y + dy, p.z + dz) -
+              gabor_kernel(impulse, p.x - dx, p.y - dy, p.z - dz)) /
+             (2 * h);
+    };
+    ASSERT_NEAR(sample.slope.x, difference(h, 0, 0), 5e-3f);
+    ASSERT_NEAR(sample.slope.y, difference(0, h, 0), 5e-3f);
+    ASSERT_NEAR(sample.slope.z, difference(0, 0, h), 5e-3f);
+  }
 }
 
 }  // namespace

@@ -133,6 +133,34 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
   }
 }
 
+// Corners of a tetrahedron a quarter of a finest wavelength wide see the heights of its corners but for the
+// curvature, whether many share their impulses or each draws its own.
+TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
+  const GaborSurfaceNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
+                                prepare_body(*sphere_recipe(1.0).body, 1), {{-2, -2, -2}, {2, 2, 2}});
+  CounterRandom random(3);
+  const auto largest_error = [&](double h, double spread) {
+    std::vector<float> x, y, z, exact(240), linear(240);
+    for (int i = 0; i < 60; ++i) {
+      const Vec3d p = normalized(Vec3d{1.0, spread * random.normal(), spread * random.normal()});
+      for (const Vec3d& k : {Vec3d{1, 1, 1}, Vec3d{1, -1, -1}, Vec3d{-1, 1, -1}, Vec3d{-1, -1, 1}}) {
+        x.push_back(static_cast<float>(p.x + h * k.x));
+        y.push_back(static_cast<float>(p.y + h * k.y));
+        z.push_back(static_cast<float>(p.z + h * k.z));
+      }
+    }
+    noise.evaluate(240, x.data(), y.data(), z.data(), exact.data());
+    noise.evaluate_tetrahedra(240, x.data(), y.data(), z.data(), linear.data());
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < 240; ++i) largest = std::max(largest, std::fabs(exact[i] - linear[i]));
+    return largest;
+  };
+  for (const double spread : {0.01, 1.0}) {
+    EXPECT_LT(largest_error(1e-3, spread), 0.05f);
+    EXPECT_LT(largest_error(1e-4, spread), 1e-3f);
+  }
+}
+
 TEST(GaborSurfaceNoise, HeightsAreConstantAlongTheNormal) {
   Recipe recipe = sphere_recipe(1.0);
   recipe.layers = {layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
