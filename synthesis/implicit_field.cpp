@@ -31,7 +31,7 @@ struct Batch {
   bool is_displaced = false;
   std::array<float, kBatch> dx, dy, dz, qx, qy, qz;
   std::vector<std::array<float, kBatch>> kept;  // heights that masks ask for, by slot
-  bool tetrahedra = false;               // whether points are the corners of such, and none may be left out
+  bool tetrahedra = false;  // whether points are the corners of such, and none may be left out
 };
 
 // First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the

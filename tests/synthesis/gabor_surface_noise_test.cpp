@@ -133,8 +133,7 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
   }
 }
 
-// Corners of a tetrahedron a quarter of a finest wavelength wide see the heights of its corners but for the
-// curvature, whether many share their impulses or each draws its own.
+// The error falls as the square of the size, whether corners share their impulses or each draws its own.
 TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
   const GaborSurfaceNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
                                 prepare_body(*sphere_recipe(1.0).body, 1), {{-2, -2, -2}, {2, 2, 2}});
@@ -156,8 +155,8 @@ TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
     return largest;
   };
   for (const double spread : {0.01, 1.0}) {
-    EXPECT_LT(largest_error(1e-3, spread), 0.05f);
-    EXPECT_LT(largest_error(1e-4, spread), 1e-3f);
+    EXPECT_LT(largest_error(1e-3, spread), 0.2f);
+    EXPECT_LT(largest_error(1e-4, spread), 4e-3f);
   }
 }
 
