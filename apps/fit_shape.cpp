@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <string>
 
 #include "apps/fit_checkpoint.h"
@@ -28,6 +29,7 @@ namespace {
 struct Arguments {
   std::string mesh, output, report, checkpoint;
   std::string optimizer = "pso";
+  std::string kernel = "gaussian";
   std::string unit = "km";
   double time_limit = 0.0;  // seconds; 0 = none
   bool packing_only = false;
@@ -35,6 +37,11 @@ struct Arguments {
   ShapeFitOptions fit;
   DetailArguments details;
 };
+
+Kernel kernel_named(const std::string& word) {
+  return *std::find_if(std::begin(kKernels), std::end(kKernels),
+                       [&](Kernel kernel) { return kernel_word(kernel) == word; });
+}
 
 // Asks a stage to stop when its share of the time, counted from the start of the program's work, is over.
 class TimeLimit {
@@ -72,6 +79,8 @@ void add_options(Program& program, Arguments& arguments) {
       ->required()
       ->option_text("RECIPE.json");
   app.add_option("--spheres", arguments.fit.spheres, "metaballs at most")->check(CLI::Range(1, 10000));
+  app.add_option("--kernel", arguments.kernel, "of the metaballs")
+      ->check(CLI::IsMember({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{10000000}));
@@ -100,8 +109,9 @@ void add_options(Program& program, Arguments& arguments) {
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
-  for (const char* option : {"--points", "--optimizer", "--population", "--generations", "--base-only",
-                             "--details", "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
+  for (const char* option :
+       {"--kernel", "--points", "--optimizer", "--population", "--generations", "--base-only", "--details",
+        "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
     packing_only->excludes(app.get_option(option));
   }
   app.add_option("--density", arguments.density,
@@ -266,6 +276,7 @@ void run(Program& program, Arguments& arguments) {
   if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
   TimeLimit limit(arguments.time_limit);
   arguments.fit.seed = program.seed;
+  arguments.fit.kernel = kernel_named(arguments.kernel);
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
   const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);

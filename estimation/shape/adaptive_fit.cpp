@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "estimation/shape/fit_check.h"
+#include "estimation/shape/part_repair.h"
 #include "estimation/shape/sphere_growth.h"
 
 namespace astrolith {
@@ -27,7 +28,12 @@ class AdaptiveFit {
  public:
   AdaptiveFit(const TargetBody& target, const SurfaceSamples& samples, const FitPoints& containment,
               const AdaptiveFitOptions& options, const Progress& progress)
-      : target_(target), samples_(samples), points_(containment), options_(options), progress_(progress) {
+      : target_(target),
+        samples_(samples),
+        points_(containment),
+        watch_(target),
+        options_(options),
+        progress_(progress) {
     refinement_.loss_scale = options.loss_scale;
     refinement_.containment_weight = options.containment_weight;
     refinement_.keep_centers_inside = &target.tree;
@@ -45,7 +51,10 @@ class AdaptiveFit {
     grow_to_budget();
     relocate();
     see_samples(samples_.points.size());
-    if (!done()) step(options_.last_iterations);
+    if (!done()) {
+      watch_.add_dips(summary_.model, points_.inside);
+      step(options_.last_iterations);
+    }
     summary_.model = best_;
     if (!summary_.interrupted) finish();
     note(0);
@@ -78,6 +87,7 @@ class AdaptiveFit {
       const double before = best_distance_;
       remove_least_useful_spheres(summary_.model, points_.on_surface, count);
       grow(options_.spheres, 1);
+      watch_.add_dips(summary_.model, points_.inside);
       step(options_.relocation_iterations);
       if (best_distance_ >= before) count /= 2;
     }
@@ -128,44 +138,45 @@ class AdaptiveFit {
     spheres.insert(spheres.end(), grown.begin(), grown.end());
   }
 
-  // Looks for islands, cavities and bridges, and mends them: islands lose their spheres, which grow anew
-  // elsewhere, strays become containment points, and the model is refined once more. The best model measured
-  // is the one that stays.
+  // Looks for islands, cavities and bridges, and mends them: islands lose their spheres, cavities are filled,
+  // strays become containment points, and the model is refined once more. The best model measured is the one
+  // that stays.
   void finish() {
-    MetaballModel best;
-    Merit best_merit;
     const auto wanted = static_cast<int>(summary_.model.spheres.size());
+    Measured best;
     for (int repair = 0;; ++repair) {
       remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
       const FitCheck check =
           check_fit(target_, metaball_body(summary_.model), options_.repair_resolution, kRepairSamples, 1);
-      const Merit merit = merit_of(check);
-      if (repair == 0 || merit < best_merit) {
-        best_merit = merit;
-        best = summary_.model;
-      }
+      Measured now{summary_.model, compare_parts(target_, check.mesh), check.distance.mean};
+      if (repair == 0 || now < best) best = now;
       const bool complete = static_cast<int>(summary_.model.spheres.size()) == wanted;
-      const bool clean = collect_strays(check);
+      const bool clean = collect_strays(check) && now.parts.wrong() == 0;
       if ((clean && complete) || summary_.interrupted || repair == kRepairs) break;
-      grow(wanted, 1);
-      spent_ -= options_.relocation_iterations;
-      step(options_.relocation_iterations);
+      mend(now.parts, wanted);
     }
-    summary_.model = std::move(best);
+    summary_.model = std::move(best.model);
+  }
+
+  void mend(const PartsComparison& parts, int wanted) {
+    remove_islands(summary_.model, parts.strays);
+    fill_cavities(summary_.model, parts.strays, points_.on_surface);
+    grow(wanted, 1);
+    watch_.add_dips(summary_.model, points_.inside);
+    spent_ -= options_.relocation_iterations;
+    step(options_.relocation_iterations);
   }
 
   // Fewer parts too many or missing come first, then the mean distance.
-  struct Merit {
-    std::int64_t wrong_components = 0;
+  struct Measured {
+    MetaballModel model;
+    PartsComparison parts;
     double mean_distance = 0.0;
-    bool operator<(const Merit& other) const {
-      return std::tie(wrong_components, mean_distance) <
-             std::tie(other.wrong_components, other.mean_distance);
+    bool operator<(const Measured& other) const {
+      const std::int64_t wrong = parts.wrong(), others = other.parts.wrong();
+      return std::tie(wrong, mean_distance) < std::tie(others, other.mean_distance);
     }
   };
-  Merit merit_of(const FitCheck& check) const {
-    return {std::abs(check.topology.components - target_.components), check.distance.mean};
-  }
 
   // True when there were none.
   bool collect_strays(const FitCheck& check) {
@@ -178,6 +189,7 @@ class AdaptiveFit {
   const TargetBody& target_;
   const SurfaceSamples& samples_;
   FitPoints points_;
+  InsideWatch watch_;
   const AdaptiveFitOptions& options_;
   const Progress& progress_;
   RefinementOptions refinement_;

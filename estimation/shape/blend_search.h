@@ -16,7 +16,8 @@
 namespace astrolith {
 
 struct BlendSearchOptions {
-  int max_spheres = 100;     // upper bound of the number of spheres, > 0
+  int max_spheres = 100;  // upper bound of the number of spheres, > 0
+  Kernel kernel = Kernel::kGaussian;
   OptimizeOptions optimize;  // algorithm, population, evaluations, seed
 };
 

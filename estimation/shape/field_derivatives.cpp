@@ -2,12 +2,14 @@
 
 #include <array>
 
+#include "estimation/shape/profile_derivatives_internal.h"
+
 namespace astrolith {
 namespace {
 
 // Sums over the neighbours as synthesis takes them (synthesis/metaballs.h). Where `terms` is not empty, the
 // terms of every sphere are kept there: u_i (3), then exp k_i, 0 beyond the support.
-MetaballSums<double> sums_at(const MetaballModel& model, const MetaballParameters<double>& parameters,
+MetaballSums<double> sums_at(const MetaballModel& model, const ModelEvaluation& parameters,
                              std::span<const std::int32_t> neighbours, const Vec3d& p,
                              std::span<SphereDerivatives> terms) {
   MetaballSums<double> sums;
@@ -30,9 +32,12 @@ MetaballSums<double> sums_at(const MetaballModel& model, const MetaballParameter
 
 }  // namespace
 
-double distance_with_derivatives(const MetaballModel& model, const MetaballParameters<double>& parameters,
+double distance_with_derivatives(const MetaballModel& model, const ModelEvaluation& parameters,
                                  std::span<const std::int32_t> neighbours, const Vec3d& p,
                                  std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
+  if (model.kernel != Kernel::kGaussian) {
+    return profile_distance(model, parameters, neighbours, p, by_sphere, by_log_sharpness);
+  }
   const MetaballSums<double> sums = sums_at(model, parameters, neighbours, p, by_sphere);
   const double s = metaball_distance(parameters, sums).distance;
   if (by_sphere.empty()) return s;
@@ -61,9 +66,12 @@ double distance_with_derivatives(const MetaballModel& model, const MetaballParam
   return s;
 }
 
-double level_with_derivatives(const MetaballModel& model, const MetaballParameters<double>& parameters,
+double level_with_derivatives(const MetaballModel& model, const ModelEvaluation& parameters,
                               std::span<const std::int32_t> neighbours, const Vec3d& p,
                               std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
+  if (model.kernel != Kernel::kGaussian) {
+    return profile_level(model, parameters, neighbours, p, by_sphere, by_log_sharpness);
+  }
   const MetaballSums<double> sums = sums_at(model, parameters, neighbours, p, by_sphere);
   const double total = sums.kernel + double{kKernelFloor};
   const double level = std::log(total) / model.sharpness;

@@ -1,5 +1,6 @@
 // First-order signed distance and level of a metaball model at one point, with exact derivatives by every
-// sphere and by the sharpness: the rows of the fit's Jacobian.
+// sphere and by the sharpness: the rows of the fit's Jacobian. Other kernels than the Gaussian are in
+// profile_derivatives_internal.h.
 //
 // With u_i = (p - c_i) / r_i^2, q_i = |p - c_i|^2 / r_i^2, w = softmax(k) and G = sum_i w_i u_i,
 //   L = Lambda / kappa,  Lambda = log sum_i exp k_i,      s = L / N,  N = sqrt(4 |G|^2 + floor)
@@ -22,13 +23,13 @@ using SphereDerivatives = std::array<double, 4>;
 
 // s(p): positive inside, length units. `neighbours` are the spheres that may reach p. Where `by_sphere`
 // (as long as neighbours) is not empty it and `by_log_sharpness` receive derivatives.
-double distance_with_derivatives(const MetaballModel& model, const MetaballParameters<double>& parameters,
+double distance_with_derivatives(const MetaballModel& model, const ModelEvaluation& parameters,
                                  std::span<const std::int32_t> neighbours, const Vec3d& p,
                                  std::span<SphereDerivatives> by_sphere, double* by_log_sharpness);
 
 // L(p): 1 at the centre of a lone sphere, 0 on the surface, negative outside; without unit. Well behaved
 // where the gradient vanishes, unlike s.
-double level_with_derivatives(const MetaballModel& model, const MetaballParameters<double>& parameters,
+double level_with_derivatives(const MetaballModel& model, const ModelEvaluation& parameters,
                               std::span<const std::int32_t> neighbours, const Vec3d& p,
                               std::span<SphereDerivatives> by_sphere, double* by_log_sharpness);
 

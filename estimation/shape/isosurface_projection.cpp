@@ -13,7 +13,7 @@ class Projector {
   Projector(const MetaballModel& model, int steps)
       : model_(model),
         parameters_(evaluation_parameters(model)),
-        cutoff_(cutoff_radii(model.sharpness)),
+        cutoff_(support_radii(model)),
         longest_step_(largest_radius(model.spheres)),
         steps_(steps) {}
 

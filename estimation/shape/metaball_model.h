@@ -1,69 +1,55 @@
-// A body of metaballs as the fit moves it: spheres and one shared sharpness.
+// A body of metaballs as the fit moves it: spheres, and one sharpness that they share.
 //
-// Of the thesis's a, b and m (eq. 4.3 to 4.5, T = 1) only two combinations change the surface: the sharpness
-// kappa = m a of the blend, and a/b, which scales every radius by sqrt(a/b). The fit therefore works with
-// a = b = 1 and m = kappa,
-//   k_i(p) = kappa (1 - |p - c_i|^2 / r_i^2),     L(p) = log(sum_i exp k_i) / kappa,
-// so that a lone sphere's surface has its own radius.
+// Gaussians. Of the thesis's a, b and m (eq. 4.3 to 4.5, T = 1) only two combinations change the surface: the
+// sharpness kappa = m a of the blend, and a/b, which scales every radius by sqrt(a/b). The fit therefore
+// works with a = b = 1 and m = kappa,
+//   k_i(p) = kappa (1 - |p - c_i|^2 / r_i^2),     L(p) = log(sum_i exp k_i) / kappa.
+// The other kernels are summed as they are, m = 1, and their sharpness is the tension a = b:
+//   L(p) = sum_i K(|p - c_i|^2 / r_i^2) - 1,      K(0) = e^a, K(1) = 1     (synthesis/kernel_profile.h).
+// Either way a lone sphere's surface, L = 0, has its own radius.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <string>
 #include <vector>
 
-#include "numerics/errors.h"
 #include "recipe/recipe.h"
-#include "recipe/recipe_json.h"
 #include "synthesis/metaballs.h"
 
 namespace astrolith {
 
 struct MetaballModel {
-  double sharpness = 3.0;  // kappa, > 0
+  double sharpness = 3.0;  // kappa or a, > 0; the latter at most kMaxTension
   std::vector<Sphere> spheres;
+  Kernel kernel = Kernel::kGaussian;
 };
 
-// Support of a kernel in its own radii: beyond it exp(k) <= e^-16, less than a float of the sum can hold.
-inline double cutoff_radii(double sharpness) { return std::sqrt(1.0 + 16.0 / sharpness); }
+// Derivatives of K's scale, of the logarithm of its height, and of its end by the tension.
+struct ProfileTension {
+  double log_scale = 0.0, log_height = 0.0, low = 0.0;
+};
 
-inline double largest_radius(const std::vector<Sphere>& spheres) {
-  double largest = 0.0;
-  for (const Sphere& s : spheres) largest = std::max(largest, s.radius);
-  return largest;
-}
+// A model ready to be evaluated, in double precision.
+struct ModelEvaluation : MetaballParameters<double> {
+  ProfileTension tension;  // of kernels other than the Gaussian
+};
 
-// As synthesis evaluates the body, in double precision.
-inline MetaballParameters<double> evaluation_parameters(const MetaballModel& model) {
-  const double floor = 1e-3 / largest_radius(model.spheres);
-  const double cutoff = cutoff_radii(model.sharpness);
-  return {model.sharpness, model.sharpness, 1.0 / model.sharpness, 0.0, cutoff * cutoff, floor * floor};
-}
+double largest_radius(const std::vector<Sphere>& spheres);
+
+// As synthesis evaluates the body, but for the scale of s away from the surface.
+ModelEvaluation evaluation_parameters(const MetaballModel& model);
+
+// Support of a kernel in its own radii.
+double support_radii(const MetaballModel& model);
+
+// L where the sum of kernels is `sum`, and how far it falls there without a sphere that holds `share` < 1 of
+// the sum.
+double level_of(const MetaballModel& model, double sum);
+double level_lost(const MetaballModel& model, double sum, double share);
 
 // The thesis's parameters for the model, rounded as the recipe stores them.
-inline MetaballBody metaball_body(const MetaballModel& model) {
-  const auto rounded = round_to_seven_digits;
-  MetaballBody body;
-  body.blend_exponent = rounded(model.sharpness);
-  body.cutoff_radii = rounded(cutoff_radii(model.sharpness));
-  for (const Sphere& s : model.spheres) {
-    body.spheres.push_back(
-        {{rounded(s.center.x), rounded(s.center.y), rounded(s.center.z)}, rounded(s.radius)});
-  }
-  return body;
-}
+MetaballBody metaball_body(const MetaballModel& model);
 
-// Throws InputError for kernels other than the Gaussian, which the fit does not know.
-inline MetaballModel model_of(const MetaballBody& body) {
-  if (body.kernel != Kernel::kGaussian) {
-    throw InputError("body: kernel: is " + std::string(kernel_word(body.kernel)) +
-                     ", the fit knows gaussian alone");
-  }
-  if (!body.operations.empty()) throw InputError("body: operations: the fit knows metaballs alone");
-  MetaballModel model{body.blend_exponent * body.a, body.spheres};
-  const double scale = std::sqrt(body.a / body.b);
-  for (Sphere& s : model.spheres) s.radius *= scale;
-  return model;
-}
+// Throws InputError for what the fit does not know: combined bodies, and blends other than a plain sum of
+// kernels other than the Gaussian.
+MetaballModel model_of(const MetaballBody& body);
 
 }  // namespace astrolith

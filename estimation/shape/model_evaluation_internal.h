@@ -30,7 +30,7 @@ template <typename Visit>
 void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3d>& points,
                               const Visit& visit) {
   constexpr std::size_t kPointsPerCluster = 32;
-  const double cutoff = cutoff_radii(model.sharpness);
+  const double cutoff = support_radii(model);
   const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
   parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
     const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];

@@ -20,8 +20,8 @@ struct Part {
   std::vector<Vec3d> vertices;
 };
 
-std::vector<Part> separate(const TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> component = triangle_components(mesh);
+// Empty where there are too many.
+std::vector<Part> separate(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
   const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
   if (count > kMaxParts) return {};
   std::vector<Part> parts(count);
@@ -39,19 +39,29 @@ bool reaches_into(const Part& part, const SurfaceTree& other) {
                      [&](const Vec3d& p) { return other.signed_distance(p) > 0.0; });
 }
 
-std::int64_t parts_of_union(const std::vector<Part>& parts) {
-  std::vector<std::size_t> group(parts.size());
-  std::iota(group.begin(), group.end(), std::size_t{0});
+// (#parts) which part of the union each belongs to, numbered from 0.
+std::vector<std::uint32_t> groups_of_union(const std::vector<Part>& parts) {
+  std::vector<std::uint32_t> group(parts.size());
+  std::iota(group.begin(), group.end(), 0u);
   for (std::size_t b = 0; b < parts.size(); ++b) {
     const SurfaceTree tree(parts[b].mesh);
     for (std::size_t a = 0; a < parts.size(); ++a) {
       // Copies: std::replace would see the group change under its references.
-      const std::size_t from = group[a], to = group[b];
+      const std::uint32_t from = group[a], to = group[b];
       if (from != to && reaches_into(parts[a], tree)) std::replace(group.begin(), group.end(), from, to);
     }
   }
-  std::sort(group.begin(), group.end());
-  return std::unique(group.begin(), group.end()) - group.begin();
+  std::vector<std::uint32_t> names = group;
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  for (std::uint32_t& g : group) {
+    g = static_cast<std::uint32_t>(std::lower_bound(names.begin(), names.end(), g) - names.begin());
+  }
+  return group;
+}
+
+std::int64_t count_of(const std::vector<std::uint32_t>& numbers) {
+  return std::int64_t{1} + *std::max_element(numbers.begin(), numbers.end());
 }
 
 TriangleMesh without_buried(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
@@ -75,11 +85,14 @@ TriangleMesh without_buried(const TriangleMesh& mesh, const SurfaceTree& tree, d
 }  // namespace
 
 OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
-  const std::vector<Part> parts = separate(mesh);
+  std::vector<std::uint32_t> part_of_triangle = triangle_components(mesh);
+  const std::vector<Part> parts = separate(mesh, part_of_triangle);
   const bool solid =
       std::all_of(parts.begin(), parts.end(), [](const Part& part) { return volume(part.mesh) > 0.0; });
-  if (parts.size() < 2 || !solid) return {mesh, analyze_topology(mesh).components};
-  return {without_buried(mesh, tree, depth), parts_of_union(parts)};
+  if (parts.size() < 2 || !solid) return {mesh, count_of(part_of_triangle), std::move(part_of_triangle)};
+  const std::vector<std::uint32_t> group = groups_of_union(parts);
+  for (std::uint32_t& part : part_of_triangle) part = group[part];
+  return {without_buried(mesh, tree, depth), count_of(group), std::move(part_of_triangle)};
 }
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "geometry/surface_tree.h"
 #include "geometry/triangle_mesh.h"
@@ -12,6 +13,8 @@ namespace astrolith {
 struct OuterSurface {
   TriangleMesh mesh;       // without the buried triangles; open along the seam where parts meet
   std::int64_t parts = 1;  // of the union
+  // (#F of the whole mesh) which of them, 0 .. parts - 1.
+  std::vector<std::uint32_t> part_of_triangle;
 };
 
 // `mesh` is closed and oriented, `tree` was made of it. Triangles whose centroid lies deeper than `depth`

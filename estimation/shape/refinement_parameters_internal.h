@@ -1,4 +1,4 @@
-// The model as Ceres sees it while it is refined.
+// A model's parameters while it is refined.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,22 @@
 
 namespace astrolith {
 
-// The model as Ceres's parameter blocks: centre and log radius a sphere, and t for the sharpness, which
+// The model as parameters: centre and log radius a sphere, and t for the sharpness, which
 //   log kappa = middle + half tanh(t / half)
 // keeps between limits: a lone sphere has the same surface at every kappa, and nothing else would hold it.
 struct RefinementParameters {
-  explicit RefinementParameters(const MetaballModel& model) {
-    const double part = (std::log(model.sharpness) - kMiddle) / kHalf;
-    sharpness = kHalf * std::atanh(std::clamp(part, -0.99, 0.99));
+  explicit RefinementParameters(const MetaballModel& model)
+      : kernel(model.kernel),
+        middle(0.5 * std::log(kSoftest * sharpest(model.kernel))),
+        half(0.5 * std::log(sharpest(model.kernel) / kSoftest)) {
+    const double part = (std::log(model.sharpness) - middle) / half;
+    sharpness = half * std::atanh(std::clamp(part, -0.99, 0.99));
     for (const Sphere& s : model.spheres) {
       spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
     }
   }
   MetaballModel model() const {
-    MetaballModel m{std::exp(kMiddle + kHalf * std::tanh(sharpness / kHalf)), {}};
+    MetaballModel m{std::exp(middle + half * std::tanh(sharpness / half)), {}, kernel};
     for (const auto& s : spheres) m.spheres.push_back({{s[0], s[1], s[2]}, std::exp(s[3])});
     return m;
   }
@@ -34,11 +37,14 @@ struct RefinementParameters {
     sharpness += *step;
   }
   // d log kappa / dt
-  double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / kHalf), 2); }
+  double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / half), 2); }
 
-  static constexpr double kMiddle = 1.0986122886681098;  // log 3
-  static constexpr double kHalf = 2.3025850929940457;    // log 10: kappa between 0.3 and 30
+  // Limits of the sharpness.
+  static constexpr double kSoftest = 0.3;
+  static double sharpest(Kernel kernel) { return kernel == Kernel::kGaussian ? 30.0 : 9.9; }
 
+  Kernel kernel;
+  double middle, half;
   std::vector<SphereDerivatives> spheres;
   double sharpness = 0.0;  // t
 };

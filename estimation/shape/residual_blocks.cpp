@@ -32,8 +32,7 @@ ScaledResidual pseudo_huber(double s, double c) {
 }
 
 // Those of `spheres` that hold kSmallestShare of the kernel sum at one of the points.
-std::vector<std::int32_t> spheres_with_share(const MetaballModel& model,
-                                             const MetaballParameters<double>& evaluation,
+std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const ModelEvaluation& evaluation,
                                              const std::vector<Vec3d>& points,
                                              const std::vector<std::int32_t>& spheres) {
   std::vector<double> kernels(spheres.size()), largest(spheres.size());
@@ -82,7 +81,7 @@ ResidualBlocks::ResidualBlocks(const FitPoints& points, const RefinementOptions&
 
 void ResidualBlocks::evaluate(bool with_derivatives) {
   const MetaballModel model = parameters_.model();
-  const MetaballParameters<double> evaluation = evaluation_parameters(model);
+  const ModelEvaluation evaluation = evaluation_parameters(model);
   parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
     evaluate_block(static_cast<std::size_t>(b), model, evaluation, with_derivatives);
   });
@@ -130,8 +129,8 @@ std::vector<Vec3d> ResidualBlocks::active(const std::vector<Vec3d>& points, Poin
 
 void ResidualBlocks::find_neighbours() {
   const MetaballModel model = parameters_.model();
-  const MetaballParameters<double> evaluation = evaluation_parameters(model);
-  const double reach = cutoff_radii(model.sharpness);
+  const ModelEvaluation evaluation = evaluation_parameters(model);
+  const double reach = support_radii(model);
   parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
     ResidualBlock& block = blocks_[static_cast<std::size_t>(b)];
     block.neighbours = spheres_with_share(model, evaluation, block.points,
@@ -153,7 +152,7 @@ std::vector<std::int32_t> ResidualBlocks::contributors(std::size_t b, const Meta
 }
 
 void ResidualBlocks::evaluate_block(std::size_t b, const MetaballModel& model,
-                                    const MetaballParameters<double>& evaluation, bool with_derivatives) {
+                                    const ModelEvaluation& evaluation, bool with_derivatives) {
   ResidualBlock& block = blocks_[b];
   const std::vector<std::int32_t> spheres = contributors(b, model, std::sqrt(evaluation.cutoff_squared));
   std::vector<SphereDerivatives> row(with_derivatives ? spheres.size() : 0);
@@ -173,7 +172,7 @@ void ResidualBlocks::evaluate_block(std::size_t b, const MetaballModel& model,
 
 ScaledResidual ResidualBlocks::surface_condition(ResidualBlock& block, std::size_t j,
                                                  const MetaballModel& model,
-                                                 const MetaballParameters<double>& evaluation,
+                                                 const ModelEvaluation& evaluation,
                                                  std::span<const std::int32_t> spheres,
                                                  std::span<SphereDerivatives> row) const {
   const double s =
@@ -183,7 +182,7 @@ ScaledResidual ResidualBlocks::surface_condition(ResidualBlock& block, std::size
 
 ScaledResidual ResidualBlocks::containment_condition(ResidualBlock& block, std::size_t j,
                                                      const MetaballModel& model,
-                                                     const MetaballParameters<double>& evaluation,
+                                                     const ModelEvaluation& evaluation,
                                                      std::span<const std::int32_t> spheres,
                                                      std::span<SphereDerivatives> row) const {
   const double level =

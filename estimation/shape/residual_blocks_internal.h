@@ -58,14 +58,13 @@ class ResidualBlocks {
   void find_neighbours();
   std::vector<std::int32_t> contributors(std::size_t b, const MetaballModel& model, double cutoff) const;
   void evaluate_centers(const MetaballModel& model);
-  void evaluate_block(std::size_t b, const MetaballModel& model, const MetaballParameters<double>& evaluation,
+  void evaluate_block(std::size_t b, const MetaballModel& model, const ModelEvaluation& evaluation,
                       bool with_derivatives);
   ScaledResidual surface_condition(ResidualBlock& block, std::size_t j, const MetaballModel& model,
-                                   const MetaballParameters<double>& evaluation,
-                                   std::span<const std::int32_t> spheres,
+                                   const ModelEvaluation& evaluation, std::span<const std::int32_t> spheres,
                                    std::span<SphereDerivatives> row) const;
   ScaledResidual containment_condition(ResidualBlock& block, std::size_t j, const MetaballModel& model,
-                                       const MetaballParameters<double>& evaluation,
+                                       const ModelEvaluation& evaluation,
                                        std::span<const std::int32_t> spheres,
                                        std::span<SphereDerivatives> row) const;
 

@@ -66,6 +66,7 @@ BlendSearchSummary search(const TargetBody& target, const Packing& packing, cons
                           const Progress& progress) {
   BlendSearchOptions search_options;
   search_options.max_spheres = static_cast<int>(packing.spheres.size());
+  search_options.kernel = options.kernel;
   search_options.optimize.algorithm = options.optimizer;
   search_options.optimize.population = options.population;
   search_options.optimize.max_evaluations = std::int64_t{options.population} * options.generations;
@@ -91,7 +92,7 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
   AdaptiveFitOptions adaptive;
   adaptive.spheres = options.spheres;
   adaptive.tolerance = options.tolerance;
-  adaptive.repair_resolution = std::max(16, options.check_resolution / 2);
+  adaptive.repair_resolution = options.check_resolution;
   return fit_adaptively(target, start, samples, containment, adaptive, progress);
 }
 

@@ -47,7 +47,7 @@ std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::ve
 }
 
 // Squared distance by which the surface would move at every point without one sphere, summed over the points.
-// The level there falls by -log(1 - w_i) / kappa, w_i the sphere's share of the kernel sum.  (#spheres)
+// (#spheres)
 std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec3d>& points) {
   constexpr double kMostOfIt = 0.999;
   const MetaballParameters<double> parameters = evaluation_parameters(model);
@@ -61,10 +61,10 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
       kernels.push_back(sums.kernel - before);
     }
     const Vec3d slope = metaball_distance(parameters, sums).log_gradient;
-    const double scale = 1.0 / (model.sharpness * std::sqrt(squared_norm(slope) + parameters.gradient_floor));
+    const double slope_length = std::sqrt(squared_norm(slope) + parameters.gradient_floor);
     for (std::size_t j = 0; j < neighbours.size(); ++j) {
       const double share = kernels[j] / (sums.kernel + double{kKernelFloor});
-      const double distance = -std::log1p(-std::min(share, kMostOfIt)) * scale;
+      const double distance = level_lost(model, sums.kernel, std::min(share, kMostOfIt)) / slope_length;
       if (share > 1e-6) moved[p].emplace_back(neighbours[j], distance * distance);
     }
   });
@@ -73,6 +73,17 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
     for (const auto& [i, square] : list) use[static_cast<std::size_t>(i)] += square;
   }
   return use;
+}
+
+// How many radii from its centre a kernel has fallen to `value` < 1: bisection, for it falls all the way.
+double radii_at_kernel(const MetaballModel& model, double value) {
+  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  double near = 1.0, far = parameters.cutoff_squared;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (near + far);
+    (kernel_power(parameters, middle).value > value ? near : far) = middle;
+  }
+  return std::sqrt(near);
 }
 
 // Returns how many spheres went; none, should all be unwanted.
@@ -97,7 +108,7 @@ std::vector<double> model_levels(const MetaballModel& model, const std::vector<V
     for (const std::int32_t i : neighbours) {
       accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), points[p], sums);
     }
-    levels[p] = std::log(sums.kernel + double{kKernelFloor}) / model.sharpness;
+    levels[p] = level_of(model, sums.kernel);
   });
   return levels;
 }
@@ -127,8 +138,7 @@ std::vector<Sphere> spheres_for_largest_errors(const MetaballModel& model, const
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return errors[i] > errors[j]; });
 
-  // Depth at which the new kernel is kStartShare on the surface: kappa (1 - depth^2 / r^2) = log share.
-  const double depth = patch * std::sqrt(1.0 - std::log(kStartShare) / model.sharpness);
+  const double depth = patch * radii_at_kernel(model, kStartShare);
   std::vector<Sphere> grown;
   std::vector<Vec3d> taken;
   for (const std::size_t i : order) {

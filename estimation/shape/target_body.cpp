@@ -114,8 +114,16 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
                       std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
   }
   const double area = surface_area(outer.mesh);
-  return {std::move(mesh), std::move(tree), std::move(outer.mesh), area, body_volume, outer.parts,
-          box.center(),    diagonal,        std::move(remarks)};
+  return {std::move(mesh),
+          std::move(tree),
+          std::move(outer.mesh),
+          area,
+          body_volume,
+          outer.parts,
+          std::move(outer.part_of_triangle),
+          box.center(),
+          diagonal,
+          std::move(remarks)};
 }
 
 void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,

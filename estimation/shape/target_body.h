@@ -18,7 +18,8 @@ struct TargetBody {
   TriangleMesh surface;  // mesh without walls that are buried where parts overlap: what a fit can follow
   double area;           // of surface
   double volume;         // of mesh, > 0; overlaps count twice
-  std::int64_t components;  // of the union of the parts
+  std::int64_t components;                           // of the union of the parts
+  std::vector<std::uint32_t> component_of_triangle;  // (#F of mesh) 0 .. components - 1
   // p_in_file = center + diagonal * p_in_body, in the file's unit.
   Vec3d center;
   double diagonal;

@@ -17,6 +17,13 @@ namespace {
 
 using namespace astrolith;
 
+Kernel kernel_of(const std::string& word) {
+  for (const Kernel kernel : kKernels) {
+    if (word == kernel_word(kernel)) return kernel;
+  }
+  throw CLI::ValidationError("--kernel", "no such kernel");
+}
+
 void fit_and_print(const std::string& file, const ShapeFitOptions& options, bool curve) {
   const TargetBody target = prepare_target(read_mesh(file), file);
   const auto start = std::chrono::steady_clock::now();
@@ -47,6 +54,9 @@ int main(int argc, char** argv) {
   bool curve = false;
   app.add_option("meshes", files)->required();
   app.add_option("--spheres", options.spheres);
+  app.add_option_function<std::string>("--kernel",
+                                       [&](const std::string& word) { options.kernel = kernel_of(word); })
+      ->type_name("WORD");
   app.add_option("--points", options.points, "0 = as fit_shape");
   app.add_option("--generations", options.generations);
   app.add_option("--seed", options.seed, "of the first fit");

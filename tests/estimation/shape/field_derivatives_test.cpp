@@ -7,9 +7,10 @@
 namespace astrolith {
 namespace {
 
-MetaballModel random_model(std::uint64_t seed, int count, double sharpness) {
+MetaballModel random_model(std::uint64_t seed, int count, double sharpness,
+                           Kernel kernel = Kernel::kGaussian) {
   CounterRandom random(seed);
-  MetaballModel model{sharpness, {}};
+  MetaballModel model{sharpness, {}, kernel};
   for (int i = 0; i < count; ++i) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
     model.spheres.push_back({{x, y, z}, random.uniform(0.3, 0.9)});
@@ -37,15 +38,14 @@ MetaballModel nudged(MetaballModel model, int i, int which, double h) {
   return model;
 }
 
-using Function = double (*)(const MetaballModel&, const MetaballParameters<double>&,
-                            std::span<const std::int32_t>, const Vec3d&, std::span<SphereDerivatives>,
-                            double*);
+using Function = double (*)(const MetaballModel&, const ModelEvaluation&, std::span<const std::int32_t>,
+                            const Vec3d&, std::span<SphereDerivatives>, double*);
 
 // Every derivative against a central difference, with the support held fixed: the derivatives ignore how the
 // cut-off and the gradient floor follow the model.
 void check_derivatives(Function function, const MetaballModel& model, const Vec3d& p) {
   const auto neighbours = all_of(model);
-  const MetaballParameters<double> fixed = evaluation_parameters(model);
+  const ModelEvaluation fixed = evaluation_parameters(model);
   std::vector<SphereDerivatives> by_sphere(neighbours.size());
   double by_log_sharpness = 0;
   function(model, fixed, neighbours, p, by_sphere, &by_log_sharpness);
@@ -53,26 +53,29 @@ void check_derivatives(Function function, const MetaballModel& model, const Vec3
     const double h = 1e-5;
     const auto value = [&](double step) {
       const MetaballModel moved = nudged(model, i, which, step);
-      MetaballParameters<double> parameters = evaluation_parameters(moved);
+      ModelEvaluation parameters = evaluation_parameters(moved);
       parameters.cutoff_squared = fixed.cutoff_squared;
       parameters.gradient_floor = fixed.gradient_floor;
       return function(moved, parameters, neighbours, p, {}, nullptr);
     };
     return (value(h) - value(-h)) / (2 * h);
   };
-  EXPECT_NEAR(by_log_sharpness, difference(-1, 0), 1e-7);
+  const auto tolerance = [](double value) { return 1e-7 * (1.0 + std::abs(value)); };
+  EXPECT_NEAR(by_log_sharpness, difference(-1, 0), tolerance(by_log_sharpness));
   for (int i = 0; i < static_cast<int>(model.spheres.size()); ++i) {
     for (int which = 0; which < 4; ++which) {
-      EXPECT_NEAR(by_sphere[static_cast<std::size_t>(i)][static_cast<std::size_t>(which)],
-                  difference(i, which), 1e-7)
+      const double derivative = by_sphere[static_cast<std::size_t>(i)][static_cast<std::size_t>(which)];
+      EXPECT_NEAR(derivative, difference(i, which), tolerance(derivative))
           << "sphere " << i << ", parameter " << which;
     }
   }
 }
 
-TEST(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
+class FieldDerivatives : public ::testing::TestWithParam<Kernel> {};
+
+TEST_P(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
   for (const double sharpness : {0.7, 2.0, 9.0}) {
-    const MetaballModel model = random_model(3, 6, sharpness);
+    const MetaballModel model = random_model(3, 6, sharpness, GetParam());
     CounterRandom random(11);
     for (int k = 0; k < 20; ++k) {
       const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
@@ -83,15 +86,17 @@ TEST(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
   }
 }
 
-TEST(FieldDerivatives, LoneSphereHasItsRadius) {
-  const MetaballModel model{4.0, {{{1, 2, 3}, 2.0}}};
+TEST_P(FieldDerivatives, LoneSphereHasItsRadius) {
+  const MetaballModel model{4.0, {{{1, 2, 3}, 2.0}}, GetParam()};
   const auto neighbours = all_of(model);
   const auto parameters = evaluation_parameters(model);
   const double s = distance_with_derivatives(model, parameters, neighbours, {1, 2, 5}, {}, nullptr);
   EXPECT_NEAR(s, 0.0, 1e-12);
   const double level = level_with_derivatives(model, parameters, neighbours, {1, 2, 3}, {}, nullptr);
-  EXPECT_NEAR(level, 1.0, 1e-12);
+  EXPECT_NEAR(level, GetParam() == Kernel::kGaussian ? 1.0 : std::exp(4.0) - 1.0, 1e-11);
 }
+
+INSTANTIATE_TEST_SUITE_P(Kernels, FieldDerivatives, ::testing::ValuesIn(kKernels));
 
 }  // namespace
 }  // namespace astrolith

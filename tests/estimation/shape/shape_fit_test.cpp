@@ -39,12 +39,23 @@ TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
   EXPECT_LT(fit.check.distance.mean, 2e-3);
 }
 
-TEST(ShapeFit, RecoversABodyOfThreeMetaballs) {
+// Bodies of each kernel, fitted with the same.
+class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
+
+TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballs) {
   MetaballBody truth;
-  truth.blend_exponent = 2.5;
+  truth.kernel = GetParam();
+  if (truth.kernel == Kernel::kGaussian) {
+    truth.blend_exponent = 2.5;
+  } else {
+    truth.a = truth.b = 1.5;
+  }
   truth.spheres = {{{-0.9, 0, 0}, 0.9}, {{0.5, 0.2, 0}, 1.0}, {{1.3, 0.5, 0.3}, 0.6}};
   const TargetBody target = prepare_target(mesh_of(truth, 64), "three");
-  const ShapeFitResult fit = fit_shape(target, quick(16));
+  ShapeFitOptions options = quick(16);
+  options.kernel = GetParam();
+  const ShapeFitResult fit = fit_shape(target, options);
+  EXPECT_EQ(fit.body.kernel, GetParam());
   EXPECT_LT(fit.check.distance.mean, 5e-4);
   EXPECT_LT(fit.check.distance.p99, 3e-3);
   EXPECT_NEAR(fit.check.volume_ratio, 1.0, 2e-3);
@@ -52,6 +63,8 @@ TEST(ShapeFit, RecoversABodyOfThreeMetaballs) {
   EXPECT_EQ(fit.check.topology.components, 1);
   EXPECT_GT(fit.similarity, 0.95 * fit.similarity_floor);
 }
+
+INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels));
 
 TEST(ShapeFit, KeepsTwoBodiesApart) {
   const TargetBody target = prepare_target(testing::two_spheres(3, 1.0, 2.6), "pair");

@@ -1,0 +1,71 @@
+#include "estimation/shape/part_repair.h"
+
+#include <algorithm>
+
+#include "estimation/shape/clearance_grid.h"
+#include "estimation/shape/model_evaluation_internal.h"
+#include "estimation/shape/sphere_growth.h"
+
+namespace astrolith {
+namespace {
+
+// Cells of the grid inside the target, and how deep its places lie (fraction of the diagonal): nearer to the
+// surface its samples, and the shells of points beside it, are dense enough.
+constexpr double kWatchedCells = 30000.0;
+constexpr double kWatchedDepth = 0.012;
+
+// Levels below this are low. Between places of the grid the level can sink that much again.
+constexpr double kLowLevel = 0.05;
+
+// A filler reaches this much further than what it fills, and is at least this large (fraction of the
+// diagonal).
+constexpr double kFillerScale = 1.1;
+constexpr double kSmallestFiller = 0.003;
+
+std::size_t count_cavities(const std::vector<StrayPart>& strays) {
+  return static_cast<std::size_t>(
+      std::count_if(strays.begin(), strays.end(), [](const StrayPart& s) { return s.cavity; }));
+}
+
+}  // namespace
+
+InsideWatch::InsideWatch(const TargetBody& target) {
+  const ClearanceGrid grid = make_clearance_grid(target.mesh, target.tree, kWatchedCells);
+  for (std::size_t i = 0; i < grid.clearance.size(); ++i) {
+    if (double{grid.clearance[i]} > kWatchedDepth) places_.push_back(grid.center(i));
+  }
+}
+
+void InsideWatch::add_dips(const MetaballModel& model, std::vector<Vec3d>& inside) {
+  const std::vector<double> levels = model_levels(model, places_);
+  std::vector<Vec3d> others;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    (levels[i] < kLowLevel ? inside : others).push_back(places_[i]);
+  }
+  places_ = std::move(others);
+}
+
+void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
+                   const std::vector<Vec3d>& on_surface) {
+  const std::size_t cavities = std::min(count_cavities(strays), model.spheres.size() - 1);
+  remove_least_useful_spheres(model, on_surface, static_cast<int>(cavities));
+  std::size_t filled = 0;
+  for (const StrayPart& stray : strays) {
+    if (!stray.cavity || filled == cavities) continue;
+    model.spheres.push_back({stray.center, std::max(kFillerScale * stray.radius, kSmallestFiller)});
+    ++filled;
+  }
+}
+
+void remove_islands(MetaballModel& model, const std::vector<StrayPart>& strays) {
+  const auto makes_island = [&](const Sphere& s) {
+    return std::any_of(strays.begin(), strays.end(), [&](const StrayPart& island) {
+      return !island.cavity && norm(s.center - island.center) < island.radius;
+    });
+  };
+  std::vector<Sphere> kept;
+  std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), makes_island);
+  if (!kept.empty()) model.spheres = std::move(kept);
+}
+
+}  // namespace astrolith
