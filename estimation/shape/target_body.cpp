@@ -10,6 +10,7 @@
 #include "geometry/mesh_topology.h"
 #include "geometry/orient_faces.h"
 #include "geometry/weld.h"
+#include "geometry/winding_number.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -22,6 +23,12 @@ constexpr double kSmallestVolume = 1e-6;
 
 // Faces deeper than this part of the diagonal inside another part of the body are no surface of it.
 constexpr double kBuriedDepth = 1e-5;
+
+// Places just under the surface that are asked whether it goes around them once: as many as this number of
+// triangles summed over allows, within these limits.
+constexpr std::int64_t kWindingTriangles = 20000000, kMostWindings = 200, kFewestWindings = 20;
+constexpr double kJustUnder = 1e-5;      // fraction of the diagonal
+constexpr double kWrongWindings = 0.02;  // share of the places that may lie beyond an edge or in a thin wall
 
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
@@ -84,6 +91,28 @@ void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vecto
   }
 }
 
+// Share of the surface just under which the body is not, or is twice.
+double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& surface) {
+  const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  const std::int64_t count = std::clamp(kWindingTriangles / triangles, kFewestWindings, kMostWindings);
+  const SurfaceSamples samples = sample_surface(surface, count, 1);
+  std::vector<char> wrong(samples.points.size());
+  parallel_for(0, count, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double winding = winding_number(mesh, samples.points[k] - kJustUnder * samples.normals[k]);
+    wrong[k] = std::abs(winding - 1.0) > 0.5 ? 1 : 0;
+  });
+  return static_cast<double>(std::count(wrong.begin(), wrong.end(), 1)) / static_cast<double>(count);
+}
+
+void require_no_crossing(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& name) {
+  const double share = share_of_wrong_windings(mesh, surface);
+  if (share <= kWrongWindings) return;
+  throw InputError(name + ": mesh passes through itself or has parts inside out (about " +
+                   std::to_string(static_cast<int>(std::lround(100.0 * share))) +
+                   " % of its surface does not bound the body); repair it first");
+}
+
 void move_to_body_frame(TriangleMesh& mesh, const Vec3d& center, double diagonal) {
   for (Vec3d& p : mesh.vertices) p = (p - center) * (1.0 / diagonal);
 }
@@ -113,6 +142,7 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
     remarks.push_back("parts overlap; their union is fitted, walls inside it are left out (" +
                       std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
   }
+  require_no_crossing(mesh, outer.mesh, name);
   const double area = surface_area(outer.mesh);
   return {std::move(mesh),
           std::move(tree),

@@ -26,8 +26,9 @@ struct TargetBody {
   std::vector<std::string> remarks;  // what was mended, one line each
 };
 
-// Throws InputError "name: what is wrong; what to do" when the mesh has no faces, is open, is not manifold or
-// is flat. Mends repeated vertices and faces, and faces that look inwards, and says so.
+// Throws InputError "name: what is wrong; what to do" when the mesh has no faces, is open, is not manifold,
+// is flat or passes through itself other than where whole parts overlap. Mends repeated vertices and faces,
+// and faces that look inwards, and says so.
 TargetBody prepare_target(TriangleMesh mesh, const std::string& name);
 
 // Points at random places at least `depth` inside and outside of the body, up to `count` of each (fewer in a

@@ -60,6 +60,26 @@ TEST(TargetBody, RefusesWhatIsNoBody) {
   EXPECT_NE(error_of(tiny).find("out of range"), std::string::npos);
 }
 
+TEST(TargetBody, RefusesASurfaceThroughItself) {
+  // Pulled through itself, the upper half is inside out; one ring of the other is in the lower half.
+  TriangleMesh bow_tie = icosphere(3);
+  for (Vec3d& p : bow_tie.vertices) {
+    const double width = p.z < 0.0 ? 1.0 : 1.0 - 2.3 * p.z;
+    p = {p.x * width, p.y, p.z};
+  }
+  EXPECT_NE(error_of(bow_tie).find("body.obj: mesh passes through itself"), std::string::npos);
+  const TriangleMesh one_reversed =
+      testing::joined(icosphere(2, 2.0), testing::reversed(icosphere(2, 1.0, {5, 0, 0})));
+  EXPECT_NE(error_of(one_reversed).find("has parts inside out"), std::string::npos);
+}
+
+TEST(TargetBody, AcceptsCavitiesAndParts) {
+  const TriangleMesh hollow = testing::joined(icosphere(3), testing::reversed(icosphere(3, 0.5)));
+  EXPECT_EQ(error_of(hollow), "");
+  EXPECT_EQ(error_of(testing::two_spheres(3, 1.0, 2.6)), "");
+  EXPECT_EQ(error_of(testing::torus(1.0, 0.3)), "");
+}
+
 TEST(TargetBody, OverlappingPartsBecomeTheirUnion) {
   const TargetBody apart = prepare_target(testing::two_spheres(3, 1.0, 2.6), "apart");
   EXPECT_EQ(apart.components, 2);
