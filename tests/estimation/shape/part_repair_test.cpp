@@ -2,6 +2,7 @@
 
 #include "estimation/shape/fit_check.h"
 #include "estimation/shape/model_evaluation_internal.h"
+#include "geometry/mesh_sampling.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {
