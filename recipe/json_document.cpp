@@ -11,6 +11,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/input_file.h"
+#include "recipe/json_complaint_internal.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/place_internal.h"
 
@@ -18,15 +19,6 @@ namespace astrolith {
 namespace {
 
 using nlohmann::json;
-
-// The library's words without its prefixes "[json.exception.parse_error.101] parse error at line 1, column
-// 2: ", escaped so that they stay on one line.
-std::string plain_words(std::string text) {
-  if (const auto bracket = text.find("] "); bracket != std::string::npos) text.erase(0, bracket + 2);
-  if (text.rfind("parse error", 0) == 0) text.erase(0, std::min(text.find(": ") + 2, text.size()));
-  const std::string escaped = json(text).dump(-1, ' ', false, json::error_handler_t::replace);
-  return escaped.substr(1, escaped.size() - 2);
-}
 
 // Builds the tree from the parser's events and stops at the first breach of a limit.
 class TreeBuilder : public nlohmann::json_sax<json> {
@@ -57,7 +49,8 @@ class TreeBuilder : public nlohmann::json_sax<json> {
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
     throw InputError(fmt::format("{}: line {}, column {}: not valid JSON: {}", name_, line,
-                                 before.size() - line_start + 1, plain_words(error.what())));
+                                 before.size() - line_start + 1,
+                                 explain_json_problem(error.what(), text_, position)));
   }
 
   json take() { return std::move(root_); }

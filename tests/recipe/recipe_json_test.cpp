@@ -155,13 +155,40 @@ TEST(RecipeJson, SyntaxErrorsGiveLineAndColumn) {
   expect_error("{\n  \"format_version\": 1,\n  oops\n}", "line 3, column 3: not valid JSON");
   expect_error("{\n  \"seed\": NaN}", "line 2, column 11");
   expect_error(R"({"seed": Infinity})", "not valid JSON");
-  expect_error(R"({"seed": 1e999})", "not valid JSON: number overflow");
+  expect_error(R"({"seed": 1e999})", "not valid JSON: the number \"1e999\" is too large");
   const auto lines = std::count(testing::kCompleteRecipe.begin(), testing::kCompleteRecipe.end(), '\n');
   expect_error(testing::kCompleteRecipe + "x",
                "line " + std::to_string(lines + 1) + ", column 1: not valid JSON");
-  expect_error("{\"frame\": \"\xff\xfe\"}", "ill-formed UTF-8");
+  expect_error("{\"frame\": \"\xff\xfe\"}", "not valid JSON: a text is not UTF-8");
   expect_error("{\"frame\": \"a\nb\"}", "not valid JSON");
   expect_error(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "line 1, column 1: not valid JSON");
+}
+
+// In words that a user knows, with what stands there and what to do.
+TEST(RecipeJson, SyntaxErrorsAreSaidPlainly) {
+  expect_error("", "the text ends in the middle of a value; is the file cut off?");
+  expect_error(R"({"a": 1)", "the text ends in the middle");
+  expect_error(R"({"a" 1})", R"("1" stands where the colon after a field's name should)");
+  expect_error(R"({"a": 1,})", R"("}" stands where a field's name should)");
+  expect_error("{oops: 1}", R"("oops" stands where a field's name should, in quotes)");
+  expect_error("[1,]", R"("]" stands where a value should; write one, or remove a comma)");
+  expect_error("[1 2]", R"("2" stands where a comma or a closing bracket should)");
+  expect_error(R"({"a":1 "b":2})", "stands where a comma or a closing brace should");
+  expect_error(R"({"a": NaN})", R"("NaN" is no value; write a number, true, false or a text in quotes)");
+  expect_error("{} {}", R"("{" stands behind the end of the recipe)");
+  expect_error(R"({"a": "b)", "has no closing quote");
+  expect_error(R"({"a": -})", R"(is no number; write it like -0.5 or 2e-3)");
+  for (const char* bad :
+       {"", "{", "{\"a\"", "[1,]", "[1 2]", "nan", "-", "\"\\x\"", "{}{}", "\xff", "// no"}) {
+    try {
+      parse_recipe(bad, "r");
+      FAIL() << bad;
+    } catch (const InputError& e) {
+      for (const char* jargon : {"literal", "exception", "syntax", "parsing", "token"}) {
+        EXPECT_EQ(std::string(e.what()).find(jargon), std::string::npos) << e.what();
+      }
+    }
+  }
 }
 
 TEST(RecipeJson, KeysStandOnce) {
