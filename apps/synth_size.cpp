@@ -30,7 +30,7 @@ OutputCost output_cost(const std::filesystem::path& output, MeshUse use) {
   const std::string extension = output.extension().string();
   const double collected = 36.0 * 1.5;  // vertices and normals as doubles, triangles; grown by doubling
   // Verticals, heights and edges of an erosion are gone before a picture is drawn.
-  const double rendered = std::max(use.preview ? 120.0 : 0.0, use.erosion ? 80.0 : 0.0);
+  const double rendered = std::max(use.preview ? 120.0 : 0.0, use.erosion ? 112.0 : 0.0);
   if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
   if (extension == ".stl") return {50.0, collected + rendered};
   if (extension == ".glb") return {24.0, collected + 24.0 + rendered};

@@ -5,11 +5,13 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
+#include "synthesis/active_edges_internal.h"
 
 namespace astrolith {
 namespace {
@@ -35,7 +37,7 @@ struct Edge {
 struct Vertices {
   std::vector<double> area;    // a_v; 0: rock
   std::vector<double> height;  // gone up since the edges were measured
-  std::vector<int> changed;    // in which sweep; 0: never
+  std::vector<char> changed;   // whether it ever moved
 };
 
 Vec3d area_vector(const TriangleMesh& mesh, const Triangle& t) {
@@ -121,8 +123,15 @@ double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, const Verti
   return slope * kDegrees;
 }
 
+ActiveEdges all_active(const std::vector<Edge>& edges, std::size_t num_vertices) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
+  ends.reserve(edges.size());
+  for (const Edge& edge : edges) ends.emplace_back(edge.a, edge.b);
+  return {num_vertices, ends};
+}
+
 // Lets material slide down one edge; returns its volume, 0 where the edge is not too high.
-double slide(const Edge& edge, Vertices& vertices, int sweep) {
+double slide(const Edge& edge, Vertices& vertices) {
   const double drop = edge.drop + (vertices.height[edge.a] - vertices.height[edge.b]);
   const double excess = std::fabs(drop) - edge.limit;
   if (!(excess > kSettled * edge.limit)) return 0.0;
@@ -131,21 +140,21 @@ double slide(const Edge& edge, Vertices& vertices, int sweep) {
   const double down = drop > 0.0 ? volume : -volume;
   vertices.height[edge.a] -= down / area_a;
   vertices.height[edge.b] += down / area_b;
-  vertices.changed[edge.a] = vertices.changed[edge.b] = sweep;
+  vertices.changed[edge.a] = vertices.changed[edge.b] = 1;
   return volume;
 }
 
-// One turn of every edge, after the first sweep of those with an end that has moved since their last;
-// forwards and backwards by turns, so that no direction is preferred. Returns the volume that slid.
-double sweep_edges(const std::vector<Edge>& edges, Vertices& vertices, int sweep, int first) {
+// One turn of every active edge, forwards and backwards by turns, so that no direction is preferred. Returns
+// the volume that slid.
+double sweep_edges(const std::vector<Edge>& edges, int sweep, ActiveEdges& active, Vertices& vertices) {
   double moved = 0.0;
-  const std::size_t n = edges.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Edge& edge = edges[sweep % 2 == 1 ? i : n - 1 - i];
-    const int changed = std::max(vertices.changed[edge.a], vertices.changed[edge.b]);
-    if (sweep > first && changed < sweep - 1) continue;
-    moved += slide(edge, vertices, sweep);
-  }
+  active.sweep(sweep % 2 == 1, [&](std::size_t e) {
+    const double volume = slide(edges[e], vertices);
+    if (volume == 0.0) return;
+    active.wake(edges[e].a);
+    active.wake(edges[e].b);
+    moved += volume;
+  });
   return moved;
 }
 
@@ -167,7 +176,7 @@ void renew_normals(TriangleMesh& mesh, const Vertices& vertices) {
   std::vector<char> stale(mesh.vertices.size(), 0);
   for (const Triangle& t : mesh.triangles) {
     const bool moved =
-        std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return vertices.changed[v] > 0; });
+        std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return vertices.changed[v] != 0; });
     for (const std::uint32_t v : t) stale[v] |= moved ? 1 : 0;
   }
   const std::vector<Vec3d> fresh = vertex_normals(mesh);
@@ -184,7 +193,7 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
     throw InputError("erosion: the talus angle must lie above 0 and be at most 89 degrees");
   }
   const std::vector<char> rock = find_rock(mesh, up);
-  Vertices vertices{{}, {}, std::vector<int>(up.size(), 0)};
+  Vertices vertices{{}, {}, std::vector<char>(up.size(), 0)};
   measure_areas(mesh, up, rock, vertices);
   ErosionStatistics statistics;
   statistics.rock_vertices = std::count(vertices.area.begin(), vertices.area.end(), 0.0);
@@ -194,9 +203,10 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
   while (statistics.sweeps < most_sweeps && !statistics.settled) {
     measure_areas(mesh, up, rock, vertices);
     const std::vector<Edge> edges = make_edges(mesh, up, vertices, slope);
+    ActiveEdges active = all_active(edges, up.size());
     const int first = statistics.sweeps + 1;
     for (double moved = 1.0; moved > 0.0 && statistics.sweeps < most_sweeps;) {
-      moved = sweep_edges(edges, vertices, ++statistics.sweeps, first);
+      moved = sweep_edges(edges, ++statistics.sweeps, active, vertices);
       statistics.volume_moved += moved;
       statistics.settled = moved == 0.0 && statistics.sweeps == first;
       if (!report(progress, double(statistics.sweeps) / most_sweeps, "erosion")) {
@@ -207,8 +217,7 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
   }
   report(progress, 1.0, "erosion");
   restore_volume(mesh, up, volume_before);
-  statistics.moved_vertices =
-      std::count_if(vertices.changed.begin(), vertices.changed.end(), [](int sweep) { return sweep > 0; });
+  statistics.moved_vertices = std::count(vertices.changed.begin(), vertices.changed.end(), char{1});
   statistics.steepest_after = steepest(mesh, up, vertices);
   renew_normals(mesh, vertices);
   return statistics;

@@ -7,6 +7,7 @@
 
 #include "numerics/hash_random.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/body_spheres.h"
 #include "synthesis/coordinate_warp.h"
 
 namespace astrolith {
@@ -24,13 +25,13 @@ constexpr double kFrequencyChange = 0.25;
 
 enum Stream : std::uint64_t { kSeedStream, kAxesStream, kBendStream, kLayerStream };
 
-Box sphere_bounds(const std::vector<Sphere>& spheres) {
+Box sphere_bounds(const MetaballBody& body) {
   Box box;
-  for (const Sphere& s : spheres) {
+  for_each_sphere(body, [&](const Sphere& s) {
     const Vec3d r{s.radius, s.radius, s.radius};
     box.extend(s.center - r);
     box.extend(s.center + r);
-  }
+  });
   return box;
 }
 
@@ -98,12 +99,12 @@ Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variatio
   Recipe varied = recipe;
   varied.seed = CounterRandom(recipe.seed ^ (variation_seed * 0x9e3779b97f4a7c15u), kSeedStream).next() >> 11;
   varied.provenance.achieved.clear();
-  const Deformation deform(sphere_bounds(recipe.body->spheres), strength, variation_seed);
-  for (Sphere& s : varied.body->spheres) {
+  const Deformation deform(sphere_bounds(*recipe.body), strength, variation_seed);
+  for_each_sphere(*varied.body, [&](Sphere& s) {
     const Vec3d c = deform(s.center);
     s.radius = round_to_seven_digits(s.radius * deform.growth(s.center));
     s.center = {round_to_seven_digits(c.x), round_to_seven_digits(c.y), round_to_seven_digits(c.z)};
-  }
+  });
   for (std::size_t i = 0; i < varied.layers.size(); ++i) {
     const CounterRandom random(variation_seed, (std::uint64_t{kLayerStream} << 32) + i);
     std::visit([&](auto& layer) { vary(layer, strength, random); }, varied.layers[i]);

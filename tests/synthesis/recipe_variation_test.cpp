@@ -37,6 +37,23 @@ TEST(RecipeVariation, IsValidAndDeterministic) {
   }
 }
 
+// A body made of two by an operation is deformed as a whole: the same as when one body holds all spheres.
+TEST(RecipeVariation, OperandsMoveWithTheBody) {
+  Recipe whole = worm(), combined = worm();
+  BodyOperation operation;
+  operation.operand.push_back(*combined.body);
+  operation.operand[0].spheres.assign(whole.body->spheres.begin() + 20, whole.body->spheres.end());
+  combined.body->spheres.resize(20);
+  combined.body->operations.push_back(operation);
+  const Recipe a = vary_recipe(whole, 0.5, 3), b = vary_recipe(combined, 0.5, 3);
+  for (std::size_t i = 0; i < 40; ++i) {
+    const Sphere &s = a.body->spheres[i],
+                 &t = i < 20 ? b.body->spheres[i] : b.body->operations[0].operand[0].spheres[i - 20];
+    EXPECT_EQ(s.center, t.center);
+    EXPECT_EQ(s.radius, t.radius);
+  }
+}
+
 TEST(RecipeVariation, WithoutStrengthOnlyTheNoiseIsNew) {
   const Recipe recipe = worm(), varied = vary_recipe(recipe, 0.0, 7);
   for (std::size_t i = 0; i < recipe.body->spheres.size(); ++i) {

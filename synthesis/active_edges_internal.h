@@ -1,0 +1,66 @@
+// Which edges of a mesh have a turn in a sweep: those around vertices that moved in the last sweep or have
+// moved in this one. Sweeps then cost what moves, not what lies still.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace astrolith {
+
+class ActiveEdges {
+ public:
+  // Edges by their two vertices; all have a turn in the first sweep.
+  ActiveEdges(std::size_t num_vertices, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
+      : first_(num_vertices + 1, 0),
+        incident_(2 * edges.size()),
+        now_((edges.size() + 63) / 64, ~std::uint64_t{0}),
+        next_(now_.size(), 0) {
+    if (edges.size() % 64 != 0) now_.back() = (std::uint64_t{1} << (edges.size() % 64)) - 1;
+    for (const auto& [a, b] : edges) ++first_[a + 1], ++first_[b + 1];
+    for (std::size_t v = 0; v < num_vertices; ++v) first_[v + 1] += first_[v];
+    std::vector<std::size_t> end(first_.begin(), first_.end() - 1);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      for (const std::uint32_t v : {edges[e].first, edges[e].second}) {
+        incident_[end[v]++] = static_cast<std::uint32_t>(e);
+      }
+    }
+  }
+
+  // The edges around a vertex get a turn in the next sweep, those whose turn in this one is yet to come also
+  // there.
+  void wake(std::uint32_t vertex) {
+    for (std::size_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
+      const std::uint64_t bit = std::uint64_t{1} << (incident_[i] % 64);
+      now_[incident_[i] / 64] |= bit;
+      next_[incident_[i] / 64] |= bit;
+    }
+  }
+
+  // One sweep, in the order of the edges or against it: visit(edge) may wake vertices.
+  template <typename Visit>
+  void sweep(bool forwards, const Visit& visit) {
+    for (std::size_t i = 0; i < now_.size(); ++i) {
+      const std::size_t word = forwards ? i : now_.size() - 1 - i;
+      for (std::uint64_t ahead = ~std::uint64_t{0}; (now_[word] & ahead) != 0;) {
+        const std::uint64_t bits = now_[word] & ahead;
+        const int bit = forwards ? std::countr_zero(bits) : 63 - std::countl_zero(bits);
+        const std::uint64_t below = (std::uint64_t{1} << bit) - 1;
+        ahead = forwards ? ~(below | std::uint64_t{1} << bit) : below;
+        visit(64 * word + static_cast<std::size_t>(bit));
+      }
+    }
+    now_.swap(next_);
+    next_.assign(next_.size(), 0);
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // of a vertex in incident_
+  std::vector<std::uint32_t> incident_;
+  std::vector<std::uint64_t> now_, next_;  // a bit an edge
+};
+
+}  // namespace astrolith
