@@ -7,10 +7,13 @@
 
 #include "numerics/errors.h"
 #include "recipe/recipe.h"
+#include "synthesis/largest_coordinate.h"
 #include "synthesis/patch_field.h"
 
 namespace astrolith {
 namespace {
+
+constexpr double kFinestCell = 0x1p-15;  // of a combined body, in its largest coordinate
 
 MeshTile parse_tile(const std::string& text) {
   if (text.empty()) return {};
@@ -37,6 +40,17 @@ Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
   return q;
 }
 
+// A combined body is known to the float coordinates of its frame: finer cells would show their rounding.
+void check_cells(const ImplicitField& field, const Region& region, int resolution) {
+  const double finest = kFinestCell * largest_coordinate(field.bounds());
+  const double cell = region.size / resolution;
+  if (cell >= finest) return;
+  throw InputError(
+      fmt::format("--patch: body.operations: a combined body has cells of {:.3g} at least, these would be "
+                  "{:.3g}; lower --resolution or take a larger cube",
+                  finest, cell));
+}
+
 }  // namespace
 
 Region parse_region(const std::string& tile, const std::vector<double>& patch) {
@@ -54,9 +68,7 @@ Region parse_region(const std::string& tile, const std::vector<double>& patch) {
 
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress) {
-  if (region.is_patch && !field.has_near_form()) {
-    throw InputError("--patch: body.operations: a combined body has no patches; leave out --patch");
-  }
+  if (region.is_patch && !field.has_near_form()) check_cells(field, region, resolution);
   return region.is_patch
              ? mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress)
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);

@@ -286,8 +286,8 @@ void evaluate_batch(const FieldModel& model, const PreparedBody& body, const Dra
     band *= static_cast<float>(model.warp->stretch());  // s changes so much faster than a distance does
   }
   if (!body.plain()) band *= model.stretch;
-  if (near != nullptr) {
-    b.origin = &near->origin;
+  if (near != nullptr) b.origin = &near->origin;
+  if (near != nullptr && body.plain()) {
     evaluate_body_near(body.metaballs, n, *near, at, metaballs_at, b);
   } else {
     evaluate_body(body, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(), b.gx.data(),

@@ -54,9 +54,9 @@ class FieldBlock {
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                            std::span<float> value) const;
 
-  // The first, of a field that has_near_form(), at the points origin + (x, y, z), which are within the box
-  // but for the rounding of its coordinates to float. The body and fractal layers are evaluated to the digits
-  // of x, y and z, the other layers to those of float coordinates in the body's frame.
+  // The first at the points origin + (x, y, z), which are within the box but for the rounding of its
+  // coordinates to float. A body that has_near_form() and fractal layers are evaluated to the digits of x, y
+  // and z, other bodies and layers to those of float coordinates in the body's frame.
   void evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                      std::span<const float> z, std::span<float> value, float band) const;
   void evaluate_tetrahedra_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
@@ -88,7 +88,8 @@ class ImplicitField {
   // 2^-11 of the longest side of bounds(), in length units.
   double gradient_step() const;
 
-  // Whether blocks can be evaluated near an origin: not where operations combine bodies.
+  // Whether the body can be evaluated to the digits of coordinates near an origin: not where operations
+  // combine bodies.
   bool has_near_form() const;
 
   // Holds the whole surface, within about 1/64 of its longest side; empty where the body is.

@@ -124,6 +124,31 @@ TEST(PatchField, CentimetresOnABodyOf500Metres) {
   }
 }
 
+// Known to float coordinates alone, 2^-16 of a metre at 250 m: well below a cell of a centimetre.
+TEST(PatchField, CombinedBodiesInCellsOfACentimetre) {
+  Recipe recipe = testing::sphere_recipe(250.0);
+  BodyOperation& operation = recipe.body->operations.emplace_back();  // changes nothing
+  operation.operand = {*testing::sphere_recipe(50.0).body};
+  const ImplicitField field(recipe);
+  const Vec3d center = 250.0 * normalized(Vec3d{0.3, -0.7, 0.65});
+  MeshCollector patch;
+  ManifoldCheck check;
+  mesh_patch(PatchField(field, center), 1.28, 128, patch);
+  const MeshStatistics statistics = mesh_patch(PatchField(field, center), 1.28, 128, check);
+  const ManifoldReport report = check.finish();
+  EXPECT_EQ(report.open_vertices, statistics.cut_vertices);
+  EXPECT_TRUE(report.manifold());
+  EXPECT_EQ(report.components, 1);
+  double farthest = 0.0, tilt = 0.0;
+  for (std::size_t i = 0; i < patch.mesh.vertices.size(); ++i) {
+    const Vec3d p = center + patch.mesh.vertices[i];
+    farthest = std::max(farthest, std::abs(norm(p) - 250.0));
+    tilt = std::max(tilt, norm(patch.mesh.normals[i] - normalized(p)));
+  }
+  EXPECT_LT(farthest, 5e-5);  // metres
+  EXPECT_LT(tilt, 0.01);
+}
+
 TEST(PatchField, AgreesWithACoarseMeshOfTheWhole) {
   const ImplicitField field(layered_potato());
   MeshCollector whole, patch;
