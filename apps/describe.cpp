@@ -1,8 +1,10 @@
 // describe: a mesh, or points with normals, becomes the histogram of its shape.
 #include <string>
 
+#include "apps/device_option.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
+#include "cuda/pair_count.h"
 #include "geometry/mesh_io.h"
 #include "numerics/npy_file.h"
 
@@ -12,6 +14,7 @@ namespace {
 struct Arguments {
   std::string shape, output;
   ShapeOptions options;
+  DeviceOption device;
 };
 
 void add_options(Program& program, Arguments& arguments) {
@@ -25,6 +28,7 @@ void add_options(Program& program, Arguments& arguments) {
       ->required()
       ->option_text("H.npy");
   arguments.options.add_to(app);
+  arguments.device.add_to(app);
 }
 
 void summarize(Program& program, const ShapeDescription& shape, const std::string& features) {
@@ -40,7 +44,8 @@ void summarize(Program& program, const ShapeDescription& shape, const std::strin
 void run(Program& program, const Arguments& arguments) {
   require_writable(arguments.output);
   const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
-  const DescriptionOptions options = arguments.options.with_seed(program.seed);
+  DescriptionOptions options = arguments.options.with_seed(program.seed);
+  if (arguments.device.use_gpu(program)) options.count_pairs = count_pairs_on_gpu;
   const Progress progress = program.progress("describe");
   const ShapeDescription shape =
       mesh.triangles.empty() ? describe_file(arguments.shape, mesh.vertices, mesh.normals, options, progress)

@@ -9,21 +9,25 @@
 #include <utility>
 #include <vector>
 
-#include "numerics/errors.h"
+#include "cuda/machine.h"
 
 namespace astrolith {
 
-// Throws WorkError with CUDA's own words.
+// Throws WorkError with CUDA's own words; OutOfDeviceMemory, after which the device can be used further,
+// where that is what they say.
 inline void check_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) {
-    throw WorkError(std::string("GPU: ") + what + ": " + cudaGetErrorString(status));
-  }
+  if (status == cudaSuccess) return;
+  const std::string words = std::string("GPU: ") + what + ": " + cudaGetErrorString(status);
+  if (status != cudaErrorMemoryAllocation) throw WorkError(words);
+  cudaGetLastError();  // the error is no longer pending
+  throw OutOfDeviceMemory(words);
 }
 
 // An array of plain structs on the device; freed with the object.
 template <typename T>
 class DeviceBuffer {
  public:
+  DeviceBuffer() = default;
   explicit DeviceBuffer(std::size_t count) : count_(count) {
     if (count != 0) check_cuda(cudaMalloc(&data_, count * sizeof(T)), "allocating memory");
   }
@@ -37,12 +41,17 @@ class DeviceBuffer {
       : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
   DeviceBuffer(const DeviceBuffer&) = delete;
   DeviceBuffer& operator=(const DeviceBuffer&) = delete;
+  DeviceBuffer& operator=(DeviceBuffer&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(count_, other.count_);
+    return *this;
+  }
   ~DeviceBuffer() { cudaFree(data_); }
 
-  // host must hold size() elements.
+  // The first host.size() elements.
   void download(std::span<T> host) const {
-    if (count_ != 0) {
-      check_cuda(cudaMemcpy(host.data(), data_, count_ * sizeof(T), cudaMemcpyDeviceToHost),
+    if (!host.empty()) {
+      check_cuda(cudaMemcpy(host.data(), data_, host.size_bytes(), cudaMemcpyDeviceToHost),
                  "copying from the device");
     }
   }

@@ -1,16 +1,14 @@
+#include "descriptor/pair_count.h"
+
 #include <tbb/combinable.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <numeric>
-#include <tuple>
 
-#include "descriptor/pair_count_internal.h"
 #include "descriptor/shape_histogram.h"
+#include "descriptor/surflet_arrays.h"
 #include "descriptor/surflet_pair.h"
 #include "numerics/errors.h"
-#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
@@ -25,8 +23,7 @@ constexpr std::int64_t kLanes = 16;
 // Codes wait so many vectors before they are counted: the machine then computes and counts at the same time,
 // and need not wait for a vector to be written before it reads its parts.
 constexpr std::int64_t kDelay = 3, kRing = kDelay + 1;
-// What is read behind the last surflet of a run.
-constexpr std::int64_t kPadding = kRing * kLanes;
+static_assert(kRing * kLanes <= std::int64_t{kSurfletPadding});
 // Counters in copies, so that an increment need not wait for the one before it.
 constexpr std::int64_t kCopies = 4;
 
@@ -34,87 +31,15 @@ constexpr std::int64_t kCopies = 4;
 template <int kBins>
 constexpr std::int64_t kCodes = 2 * bin_count(PairFeatures::wahl, kBins);
 
-// Pointers to a run of surflets. That the loop below calls a function which makes its Surflet, rather than
-// making it in its own body, is what lets the compiler keep it in vector registers; that all it calls is
-// always inlined is what lets it vectorise the loop in every clone.
-struct SurfletRun {
-  std::array<const float*, 9> c;
-
-  template <int kBins>
-  ASTROLITH_KERNEL std::int32_t code_with(const Surflet& one, std::int64_t k) const {
-    return surflet_code<kBins>(
-        one, {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}});
-  }
-};
-
-// One array a coordinate, for vector loads, with room behind the last point. Points of one local code stand
-// together. Within them the order is that of a hash of the position: the order given then changes nothing,
-// and neighbours in space, whose pairs with a third point often share a bin, do not follow one another.
-struct SurfletArrays {
-  std::array<std::vector<float>, 9> c;
-  std::vector<std::int64_t> first_of_code;  // (num_local + 1)
-
-  SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                std::span<const std::int32_t> local, int num_local) {
-    for (auto& v : c) v.assign(points.size() + kPadding, 0.0f);
-    first_of_code.assign(static_cast<std::size_t>(num_local) + 1, 0);
-    std::size_t k = 0;
-    for (const std::uint32_t i : order_of(points, normals, local)) {
-      set(k++, surflet(single(points[i]), single(normals[i])));
-      ++first_of_code[static_cast<std::size_t>(local[i]) + 1];
-    }
-    std::partial_sum(first_of_code.begin(), first_of_code.end(), first_of_code.begin());
-  }
-
-  Surflet at(std::int64_t i) const {
-    const auto k = static_cast<std::size_t>(i);
-    return {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}};
-  }
-  SurfletRun from(std::int64_t i) const {
-    SurfletRun run{};
-    for (std::size_t d = 0; d < c.size(); ++d) run.c[d] = c[d].data() + i;
-    return run;
-  }
-
- private:
-  static std::uint32_t hash_of(const Vec3d& p) {
-    std::uint32_t hash = 0;
-    for (const double value : {p.x, p.y, p.z}) {
-      const auto bits = std::bit_cast<std::uint64_t>(value);
-      hash = hash_append(hash_append(hash, static_cast<std::uint32_t>(bits)),
-                         static_cast<std::uint32_t>(bits >> 32));
-    }
-    return hash;
-  }
-  static std::vector<std::uint32_t> order_of(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                             std::span<const std::int32_t> local) {
-    // Places with the same hash, such as points that repeat, are told apart by all their numbers.
-    const auto all = [&](std::uint32_t i) {
-      const Vec3d &p = points[i], &n = normals[i];
-      return std::tuple(p.x, p.y, p.z, n.x, n.y, n.z);
-    };
-    std::vector<std::tuple<std::int32_t, std::uint32_t, std::uint32_t>> keys(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) keys[i] = {local[i], hash_of(points[i]), i};
-    std::sort(keys.begin(), keys.end(), [&](const auto& a, const auto& b) {
-      const auto [code_a, hash_a, i] = a;
-      const auto [code_b, hash_b, j] = b;
-      return std::tie(code_a, hash_a) != std::tie(code_b, hash_b)
-                 ? std::tie(code_a, hash_a) < std::tie(code_b, hash_b)
-                 : all(i) < all(j);
-    });
-    std::vector<std::uint32_t> order;
-    for (const auto& key : keys) order.push_back(std::get<2>(key));
-    return order;
-  }
-  static Vec3f single(const Vec3d& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  }
-  void set(std::size_t k, const Surflet& s) {
-    const float values[] = {s.point.x,  s.point.y,  s.point.z,  s.normal.x, s.normal.y,
-                            s.normal.z, s.moment.x, s.moment.y, s.moment.z};
-    for (std::size_t d = 0; d < c.size(); ++d) c[d][k] = values[d];
-  }
-};
+// That the loop below calls a function which makes its Surflet, rather than making it in its own body, is
+// what lets the compiler keep it in vector registers; that all it calls is always inlined is what lets it
+// vectorise the loop in every clone.
+template <int kBins>
+ASTROLITH_KERNEL std::int32_t code_with(const SurfletRun& run, const Surflet& one, std::int64_t k) {
+  const auto& c = run.c;
+  return surflet_code<kBins>(
+      one, {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}});
+}
 
 using Codes = std::int32_t[kLanes];
 
@@ -122,7 +47,7 @@ template <int kBins>
 ASTROLITH_KERNEL void make_codes(const Surflet& one, const SurfletRun& run, std::int64_t first,
                                  Codes& codes) {
 #pragma omp simd
-  for (std::int64_t k = 0; k < kLanes; ++k) codes[k] = run.code_with<kBins>(one, first + k);
+  for (std::int64_t k = 0; k < kLanes; ++k) codes[k] = code_with<kBins>(run, one, first + k);
 }
 
 template <int kBins>

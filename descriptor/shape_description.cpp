@@ -28,9 +28,10 @@ void check(const DescriptionOptions& options) {
   }
 }
 
-void add_curvature(const SurfaceSamples& s, const SampleCurvature& curvature, int bins,
-                   const Progress& progress, ShapeDescription& result) {
-  result.histogram = ahd_histogram(s.points, s.normals, curvature.gaussian, bins, progress);
+void add_curvature(const SurfaceSamples& s, const SampleCurvature& curvature,
+                   const DescriptionOptions& options, const Progress& progress, ShapeDescription& result) {
+  result.histogram =
+      ahd_histogram(s.points, s.normals, curvature.gaussian, options.bins, progress, options.count_pairs);
   result.vertices_left_out = curvature.vertices_left_out;
   result.undefined_curvatures = curvature.undefined;
   if (curvature.vertices_left_out > 0) {
@@ -110,10 +111,10 @@ ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptio
   const SurfaceSamples s = sample_poisson_disk(mesh, options.points, options.seed);
   result.points = static_cast<std::int64_t>(s.points.size());
   if (options.features == PairFeatures::wahl) {
-    result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress);
+    result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress, options.count_pairs);
   } else {
     const double radius = kCurvatureRadius * std::sqrt(point_spread(s.points).mean_square);
-    add_curvature(s, sample_curvature(mesh, s, radius), options.bins, progress, result);
+    add_curvature(s, sample_curvature(mesh, s, radius), options, progress, result);
   }
   return result;
 }
@@ -126,9 +127,9 @@ ShapeDescription describe_shape(std::span<const Vec3d> points, std::span<const V
   const SurfaceSamples s = select(points, normals, options, result.remarks);
   result.points = static_cast<std::int64_t>(s.points.size());
   if (options.features == PairFeatures::wahl) {
-    result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress);
+    result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress, options.count_pairs);
   } else {
-    add_curvature(s, point_curvature(s.points, s.normals), options.bins, progress, result);
+    add_curvature(s, point_curvature(s.points, s.normals), options, progress, result);
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "descriptor/pair_count.h"
 #include "descriptor/shape_histogram.h"
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
@@ -21,6 +22,7 @@ struct DescriptionOptions {
   int bins = kDefaultBins;      // an axis, 2 to 10
   std::int64_t points = 10000;  // samples, 2 to 2^24; the time grows with their square
   std::uint64_t seed = 1;
+  PairCounter count_pairs = {};  // empty: on the CPU
 };
 
 struct ShapeDescription {

@@ -7,7 +7,7 @@
 
 #include "descriptor/largest_distance.h"
 #include "descriptor/local_features.h"
-#include "descriptor/pair_count_internal.h"
+#include "descriptor/pair_count.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -67,12 +67,13 @@ std::vector<std::uint64_t> local_last(const std::vector<std::uint64_t>& counts, 
 
 ShapeHistogram histogram_of(std::span<const Vec3d> points, std::span<const Vec3d> unit_normals,
                             std::span<const std::int32_t> local, int num_local, int bins,
-                            const Progress& progress) {
+                            const Progress& progress, const PairCounter& counter) {
   ShapeHistogram histogram;
   histogram.bins = bins;
   histogram.max_distance = largest_distance(points);
-  const auto counts =
-      count_pairs(scaled(points, histogram.max_distance), unit_normals, local, num_local, bins, progress);
+  const std::vector<Vec3d> in_unit = scaled(points, histogram.max_distance);
+  const auto counts = counter ? counter(in_unit, unit_normals, local, num_local, bins, progress)
+                              : count_pairs(in_unit, unit_normals, local, num_local, bins, progress);
   histogram.counts = local_last(counts, static_cast<std::size_t>(num_local));
   const std::uint64_t n = points.size();
   histogram.pairs = n > 1 ? n * (n - 1) / 2 : 0;
@@ -88,14 +89,15 @@ std::vector<double> ShapeHistogram::frequencies() const {
 }
 
 ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals, int bins,
-                                 const Progress& progress) {
+                                 const Progress& progress, const PairCounter& counter) {
   check(points, normals, bins);
   const std::vector<std::int32_t> all_alike(points.size(), 0);
-  return histogram_of(points, unit_vectors(normals), all_alike, 1, bins, progress);
+  return histogram_of(points, unit_vectors(normals), all_alike, 1, bins, progress, counter);
 }
 
 ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                             std::span<const double> curvatures, int bins, const Progress& progress) {
+                             std::span<const double> curvatures, int bins, const Progress& progress,
+                             const PairCounter& counter) {
   check(points, normals, bins);
   if (curvatures.size() != points.size()) {
     refuse(std::to_string(points.size()) + " points have " + std::to_string(curvatures.size()) +
@@ -108,7 +110,7 @@ ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3
   }
   const std::vector<Vec3d> unit = unit_vectors(normals);
   const std::vector<std::int32_t> local = local_codes(points, unit, curvatures, bins);
-  ShapeHistogram histogram = histogram_of(points, unit, local, bins * bins, bins, progress);
+  ShapeHistogram histogram = histogram_of(points, unit, local, bins * bins, bins, progress, counter);
   histogram.features = PairFeatures::ahd;
   return histogram;
 }

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "descriptor/pair_count.h"
 #include "descriptor/shape_histogram.h"
 #include "numerics/progress.h"
 #include "numerics/vec3.h"
@@ -17,11 +18,12 @@ namespace astrolith {
 // sizes differ, a number is not finite, there are more than 2^24 points or bins is outside 2 to 10,
 // WorkError when progress asks to stop.
 ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                 int bins = kDefaultBins, const Progress& progress = {});
+                                 int bins = kDefaultBins, const Progress& progress = {},
+                                 const PairCounter& counter = {});
 
 // The six features of the adaptive hybrid descriptor; curvatures (n) are Gaussian, in 1 / length^2.
 ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                              std::span<const double> curvatures, int bins = kDefaultBins,
-                             const Progress& progress = {});
+                             const Progress& progress = {}, const PairCounter& counter = {});
 
 }  // namespace astrolith

@@ -50,7 +50,8 @@ std::string sphere_points(int n, double normal_length = 1) {
 class Describe : public ::testing::Test {
  protected:
   Outcome describe(const std::string& input, std::vector<std::string> more) {
-    std::vector<std::string> arguments{input, "-o", (folder_ / "h.npy").string(), "--points", "600"};
+    std::vector<std::string> arguments{input,      "-o", (folder_ / "h.npy").string(), "--points", "600",
+                                       "--device", "cpu"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run_program(kDescribe, arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -58,12 +59,24 @@ class Describe : public ::testing::Test {
   }
   void expect_refused(const std::string& name, const std::string& content, const std::string& culprit) {
     const std::string file = folder_.write(name, content);
-    expect_refusal(folder_, kDescribe, {file, "-o", (folder_ / "out.npy").string()}, culprit);
+    expect_refusal(folder_, kDescribe, {file, "-o", (folder_ / "out.npy").string(), "--device", "cpu"},
+                   culprit);
   }
 
   WorkFolder folder_;
   const std::string egg_ = folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
 };
+
+// With a GPU or without one, which is said in a line.
+TEST_F(Describe, TheDeviceChangesNothing) {
+  describe(egg_, {});
+  const std::string on_cpu = text_of(folder_ / "h.npy");
+  const Outcome outcome =
+      run_program(kDescribe, {egg_, "-o", (folder_ / "h.npy").string(), "--points", "600"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(text_of(folder_ / "h.npy"), on_cpu);
+  if (!outcome.errors.empty()) EXPECT_EQ(outcome.errors.find("no GPU: "), 0u) << outcome.errors;
+}
 
 TEST_F(Describe, WritesFrequenciesOneAxisAFeature) {
   EXPECT_EQ(describe(egg_, {}).errors, "");

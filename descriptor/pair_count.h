@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,5 +19,10 @@ namespace astrolith {
 std::vector<std::uint64_t> count_pairs(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                                        std::span<const std::int32_t> local, int num_local, int bins,
                                        const Progress& progress);
+
+// Whoever can do the same, count for count; the one above where it is empty.
+using PairCounter = std::function<std::vector<std::uint64_t>(
+    std::span<const Vec3d> points, std::span<const Vec3d> normals, std::span<const std::int32_t> local,
+    int num_local, int bins, const Progress& progress)>;
 
 }  // namespace astrolith

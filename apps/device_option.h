@@ -1,0 +1,36 @@
+// --device: whether a program computes on the GPU.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "apps/program.h"
+#include "cuda/device.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+
+struct DeviceOption {
+  std::string device = "auto";
+
+  void add_to(CLI::App& app) {
+    app.add_option("--device", device,
+                   "what computes: cuda, the first GPU; cpu; auto, the GPU where there is one. The result is "
+                   "the same, byte for byte")
+        ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  }
+
+  // Looks at the GPU unless told not to. Where there is none, says so in a line; with "cuda" that is an
+  // InputError. States in the summary what computes.
+  bool use_gpu(Program& program) const {
+    const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
+    if (!status.usable && device == "cuda") {
+      throw InputError("--device cuda: " + status.reason + "; leave it out for the CPU");
+    }
+    if (!status.usable && device == "auto") program.say("no GPU: " + status.reason + "; the CPU computes");
+    program.summary["device"] = status.usable ? status.name : "cpu";
+    return status.usable;
+  }
+};
+
+}  // namespace astrolith

@@ -1,0 +1,96 @@
+// The GPU as a Machine (machine.h). For .cu files only.
+#pragma once
+
+#include <cub/device/device_scan.cuh>
+
+#include "cuda/device_buffer.h"
+#include "cuda/machine.h"
+
+namespace astrolith {
+
+// The threads of a group at the same time: every thread of the device runs the whole body.
+class DeviceGroup {
+ public:
+  __device__ DeviceGroup(std::size_t index, void* shared) : index_(index), shared_(shared) {}
+  ASTROLITH_HD std::size_t index() const { return index_; }
+  ASTROLITH_HD void* shared() const { return shared_; }
+#ifdef __CUDA_ARCH__
+  __device__ unsigned threads() const { return blockDim.x; }
+  template <typename Step>
+  __device__ void each_thread(const Step& step) const {
+    step(threadIdx.x);
+    __syncthreads();
+  }
+#else
+  unsigned threads() const { return 0; }  // for the compiler's pass over the host's half alone
+  template <typename Step>
+  void each_thread(const Step&) const {}
+#endif
+
+ private:
+  std::size_t index_;
+  void* shared_;
+};
+
+template <typename Body>
+__global__ void run_threads(std::size_t threads, Body body) {
+  const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i < threads) body(i);
+}
+
+template <typename Body>
+__global__ void run_groups(Body body) {
+  __shared__ std::uint64_t shared[kSharedBytes / sizeof(std::uint64_t)];
+  body(DeviceGroup(blockIdx.x, shared));
+}
+
+class DeviceMachine {
+ public:
+  template <typename T>
+  using Array = DeviceBuffer<T>;
+
+  template <typename T>
+  Array<T> allocate(std::size_t count) {
+    return Array<T>(count);
+  }
+  template <typename T>
+  Array<T> upload(std::span<const T> values) {
+    return Array<T>(values);
+  }
+  template <typename T>
+  void fill_zero(Array<T>& array) {
+    if (array.size() == 0) return;
+    check_cuda(cudaMemset(array.data(), 0, array.size() * sizeof(T)), "clearing memory");
+  }
+  template <typename T>
+  void download(const Array<T>& array, std::span<T> values) {
+    array.download(values);
+  }
+
+  template <typename Body>
+  void launch(const char* what, std::size_t threads, const Body& body) {
+    constexpr unsigned kThreads = 256;
+    if (threads == 0) return;
+    run_threads<<<static_cast<unsigned>((threads + kThreads - 1) / kThreads), kThreads>>>(threads, body);
+    check_cuda(cudaGetLastError(), what);
+  }
+  template <typename Body>
+  void launch_groups(const char* what, std::size_t groups, unsigned threads, const Body& body) {
+    if (groups == 0) return;
+    run_groups<<<static_cast<unsigned>(groups), threads>>>(body);
+    check_cuda(cudaGetLastError(), what);
+  }
+  void running_sum(Array<std::uint32_t>& values) {
+    std::size_t bytes = 0;
+    const auto sum = [&](void* scratch) {
+      check_cuda(cub::DeviceScan::ExclusiveSum(scratch, bytes, values.data(), values.data(),
+                                               static_cast<int>(values.size())),
+                 "adding up counts");
+    };
+    sum(nullptr);
+    Array<char> scratch(bytes);
+    sum(scratch.data());
+  }
+};
+
+}  // namespace astrolith

@@ -1,0 +1,25 @@
+// What this folder offers in a build that found no CUDA compiler: the probe says so, and all else is an error
+// of whoever did not ask it.
+#include "cuda/device.h"
+#include "cuda/pair_count.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+[[noreturn]] void refuse() { throw WorkError("GPU: this program was built without CUDA"); }
+
+}  // namespace
+
+DeviceStatus probe_device() {
+  DeviceStatus status;
+  status.reason = "this program was built without CUDA";
+  return status;
+}
+
+std::vector<std::uint64_t> count_pairs_on_gpu(std::span<const Vec3d>, std::span<const Vec3d>,
+                                              std::span<const std::int32_t>, int, int, const Progress&) {
+  refuse();
+}
+
+}  // namespace astrolith

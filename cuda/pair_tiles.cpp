@@ -1,0 +1,25 @@
+#include "cuda/pair_tiles.h"
+
+namespace astrolith {
+
+std::vector<PairTile> pair_tiles(std::span<const std::int64_t> first_of_code) {
+  std::vector<PairTile> tiles;
+  const std::size_t codes = first_of_code.size() - 1;
+  for (std::size_t l = 0; l < codes; ++l) {
+    for (std::int64_t row = first_of_code[l]; row < first_of_code[l + 1]; row += kTileRows) {
+      const std::int64_t end_row = std::min<std::int64_t>(row + kTileRows, first_of_code[l + 1]);
+      for (std::size_t other = 0; other <= l; ++other) {
+        const std::int64_t end = std::min(first_of_code[other + 1], end_row - 1);
+        for (std::int64_t column = first_of_code[other]; column < end; column += kTileColumns) {
+          tiles.push_back({static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(end_row),
+                           static_cast<std::uint32_t>(column),
+                           static_cast<std::uint32_t>(std::min(column + kTileColumns, end)),
+                           static_cast<std::int32_t>(l), static_cast<std::int32_t>(other)});
+        }
+      }
+    }
+  }
+  return tiles;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,174 @@
+// Counts pairs of surflets tile by tile (descriptor/pair_count.h): the pairs of some rows of one local code
+// with some columns of another. Within a tile only the surflet code and the side of the origin are left to
+// tell, so a tile's counters fit into the memory that a group of threads shares; integers, so that the order
+// in which tiles and threads add changes nothing.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cuda/machine.h"
+#include "descriptor/shape_histogram.h"
+#include "descriptor/surflet_arrays.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+// A row of a tile is a thread's.
+inline constexpr unsigned kTileRows = 256;
+// Enough pairs that adding up a tile's counters costs little beside them; below 2^32 in all, the range of a
+// counter.
+inline constexpr std::int64_t kTileColumns = 4096;
+
+// Rows first_row .. end_row - 1 with columns first_column .. end_column - 1, as far as the column is less
+// than the row.
+struct PairTile {
+  std::uint32_t first_row, end_row, first_column, end_column;
+  std::int32_t row_code, column_code;  // local codes
+};
+
+// All pairs of points whose local codes begin at first_of_code[l], each in one tile.
+std::vector<PairTile> pair_tiles(std::span<const std::int64_t> first_of_code);
+
+// One group of kTileRows threads a tile. Surflets lie in memory as nine arrays of `stride` floats; totals are
+// (num_local, kBins^4).
+template <int kBins>
+struct CountPairTiles {
+  static constexpr std::int64_t kHalf = bin_count(PairFeatures::wahl, kBins), kCodes = 2 * kHalf;
+  // Columns in shared memory at a time; the rest of it holds counters, in copies for groups of rows, so that
+  // fewer threads wait for each other.
+  static constexpr unsigned kChunk = 128;
+  static constexpr std::int64_t kCounters =
+      static_cast<std::int64_t>((kSharedBytes - 9 * kChunk * sizeof(float)) / sizeof(std::uint32_t));
+  static constexpr std::int64_t kWindow = std::min(kCodes, kCounters);  // codes counted in one pass
+  static constexpr std::int64_t kCopies = std::min<std::int64_t>(kCounters / kWindow, kTileRows / 32);
+
+  const PairTile* tiles;
+  const float* surflets;
+  std::size_t stride;
+  std::uint64_t* totals;
+
+  ASTROLITH_KERNEL static Surflet surflet_of(const float* from, std::size_t step, std::size_t k) {
+    const auto c = [&](std::size_t d) { return from[d * step + k]; };
+    return {{c(0), c(1), c(2)}, {c(3), c(4), c(5)}, {c(6), c(7), c(8)}};
+  }
+
+  template <class Group>
+  ASTROLITH_HD void operator()(const Group& group) const {
+    const PairTile tile = tiles[group.index()];
+    for (std::int64_t first = 0; first < kCodes; first += kWindow) count_window(group, tile, first);
+  }
+
+  // Codes first .. first + kWindow - 1.
+  template <class Group>
+  ASTROLITH_HD void count_window(const Group& group, const PairTile& tile, std::int64_t first) const {
+    auto* columns = static_cast<float*>(group.shared());
+    auto* counters = reinterpret_cast<std::uint32_t*>(columns + 9 * kChunk);
+    group.each_thread([&](unsigned thread) {
+      for (std::int64_t k = thread; k < kCopies * kWindow; k += kTileRows) counters[k] = 0;
+    });
+    for (std::uint32_t begin = tile.first_column; begin < tile.end_column; begin += kChunk) {
+      const std::uint32_t size = tile.end_column - begin < kChunk ? tile.end_column - begin : kChunk;
+      group.each_thread([&](unsigned thread) { load_columns(thread, begin, size, columns); });
+      group.each_thread(
+          [&](unsigned thread) { count_row(thread, tile, first, begin, size, columns, counters); });
+    }
+    group.each_thread([&](unsigned thread) { add_totals(thread, tile, first, counters); });
+  }
+
+ private:
+  ASTROLITH_HD void load_columns(unsigned thread, std::uint32_t begin, std::uint32_t size,
+                                 float* columns) const {
+    for (unsigned k = thread; k < 9 * kChunk; k += kTileRows) {
+      const unsigned d = k / kChunk, column = k % kChunk;
+      if (column < size) columns[k] = surflets[d * stride + begin + column];
+    }
+  }
+
+  ASTROLITH_HD void count_row(unsigned thread, const PairTile& tile, std::int64_t first, std::uint32_t begin,
+                              std::uint32_t size, const float* columns, std::uint32_t* counters) const {
+    const std::uint32_t row = tile.first_row + thread;
+    if (row >= tile.end_row || begin >= row) return;
+    const Surflet one = surflet_of(surflets, stride, row);
+    std::uint32_t* mine = counters + (thread / 32) % kCopies * kWindow;
+    const std::uint32_t end = row - begin < size ? row - begin : size;
+    for (std::uint32_t k = 0; k < end; ++k) {
+      const std::int64_t code = surflet_code<kBins>(one, surflet_of(columns, kChunk, k)) - first;
+      if (kWindow == kCodes || (code >= 0 && code < kWindow)) add_atomically(mine + code, std::uint32_t{1});
+    }
+  }
+
+  // The second half of the codes is of pairs whose origin is the column's point.
+  ASTROLITH_HD void add_totals(unsigned thread, const PairTile& tile, std::int64_t first,
+                               const std::uint32_t* counters) const {
+    for (std::int64_t k = thread; k < kWindow && first + k < kCodes; k += kTileRows) {
+      std::uint64_t sum = 0;
+      for (std::int64_t copy = 0; copy < kCopies; ++copy) sum += counters[copy * kWindow + k];
+      if (sum == 0) continue;
+      const bool of_column = first + k >= kHalf;
+      const std::int64_t local = of_column ? tile.column_code : tile.row_code;
+      add_atomically(totals + local * kHalf + (first + k - (of_column ? kHalf : 0)), sum);
+    }
+  }
+};
+
+// Tiles in one launch; a report follows.
+inline constexpr std::size_t kTilesPerLaunch = 16384;
+
+template <int kBins, class Machine>
+std::vector<std::uint64_t> count_tiles(Machine& machine, const SurfletArrays& surflets,
+                                       const Progress& progress) {
+  const std::vector<PairTile> tiles = pair_tiles(surflets.first_of_code);
+  const std::size_t stride = surflets.c[0].size();
+  std::vector<float> together;
+  for (const std::vector<float>& c : surflets.c) together.insert(together.end(), c.begin(), c.end());
+  const auto points = machine.upload(std::span<const float>(together));
+  const auto list = machine.upload(std::span<const PairTile>(tiles));
+  std::vector<std::uint64_t> counts((surflets.first_of_code.size() - 1) *
+                                    static_cast<std::size_t>(bin_count(PairFeatures::wahl, kBins)));
+  auto totals = machine.template allocate<std::uint64_t>(counts.size());
+  machine.fill_zero(totals);
+  for (std::size_t first = 0; first < tiles.size(); first += kTilesPerLaunch) {
+    const std::size_t size = std::min(kTilesPerLaunch, tiles.size() - first);
+    machine.launch_groups("counting pairs", size, kTileRows,
+                          CountPairTiles<kBins>{list.data() + first, points.data(), stride, totals.data()});
+    machine.download(totals, std::span(counts));
+    const double done = static_cast<double>(first + size) / static_cast<double>(tiles.size());
+    if (!report(progress, done, "")) throw WorkError("stopped; nothing was written");
+  }
+  machine.download(totals, std::span(counts));
+  return counts;
+}
+
+// count_pairs (descriptor/pair_count.h) on a machine: the same counts.
+template <class Machine>
+std::vector<std::uint64_t> count_pairs_on(Machine& machine, std::span<const Vec3d> points,
+                                          std::span<const Vec3d> normals, std::span<const std::int32_t> local,
+                                          int num_local, int bins, const Progress& progress) {
+  const SurfletArrays surflets(points, normals, local, num_local);
+  static_assert(kMinBins == 2 && kMaxBins == 10);
+  switch (bins) {
+    case 2:
+      return count_tiles<2>(machine, surflets, progress);
+    case 3:
+      return count_tiles<3>(machine, surflets, progress);
+    case 4:
+      return count_tiles<4>(machine, surflets, progress);
+    case 6:
+      return count_tiles<6>(machine, surflets, progress);
+    case 7:
+      return count_tiles<7>(machine, surflets, progress);
+    case 8:
+      return count_tiles<8>(machine, surflets, progress);
+    case 9:
+      return count_tiles<9>(machine, surflets, progress);
+    case 10:
+      return count_tiles<10>(machine, surflets, progress);
+    default:
+      return count_tiles<5>(machine, surflets, progress);
+  }
+}
+
+}  // namespace astrolith

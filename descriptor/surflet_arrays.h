@@ -1,0 +1,50 @@
+// The oriented points of a pair count in the order in which they are counted, for CPU and GPU alike: which of
+// two points comes first decides how a pair on a bin's border is rounded.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "descriptor/surflet_pair.h"
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+// Pointers to a run of surflets: point, normal, moment.
+struct SurfletRun {
+  std::array<const float*, 9> c;
+};
+
+// What may be read behind the last surflet of a run.
+inline constexpr std::size_t kSurfletPadding = 64;
+
+// One array a coordinate, for vector loads, with room behind the last point. Points of one local code stand
+// together. Within them the order is that of a hash of the position: the order given then changes nothing,
+// and neighbours in space, whose pairs with a third point often share a bin, do not follow one another.
+struct SurfletArrays {
+  std::array<std::vector<float>, 9> c;      // (n + kSurfletPadding) each
+  std::vector<std::int64_t> first_of_code;  // (num_local + 1)
+
+  // Points are in units of their largest distance, normals have unit length, local codes are in
+  // [0, num_local).
+  SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                std::span<const std::int32_t> local, int num_local);
+
+  std::int64_t size() const { return first_of_code.back(); }
+  Surflet at(std::int64_t i) const {
+    const auto k = static_cast<std::size_t>(i);
+    return {{c[0][k], c[1][k], c[2][k]}, {c[3][k], c[4][k], c[5][k]}, {c[6][k], c[7][k], c[8][k]}};
+  }
+  SurfletRun from(std::int64_t i) const {
+    SurfletRun run{};
+    for (std::size_t d = 0; d < c.size(); ++d) run.c[d] = c[d].data() + i;
+    return run;
+  }
+
+ private:
+  void set(std::size_t k, const Surflet& s);
+};
+
+}  // namespace astrolith
