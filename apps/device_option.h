@@ -31,6 +31,17 @@ struct DeviceOption {
     program.summary["device"] = status.usable ? status.name : "cpu";
     return status.usable;
   }
+
+  // The same for work of which the GPU lacks a part, in a few words; nothing where `lacking` is empty.
+  bool use_gpu(Program& program, const std::string& lacking) const {
+    if (lacking.empty() || device == "cpu") return use_gpu(program);
+    const std::string words = "the GPU does not compute " + lacking;
+    if (device == "cuda") throw InputError("--device cuda: " + words + "; leave it out for the CPU");
+    const bool usable = use_gpu(program);
+    if (usable) program.say(words + "; the CPU computes");
+    program.summary["device"] = "cpu";
+    return false;
+  }
 };
 
 }  // namespace astrolith

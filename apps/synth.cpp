@@ -50,7 +50,7 @@ void declare_options(Program& program, Options& options) {
   declare_texture_options(program, options.texture);
   for (const char* of_mesh :
        {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
-        "--min-component", "--predict", "--points", "--labels", "--preview", "--view", "--sun"}) {
+        "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view", "--sun"}) {
     program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
   }
   program.app.get_option("--seed")

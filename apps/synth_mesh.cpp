@@ -109,16 +109,18 @@ Recipe without_gabor(Recipe recipe) {
 
 // Meshes the region into a sink, without the pieces that are too small.
 MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field, const Region& region,
-                                   int resolution, double least_component, MeshSink& sink) {
+                                   int resolution, double least_component, MeshingDevice device,
+                                   MeshSink& sink) {
   if (!(least_component > 0.0)) {
-    return mesh_region(field, region, resolution, sink, program.progress("mesh"));
+    return mesh_region(field, region, resolution, sink, program.progress("mesh"), device);
   }
   ComponentSizes sizes;
-  mesh_region(field, region, resolution, sizes, program.progress("pieces"));
+  mesh_region(field, region, resolution, sizes, program.progress("pieces"), device);
   ComponentChoice choice = sizes.larger_than(least_component);
   program.summary["dropped_components"] = choice.dropped_pieces;
   ComponentFilter filter(std::move(choice), sink);
-  const MeshStatistics statistics = mesh_region(field, region, resolution, filter, program.progress("mesh"));
+  const MeshStatistics statistics =
+      mesh_region(field, region, resolution, filter, program.progress("mesh"), device);
   filter.finish();
   return statistics;
 }
@@ -167,6 +169,7 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       "with each vertex the layer that changed the surface most there (0 = the bare body, 1 = "
       "the recipe's first layer; the file's header says which is which) and the height of "
       "all layers (.ply)");
+  request.device.add_to(program.app);
   declare_preview_options(program, request.preview);
   program.app
       .add_option("--feature-list", request.features,
@@ -194,6 +197,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   const int resolution = choose_resolution(program, request.size, discarded, output, use, region.tile.count);
 
   if (request.size.only_predict) return;
+  const bool gpu = request.device.use_gpu(program, lacking_on_gpu(field, region));
 
   MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool(), {}};
   if (region.is_patch) info.origin = region.center;
@@ -214,7 +218,8 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
     sinks.add(request.points ? static_cast<MeshSink&>(*points) : *writer);
   }
   const MeshStatistics statistics =
-      mesh_without_crumbs(program, field, region, resolution, request.least_component, sinks);
+      mesh_without_crumbs(program, field, region, resolution, request.least_component,
+                          gpu ? MeshingDevice::kGpu : MeshingDevice::kCpu, sinks);
   const ManifoldReport report = check.finish();
   if (report.triangles == 0) fail_empty(field, region, file);
   require_closed_manifold(report, statistics);

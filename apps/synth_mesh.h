@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/device_option.h"
 #include "apps/program.h"
 #include "apps/synth_preview.h"
 #include "apps/synth_size.h"
@@ -21,6 +22,7 @@ struct MeshRequest {
   double least_component = 0.0;    // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
+  DeviceOption device;
 };
 
 void declare_mesh_options(Program& program, MeshRequest& request);

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cuda/mesh_field.h"
 #include "numerics/errors.h"
 #include "recipe/recipe.h"
+#include "synthesis/flat_field_data.h"
 #include "synthesis/largest_coordinate.h"
 #include "synthesis/patch_field.h"
 
@@ -66,11 +68,18 @@ Region parse_region(const std::string& tile, const std::vector<double>& patch) {
   return region;
 }
 
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region) {
+  return region.is_patch ? "patches" : obstacle_to_flattening(field);
+}
+
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
-                           const Progress& progress) {
+                           const Progress& progress, MeshingDevice device) {
   if (region.is_patch && !field.has_near_form()) check_cells(field, region, resolution);
-  return region.is_patch
-             ? mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress)
+  if (region.is_patch) {
+    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
+  }
+  return device == MeshingDevice::kGpu
+             ? mesh_field_on_gpu(field, field.bounds(), resolution, sink, progress, region.tile)
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
 }
 

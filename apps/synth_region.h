@@ -24,8 +24,12 @@ struct Region {
 // InputError for others.
 Region parse_region(const std::string& tile, const std::vector<double>& patch);
 
+// What of a field, or of a region, the GPU cannot mesh, in a few words; empty: nothing.
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region);
+
+enum class MeshingDevice { kCpu, kGpu };
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
-                           const Progress& progress);
+                           const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
 
 // The error of a region without surface; `file` is the recipe's.
 [[noreturn]] void fail_empty(const ImplicitField& field, const Region& region,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -74,7 +75,7 @@ class HostMachine {
     if (count * sizeof(T) > *left_) throw OutOfDeviceMemory("GPU: out of memory");
     *left_ -= count * sizeof(T);
     std::vector<T> values(count);
-    if constexpr (std::is_arithmetic_v<T>) std::fill(values.begin(), values.end(), static_cast<T>(-77));
+    if (count != 0) std::memset(static_cast<void*>(values.data()), 0x77, count * sizeof(T));
     return {std::move(values), left_};
   }
   template <typename T>

@@ -1,6 +1,7 @@
 // What this folder offers in a build that found no CUDA compiler: the probe says so, and all else is an error
 // of whoever did not ask it.
 #include "cuda/device.h"
+#include "cuda/mesh_field.h"
 #include "cuda/pair_count.h"
 #include "numerics/errors.h"
 
@@ -19,6 +20,11 @@ DeviceStatus probe_device() {
 
 std::vector<std::uint64_t> count_pairs_on_gpu(std::span<const Vec3d>, std::span<const Vec3d>,
                                               std::span<const std::int32_t>, int, int, const Progress&) {
+  refuse();
+}
+
+MeshStatistics mesh_field_on_gpu(const ImplicitField&, const Box&, int, MeshSink&, const Progress&,
+                                 MeshTile) {
   refuse();
 }
 

@@ -29,16 +29,16 @@ struct BlockWindow {
   std::array<int, 3> first, last;
 
   // Bit x set where the cell with upper corner x, y, z is meshed.
-  SignRow cells(int y, int z) const {
+  ASTROLITH_HD SignRow cells(int y, int z) const {
     return within(y, first[1], last[1]) && within(z, first[2], last[2]) ? bits(first[0], last[0]) : 0;
   }
   // Bit x set where the edge along axis that ends at x, y, z belongs to such a cell.
-  SignRow edges(int y, int z, int axis) const {
+  ASTROLITH_HD SignRow edges(int y, int z, int axis) const {
     const auto start = [&](int a) { return first[static_cast<unsigned>(a)] - (a == axis ? 0 : 1); };
     return within(y, start(1), last[1]) && within(z, start(2), last[2]) ? bits(start(0), last[0]) : 0;
   }
   // Of those, the edges that lie in the window's sides: the mesh is open there.
-  SignRow cut_edges(int y, int z, int axis) const {
+  ASTROLITH_HD SignRow cut_edges(int y, int z, int axis) const {
     const auto in_side = [&](int a, int c) {
       const auto i = static_cast<unsigned>(a);
       return a != axis && (c == first[i] - 1 || c == last[i]);
@@ -49,9 +49,9 @@ struct BlockWindow {
   }
 
  private:
-  static bool within(int c, int low, int high) { return c >= low && c <= high; }
+  ASTROLITH_HD static bool within(int c, int low, int high) { return c >= low && c <= high; }
   // Bits low .. high, as far as they are local coordinates.
-  static SignRow bits(int low, int high) {
+  ASTROLITH_HD static SignRow bits(int low, int high) {
     low = std::max(low, 0);
     high = std::min(high, B);
     return low > high ? 0 : ((SignRow{2} << high) - 1) & ~((SignRow{1} << low) - 1);
@@ -65,8 +65,8 @@ struct BlockGrid {
   CellWindow window;
   bool closed;  // the surface keeps off the grid's border
 
-  int blocks(unsigned axis) const { return (samples.cells[axis] + B - 1) / B; }
-  BlockWindow<B> window_of(int x, int y, int z) const {
+  ASTROLITH_HD int blocks(unsigned axis) const { return (samples.cells[axis] + B - 1) / B; }
+  ASTROLITH_HD BlockWindow<B> window_of(int x, int y, int z) const {
     BlockWindow<B> local;
     const std::array<int, 3> block{x, y, z};
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -30,10 +30,11 @@ struct LayerBlock {
   // Of owned samples: local coordinates 1 .. B.
   static constexpr std::size_t row(int y, int z) { return static_cast<std::size_t>((z - 1) * B + y - 1); }
 
-  // Leaves the arrays as they are.
+  // Both leave the arrays as they are.
+  LayerBlock() = default;
   LayerBlock(int block_x, int block_y) : x(block_x), y(block_y) {}
 
-  int x, y;  // position in the layer, in blocks
+  int x = 0, y = 0;  // position in the layer, in blocks
   // Filled in by the phases of the mesher, in this order.
   std::array<float, kSamples> values;        // at every sample the block sees
   std::array<SignRow, kSide * kSide> signs;  // of the values

@@ -62,8 +62,8 @@ struct SampleRow {
 
 // The row's samples within the grid that belong to the block or, since their owner is not active, to nobody.
 template <int B>
-SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, const Owners<B>& owners,
-                          const LayerBlock<B>& block, int y, int z) {
+ASTROLITH_HD SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, const Owners<B>& owners,
+                                       const LayerBlock<B>& block, int y, int z) {
   const auto mine = [&](unsigned owner) { return owner == 0 || owners[owner] == nullptr; };
   const auto [nx, ny, nz] = grid.samples.cells;
   if (block.y * B + y > ny || layer_z * B + z > nz) return {0, -1};
@@ -77,16 +77,20 @@ bool is_at_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& bl
   return touches(block.x * B, nx) || touches(block.y * B, ny) || touches(layer_z * B, nz);
 }
 
+template <int B>
+ASTROLITH_HD bool on_border(const BlockGrid<B>& grid, int gx, int gy, int gz) {
+  const auto [nx, ny, nz] = grid.samples.cells;
+  return gx == 0 || gy == 0 || gz == 0 || gx == nx || gy == ny || gz == nz;
+}
+
 // Throws WorkError when a sample on the grid's border is inside.
 template <int B>
 void check_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block) {
-  const auto [nx, ny, nz] = grid.samples.cells;
   for (int z = 0; z <= B; ++z) {
     for (int y = 0; y <= B; ++y) {
       for (int x = 0; x <= B; ++x) {
-        const int gx = block.x * B + x, gy = block.y * B + y, gz = layer_z * B + z;
-        const bool on_border = gx == 0 || gy == 0 || gz == 0 || gx == nx || gy == ny || gz == nz;
-        if (on_border && block.values[LayerBlock<B>::sample(x, y, z)] > 0.0f) fail_at_border();
+        const bool at_border = on_border(grid, block.x * B + x, block.y * B + y, layer_z * B + z);
+        if (at_border && block.values[LayerBlock<B>::sample(x, y, z)] > 0.0f) fail_at_border();
       }
     }
   }
@@ -132,32 +136,41 @@ void for_each_borrowed(const Visit& visit) {
 
 // Where the owner of a borrowed sample keeps it.
 template <int B>
-std::size_t owned_sample(int x, int y, int z) {
+ASTROLITH_HD std::size_t owned_sample(int x, int y, int z) {
   return LayerBlock<B>::sample(x == 0 ? B : x, y == 0 ? B : y, z == 0 ? B : z);
 }
 
-// Copies what active lower neighbours own.
+// Copies a sample from the lower neighbour that owns it, where that is active.
+template <int B>
+ASTROLITH_HD void borrow_sample(const Owners<B>& owners, int x, int y, int z, LayerBlock<B>& block) {
+  const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
+  if (owner == nullptr) return;
+  block.values[LayerBlock<B>::sample(x, y, z)] = owner->values[owned_sample<B>(x, y, z)];
+}
+
 template <int B>
 void borrow_samples(const Owners<B>& owners, LayerBlock<B>& block) {
-  for_each_borrowed<B>([&](int x, int y, int z, unsigned owner) {
-    if (owners[owner] == nullptr) return;
-    block.values[LayerBlock<B>::sample(x, y, z)] = owners[owner]->values[owned_sample<B>(x, y, z)];
-  });
+  for_each_borrowed<B>([&](int x, int y, int z, unsigned) { borrow_sample(owners, x, y, z, block); });
+}
+
+// Of row number sign_row(y, z).
+template <int B>
+ASTROLITH_HD SignRow signs_of_row(const LayerBlock<B>& block, std::size_t row) {
+  const float* value = block.values.data() + row * LayerBlock<B>::kSide;
+  SignRow signs = 0;
+  for (int x = 0; x <= B; ++x) signs |= (value[x] > 0.0f ? SignRow{1} : SignRow{0}) << x;
+  return signs;
 }
 
 template <int B>
 void take_signs(LayerBlock<B>& block) {
-  const float* value = block.values.data();
-  for (SignRow& row : block.signs) {
-    row = 0;
-    for (int x = 0; x <= B; ++x) row |= (*value++ > 0.0f ? SignRow{1} : SignRow{0}) << x;
-  }
+  for (std::size_t row = 0; row < block.signs.size(); ++row) block.signs[row] = signs_of_row(block, row);
 }
 
 // Whether the surface crosses side 0 .. 5 (axis, then low or high) of a block. `last` holds the last local
 // samples that lie in the grid.
 template <int B>
-bool is_side_crossed(const LayerBlock<B>& block, int side, const std::array<int, 3>& last) {
+ASTROLITH_HD bool is_side_crossed(const LayerBlock<B>& block, int side, const std::array<int, 3>& last) {
   const auto axis = static_cast<std::size_t>(side / 2);
   const int fixed = side % 2 != 0 ? B : 0;
   if (fixed > last[axis]) return false;
@@ -175,14 +188,27 @@ bool is_side_crossed(const LayerBlock<B>& block, int side, const std::array<int,
   return any != 0 && all != mask;
 }
 
+// The last local samples of a block that lie in the grid.
+template <int B>
+ASTROLITH_HD std::array<int, 3> last_samples(const BlockGrid<B>& grid, const LayerBlock<B>& block,
+                                             int layer_z) {
+  const std::array<int, 3> place{block.x, block.y, layer_z};
+  std::array<int, 3> last{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    last[axis] = std::min(B, grid.samples.cells[axis] - place[axis] * B);
+  }
+  return last;
+}
+
+[[noreturn]] inline void fail_at_open_side() {
+  throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
+}
+
 // Throws WorkError when the surface crosses a side of a block whose neighbour there was proved free of
 // surface: the mesh would have a hole. The layers below and above are null where they are not made.
 template <int B>
 void check_open_sides(const BlockGrid<B>& grid, int layer_z, const BlockLayer<B>& layer,
                       const BlockLayer<B>* below, const BlockLayer<B>* above) {
-  const auto last = [&](unsigned axis, int block) {
-    return std::min(B, grid.samples.cells[axis] - block * B);
-  };
   const auto lacks_block = [](const BlockLayer<B>* there, int x, int y) {
     return there != nullptr && there->contains(x, y) && there->find(x, y) == nullptr;
   };
@@ -192,11 +218,9 @@ void check_open_sides(const BlockGrid<B>& grid, int layer_z, const BlockLayer<B>
     const std::array<bool, 6> lacking = {lacks_block(&layer, x - 1, y), lacks_block(&layer, x + 1, y),
                                          lacks_block(&layer, x, y - 1), lacks_block(&layer, x, y + 1),
                                          lacks_block(below, x, y),      lacks_block(above, x, y)};
-    const std::array<int, 3> last_samples = {last(0, x), last(1, y), last(2, layer_z)};
+    const std::array<int, 3> last = last_samples(grid, block, layer_z);
     for (int side = 0; side < 6; ++side) {
-      if (lacking[static_cast<unsigned>(side)] && is_side_crossed(block, side, last_samples)) {
-        throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
-      }
+      if (lacking[static_cast<unsigned>(side)] && is_side_crossed(block, side, last)) fail_at_open_side();
     }
   });
 }

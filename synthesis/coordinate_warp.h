@@ -28,6 +28,12 @@ class CoordinateWarp {
   // Holds p + warp(p) for every float point p of a box.
   Box image(const Box& box) const;
 
+  // Of the simplex noise that displaces along an axis.
+  const std::vector<NoiseOctave>& octaves(std::size_t axis) const { return octaves_[axis]; }
+  // Points outside are displaced as the nearest one inside.
+  const Vec3f& domain_min() const { return domain_min_; }
+  const Vec3f& domain_max() const { return domain_max_; }
+
  private:
   std::array<std::vector<NoiseOctave>, 3> octaves_;  // of the displacement along x, y, z
   Vec3f domain_min_, domain_max_;

@@ -70,6 +70,11 @@ inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) 
   return spots.empty() ? nullptr : spots[layer].get();
 }
 
+// The most by which the layers may change F, and the layers from number `first` on; craters replace what is
+// there. Points beyond keep their F.
+float height_reach(const FieldModel& model);
+float change_bound(const FieldModel& model, std::size_t first);
+
 // Whether F keeps one sign over the box; `body` must hold what reaches body_box(model, box), `spots` what
 // reaches the box.
 BlockContent content_of(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,

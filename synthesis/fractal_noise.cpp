@@ -17,7 +17,7 @@ using Chunk = std::array<float, kChunk>;
 ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, float high, float scale,
                                  float bias, float* __restrict q) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) q[i] = math::fma(math::clamp(p[i], low, high), scale, bias);
+  for (int i = 0; i < n; ++i) q[i] = placed_coordinate(p[i], low, high, scale, bias);
 }
 
 // What `place` makes of the values low .. high.

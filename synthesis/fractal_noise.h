@@ -3,13 +3,20 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
 #include "synthesis/coordinate_warp.h"
 #include "synthesis/noise_octaves.h"
 
 namespace astrolith {
+
+// A coordinate of the noise from one of space.
+ASTROLITH_KERNEL float placed_coordinate(float p, float low, float high, float scale, float bias) {
+  return math::fma(math::clamp(p, low, high), scale, bias);
+}
 
 class FractalNoise {
  public:
@@ -32,6 +39,19 @@ class FractalNoise {
 
   // n(p) at every float point of a box.
   Interval bound_heights(const Box& box) const;
+
+  // What it is made of. The warp may be null.
+  struct Parts {
+    Noise noise;
+    const CoordinateWarp* warp;
+    Vec3f scale, bias, domain_min, domain_max;
+    std::span<const NoiseOctave> octaves;
+    float gradient_modulation;
+  };
+  Parts parts() const {
+    return {noise_,   warp_ ? &*warp_ : nullptr, scale_, bias_, domain_min_, domain_max_,
+            octaves_, gradient_modulation_};
+  }
 
  private:
   void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;

@@ -190,13 +190,6 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
   return kept;
 }
 
-// The most by which the layers from number `first` on may change an elevation.
-float change_bound(const FieldModel& model, std::size_t first) {
-  double bound = 0.0;
-  for (std::size_t i = first; i < model.layers.size(); ++i) bound += model.layers[i].join.change_bound;
-  return static_cast<float>(bound * (1.0 + 1e-5));
-}
-
 // Keeps the points whose F, as far as it is known, may still come within `reach` of 0, and those that
 // boulders reach: fine layers are the dearest, and coarse ones have told by then where the surface is not.
 // The others' F is left as known.
@@ -248,7 +241,7 @@ void add_elevations(const FieldModel& model, const BlockParts& parts, const Poin
                     const PointArrays& metaballs_at, const NearPoints* near, float band, Batch& b,
                     float* value) {
   std::array<int, kBatch> origin;
-  const float reach = static_cast<float>(model.height_bound * (1.0 + 1e-5)) + band;
+  const float reach = height_reach(model) + band;
   const auto boulders_reach = [&](int i) {
     return model.boulders.reach(parts.boulders, at.x[i], at.y[i], at.z[i]);
   };
@@ -301,6 +294,14 @@ void evaluate_batch(const FieldModel& model, const PreparedBody& body, const Dra
 
 }  // namespace
 
+float height_reach(const FieldModel& model) { return static_cast<float>(model.height_bound * (1.0 + 1e-5)); }
+
+float change_bound(const FieldModel& model, std::size_t first) {
+  double bound = 0.0;
+  for (std::size_t i = first; i < model.layers.size(); ++i) bound += model.layers[i].join.change_bound;
+  return static_cast<float>(bound * (1.0 + 1e-5));
+}
+
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
@@ -309,6 +310,17 @@ float value_at(const FieldModel& model, const Vec3d& p) {
 }
 
 BlockContent FieldBlock::content() const { return content_of(*model_, body_, spots_, box_); }
+
+std::vector<SpotImpulses> FieldBlock::all_spots() const {
+  std::vector<SpotImpulses> all;
+  for (std::size_t i = 0; i < model_->layers.size(); ++i) {
+    const auto* noise = std::get_if<SpotNoise>(&model_->layers[i].noise);
+    if (noise == nullptr) continue;
+    const SpotImpulses* drawn = spots_of(spots_, i);
+    all.push_back(drawn != nullptr ? *drawn : noise->draw(layer_box(model_->layers[i], box_)));
+  }
+  return all;
+}
 
 FieldBlock FieldBlock::restricted_to(const Box& child) const {
   return {*model_, body_reaching(body_, body_box(*model_, child)), spots_reaching(*model_, child, spots_),

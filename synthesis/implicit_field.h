@@ -63,6 +63,9 @@ class FieldBlock {
                                 std::span<const float> z, std::span<float> value) const;
 
   const Box& box() const { return box_; }
+  const PreparedBody& body() const { return body_; }
+  // The impulses of every layer of spots, in the layers' order.
+  std::vector<SpotImpulses> all_spots() const;
 
  private:
   friend class ImplicitField;
@@ -104,6 +107,8 @@ class ImplicitField {
   std::span<const LayerBoulders> boulders() const;
 
   FieldBlock gather(const Box& box) const;
+
+  const FieldModel& model() const { return *model_; }
 
  private:
   std::shared_ptr<const FieldModel> model_;

@@ -8,17 +8,6 @@
 namespace astrolith {
 namespace {
 
-float smooth_step(float height, float from, float inverse_range) {
-  const float t = math::clamp((height - from) * inverse_range, 0.0f, 1.0f);
-  return t * t * math::fma(-2.0f, t, 3.0f);
-}
-
-// The union of surfaces at two heights, rounded at the joint: symmetric, and the higher one where width is 0.
-float rounded_max(float a, float b, float width) {
-  const float d = math::abs(a - b);
-  return math::fma(0.5f, math::sqrt(math::fma(d, d, width * width)) - d, math::max(a, b));
-}
-
 ASTROLITH_SIMD_CLONES void multiply_by_steps(int n, const float* __restrict height, float from,
                                              float inverse_range, float* __restrict weight) {
 #pragma omp simd
@@ -28,7 +17,7 @@ ASTROLITH_SIMD_CLONES void multiply_by_steps(int n, const float* __restrict heig
 ASTROLITH_SIMD_CLONES void blend(int n, float sign, float width, const float* __restrict elevation,
                                  float* __restrict height) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) height[i] = sign * rounded_max(sign * elevation[i], sign * height[i], width);
+  for (int i = 0; i < n; ++i) height[i] = blended_height(sign, width, elevation[i], height[i]);
 }
 
 double rounded_max(double a, double b, double width) {
@@ -72,11 +61,8 @@ void join_elevation(const Combination& how, int n, const float* weight, float* h
   }
   const bool is_change = how.kind == Combine::kAdd;
   for (int i = 0; i < n; ++i) {
-    if (weight == nullptr) {
-      elevation[i] = is_change ? elevation[i] + height[i] : height[i];
-    } else {
-      elevation[i] += weight[i] * (is_change ? height[i] : height[i] - elevation[i]);
-    }
+    elevation[i] = weight == nullptr ? joined_elevation(is_change, height[i], elevation[i])
+                                     : joined_elevation(is_change, weight[i], height[i], elevation[i]);
   }
 }
 

@@ -4,11 +4,38 @@
 
 #include <optional>
 
+#include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
 #include "synthesis/local_weight.h"
 #include "synthesis/noise_octaves.h"
 
 namespace astrolith {
+
+// From 0 where a height is `from` to 1.
+ASTROLITH_KERNEL float smooth_step(float height, float from, float inverse_range) {
+  const float t = math::clamp((height - from) * inverse_range, 0.0f, 1.0f);
+  return t * t * math::fma(-2.0f, t, 3.0f);
+}
+
+// The union of surfaces at two heights, rounded at the joint: symmetric, and the higher one where width is 0.
+ASTROLITH_KERNEL float rounded_max(float a, float b, float width) {
+  const float d = math::abs(a - b);
+  return math::fma(0.5f, math::sqrt(math::fma(d, d, width * width)) - d, math::max(a, b));
+}
+
+// The blend of a height with an elevation; sign is -1 for the intersection.
+ASTROLITH_KERNEL float blended_height(float sign, float width, float elevation, float height) {
+  return sign * rounded_max(sign * elevation, sign * height, width);
+}
+
+// What a height makes of an elevation that it is added to, or that it takes the place of. Where it counts
+// fully there is no weight.
+ASTROLITH_KERNEL float joined_elevation(bool is_change, float height, float elevation) {
+  return is_change ? elevation + height : height;
+}
+ASTROLITH_KERNEL float joined_elevation(bool is_change, float weight, float height, float elevation) {
+  return elevation + weight * (is_change ? height : height - elevation);
+}
 
 // Where a layer counts, by the heights of another, as they were there.
 struct HeightMask {

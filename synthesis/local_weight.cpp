@@ -51,24 +51,21 @@ void nearest_candidates(const std::vector<Sphere>& spheres, const Box& box, std:
   }
 }
 
-ASTROLITH_SIMD_CLONES void take_nearer(float cx, float cy, float cz, float radius, int n,
-                                       const float* __restrict x, const float* __restrict y,
-                                       const float* __restrict z, float* __restrict distance) {
+Vec3f single(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+ASTROLITH_SIMD_CLONES void take_nearer(Vec3f center, float radius, int n, const float* __restrict x,
+                                       const float* __restrict y, const float* __restrict z,
+                                       float* __restrict distance) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const float dx = x[i] - cx, dy = y[i] - cy, dz = z[i] - cz;
-    const float d = math::sqrt(math::fma(dx, dx, math::fma(dy, dy, dz * dz))) - radius;
-    distance[i] = math::min(distance[i], d);
-  }
+  for (int i = 0; i < n; ++i) distance[i] = nearer_sphere(center, radius, x[i], y[i], z[i], distance[i]);
 }
 
 ASTROLITH_SIMD_CLONES void multiply_weights(const float* __restrict near, const float* __restrict others,
                                             float inverse_width, int n, float* __restrict height) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const float angle = math::atan2_turns((near[i] - others[i]) * inverse_width, 1.0f);
-    height[i] *= math::fma(-2.0f, angle, 0.5f);
-  }
+  for (int i = 0; i < n; ++i) height[i] *= local_weight(near[i], others[i], inverse_width);
 }
 
 double weight_at(double difference, double width) {
@@ -105,9 +102,7 @@ void LocalWeight::multiply(int n, const float* x, const float* y, const float* z
       distance.fill(std::numeric_limits<float>::max());
       nearest_candidates(of_group ? near_ : others_, box, candidates);
       for (const Sphere& s : candidates) {
-        take_nearer(static_cast<float>(s.center.x), static_cast<float>(s.center.y),
-                    static_cast<float>(s.center.z), static_cast<float>(s.radius), size, px, py, pz,
-                    distance.data());
+        take_nearer(single(s.center), static_cast<float>(s.radius), size, px, py, pz, distance.data());
       }
     }
     multiply_weights(near.data(), others.data(), inverse_width_, size, height + begin);

@@ -5,10 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise_octaves.h"
 
 namespace astrolith {
+
+// The distance from a sphere's surface, or one that is less.
+ASTROLITH_KERNEL float nearer_sphere(const Vec3f& center, float radius, float x, float y, float z,
+                                     float distance) {
+  const float dx = x - center.x, dy = y - center.y, dz = z - center.z;
+  return math::min(distance, math::sqrt(math::fma(dx, dx, math::fma(dy, dy, dz * dz))) - radius);
+}
+
+// From the distances to the group's spheres and to all others.
+ASTROLITH_KERNEL float local_weight(float near, float others, float inverse_width) {
+  return math::fma(-2.0f, math::atan2_turns((near - others) * inverse_width, 1.0f), 0.5f);
+}
 
 class LocalWeight {
  public:
@@ -20,6 +33,10 @@ class LocalWeight {
 
   // The weight at every float point of a box.
   Interval bound(const Box& box) const;
+
+  const std::vector<Sphere>& near() const { return near_; }
+  const std::vector<Sphere>& others() const { return others_; }  // none: the weight is 1 everywhere
+  float inverse_width() const { return inverse_width_; }
 
  private:
   std::vector<Sphere> near_, others_;  // the group's spheres and all others

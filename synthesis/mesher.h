@@ -56,6 +56,16 @@ CellWindow window_of_tile(const SampleGrid& grid, MeshTile tile) {
           {grid.cells[0], grid.cells[1], std::min(B * layer(tile.index + 1), grid.cells[2])}};
 }
 
+// The layers of blocks that a window needs.
+struct LayerRange {
+  int first, end;
+};
+// From the layer that owns the samples in the window's lower side.
+template <int B>
+LayerRange layers_of_window(const BlockGrid<B>& grid) {
+  return {std::max(grid.window.first[2] - 2, 0) / B, (grid.window.last[2] - 1) / B + 1};
+}
+
 template <int B, BlockField Field>
 class LayeredMesher {
  public:
@@ -66,7 +76,7 @@ class LayeredMesher {
   }
 
   MeshStatistics run(const Progress& progress) {
-    const auto [first, end] = layers_of_window();
+    const auto [first, end] = layers_of_window(grid_);
     const BlockLayer<B> nothing(grid_.blocks(0), grid_.blocks(1));
     BlockLayer<B> two_below = nothing, below = nothing;
     for (int z = first; z < end; ++z) {
@@ -87,15 +97,6 @@ class LayeredMesher {
   using Blocks = std::vector<BlockNode<decltype(std::declval<const Field&>().gather(Box{}))>>;
 
   Box whole_box() const { return grid_.samples.box({0, 0, 0}, grid_.samples.cells, grid_.samples.step); }
-
-  struct LayerRange {
-    int first, end;
-  };
-  // From the layer that owns the samples in the window's lower side.
-  LayerRange layers_of_window() const {
-    const CellWindow& window = grid_.window;
-    return {std::max(window.first[2] - 2, 0) / B, (window.last[2] - 1) / B + 1};
-  }
 
   BlockLayer<B> make_layer(int z, const BlockLayer<B>& below) {
     const Blocks active = mixed_blocks(grid_, whole_, z);

@@ -5,9 +5,7 @@
 
 #include "numerics/hash_random.h"
 #include "synthesis/largest_coordinate.h"
-#include "synthesis/perlin_noise.h"
-#include "synthesis/simplex_noise.h"
-#include "synthesis/worley_noise.h"
+#include "synthesis/octave_sum.h"
 
 namespace astrolith {
 namespace {
@@ -52,19 +50,14 @@ float noise_at(Noise noise, float x, float y, float z, std::uint32_t seed) {
 }
 
 // One loop a noise: a choice inside it would keep it from vectorising.
-#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                           \
-  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x,       \
-                                  const float* __restrict y, const float* __restrict z,              \
-                                  float* __restrict sum) {                                           \
-    const float f = octave.frequency, amplitude = octave.amplitude;                                  \
-    const std::uint32_t seed = octave.seed;                                                          \
-    const Vec3f at = octave.offset;                                                                  \
-    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                \
-      sum[i] = math::fma(                                                                            \
-          amplitude,                                                                                 \
-          noise(math::fma(f, x[i], at.x), math::fma(f, y[i], at.y), math::fma(f, z[i], at.z), seed), \
-          sum[i]);                                                                                   \
-    }                                                                                                \
+#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x, \
+                                  const float* __restrict y, const float* __restrict z,        \
+                                  float* __restrict sum) {                                     \
+    const NoiseOctave o = octave;                                                              \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                          \
+      sum[i] = with_octave<noise>(o, x[i], y[i], z[i], sum[i]);                                \
+    }                                                                                          \
   }
 ASTROLITH_OCTAVE_LOOP(add_simplex, simplex_noise)
 ASTROLITH_OCTAVE_LOOP(add_perlin, perlin_noise)
@@ -73,22 +66,20 @@ ASTROLITH_OCTAVE_LOOP(add_f2, worley_f2)
 ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
 #undef ASTROLITH_OCTAVE_LOOP
 
-#define ASTROLITH_MODULATED_LOOP(name, noise)                                                            \
-  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, float modulation, int n,                    \
-                                  const float* __restrict x, const float* __restrict y,                  \
-                                  const float* __restrict z, float* __restrict dx, float* __restrict dy, \
-                                  float* __restrict dz, float* __restrict sum) {                         \
-    const NoiseOctave o = octave;                                                                        \
-    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                    \
-      const NoiseSample s =                                                                              \
-          noise(math::fma(o.frequency, x[i], o.offset.x), math::fma(o.frequency, y[i], o.offset.y),      \
-                math::fma(o.frequency, z[i], o.offset.z), o.seed);                                       \
-      dx[i] = math::fma(o.slope, s.gradient.x, dx[i]);                                                   \
-      dy[i] = math::fma(o.slope, s.gradient.y, dy[i]);                                                   \
-      dz[i] = math::fma(o.slope, s.gradient.z, dz[i]);                                                   \
-      const float steepness = math::fma(dx[i], dx[i], math::fma(dy[i], dy[i], dz[i] * dz[i]));           \
-      sum[i] += o.amplitude * s.value / math::fma(modulation, steepness, 1.0f);                          \
-    }                                                                                                    \
+#define ASTROLITH_MODULATED_LOOP(name, noise)                                                             \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, float modulation, int n,                     \
+                                  const float* __restrict x, const float* __restrict y,                   \
+                                  const float* __restrict z, float* __restrict dx, float* __restrict dy,  \
+                                  float* __restrict dz, float* __restrict sum) {                          \
+    const NoiseOctave o = octave;                                                                         \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                     \
+      const ModulatedSum s =                                                                              \
+          with_modulated_octave<noise>(o, modulation, x[i], y[i], z[i], {sum[i], {dx[i], dy[i], dz[i]}}); \
+      dx[i] = s.slope.x;                                                                                  \
+      dy[i] = s.slope.y;                                                                                  \
+      dz[i] = s.slope.z;                                                                                  \
+      sum[i] = s.value;                                                                                   \
+    }                                                                                                     \
   }
 ASTROLITH_MODULATED_LOOP(add_modulated_simplex, simplex_with_gradient)
 ASTROLITH_MODULATED_LOOP(add_modulated_perlin, perlin_with_gradient)

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "numerics/host_device.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
@@ -13,9 +14,9 @@ struct SampleGrid {
   double step = 1.0;         // edge of a cell, length units
   std::array<int, 3> cells;  // along x, y, z; there is one sample more
 
-  float x(int index) const { return static_cast<float>(origin.x + step * index); }
-  float y(int index) const { return static_cast<float>(origin.y + step * index); }
-  float z(int index) const { return static_cast<float>(origin.z + step * index); }
+  ASTROLITH_HD float x(int index) const { return static_cast<float>(origin.x + step * index); }
+  ASTROLITH_HD float y(int index) const { return static_cast<float>(origin.y + step * index); }
+  ASTROLITH_HD float z(int index) const { return static_cast<float>(origin.z + step * index); }
 
   // The box of the samples first .. last, widened by margin (length units) on every side.
   Box box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const;

@@ -64,16 +64,16 @@ void SparseNoise::evaluate(int n, const float* x, const float* y, const float* z
     pz[i] = math::clamp(z[i], domain_min_.z, domain_max_.z);
   }
   std::fill(height, height + n, 0.0f);
-  const float cut = merged_ ? 0.0f : threshold_;
-  for (const Level& level : levels_) {
+  const Parts part = parts();
+  for (const SparseLevel& level : levels_) {
     upscale(n, px, py, pz, level.frequency, level.seed, probability_, inverse_probability_, noise);
-    for (int i = 0; i < n; ++i) height[i] += level.gain * math::max(noise[i] - cut, 0.0f);
+    for (int i = 0; i < n; ++i)
+      height[i] = with_sparse_level(level.gain, noise[i], part.level_cut, height[i]);
   }
-  const float last_cut = merged_ ? threshold_ : 0.0f;
-  for (int i = 0; i < n; ++i) height[i] = -amplitude_ * math::max(height[i] - last_cut, 0.0f);
+  for (int i = 0; i < n; ++i) height[i] = sparse_height(amplitude_, height[i], part.sum_cut);
 }
 
-double SparseNoise::greatest_noise(const Level& level, const Box& box) const {
+double SparseNoise::greatest_noise(const SparseLevel& level, const Box& box) const {
   const double f = double{level.frequency};
   const double rounding = 1e-6 * (1.0 + f * largest_coordinate(box));
   const Vec3d low = f * box.min - Vec3d{rounding, rounding, rounding},
@@ -107,7 +107,7 @@ Interval SparseNoise::bound_heights(const Box& box) const {
   const Box moved{inside(box.min), inside(box.max)};
   const double threshold = double{threshold_};
   double deepest = 0.0;
-  for (const Level& level : levels_) {
+  for (const SparseLevel& level : levels_) {
     const double noise = greatest_noise(level, moved);
     deepest += double{level.gain} * (merged_ ? noise : std::max(noise - threshold, 0.0));
   }

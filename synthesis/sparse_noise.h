@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "recipe/recipe.h"
@@ -53,6 +54,20 @@ ASTROLITH_KERNEL float upscaled_noise(float x, float y, float z, std::uint32_t s
          math::fma(wz.below, plane(k - 1.0f), math::fma(wz.above, plane(k + 1.0f), wz.at * plane(k)));
 }
 
+struct SparseLevel {
+  float frequency;  // cells per length unit
+  float gain;       // of this level over the first
+  std::uint32_t seed;
+};
+
+// A level's part of the sum at a value of its noise, and the height from the whole sum.
+ASTROLITH_KERNEL float with_sparse_level(float gain, float noise, float cut, float sum) {
+  return sum + gain * math::max(noise - cut, 0.0f);
+}
+ASTROLITH_KERNEL float sparse_height(float amplitude, float sum, float cut) {
+  return -amplitude * math::max(sum - cut, 0.0f);
+}
+
 class SparseNoise {
  public:
   // As FractalNoise: levels too fine for float coordinates within the domain are left out.
@@ -67,15 +82,27 @@ class SparseNoise {
   // n(p) at every float point of a box.
   Interval bound_heights(const Box& box) const;
 
- private:
-  struct Level {
-    float frequency;  // cells per length unit
-    float gain;       // of this level over the first
-    std::uint32_t seed;
+  // What it is made of. A level is cut, or the sum of all.
+  struct Parts {
+    Vec3f domain_min, domain_max;
+    std::span<const SparseLevel> levels;
+    float amplitude, level_cut, sum_cut, probability, inverse_probability;
   };
-  double greatest_noise(const Level& level, const Box& box) const;
+  Parts parts() const {
+    return {domain_min_,
+            domain_max_,
+            levels_,
+            amplitude_,
+            merged_ ? 0.0f : threshold_,
+            merged_ ? threshold_ : 0.0f,
+            probability_,
+            inverse_probability_};
+  }
 
-  std::vector<Level> levels_;
+ private:
+  double greatest_noise(const SparseLevel& level, const Box& box) const;
+
+  std::vector<SparseLevel> levels_;
   float amplitude_, threshold_, probability_, inverse_probability_;
   bool merged_;
   Vec3f domain_min_, domain_max_;

@@ -175,16 +175,19 @@ std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) con
   return impulses;
 }
 
+SpotImpulses SpotNoise::draw(const Box& box) const {
+  SpotImpulses impulses;
+  for (int j = 0; j < num_sizes(); ++j) impulses.push_back(impulses_reaching(j, moved_into_domain(box)));
+  return impulses;
+}
+
 std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
   const Box moved = moved_into_domain(box);
   const auto too_many = [&](const Size& size) { return cells_around(size, moved).count() > kMostCells; };
   if (of_larger == nullptr && std::any_of(sizes_.begin(), sizes_.end(), too_many)) return nullptr;
+  if (of_larger == nullptr) return std::make_shared<const SpotImpulses>(draw(box));
   auto impulses = std::make_shared<SpotImpulses>(sizes_.size());
   for (std::size_t j = 0; j < sizes_.size(); ++j) {
-    if (of_larger == nullptr) {
-      (*impulses)[j] = impulses_reaching(static_cast<int>(j), moved);
-      continue;
-    }
     (*impulses)[j] = those_reaching((*of_larger)[j], sizes_[j].support, moved);
   }
   return impulses;

@@ -39,6 +39,15 @@ class SpotNoise {
   // n(p) at every float point of a box; `impulses` as above.
   Interval bound_heights(const Box& box, const SpotImpulses* impulses = nullptr) const;
 
+  // Points outside are moved to the border.
+  const Vec3f& domain_min() const { return domain_min_; }
+  const Vec3f& domain_max() const { return domain_max_; }
+  // Of size j: the kernel, and where the |sum| of its spots is cut, length units.
+  const SpotKernel& kernel(int j) const { return sizes_[static_cast<std::size_t>(j)].kernel; }
+  float clip(int j) const { return sizes_[static_cast<std::size_t>(j)].clip; }
+  // All that reach a box, however many.
+  SpotImpulses draw(const Box& box) const;
+
   int num_sizes() const { return static_cast<int>(sizes_.size()); }
   // The impulses of size j whose spots may reach the box, in the order of their cells (z, then y, then x).
   std::vector<SpotImpulse> impulses_reaching(int j, const Box& box) const;

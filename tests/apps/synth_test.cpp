@@ -49,6 +49,21 @@ class Synth : public ::testing::Test {
   WorkFolder folder_;
 };
 
+// The recipe's Gabor or fractal layers, by a GPU or without one.
+TEST_F(Synth, TheDeviceChangesNothing) {
+  const std::string by_cpu = synthesise("cpu.ply", {"--device", "cpu"});
+  EXPECT_EQ(synthesise("auto.ply", {"--device", "auto"}), by_cpu);
+  const std::string out = (folder_ / "cuda.ply").string();
+  const testing::Outcome outcome = run_program(
+      kSynth, {folder_.write("r.json", kTwoSpheres), "-o", out, "--resolution", "32", "--device", "cuda"});
+  if (outcome.status == 0) {
+    EXPECT_EQ(text_of(out), by_cpu);
+  } else {
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.errors.find("--device cuda: "), std::string::npos) << outcome.errors;
+  }
+}
+
 TEST_F(Synth, FeaturesAreListedAsDrawn) {
   const std::string craters = replaced(kTwoSpheres, "\"layers\": [", R"("layers": [{"type": "craters",
     "craters": [{"direction": [0, 0, 1], "diameter": 0.5, "age": 9}], "complex_from": 0.4,
@@ -217,8 +232,8 @@ TEST_F(Synth, PatchesAreOpenAndStateTheirOrigin) {
 TEST_F(Synth, PatchesWithoutSurfaceSayWhereThereIsSome) {
   const std::string recipe = folder_.write("r.json", kTwoSpheres);
   const auto refuse = [&](std::vector<std::string> patch, const std::string& culprit) {
-    std::vector<std::string> arguments{recipe,         "-o", (folder_ / "x.ply").string(),
-                                       "--resolution", "16", "--patch"};
+    std::vector<std::string> arguments{
+        recipe, "-o", (folder_ / "x.ply").string(), "--resolution", "16", "--device", "cpu", "--patch"};
     arguments.insert(arguments.end(), patch.begin(), patch.end());
     expect_refusal(folder_, kSynth, arguments, culprit);
   };
