@@ -83,7 +83,7 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
   } else if (!wanted.base_only) {
     const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
     const DetailsFitResult details =
-        search_details(target, arguments.fit, wanted, checkpoint.log(), progress, recipe);
+        search_details(program, target, arguments.fit, wanted, checkpoint.log(), progress, recipe);
     checkpoint.save();
     program.summary["details"] = details_json(details);
   }

@@ -4,6 +4,8 @@
 
 #include "apps/option_checks.h"
 #include "apps/variations.h"
+#include "cuda/swarm.h"
+#include "cuda/swarm_on_gpu.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
 #include "numerics/output_file.h"
@@ -75,6 +77,7 @@ void declare_micro_options(Program& program, DetailArguments& arguments) {
 }  // namespace
 
 void declare_detail_options(Program& program, DetailArguments& arguments) {
+  arguments.device.add_to(program.app);
   CLI::Option* base_only = program.app.add_flag("--base-only", arguments.base_only,
                                                 "metaballs alone, without a search for details");
   CLI::Option* generations =
@@ -111,7 +114,7 @@ void check_detail_inputs(const DetailArguments& arguments) {
   }
 }
 
-DetailsFitResult search_details(const TargetBody& target, const ShapeFitOptions& options,
+DetailsFitResult search_details(Program& program, const TargetBody& target, const ShapeFitOptions& options,
                                 const DetailArguments& arguments, EvaluationLog& log,
                                 const Progress& progress, Recipe& recipe) {
   DetailsFitOptions details;
@@ -122,6 +125,9 @@ DetailsFitResult search_details(const TargetBody& target, const ShapeFitOptions&
   details.fitness.seed = options.seed;
   details.fitness.recipe_seed = recipe.seed;
   details.log = &log;
+  const std::unique_ptr<SwarmMachine> swarm =
+      arguments.device.use_gpu(program) ? swarm_on_gpu() : std::unique_ptr<SwarmMachine>();
+  details.swarm = swarm.get();
   DetailsFitResult result = fit_details(target, in_target_frame(*recipe.body, target), details, progress);
   for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))
     recipe.layers.push_back(layer);

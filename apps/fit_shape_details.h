@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/device_option.h"
 #include "apps/program.h"
 #include "estimation/shape/details/detailed_check.h"
 #include "estimation/shape/details/details_fit.h"
@@ -20,6 +21,7 @@ struct DetailArguments {
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // of the recipe's layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;
+  DeviceOption device;  // of the search
 };
 
 // Declares the options that fill these in.
@@ -30,7 +32,7 @@ void check_detail_inputs(const DetailArguments& arguments);
 
 // Adds the layers that the search finds to the recipe (in the file's frame, with its body). The optimiser and
 // its population are the base fit's; candidates that the log knows are not measured again.
-DetailsFitResult search_details(const TargetBody& target, const ShapeFitOptions& options,
+DetailsFitResult search_details(Program& program, const TargetBody& target, const ShapeFitOptions& options,
                                 const DetailArguments& arguments, EvaluationLog& log,
                                 const Progress& progress, Recipe& recipe);
 

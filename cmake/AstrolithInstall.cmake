@@ -10,8 +10,8 @@ set(core_libraries astrolith_compile_rules)
 set(estimation_libraries)
 foreach(library IN LISTS libraries)
   get_target_property(folder ${library} SOURCE_DIR)
-  # Of the descriptors, those that need more packages lie in folders of their own.
-  if(folder MATCHES "^${PROJECT_SOURCE_DIR}/(estimation|descriptor/)")
+  # Of the descriptors, those that need more packages lie in folders of their own. A GPU serves programs and fits.
+  if(folder MATCHES "^${PROJECT_SOURCE_DIR}/(estimation|cuda|descriptor/)")
     list(APPEND estimation_libraries ${library})
   else()
     list(APPEND core_libraries ${library})
@@ -25,7 +25,7 @@ if(ASTROLITH_ESTIMATION)
   install(TARGETS ${estimation_libraries} EXPORT astrolithEstimationTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT astrolithEstimationTargets NAMESPACE astrolith:: DESTINATION ${package_folder})
-  list(APPEND header_folders estimation)
+  list(APPEND header_folders estimation cuda)
 endif()
 foreach(folder IN LISTS header_folders)
   install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/astrolith

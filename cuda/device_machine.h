@@ -80,6 +80,8 @@ class DeviceMachine {
     run_groups<<<static_cast<unsigned>(groups), threads>>>(body);
     check_cuda(cudaGetLastError(), what);
   }
+  // For all launches to end.
+  void wait() { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }
   void running_sum(Array<std::uint32_t>& values) {
     std::size_t bytes = 0;
     const auto sum = [&](void* scratch) {

@@ -106,6 +106,7 @@ class HostMachine {
       body(HostGroup(i, threads, shared.data()));
     }
   }
+  void wait() {}
   // values[i] becomes the sum of those before it.
   void running_sum(Array<std::uint32_t>& values) {
     std::exclusive_scan(values.data(), values.data() + values.size(), values.data(), std::uint32_t{0});

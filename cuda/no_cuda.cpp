@@ -3,6 +3,8 @@
 #include "cuda/device.h"
 #include "cuda/mesh_field.h"
 #include "cuda/pair_count.h"
+#include "cuda/swarm.h"
+#include "cuda/swarm_on_gpu.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -27,5 +29,7 @@ MeshStatistics mesh_field_on_gpu(const ImplicitField&, const Box&, int, MeshSink
                                  MeshTile) {
   refuse();
 }
+
+std::unique_ptr<SwarmMachine> swarm_on_gpu() { refuse(); }
 
 }  // namespace astrolith

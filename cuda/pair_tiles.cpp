@@ -22,4 +22,26 @@ std::vector<PairTile> pair_tiles(std::span<const std::int64_t> first_of_code) {
   return tiles;
 }
 
+SurfletSets::SurfletSets(std::span<const SurfletArrays> sets) {
+  std::uint32_t first = 0;
+  for (const SurfletArrays& set : sets) {
+    for (PairTile tile : pair_tiles(set.first_of_code)) {
+      for (std::uint32_t* row : {&tile.first_row, &tile.end_row, &tile.first_column, &tile.end_column}) {
+        *row += first;
+      }
+      tile.row_code += static_cast<std::int32_t>(num_codes);
+      tile.column_code += static_cast<std::int32_t>(num_codes);
+      tiles.push_back(tile);
+    }
+    first += static_cast<std::uint32_t>(set.size());
+    num_codes += set.first_of_code.size() - 1;
+  }
+  stride = first;
+  for (std::size_t d = 0; d < 9; ++d) {
+    for (const SurfletArrays& set : sets) {
+      surflets.insert(surflets.end(), set.c[d].begin(), set.c[d].begin() + set.size());
+    }
+  }
+}
+
 }  // namespace astrolith

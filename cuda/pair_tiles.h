@@ -114,61 +114,77 @@ struct CountPairTiles {
   }
 };
 
+// Sets of oriented points, none of whose pairs reach from one set to another, as one list of surflets: the
+// local codes of set number s are counted from s * num_local on.
+struct SurfletSets {
+  std::vector<float> surflets;  // nine arrays, one after the other
+  std::size_t stride = 0;       // length of each
+  std::vector<PairTile> tiles;
+  std::size_t num_codes = 0;  // of all sets
+
+  // All of one number of local codes.
+  explicit SurfletSets(std::span<const SurfletArrays> sets);
+};
+
 // Tiles in one launch; a report follows.
 inline constexpr std::size_t kTilesPerLaunch = 16384;
 
 template <int kBins, class Machine>
-std::vector<std::uint64_t> count_tiles(Machine& machine, const SurfletArrays& surflets,
-                                       const Progress& progress) {
-  const std::vector<PairTile> tiles = pair_tiles(surflets.first_of_code);
-  const std::size_t stride = surflets.c[0].size();
-  std::vector<float> together;
-  for (const std::vector<float>& c : surflets.c) together.insert(together.end(), c.begin(), c.end());
-  const auto points = machine.upload(std::span<const float>(together));
-  const auto list = machine.upload(std::span<const PairTile>(tiles));
-  std::vector<std::uint64_t> counts((surflets.first_of_code.size() - 1) *
+std::vector<std::uint64_t> count_tiles(Machine& machine, const SurfletSets& sets, const Progress& progress) {
+  const auto points = machine.upload(std::span<const float>(sets.surflets));
+  const auto list = machine.upload(std::span<const PairTile>(sets.tiles));
+  std::vector<std::uint64_t> counts(sets.num_codes *
                                     static_cast<std::size_t>(bin_count(PairFeatures::wahl, kBins)));
   auto totals = machine.template allocate<std::uint64_t>(counts.size());
   machine.fill_zero(totals);
-  for (std::size_t first = 0; first < tiles.size(); first += kTilesPerLaunch) {
-    const std::size_t size = std::min(kTilesPerLaunch, tiles.size() - first);
-    machine.launch_groups("counting pairs", size, kTileRows,
-                          CountPairTiles<kBins>{list.data() + first, points.data(), stride, totals.data()});
-    machine.download(totals, std::span(counts));
-    const double done = static_cast<double>(first + size) / static_cast<double>(tiles.size());
+  for (std::size_t first = 0; first < sets.tiles.size(); first += kTilesPerLaunch) {
+    const std::size_t size = std::min(kTilesPerLaunch, sets.tiles.size() - first);
+    machine.launch_groups(
+        "counting pairs", size, kTileRows,
+        CountPairTiles<kBins>{list.data() + first, points.data(), sets.stride, totals.data()});
+    machine.wait();
+    const double done = static_cast<double>(first + size) / static_cast<double>(sets.tiles.size());
     if (!report(progress, done, "")) throw WorkError("stopped; nothing was written");
   }
   machine.download(totals, std::span(counts));
   return counts;
 }
 
-// count_pairs (descriptor/pair_count.h) on a machine: the same counts.
+// count_pairs (descriptor/pair_count.h) of each set, one after the other: the same counts.
+template <class Machine>
+std::vector<std::uint64_t> count_sets_on(Machine& machine, std::span<const SurfletArrays> arrays, int bins,
+                                         const Progress& progress) {
+  const SurfletSets sets(arrays);
+  static_assert(kMinBins == 2 && kMaxBins == 10);
+  switch (bins) {
+    case 2:
+      return count_tiles<2>(machine, sets, progress);
+    case 3:
+      return count_tiles<3>(machine, sets, progress);
+    case 4:
+      return count_tiles<4>(machine, sets, progress);
+    case 6:
+      return count_tiles<6>(machine, sets, progress);
+    case 7:
+      return count_tiles<7>(machine, sets, progress);
+    case 8:
+      return count_tiles<8>(machine, sets, progress);
+    case 9:
+      return count_tiles<9>(machine, sets, progress);
+    case 10:
+      return count_tiles<10>(machine, sets, progress);
+    default:
+      return count_tiles<5>(machine, sets, progress);
+  }
+}
+
+// count_pairs on a machine.
 template <class Machine>
 std::vector<std::uint64_t> count_pairs_on(Machine& machine, std::span<const Vec3d> points,
                                           std::span<const Vec3d> normals, std::span<const std::int32_t> local,
                                           int num_local, int bins, const Progress& progress) {
   const SurfletArrays surflets(points, normals, local, num_local);
-  static_assert(kMinBins == 2 && kMaxBins == 10);
-  switch (bins) {
-    case 2:
-      return count_tiles<2>(machine, surflets, progress);
-    case 3:
-      return count_tiles<3>(machine, surflets, progress);
-    case 4:
-      return count_tiles<4>(machine, surflets, progress);
-    case 6:
-      return count_tiles<6>(machine, surflets, progress);
-    case 7:
-      return count_tiles<7>(machine, surflets, progress);
-    case 8:
-      return count_tiles<8>(machine, surflets, progress);
-    case 9:
-      return count_tiles<9>(machine, surflets, progress);
-    case 10:
-      return count_tiles<10>(machine, surflets, progress);
-    default:
-      return count_tiles<5>(machine, surflets, progress);
-  }
+  return count_sets_on(machine, std::span(&surflets, 1), bins, progress);
 }
 
 }  // namespace astrolith

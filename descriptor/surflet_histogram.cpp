@@ -56,7 +56,7 @@ std::vector<Vec3d> scaled(std::span<const Vec3d> points, double max_distance) {
 }
 
 // From (local, surflet) to (surflet, local).
-std::vector<std::uint64_t> local_last(const std::vector<std::uint64_t>& counts, std::size_t num_local) {
+std::vector<std::uint64_t> local_last(std::span<const std::uint64_t> counts, std::size_t num_local) {
   const std::size_t bins = counts.size() / num_local;
   std::vector<std::uint64_t> result(counts.size());
   for (std::size_t l = 0; l < num_local; ++l) {
@@ -65,19 +65,29 @@ std::vector<std::uint64_t> local_last(const std::vector<std::uint64_t>& counts, 
   return result;
 }
 
-ShapeHistogram histogram_of(std::span<const Vec3d> points, std::span<const Vec3d> unit_normals,
-                            std::span<const std::int32_t> local, int num_local, int bins,
-                            const Progress& progress, const PairCounter& counter) {
+PairInput pair_input(std::span<const Vec3d> points, std::vector<Vec3d> unit_normals,
+                     std::vector<std::int32_t> local, int num_local, int bins) {
+  const double max_distance = largest_distance(points);
+  return {
+      scaled(points, max_distance), std::move(unit_normals), std::move(local), num_local, bins, max_distance};
+}
+
+ShapeHistogram histogram_of(const PairInput& input, std::span<const std::uint64_t> counts) {
   ShapeHistogram histogram;
-  histogram.bins = bins;
-  histogram.max_distance = largest_distance(points);
-  const std::vector<Vec3d> in_unit = scaled(points, histogram.max_distance);
-  const auto counts = counter ? counter(in_unit, unit_normals, local, num_local, bins, progress)
-                              : count_pairs(in_unit, unit_normals, local, num_local, bins, progress);
-  histogram.counts = local_last(counts, static_cast<std::size_t>(num_local));
-  const std::uint64_t n = points.size();
+  histogram.bins = input.bins;
+  histogram.max_distance = input.max_distance;
+  histogram.counts = local_last(counts, static_cast<std::size_t>(input.num_local));
+  const std::uint64_t n = input.points.size();
   histogram.pairs = n > 1 ? n * (n - 1) / 2 : 0;
   return histogram;
+}
+
+std::vector<std::uint64_t> counts_of(const PairInput& input, const Progress& progress,
+                                     const PairCounter& counter) {
+  const auto count = [&](const auto& how) {
+    return how(input.points, input.normals, input.local, input.num_local, input.bins, progress);
+  };
+  return counter ? count(counter) : count(count_pairs);
 }
 
 }  // namespace
@@ -91,13 +101,13 @@ std::vector<double> ShapeHistogram::frequencies() const {
 ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals, int bins,
                                  const Progress& progress, const PairCounter& counter) {
   check(points, normals, bins);
-  const std::vector<std::int32_t> all_alike(points.size(), 0);
-  return histogram_of(points, unit_vectors(normals), all_alike, 1, bins, progress, counter);
+  const PairInput input =
+      pair_input(points, unit_vectors(normals), std::vector<std::int32_t>(points.size(), 0), 1, bins);
+  return histogram_of(input, counts_of(input, progress, counter));
 }
 
-ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                             std::span<const double> curvatures, int bins, const Progress& progress,
-                             const PairCounter& counter) {
+PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                    std::span<const double> curvatures, int bins) {
   check(points, normals, bins);
   if (curvatures.size() != points.size()) {
     refuse(std::to_string(points.size()) + " points have " + std::to_string(curvatures.size()) +
@@ -108,11 +118,22 @@ ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3
       refuse("the curvature of point " + std::to_string(i) + " is not finite; give 0 where it is unknown");
     }
   }
-  const std::vector<Vec3d> unit = unit_vectors(normals);
-  const std::vector<std::int32_t> local = local_codes(points, unit, curvatures, bins);
-  ShapeHistogram histogram = histogram_of(points, unit, local, bins * bins, bins, progress, counter);
+  std::vector<Vec3d> unit = unit_vectors(normals);
+  std::vector<std::int32_t> local = local_codes(points, unit, curvatures, bins);
+  return pair_input(points, std::move(unit), std::move(local), bins * bins, bins);
+}
+
+ShapeHistogram ahd_histogram(const PairInput& input, std::span<const std::uint64_t> counts) {
+  ShapeHistogram histogram = histogram_of(input, counts);
   histogram.features = PairFeatures::ahd;
   return histogram;
+}
+
+ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                             std::span<const double> curvatures, int bins, const Progress& progress,
+                             const PairCounter& counter) {
+  const PairInput input = ahd_input(points, normals, curvatures, bins);
+  return ahd_histogram(input, counts_of(input, progress, counter));
 }
 
 }  // namespace astrolith

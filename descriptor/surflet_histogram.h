@@ -26,4 +26,17 @@ ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3
                              std::span<const double> curvatures, int bins = kDefaultBins,
                              const Progress& progress = {}, const PairCounter& counter = {});
 
+// The two halves of ahd_histogram, for whoever counts the pairs of many shapes together: what pairs are
+// counted of, and the histogram from count_pairs' counts (descriptor/pair_count.h).
+struct PairInput {
+  std::vector<Vec3d> points, normals;  // in units of the largest distance, the middle of their box at 0; unit
+  std::vector<std::int32_t> local;
+  int num_local = 1;
+  int bins = kDefaultBins;
+  double max_distance = 0.0;  // the points' unit
+};
+PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normals,
+                    std::span<const double> curvatures, int bins = kDefaultBins);
+ShapeHistogram ahd_histogram(const PairInput& input, std::span<const std::uint64_t> counts);
+
 }  // namespace astrolith

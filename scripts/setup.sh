@@ -6,18 +6,20 @@ packages=(
   build-essential cmake ninja-build pkg-config python3
   libtbb-dev libeigen3-dev nlohmann-json3-dev libvalijson-dev libssl-dev libfmt-dev libcli11-dev
   libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libtiff-dev
-  libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev
   libgtest-dev libbenchmark-dev
 )
-# With --format also the formatter that CI checks with, with --notebooks what the notebooks run on.
+fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev)
+# With --synth what synth alone needs, with --format also the formatter that CI checks with, with --notebooks what the notebooks run on.
 for option in "$@"; do
   case $option in
+    --synth) fitting=() ;;
     --format) packages+=(clang-format-14) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;
     *) echo "setup.sh: unknown option $option" >&2; exit 2 ;;
   esac
 done
 
+packages+=("${fitting[@]}")
 missing=()
 for package in "${packages[@]}"; do
   [[ "$(dpkg-query -W -f='${Status}' "$package" 2>/dev/null)" == "install ok installed" ]] || missing+=("$package")

@@ -145,6 +145,18 @@ FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
   values.num_layers = static_cast<std::uint32_t>(layers.size());
 }
 
+FlatFieldData::FlatFieldData(const MetaballParameters<float>& body) : values{} {
+  values.body = body;
+  values.stretch = 1.0f;
+}
+
+void FlatFieldData::add(const FractalNoise& noise) {
+  FlatLayer layer;
+  Flatten{*this, layer}(noise);
+  layers.push_back(layer);
+  values.num_layers = static_cast<std::uint32_t>(layers.size());
+}
+
 FlatField FlatFieldData::view() const {
   FlatField flat = values;
   flat.layers = layers.data();
@@ -155,9 +167,13 @@ FlatField FlatFieldData::view() const {
   return flat;
 }
 
-void FlatBlocksData::add(const FieldBlock& block) {
-  append(std::span<const MetaballSphere<float>>(block.body().metaballs.spheres), spheres);
+void FlatBlocksData::add(std::span<const MetaballSphere<float>> of_block) {
+  append(of_block, spheres);
   first_sphere.push_back(static_cast<std::uint32_t>(spheres.size()));
+}
+
+void FlatBlocksData::add(const FieldBlock& block) {
+  add(std::span<const MetaballSphere<float>>(block.body().metaballs.spheres));
   for (const SpotImpulses& of_layer : block.all_spots()) {
     for (const std::vector<SpotImpulse>& list : of_layer) {
       append(std::span<const SpotImpulse>(list), impulses);

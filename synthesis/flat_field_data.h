@@ -16,6 +16,11 @@ struct FlatFieldData {
   // Expects a field without an obstacle.
   explicit FlatFieldData(const ImplicitField& field);
 
+  // Of bare metaballs, without layers.
+  explicit FlatFieldData(const MetaballParameters<float>& body);
+  // A further layer that adds its heights.
+  void add(const FractalNoise& noise);
+
   // With this object's own arrays, which it points to.
   FlatField view() const;
 
@@ -33,6 +38,8 @@ struct FlatBlocksData {
   explicit FlatBlocksData(std::size_t num_lists) : lists(num_lists) {}
 
   void add(const FieldBlock& block);
+  // Without impulses.
+  void add(std::span<const MetaballSphere<float>> of_block);
   // With this object's own arrays.
   FlatBlocks view() const;
   std::size_t size() const { return first_sphere.size() - 1; }

@@ -12,7 +12,6 @@
 #include "estimation/optimize/best_so_far_internal.h"
 #include "estimation/optimize/cma_es_internal.h"
 #include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
@@ -188,7 +187,7 @@ class Distribution {
 
 class CmaEs {
  public:
-  CmaEs(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+  CmaEs(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& options,
         const Progress& progress)
       : objective_(objective), variables_(bounds), options_(options), best_(options, progress) {}
 
@@ -248,12 +247,16 @@ class CmaEs {
   }
 
   void evaluate(std::vector<Sample>& samples) {
-    parallel_for(0, static_cast<std::int64_t>(samples.size()), [&](std::int64_t i) {
-      Sample& s = samples[static_cast<std::size_t>(i)];
+    std::vector<std::vector<double>> points;
+    for (Sample& s : samples) {
       if (s.x.empty()) s.x = variables_.to_box(s.y);
-      s.value = finite_or_infinity(objective_(s.x));
-    });
-    for (const Sample& s : samples) best_.record(s.x, s.value);
+      points.push_back(s.x);
+    }
+    const std::vector<double> values = objective_(points);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples[i].value = finite_or_infinity(values[i]);
+      best_.record(samples[i].x, samples[i].value);
+    }
   }
 
   static bool is_flat(const Strategy& strategy, const std::vector<double>& bests, double worst) {
@@ -263,7 +266,7 @@ class CmaEs {
     return !(std::max(*high, worst) - *low > kFlat * std::max(std::abs(*low), 1e-12));  // also for infinities
   }
 
-  const Objective& objective_;
+  const BatchObjective& objective_;
   FreeVariables variables_;
   const OptimizeOptions& options_;
   BestSoFar best_;
@@ -272,7 +275,7 @@ class CmaEs {
 
 }  // namespace
 
-OptimizeResult cma_es(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+OptimizeResult cma_es(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& options,
                       const Progress& progress) {
   return CmaEs(objective, bounds, options, progress).run();
 }

@@ -5,7 +5,7 @@
 
 namespace astrolith {
 
-OptimizeResult cma_es(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+OptimizeResult cma_es(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& options,
                       const Progress& progress);
 
 }  // namespace astrolith

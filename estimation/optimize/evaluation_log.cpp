@@ -48,12 +48,26 @@ void EvaluationLog::restore(std::map<std::uint64_t, double> entries) {
   values_ = std::move(entries);
 }
 
-Objective logged(const Objective& objective, EvaluationLog& log) {
-  return [&objective, &log](std::span<const double> x) {
-    if (const std::optional<double> known = log.find(x)) return *known;
-    const double value = objective(x);
-    log.add(x, value);
-    return value;
+BatchObjective logged(const BatchObjective& objective, EvaluationLog& log) {
+  return [&objective, &log](std::span<const std::vector<double>> points) {
+    std::vector<double> values(points.size());
+    std::vector<std::vector<double>> unknown;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (const std::optional<double> known = log.find(points[i])) {
+        values[i] = *known;
+      } else {
+        unknown.push_back(points[i]);
+        places.push_back(i);
+      }
+    }
+    if (unknown.empty()) return values;
+    const std::vector<double> found = objective(unknown);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      values[places[k]] = found[k];
+      log.add(unknown[k], found[k]);
+    }
+    return values;
   };
 }
 

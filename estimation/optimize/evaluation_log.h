@@ -30,6 +30,6 @@ class EvaluationLog {
 };
 
 // The objective, asked only where the log has no value, and logged. Both must outlive the result.
-Objective logged(const Objective& objective, EvaluationLog& log);
+BatchObjective logged(const BatchObjective& objective, EvaluationLog& log);
 
 }  // namespace astrolith

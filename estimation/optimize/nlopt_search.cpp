@@ -39,7 +39,7 @@ void require(nlopt_result status, const char* what) {
 // One run; lives on one thread.
 class NloptRun {
  public:
-  NloptRun(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+  NloptRun(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& options,
            const Progress& progress)
       : objective_(objective), bounds_(bounds), options_(options), best_(options, progress) {}
 
@@ -95,7 +95,8 @@ class NloptRun {
   double evaluate_one(std::span<const double> x) {
     // Some algorithms make a few more calls after being told to stop.
     if (ended_) return std::numeric_limits<double>::infinity();
-    const double value = finite_or_infinity(objective_(x));
+    const std::vector<double> point(x.begin(), x.end());
+    const double value = finite_or_infinity(objective_(std::span(&point, 1)).front());
     best_.record(x, value);
     const std::int64_t generation = options_.population > 0 ? options_.population : 20;
     const bool whole = best_.result().evaluations % generation == 0 ||
@@ -118,7 +119,7 @@ class NloptRun {
     best_.end(OptimizeTermination::converged);
   }
 
-  const Objective& objective_;
+  const BatchObjective& objective_;
   const Bounds& bounds_;
   const OptimizeOptions& options_;
   BestSoFar best_;
@@ -129,8 +130,8 @@ class NloptRun {
 
 }  // namespace
 
-OptimizeResult nlopt_search(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
-                            const Progress& progress) {
+OptimizeResult nlopt_search(const BatchObjective& objective, const Bounds& bounds,
+                            const OptimizeOptions& options, const Progress& progress) {
   // NLopt keeps its random state per thread, so each run gets a thread of its own: runs side by side, or an
   // objective that itself minimises, cannot disturb one another's numbers.
   OptimizeResult result;

@@ -5,7 +5,7 @@
 
 namespace astrolith {
 
-OptimizeResult nlopt_search(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
-                            const Progress& progress);
+OptimizeResult nlopt_search(const BatchObjective& objective, const Bounds& bounds,
+                            const OptimizeOptions& options, const Progress& progress);
 
 }  // namespace astrolith

@@ -8,6 +8,7 @@
 #include "estimation/optimize/nlopt_search_internal.h"
 #include "estimation/optimize/particle_swarm_internal.h"
 #include "numerics/errors.h"
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
@@ -58,7 +59,7 @@ std::string optimizer_name(OptimizerAlgorithm algorithm) {
   return kNames[static_cast<std::size_t>(algorithm)];
 }
 
-OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const OptimizeOptions& given,
+OptimizeResult minimize(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& given,
                         const Progress& progress) {
   check(bounds, given);
   OptimizeOptions options = inside(given, bounds);
@@ -71,6 +72,18 @@ OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const 
     default:
       return nlopt_search(objective, bounds, options, progress);
   }
+}
+
+OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,
+                        const Progress& progress) {
+  const BatchObjective in_parallel = [&](std::span<const std::vector<double>> points) {
+    std::vector<double> values(points.size());
+    parallel_for(0, static_cast<std::int64_t>(points.size()), [&](std::int64_t i) {
+      values[static_cast<std::size_t>(i)] = objective(points[static_cast<std::size_t>(i)]);
+    });
+    return values;
+  };
+  return minimize(in_parallel, bounds, options, progress);
 }
 
 }  // namespace astrolith

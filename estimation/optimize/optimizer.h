@@ -62,11 +62,17 @@ struct OptimizeResult {
 // Values that are not finite count as +infinity. pso and cmaes call the objective from many threads at once.
 using Objective = std::function<double(std::span<const double> x)>;
 
+// The values at many points at once, for whoever has them cheaper together. pso and cmaes ask for those of a
+// generation, the others for one at a time.
+using BatchObjective = std::function<std::vector<double>(std::span<const std::vector<double>> points)>;
+
 // The result is a function of objective, bounds and options alone: thread count and other runs in the process
 // change nothing. Progress is asked after every generation and may come from another thread than the
 // caller's; when it returns false the best so far is returned. Exceptions of the objective end the run and
 // are rethrown. Wrong bounds or options: InputError.
 OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options = {},
                         const Progress& progress = {});
+OptimizeResult minimize(const BatchObjective& objective, const Bounds& bounds,
+                        const OptimizeOptions& options = {}, const Progress& progress = {});
 
 }  // namespace astrolith

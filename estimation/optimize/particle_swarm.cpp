@@ -4,7 +4,6 @@
 #include "estimation/optimize/best_so_far_internal.h"
 #include "estimation/optimize/particle_swarm_internal.h"
 #include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
@@ -59,17 +58,21 @@ std::vector<Particle> first_swarm(const Bounds& bounds, const OptimizeOptions& o
   return swarm;
 }
 
+void evaluate(const BatchObjective& objective, std::vector<Particle>& swarm) {
+  std::vector<std::vector<double>> points;
+  for (const Particle& p : swarm) points.push_back(p.x);
+  const std::vector<double> values = objective(points);
+  for (std::size_t i = 0; i < swarm.size(); ++i) swarm[i].value = finite_or_infinity(values[i]);
+}
+
 }  // namespace
 
-OptimizeResult particle_swarm(const Objective& objective, const Bounds& bounds,
+OptimizeResult particle_swarm(const BatchObjective& objective, const Bounds& bounds,
                               const OptimizeOptions& options, const Progress& progress) {
   std::vector<Particle> swarm = first_swarm(bounds, options);
   BestSoFar best(options, progress);
   for (std::int64_t generation = 0;; ++generation) {
-    parallel_for(0, static_cast<std::int64_t>(swarm.size()), [&](std::int64_t i) {
-      Particle& p = swarm[static_cast<std::size_t>(i)];
-      p.value = finite_or_infinity(objective(p.x));
-    });
+    evaluate(objective, swarm);
     for (Particle& p : swarm) {
       best.record(p.x, p.value);
       if (!p.best_x.empty() && !(p.value < p.best_value)) continue;

@@ -5,7 +5,7 @@
 
 namespace astrolith {
 
-OptimizeResult particle_swarm(const Objective& objective, const Bounds& bounds,
+OptimizeResult particle_swarm(const BatchObjective& objective, const Bounds& bounds,
                               const OptimizeOptions& options, const Progress& progress);
 
 }  // namespace astrolith

@@ -3,7 +3,9 @@
 
 #include <cstring>
 
+#include "cuda/device.h"
 #include "cuda/host_machine.h"
+#include "cuda/mesh_field.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -103,6 +105,19 @@ TEST(MachineMesher, FailsAsTheCpuAtWrongBounds) {
   const Box half{{-2, -2, -2}, {0.1, 2, 2}};
   EXPECT_THROW(mesh_field(field, half, 30, sink), WorkError);
   EXPECT_THROW(mesh_field_on(machine, field, half, 30, sink, {}, {}), WorkError);
+}
+
+TEST(MeshFieldOnGpu, MakesTheMeshOfTheCpu) {
+  const DeviceStatus status = probe_device();
+  if (!status.usable) GTEST_SKIP() << "no GPU here: " << status.reason;
+  const ImplicitField field(asteroid());
+  for (const MeshTile tile : {MeshTile{0, 1}, MeshTile{1, 3}}) {
+    for (const int resolution : {33, 200}) {
+      MeshCollector sink;
+      const MeshStatistics statistics = mesh_field_on_gpu(field, field.bounds(), resolution, sink, {}, tile);
+      expect_same({statistics, std::move(sink.mesh)}, on_cpu(field, resolution, tile));
+    }
+  }
 }
 
 }  // namespace

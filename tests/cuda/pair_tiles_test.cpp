@@ -100,6 +100,20 @@ TEST(PairTiles, CountWithEveryNumberOfBins) {
   }
 }
 
+// Sets of many sizes, none and one point among them.
+TEST(PairTiles, CountSetsTogetherAsOneByOne) {
+  std::vector<SurfletArrays> sets;
+  Counts one_by_one;
+  for (const int n : {300, 0, 1, 700, 2}) {
+    const Surflets s = random_input(n, 9, static_cast<std::uint64_t>(n));
+    sets.emplace_back(s.points, s.normals, s.local, 9);
+    const Counts counts = on_cpu(s, 9, 5);
+    one_by_one.insert(one_by_one.end(), counts.begin(), counts.end());
+  }
+  HostMachine machine;
+  EXPECT_EQ(count_sets_on(machine, sets, 5, {}), one_by_one);
+}
+
 TEST(PairTiles, StopWhenAskedTo) {
   HostMachine machine;
   const Surflets s = random_input(300, 1, 9);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/local_features.h"
 #include "descriptor/surflet_histogram.h"
 #include "geometry/sample_curvature.h"
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
@@ -90,7 +92,33 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
 
 DetailScore DetailFitness::score(std::span<const FractalLayer> layers) const {
   const std::vector<double> heights = probe_.heights(layers, options_.recipe_seed);
-  return {similarity(wanted_histogram_, histogram(heights)),
+  return score_of(histogram(heights), heights, layers);
+}
+
+std::vector<DetailScore> DetailFitness::scores(std::span<const std::vector<FractalLayer>> candidates,
+                                               SwarmMachine& machine) const {
+  const auto heights = probe_.heights(machine, candidates, options_.recipe_seed);
+  const std::size_t n = candidates.size();
+  std::vector<PairInput> inputs(n);
+  std::vector<std::optional<SurfletArrays>> arrays(n);
+  parallel_for(0, static_cast<std::int64_t>(n), [&](std::int64_t i) {
+    PairInput& input = inputs[static_cast<std::size_t>(i)];
+    input = mesh_.pair_input(moved_vertices(heights[static_cast<std::size_t>(i)]));
+    arrays[static_cast<std::size_t>(i)].emplace(input.points, input.normals, input.local, input.num_local);
+  });
+  std::vector<SurfletArrays> sets;
+  for (auto& array : arrays) sets.push_back(std::move(*array));
+  const auto counts = machine.count(sets, kDefaultBins);
+  std::vector<DetailScore> scores;
+  for (std::size_t i = 0; i < n; ++i) {
+    scores.push_back(score_of(ahd_histogram(inputs[i], counts[i]), heights[i], candidates[i]));
+  }
+  return scores;
+}
+
+DetailScore DetailFitness::score_of(const ShapeHistogram& histogram, const std::vector<double>& heights,
+                                    std::span<const FractalLayer> layers) const {
+  return {similarity(wanted_histogram_, histogram),
           roughness_misfit(roughness(layout_.at_places(heights), layout_.triples), wanted_roughness_),
           steepness(layers)};
 }
@@ -109,13 +137,17 @@ void DetailFitness::leave_out_strays(std::span<const double> heights) {
   }
 }
 
-ShapeHistogram DetailFitness::histogram(const std::vector<double>& heights) const {
+std::vector<Vec3d> DetailFitness::moved_vertices(const std::vector<double>& heights) const {
   const TriangleMesh& mesh = layout_.mesh;
   std::vector<Vec3d> vertices;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     vertices.push_back(mesh.vertices[v] + heights[v] * mesh.normals[v]);
   }
-  return mesh_.histogram(vertices);
+  return vertices;
+}
+
+ShapeHistogram DetailFitness::histogram(const std::vector<double>& heights) const {
+  return mesh_.histogram(moved_vertices(heights));
 }
 
 }  // namespace astrolith

@@ -54,6 +54,10 @@ class DetailFitness {
   // May be called from many threads. The layers are in the target's frame.
   DetailScore score(std::span<const FractalLayer> layers) const;
 
+  // The same of a whole swarm, in a few launches of a machine: the same bits.
+  std::vector<DetailScore> scores(std::span<const std::vector<FractalLayer>> candidates,
+                                  SwarmMachine& machine) const;
+
   // Of the search, by what the target shows.
   const DetailRanges& ranges() const { return ranges_; }
 
@@ -64,7 +68,10 @@ class DetailFitness {
 
  private:
   void leave_out_strays(std::span<const double> heights);
+  std::vector<Vec3d> moved_vertices(const std::vector<double>& heights) const;
   ShapeHistogram histogram(const std::vector<double>& heights) const;
+  DetailScore score_of(const ShapeHistogram& histogram, const std::vector<double>& heights,
+                       std::span<const FractalLayer> layers) const;
 
   FitnessOptions options_;
   ProbeLayout layout_;

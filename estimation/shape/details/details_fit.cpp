@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/errors.h"
+#include "numerics/parallel_for.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -52,6 +53,39 @@ Start best_plain_noise(const DetailFitness& fitness) {
   return best;
 }
 
+// Halves the swarm where the machine's memory ends.
+std::vector<DetailScore> scores_of(const DetailFitness& fitness,
+                                   std::span<const std::vector<FractalLayer>> candidates,
+                                   SwarmMachine& swarm) {
+  try {
+    return fitness.scores(candidates, swarm);
+  } catch (const OutOfDeviceMemory&) {
+    if (candidates.size() < 2) throw;
+  }
+  const std::size_t half = candidates.size() / 2;
+  std::vector<DetailScore> scores = scores_of(fitness, candidates.first(half), swarm);
+  for (const DetailScore& score : scores_of(fitness, candidates.subspan(half), swarm))
+    scores.push_back(score);
+  return scores;
+}
+
+std::vector<double> fitness_of(const DetailFitness& fitness, std::span<const std::vector<double>> points,
+                               SwarmMachine* swarm) {
+  std::vector<std::vector<FractalLayer>> candidates;
+  for (const std::vector<double>& x : points) candidates.push_back(detail_layers(x, fitness.ranges()));
+  std::vector<double> values(points.size());
+  if (swarm != nullptr) {
+    const std::vector<DetailScore> scores = scores_of(fitness, candidates, *swarm);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = scores[i].fitness();
+    return values;
+  }
+  parallel_for(0, static_cast<std::int64_t>(values.size()), [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    values[k] = fitness.score(candidates[k]).fitness();
+  });
+  return values;
+}
+
 Vec3d rounded(const Vec3d& v) {
   return {round_to_seven_digits(v.x), round_to_seven_digits(v.y), round_to_seven_digits(v.z)};
 }
@@ -69,11 +103,11 @@ DetailsFitResult fit_details(const TargetBody& target, const MetaballBody& base,
   optimize.max_evaluations = std::int64_t{options.population} * options.generations;
   optimize.seed = options.seed;
   optimize.start = start.parameters;
-  const Objective objective = [&](std::span<const double> x) {
-    return fitness.score(detail_layers(x, fitness.ranges())).fitness();
+  const BatchObjective objective = [&](std::span<const std::vector<double>> points) {
+    return fitness_of(fitness, points, options.swarm);
   };
   EvaluationLog own_log;
-  const Objective remembered = logged(objective, options.log != nullptr ? *options.log : own_log);
+  const BatchObjective remembered = logged(objective, options.log != nullptr ? *options.log : own_log);
 
   DetailsFitResult result;
   result.start = start.noise;

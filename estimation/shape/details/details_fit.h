@@ -21,6 +21,8 @@ struct DetailsFitOptions {
   std::uint64_t seed = 1;
   FitnessOptions fitness;
   EvaluationLog* log = nullptr;  // of the search: a log that holds values begins where it ended
+  SwarmMachine* swarm =
+      nullptr;  // measures whole generations of the search; null: the CPU does, with the same bits
 };
 
 struct DetailsFitResult {

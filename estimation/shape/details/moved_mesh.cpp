@@ -60,7 +60,7 @@ void MovedMesh::add_neighbours(const TriangleMesh& mesh, const std::vector<Vec3d
   first_neighbour_.push_back(neighbours_.size());
 }
 
-ShapeHistogram MovedMesh::histogram(const std::vector<Vec3d>& vertices) const {
+PairInput MovedMesh::pair_input(const std::vector<Vec3d>& vertices) const {
   const VertexIntegrals integrals = vertex_integrals(vertices, triangles_);
   std::vector<Vec3d> points, normals;
   std::vector<double> curvatures;
@@ -75,7 +75,13 @@ ShapeHistogram MovedMesh::histogram(const std::vector<Vec3d>& vertices) const {
     }
     curvatures.push_back(area > 0.0 ? curvature / area : 0.0);
   }
-  return ahd_histogram(points, normals, curvatures);
+  return ahd_input(points, normals, curvatures);
+}
+
+ShapeHistogram MovedMesh::histogram(const std::vector<Vec3d>& vertices) const {
+  const PairInput input = pair_input(vertices);
+  return ahd_histogram(
+      input, count_pairs(input.points, input.normals, input.local, input.num_local, input.bins, {}));
 }
 
 }  // namespace astrolith

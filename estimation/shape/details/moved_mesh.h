@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "descriptor/shape_histogram.h"
+#include "descriptor/surflet_histogram.h"
 #include "estimation/shape/details/probe_layout.h"
 #include "geometry/triangle_mesh.h"
 
@@ -18,7 +18,8 @@ class MovedMesh {
   // their weights, stay as they are now.
   MovedMesh(const TriangleMesh& mesh, const std::vector<MeshPlace>& samples, double radius);
 
-  // Of the samples once the vertices are here.  (#V)
+  // Of the samples once the vertices are here, and what its pairs are counted of.  (#V)
+  PairInput pair_input(const std::vector<Vec3d>& vertices) const;
   ShapeHistogram histogram(const std::vector<Vec3d>& vertices) const;
 
  private:

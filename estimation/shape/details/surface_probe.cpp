@@ -67,7 +67,11 @@ SurfaceProbe::SurfaceProbe(const MetaballBody& base, const std::vector<ProbePoin
   for (const ProbePoint& p : points) starts.push_back(p.start);
   for (PointCluster& cluster : cluster_points(starts, kPointsPerBlock)) {
     add_block(prepared, points, std::move(cluster.points));
+    add_lines(blocks_.back());
   }
+  lines_.parameters = prepared.parameters;
+  lines_.reach = static_cast<float>(reach);
+  lines_.steps = kSteps;
 }
 
 void SurfaceProbe::add_block(const PreparedMetaballs& base, const std::vector<ProbePoint>& points,
@@ -104,6 +108,36 @@ std::vector<double> SurfaceProbe::heights(std::span<const FractalLayer> layers, 
     }
     for (std::size_t i = 0; i < n; ++i) result[static_cast<std::size_t>(block.points[i])] = double{t[i]};
   });
+  return result;
+}
+
+void SurfaceProbe::add_lines(const Block& block) {
+  for (std::size_t i = 0; i < block.points.size(); ++i) {
+    const auto at = [i](const std::array<std::vector<float>, 3>& v) {
+      return Vec3f{v[0][i], v[1][i], v[2][i]};
+    };
+    lines_.start.push_back(at(block.start));
+    lines_.direction.push_back(at(block.direction));
+    lines_.block.push_back(static_cast<std::uint32_t>(lines_.metaballs.size()));
+  }
+  lines_.metaballs.add(std::span<const MetaballSphere<float>>(block.metaballs.spheres));
+}
+
+std::vector<std::vector<double>> SurfaceProbe::heights(SwarmMachine& machine,
+                                                       std::span<const std::vector<FractalLayer>> candidates,
+                                                       std::uint64_t seed) const {
+  std::vector<CandidateLayers> noises;
+  for (const std::vector<FractalLayer>& layers : candidates) {
+    noises.push_back(prepare(layers, seed, domain_));
+  }
+  std::vector<std::vector<double>> result;
+  for (const std::vector<float>& t : machine.heights(lines_, noises)) {
+    std::vector<double>& heights = result.emplace_back(size_);
+    std::size_t line = 0;
+    for (const Block& block : blocks_) {
+      for (const std::int32_t i : block.points) heights[static_cast<std::size_t>(i)] = double{t[line++]};
+    }
+  }
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "cuda/swarm.h"
 #include "geometry/surface_tree.h"
 #include "recipe/recipe.h"
 #include "synthesis/metaball_body.h"
@@ -34,6 +35,11 @@ class SurfaceProbe {
   // with the seed. Runs in parallel; may be called from many threads.  (#points)
   std::vector<double> heights(std::span<const FractalLayer> layers, std::uint64_t seed) const;
 
+  // The same of each candidate, by another machine: the same bits.
+  std::vector<std::vector<double>> heights(SwarmMachine& machine,
+                                           std::span<const std::vector<FractalLayer>> candidates,
+                                           std::uint64_t seed) const;
+
  private:
   // Points near one another, and the spheres that reach them.
   struct Block {
@@ -44,10 +50,13 @@ class SurfaceProbe {
   void add_block(const PreparedMetaballs& base, const std::vector<ProbePoint>& points,
                  std::vector<std::int32_t> indices);
 
+  void add_lines(const Block& block);
+
   std::size_t size_;
   double reach_;
   Box domain_;
   std::vector<Block> blocks_;
+  ProbeLines lines_;  // of all blocks, one after the other
 };
 
 }  // namespace astrolith

@@ -31,11 +31,13 @@ TEST(EvaluationLog, EveryAlgorithmGoesOnWhereItStopped) {
     const OptimizeResult whole = minimize(bowl, bounds, options);
     EvaluationLog log;
     int asked = 0;
-    const Objective counted = [&](std::span<const double> x) {
-      ++asked;
-      return bowl(x);
+    const BatchObjective counted = [&](std::span<const std::vector<double>> points) {
+      asked += static_cast<int>(points.size());
+      std::vector<double> values;
+      for (const std::vector<double>& x : points) values.push_back(bowl(x));
+      return values;
     };
-    const Objective remembered = logged(counted, log);
+    const BatchObjective remembered = logged(counted, log);
     OptimizeOptions part = options;
     part.max_evaluations = 40;
     part.algorithm = options.algorithm;
