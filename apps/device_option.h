@@ -20,14 +20,14 @@ struct DeviceOption {
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   }
 
-  // Looks at the GPU unless told not to. Where there is none, says so in a line; with "cuda" that is an
-  // InputError. States in the summary what computes.
+  // Looks at the GPU unless told not to. Where there is none, notes so; with "cuda" that is an InputError.
+  // States in the summary what computes.
   bool use_gpu(Program& program) const {
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
       throw InputError("--device cuda: " + status.reason + "; leave it out for the CPU");
     }
-    if (!status.usable && device == "auto") program.say("no GPU: " + status.reason + "; the CPU computes");
+    if (!status.usable && device == "auto") program.note("no GPU: " + status.reason + "; the CPU computes");
     program.summary["device"] = status.usable ? status.name : "cpu";
     return status.usable;
   }
@@ -38,7 +38,7 @@ struct DeviceOption {
     const std::string words = "the GPU does not compute " + lacking;
     if (device == "cuda") throw InputError("--device cuda: " + words + "; leave it out for the CPU");
     const bool usable = use_gpu(program);
-    if (usable) program.say(words + "; the CPU computes");
+    if (usable) program.note(words + "; the CPU computes");
     program.summary["device"] = "cpu";
     return false;
   }

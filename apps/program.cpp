@@ -170,6 +170,7 @@ void Program::timed(const std::function<void()>& work) {
   if (!summary_file.empty()) require_writable(summary_file);
   const auto start = std::chrono::steady_clock::now();
   work();
+  for (const std::string& line : notes_) say(line);
   if (summary_file.empty()) return;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   if (!summary.contains("seconds")) summary["seconds"] = seconds.count();

@@ -14,6 +14,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "numerics/progress.h"
 
@@ -38,6 +39,9 @@ class Program {
   // One line to stderr, unless --quiet.
   void say(const std::string& line) const;
 
+  // The same once the work is done; nothing where it fails.
+  void note(const std::string& line) { notes_.push_back(line); }
+
   // For a part of the work that failed while the rest goes on: one line to stderr, also with --quiet, and
   // exit status 1 in the end.
   void report_failure(const std::string& line);
@@ -60,6 +64,7 @@ class Program {
   void timed(const std::function<void()>& work);
 
   std::string name_;
+  std::vector<std::string> notes_;
   bool part_failed_ = false;
 };
 

@@ -10,58 +10,75 @@ template <class Machine>
 class FieldOnMachine {
  public:
   FieldOnMachine(Machine& machine, const FlatFieldData& data)
-      : values_(data.values),
-        layers_(machine.upload(std::span<const FlatLayer>(data.layers))),
-        octaves_(machine.upload(std::span<const NoiseOctave>(data.octaves))),
-        weight_spheres_(machine.upload(std::span<const FlatSphere>(data.weight_spheres))),
-        sparse_levels_(machine.upload(std::span<const SparseLevel>(data.sparse_levels))),
-        spots_(machine.upload(std::span<const FlatSpots>(data.spots))) {}
+      : view_(data.view()),
+        layers_(upload(machine, data.layers, view_.layers)),
+        leaves_(upload(machine, data.leaves, view_.leaves)),
+        steps_(upload(machine, data.steps, view_.steps)),
+        octaves_(upload(machine, data.octaves, view_.octaves)),
+        weight_spheres_(upload(machine, data.weight_spheres, view_.weight_spheres)),
+        sparse_levels_(upload(machine, data.sparse_levels, view_.sparse_levels)),
+        spots_(upload(machine, data.spots, view_.spots)),
+        waves_(upload(machine, data.waves, view_.waves)),
+        craters_(upload(machine, data.craters, view_.craters)),
+        boulders_(upload(machine, data.boulders, view_.boulders)) {}
 
-  FlatField view() const {
-    FlatField flat = values_;
-    flat.layers = layers_.data();
-    flat.octaves = octaves_.data();
-    flat.weight_spheres = weight_spheres_.data();
-    flat.sparse_levels = sparse_levels_.data();
-    flat.spots = spots_.data();
-    return flat;
-  }
+  // With the machine's arrays.
+  const FlatField& view() const { return view_; }
 
  private:
   template <typename T>
   using Array = typename Machine::template Array<T>;
 
-  FlatField values_;
+  // And lets the view point there.
+  template <typename T>
+  static Array<T> upload(Machine& machine, const std::vector<T>& values, const T*& pointer) {
+    Array<T> array = machine.upload(std::span<const T>(values));
+    pointer = array.data();
+    return array;
+  }
+
+  FlatField view_;
   Array<FlatLayer> layers_;
+  Array<FlatLeaf> leaves_;
+  Array<FlatStep> steps_;
   Array<NoiseOctave> octaves_;
   Array<FlatSphere> weight_spheres_;
   Array<SparseLevel> sparse_levels_;
   Array<FlatSpots> spots_;
+  Array<Wave> waves_;
+  Array<CraterKernel> craters_;
+  Array<FlatBoulder> boulders_;
 };
 
 template <class Machine>
 class BlocksOnMachine {
  public:
   BlocksOnMachine(Machine& machine, const FlatBlocksData& data)
-      : lists_(static_cast<std::uint32_t>(data.lists)),
+      : view_(data.view()),
         spheres_(machine.upload(std::span<const MetaballSphere<float>>(data.spheres))),
         first_sphere_(machine.upload(std::span<const std::uint32_t>(data.first_sphere))),
         impulses_(machine.upload(std::span<const SpotImpulse>(data.impulses))),
-        first_impulse_(machine.upload(std::span<const std::uint32_t>(data.first_impulse))) {}
+        first_impulse_(machine.upload(std::span<const std::uint32_t>(data.first_impulse))),
+        features_(machine.upload(std::span<const std::uint32_t>(data.features))),
+        first_feature_(machine.upload(std::span<const std::uint32_t>(data.first_feature))) {}
 
   FlatBlocks view() const {
-    return {spheres_.data(), first_sphere_.data(), impulses_.data(), first_impulse_.data(), lists_};
+    return {spheres_.data(),       first_sphere_.data(), impulses_.data(),
+            first_impulse_.data(), features_.data(),     first_feature_.data(),
+            view_.leaves,          view_.sizes,          view_.lists};
   }
 
  private:
   template <typename T>
   using Array = typename Machine::template Array<T>;
 
-  std::uint32_t lists_;
+  FlatBlocks view_;
   Array<MetaballSphere<float>> spheres_;
   Array<std::uint32_t> first_sphere_;
   Array<SpotImpulse> impulses_;
   Array<std::uint32_t> first_impulse_;
+  Array<std::uint32_t> features_;
+  Array<std::uint32_t> first_feature_;
 };
 
 }  // namespace astrolith

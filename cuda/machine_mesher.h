@@ -103,7 +103,7 @@ class MachineMesher {
 
   void mesh_batch(int first_z, std::size_t layers) {
     std::vector<std::vector<BlockColumn>> columns(layers);
-    FlatBlocksData parts(data_.spots.size());
+    FlatBlocksData parts(data_);
     for (std::size_t l = 0; l < layers; ++l) {
       for (const auto& node : culled_[l]) {
         columns[l].push_back({node.x, node.y});

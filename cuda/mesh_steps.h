@@ -4,7 +4,7 @@
 
 #include "cuda/machine.h"
 #include "cuda/mesh_batch.h"
-#include "synthesis/flat_field.h"
+#include "synthesis/flat_value.h"
 
 namespace astrolith {
 

@@ -15,7 +15,7 @@ namespace astrolith {
 struct ProbeLines {
   std::vector<Vec3f> start, direction;   // (points)
   std::vector<std::uint32_t> block;      // (points): where its metaballs are in `metaballs`
-  FlatBlocksData metaballs{0};           // those that reach the lines of each block
+  FlatBlocksData metaballs;              // those that reach the lines of each block
   MetaballParameters<float> parameters;  // of them all
   float reach = 0.0f;
   int steps = 0;

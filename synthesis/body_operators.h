@@ -71,4 +71,21 @@ ASTROLITH_KERNEL T combined(const OperatorParameters<T>& o, T f, T g) {
   }
 }
 
+// A body's signed distance at a point and the gradient of that, of about unit length.
+struct BodySample {
+  float distance;
+  float gx, gy, gz;
+};
+
+// The combination's, whose change each operand has a share of: differences over a step that suits floats.
+ASTROLITH_HD inline BodySample combined(const OperatorParameters<float>& o, const BodySample& a,
+                                        const BodySample& b) {
+  const float f = a.distance, g = b.distance;
+  const float h = 1e-3f * larger(math::abs(f), math::abs(g)) + 1e-20f;
+  const float first = (combined(o, f + h, g) - combined(o, f - h, g)) / (2.0f * h);
+  const float second = (combined(o, f, g + h) - combined(o, f, g - h)) / (2.0f * h);
+  return {combined(o, f, g), math::fma(first, a.gx, second * b.gx), math::fma(first, a.gy, second * b.gy),
+          math::fma(first, a.gz, second * b.gz)};
+}
+
 }  // namespace astrolith

@@ -51,6 +51,11 @@ class BoulderField {
   const Box& bounds() const { return tree_.bounds(); }
   bool touches(const Box& box) const { return tree_.any_touching(box); }
 
+  // In the order in which they join, and the box that each reaches.
+  const std::vector<BoulderKernel>& kernels() const { return boulders_; }
+  const std::vector<Box>& boxes() const { return boxes_; }
+  std::vector<std::uint32_t> reaching(const Box& box) const { return tree_.touching(box); }
+
   // Numbers of the boulders that may change F at the points.
   std::vector<std::uint32_t> near(int n, const float* x, const float* y, const float* z) const;
   // Whether one of them may change it at this point.

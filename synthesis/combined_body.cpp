@@ -5,6 +5,7 @@
 
 #include "numerics/hash_random.h"
 #include "synthesis/largest_coordinate.h"
+#include "synthesis/surface_projection.h"
 
 namespace astrolith {
 namespace {
@@ -32,13 +33,6 @@ PreparedBody prepare_part(const MetaballBody& body, std::uint64_t seed, std::uin
   return part;
 }
 
-template <typename To, typename From>
-OperatorParameters<To> converted(const OperatorParameters<From>& o) {
-  const auto to = [](From v) { return static_cast<To>(v); };
-  return {o.kind,      to(o.alpha), to(o.exponent),
-          to(o.width), to(o.bulge), {to(o.inverse_reach[0]), to(o.inverse_reach[1])}};
-}
-
 // Points' distances and gradients, or coordinates and more.
 struct Columns {
   std::vector<float> values;
@@ -60,33 +54,24 @@ void evaluate_leaf(const PreparedBody& body, int n, const float* x, const float*
   }
   const float floor = body.metaballs.parameters.gradient_floor;
   for (int i = 0; i < n; ++i) {
-    const float length = math::sqrt(math::fma(gx[i], gx[i], math::fma(gy[i], gy[i], gz[i] * gz[i])) + floor);
+    const float length = gradient_length(gx[i], gy[i], gz[i], floor);
     gx[i] /= length;
     gy[i] /= length;
     gz[i] /= length;
   }
 }
 
-// What share of the combination's change each operand has: differences over a step that suits floats.
-struct Shares {
-  float first, second;
-};
-Shares shares(const OperatorParameters<float>& o, float f, float g) {
-  const float h = 1e-3f * larger(math::abs(f), math::abs(g)) + 1e-20f;
-  return {(combined(o, f + h, g) - combined(o, f - h, g)) / (2.0f * h),
-          (combined(o, f, g + h) - combined(o, f, g - h)) / (2.0f * h)};
-}
-
 void combine(const OperatorParameters<double>& parameters, int n, Columns& other, float* distance, float* gx,
              float* gy, float* gz) {
-  const OperatorParameters<float> o = converted<float>(parameters);
+  const OperatorParameters<float> o = in_float(parameters);
   const float *g = other.at(0), *ox = other.at(1), *oy = other.at(2), *oz = other.at(3);
   for (int i = 0; i < n; ++i) {
-    const Shares by = shares(o, distance[i], g[i]);
-    distance[i] = combined(o, distance[i], g[i]);
-    gx[i] = math::fma(by.first, gx[i], by.second * ox[i]);
-    gy[i] = math::fma(by.first, gy[i], by.second * oy[i]);
-    gz[i] = math::fma(by.first, gz[i], by.second * oz[i]);
+    const BodySample both =
+        combined(o, BodySample{distance[i], gx[i], gy[i], gz[i]}, BodySample{g[i], ox[i], oy[i], oz[i]});
+    distance[i] = both.distance;
+    gx[i] = both.gx;
+    gy[i] = both.gy;
+    gz[i] = both.gz;
   }
 }
 
@@ -141,6 +126,12 @@ double slope_of(const OperatorParameters<double>& o) {
 }
 
 }  // namespace
+
+OperatorParameters<float> in_float(const OperatorParameters<double>& o) {
+  const auto to = [](double v) { return static_cast<float>(v); };
+  return {o.kind,      to(o.alpha), to(o.exponent),
+          to(o.width), to(o.bulge), {to(o.inverse_reach[0]), to(o.inverse_reach[1])}};
+}
 
 std::uint32_t body_warp_seed(std::uint64_t seed, std::uint32_t n) { return hash_seed(seed, kBodyStream - n); }
 

@@ -26,6 +26,9 @@ struct PreparedOperation {
   PreparedBody operand;
 };
 
+// As points are evaluated with.
+OperatorParameters<float> in_float(const OperatorParameters<double>& o);
+
 // `seed` is the recipe's. Expects what validation accepts.
 PreparedBody prepare_body(const MetaballBody& body, std::uint64_t seed);
 

@@ -51,6 +51,10 @@ class CraterRelief {
   // Elevations after the layer at every point of a box, from those before.
   Interval bound(const Box& box, const Interval& before) const;
 
+  // Oldest first, and the numbers of those that reach a box, ascending.
+  const std::vector<CraterKernel>& kernels() const { return craters_; }
+  std::vector<std::uint32_t> reaching(const Box& box) const { return tree_.touching(box); }
+
  private:
   void find_bases(std::span<const PlacedCrater> craters, std::span<const float> elevations);
 

@@ -72,9 +72,64 @@ struct Flatten {
       data.spots.push_back({noise.kernel(j), noise.clip(j), static_cast<std::uint32_t>(data.spots.size())});
     }
   }
-  template <typename Other>
-  void operator()(const Other&) const {}
+  void operator()(const PhasorNoise& noise) const {
+    const PhasorNoise::Parts parts = noise.parts();
+    layer.kind = FlatNoise::kPhasor;
+    layer.low = parts.domain_min;
+    layer.high = parts.domain_max;
+    layer.kernels = parts.kernels;
+    layer.inverse_cell = parts.inverse_cell;
+    layer.amplitude = parts.amplitude;
+    layer.profile = parts.profile;
+    layer.parts.count = static_cast<std::uint32_t>(parts.impulses);
+    layer.seed = parts.seed;
+  }
+  void operator()(const RandomPhaseNoise& noise) const {
+    const RandomPhaseNoise::Parts parts = noise.parts();
+    layer.kind = FlatNoise::kRandomPhase;
+    layer.low = parts.domain_min;
+    layer.high = parts.domain_max;
+    layer.inverse_cell = parts.inverse_cell;
+    layer.randomness = parts.randomness;
+    layer.coherence = parts.coherence;
+    layer.clip = parts.clip;
+    layer.seed = parts.seed;
+    layer.parts = append(std::span<const Wave>(noise.waves()), data.waves);
+  }
+  void operator()(const CraterRelief& relief) const {
+    layer.kind = FlatNoise::kCraters;
+    layer.clip = static_cast<float>(relief.elevation_bound());
+    layer.list = static_cast<std::uint32_t>(data.lists++);
+    layer.parts = append(std::span<const CraterKernel>(relief.kernels()), data.craters);
+  }
+  void operator()(const GaborSurfaceNoise&) const {}  // an obstacle
 };
+
+// The body's leaves and steps, after those there are.
+void add_steps(const PreparedBody& body, FlatFieldData& data) {
+  FlatLeaf leaf{body.metaballs.parameters, body.warp != nullptr, {}};
+  if (leaf.warped) leaf.warp = flat_warp(*body.warp, data);
+  data.steps.push_back({true, static_cast<std::uint32_t>(data.leaves.size()), {}});
+  data.leaves.push_back(leaf);
+  for (const PreparedOperation& operation : body.operations) {
+    add_steps(operation.operand, data);
+    data.steps.push_back({false, 0, in_float(operation.parameters)});
+  }
+}
+
+void add_body(const FieldModel& model, FlatFieldData& data) {
+  if (!model.body.plain()) return add_steps(model.body, data);
+  FlatLeaf leaf{model.body.metaballs.parameters, model.warp.has_value(), {}};
+  if (leaf.warped) leaf.warp = flat_warp(*model.warp, data);
+  data.leaves.push_back(leaf);
+}
+
+void add_boulders(const BoulderField& field, FlatFieldData& data) {
+  for (std::size_t i = 0; i < field.kernels().size(); ++i) {
+    data.boulders.push_back({field.kernels()[i], field.boxes()[i].min, field.boxes()[i].max});
+  }
+  data.values.boulder_list = static_cast<std::uint32_t>(data.lists++);
+}
 
 Vec3f single(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -104,37 +159,23 @@ FlatJoin flat_join(const LayerJoin& join, float change_bound, FlatFieldData& dat
   return flat;
 }
 
-struct Obstacle {
-  std::string operator()(const FractalNoise&) const { return {}; }
-  std::string operator()(const SparseNoise&) const { return {}; }
-  std::string operator()(const SpotNoise&) const { return {}; }
-  std::string operator()(const GaborSurfaceNoise&) const { return "Gabor layers"; }
-  std::string operator()(const CraterRelief&) const { return "layers of craters"; }
-  std::string operator()(const RandomPhaseNoise&) const { return "layers of random-phase noise"; }
-  std::string operator()(const PhasorNoise&) const { return "layers of phasor noise"; }
-};
-
 }  // namespace
 
 std::string obstacle_to_flattening(const ImplicitField& field) {
   const FieldModel& model = field.model();
-  if (!model.body.plain()) return "bodies with operations";
-  if (!model.boulders.empty()) return "layers of boulders";
   if (model.kept_heights > kFlatSlots) return "masks by more than four layers";
   for (const PlacedLayer& layer : model.layers) {
-    std::string obstacle = std::visit(Obstacle{}, layer.noise);
-    if (!obstacle.empty()) return obstacle;
+    if (std::holds_alternative<GaborSurfaceNoise>(layer.noise)) return "Gabor layers";
   }
   return {};
 }
 
 FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
   const FieldModel& model = field.model();
-  values.body = model.body.metaballs.parameters;
-  values.warped = model.warp.has_value();
-  values.stretch = model.warp ? static_cast<float>(model.warp->stretch()) : 1.0f;
-  if (model.warp) values.warp = flat_warp(*model.warp, *this);
+  add_body(model, *this);
+  values.stretch = model.warp ? static_cast<float>(model.warp->stretch()) : model.stretch;
   values.height_reach = height_reach(model);
+  values.longest_step = static_cast<float>(model.height_bound);
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const PlacedLayer& placed = model.layers[i];
     FlatLayer layer;
@@ -142,49 +183,62 @@ FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
     layer.join = flat_join(placed.join, change_bound(model, i), *this);
     layers.push_back(layer);
   }
-  values.num_layers = static_cast<std::uint32_t>(layers.size());
+  add_boulders(model.boulders, *this);
 }
 
-FlatFieldData::FlatFieldData(const MetaballParameters<float>& body) : values{} {
-  values.body = body;
-  values.stretch = 1.0f;
-}
+FlatFieldData::FlatFieldData(const MetaballParameters<float>& body) : leaves{{body, false, {}}}, values{} {}
 
 void FlatFieldData::add(const FractalNoise& noise) {
   FlatLayer layer;
   Flatten{*this, layer}(noise);
   layers.push_back(layer);
-  values.num_layers = static_cast<std::uint32_t>(layers.size());
 }
 
 FlatField FlatFieldData::view() const {
   FlatField flat = values;
+  flat.num_layers = static_cast<std::uint32_t>(layers.size());
+  flat.num_steps = static_cast<std::uint32_t>(steps.size());
   flat.layers = layers.data();
+  flat.leaves = leaves.data();
+  flat.steps = steps.data();
   flat.octaves = octaves.data();
   flat.weight_spheres = weight_spheres.data();
   flat.sparse_levels = sparse_levels.data();
   flat.spots = spots.data();
+  flat.waves = waves.data();
+  flat.craters = craters.data();
+  flat.boulders = boulders.data();
   return flat;
 }
 
-void FlatBlocksData::add(std::span<const MetaballSphere<float>> of_block) {
-  append(of_block, spheres);
+void FlatBlocksData::add(std::span<const MetaballSphere<float>> of_leaf) {
+  append(of_leaf, spheres);
   first_sphere.push_back(static_cast<std::uint32_t>(spheres.size()));
 }
 
+void FlatBlocksData::add(const PreparedBody& body) {
+  add(std::span<const MetaballSphere<float>>(body.metaballs.spheres));
+  for (const PreparedOperation& operation : body.operations) add(operation.operand);
+}
+
 void FlatBlocksData::add(const FieldBlock& block) {
-  add(std::span<const MetaballSphere<float>>(block.body().metaballs.spheres));
+  add(block.body());
   for (const SpotImpulses& of_layer : block.all_spots()) {
     for (const std::vector<SpotImpulse>& list : of_layer) {
       append(std::span<const SpotImpulse>(list), impulses);
       first_impulse.push_back(static_cast<std::uint32_t>(impulses.size()));
     }
   }
+  for (const std::vector<std::uint32_t>& list : block.all_features()) {
+    append(std::span<const std::uint32_t>(list), features);
+    first_feature.push_back(static_cast<std::uint32_t>(features.size()));
+  }
 }
 
 FlatBlocks FlatBlocksData::view() const {
-  return {spheres.data(), first_sphere.data(), impulses.data(), first_impulse.data(),
-          static_cast<std::uint32_t>(lists)};
+  const auto number = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
+  return {spheres.data(),       first_sphere.data(), impulses.data(), first_impulse.data(), features.data(),
+          first_feature.data(), number(leaves),      number(sizes),   number(lists)};
 }
 
 }  // namespace astrolith

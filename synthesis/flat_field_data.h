@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "synthesis/flat_field.h"
+#include "synthesis/flat_value.h"
 #include "synthesis/implicit_field.h"
 
 namespace astrolith {
@@ -25,30 +25,43 @@ struct FlatFieldData {
   FlatField view() const;
 
   std::vector<FlatLayer> layers;
+  std::vector<FlatLeaf> leaves;
+  std::vector<FlatStep> steps;
   std::vector<NoiseOctave> octaves;
   std::vector<FlatSphere> weight_spheres;
   std::vector<SparseLevel> sparse_levels;
   std::vector<FlatSpots> spots;
-  FlatField values;  // its pointers are not used
+  std::vector<Wave> waves;
+  std::vector<CraterKernel> craters;
+  std::vector<FlatBoulder> boulders;
+  std::size_t lists = 0;  // of craters and boulders that reach a block
+  FlatField values;       // its pointers are not used
 };
 
 // Of some blocks, one after the other.
 struct FlatBlocksData {
-  // As many lists as FlatFieldData::spots.
-  explicit FlatBlocksData(std::size_t num_lists) : lists(num_lists) {}
+  // Of one leaf, without layers.
+  FlatBlocksData() = default;
+  // Of this field.
+  explicit FlatBlocksData(const FlatFieldData& field)
+      : leaves(field.leaves.size()), sizes(field.spots.size()), lists(field.lists) {}
 
   void add(const FieldBlock& block);
-  // Without impulses.
-  void add(std::span<const MetaballSphere<float>> of_block);
+  void add(std::span<const MetaballSphere<float>> of_leaf);
   // With this object's own arrays.
   FlatBlocks view() const;
-  std::size_t size() const { return first_sphere.size() - 1; }
+  std::size_t size() const { return (first_sphere.size() - 1) / leaves; }
 
-  std::size_t lists;  // of impulses, a block
+  std::size_t leaves = 1, sizes = 0, lists = 0;  // a block
   std::vector<MetaballSphere<float>> spheres;
-  std::vector<std::uint32_t> first_sphere{0};  // (blocks + 1)
+  std::vector<std::uint32_t> first_sphere{0};  // (blocks * leaves + 1)
   std::vector<SpotImpulse> impulses;
-  std::vector<std::uint32_t> first_impulse{0};  // (blocks * lists + 1)
+  std::vector<std::uint32_t> first_impulse{0};  // (blocks * sizes + 1)
+  std::vector<std::uint32_t> features;
+  std::vector<std::uint32_t> first_feature{0};  // (blocks * lists + 1)
+
+ private:
+  void add(const PreparedBody& body);
 };
 
 }  // namespace astrolith

@@ -7,6 +7,7 @@
 #include "numerics/errors.h"
 #include "synthesis/field_model_internal.h"
 #include "synthesis/metaballs_near.h"
+#include "synthesis/surface_projection.h"
 
 namespace astrolith {
 static_assert(BlockField<ImplicitField>);
@@ -34,15 +35,12 @@ struct Batch {
   bool tetrahedra = false;  // whether points are the corners of such, and none may be left out
 };
 
-// First-order projection on the base surface, p0 = p - s g/|g|, so that heights are constant along the
-// normal. Steps end at `longest_step`: no point of the surface is farther from the base than that.
 ASTROLITH_SIMD_CLONES void project(int n, const float* __restrict p, const float* __restrict gradient,
                                    const float* __restrict divisor, const float* __restrict distance,
                                    float longest_step, float* __restrict projected) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    const float step = math::clamp(distance[i], -longest_step, longest_step);
-    projected[i] = math::fma(-step, gradient[i] / divisor[i], p[i]);
+    projected[i] = projected_coordinate(p[i], gradient[i], divisor[i], distance[i], longest_step);
   }
 }
 
@@ -51,7 +49,7 @@ ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, c
                                             float* __restrict length) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    length[i] = math::sqrt(math::fma(gx[i], gx[i], math::fma(gy[i], gy[i], gz[i] * gz[i])) + floor);
+    length[i] = gradient_length(gx[i], gy[i], gz[i], floor);
   }
 }
 
@@ -319,6 +317,19 @@ std::vector<SpotImpulses> FieldBlock::all_spots() const {
     const SpotImpulses* drawn = spots_of(spots_, i);
     all.push_back(drawn != nullptr ? *drawn : noise->draw(layer_box(model_->layers[i], box_)));
   }
+  return all;
+}
+
+std::vector<std::vector<std::uint32_t>> FieldBlock::all_features() const {
+  // Craters are looked up where points are projected to.
+  const Box at = body_box(*model_, box_);
+  const Box projected = widened(at, model_->height_bound * (1.0 + 1e-5) + 2e-6 * largest_coordinate(at));
+  std::vector<std::vector<std::uint32_t>> all;
+  for (const PlacedLayer& layer : model_->layers) {
+    const auto* craters = std::get_if<CraterRelief>(&layer.noise);
+    if (craters != nullptr) all.push_back(craters->reaching(projected));
+  }
+  all.push_back(model_->boulders.empty() ? std::vector<std::uint32_t>() : model_->boulders.reaching(box_));
   return all;
 }
 

@@ -66,6 +66,9 @@ class FieldBlock {
   const PreparedBody& body() const { return body_; }
   // The impulses of every layer of spots, in the layers' order.
   std::vector<SpotImpulses> all_spots() const;
+  // Numbers of the craters of every layer of such that reach the box, in the layers' order, then of the
+  // boulders.
+  std::vector<std::vector<std::uint32_t>> all_features() const;
 
  private:
   friend class ImplicitField;

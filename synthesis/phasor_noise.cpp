@@ -4,11 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "numerics/hash_random.h"
-#include "numerics/scalar_math.h"
 #include "synthesis/largest_coordinate.h"
-#include "synthesis/lattice_noise.h"
-#include "synthesis/random_direction.h"
 
 namespace astrolith {
 namespace {
@@ -17,51 +13,17 @@ constexpr int kChunk = 128;
 using Chunk = std::array<float, kChunk>;
 constexpr double kLargestCell = 1048576.0;  // 2^20
 
-// What all kernels of a layer share; lengths in cells.
-struct Kernels {
-  Vec3f direction;
-  float spread, turns_per_cell;
-};
-
 // real, imaginary += the k-th impulse of the cell (dx, dy, dz) away from each point's; points in cells.
-ASTROLITH_SIMD_CLONES void add_impulse(const Kernels& kernels, float dx, float dy, float dz,
+ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, float dy, float dz,
                                        std::uint32_t seed, int n, const float* __restrict x,
                                        const float* __restrict y, const float* __restrict z,
                                        float* __restrict real, float* __restrict imaginary) {
-  const Kernels k = kernels;
+  const PhasorKernels k = kernels;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    const float cx = math::floor(x[i]) + dx, cy = math::floor(y[i]) + dy, cz = math::floor(z[i]) + dz;
-    const std::uint32_t h = mix_bits(lattice_point(cx, cy, cz, seed));
-    const std::uint32_t h1 = mix_bits(h + 0x9e3779b9u), h2 = mix_bits(h + 0x3c6ef372u);
-    const std::uint32_t h3 = mix_bits(h + 0xdaa66d2bu);
-    const float px = (x[i] - cx) - unit_float(h), py = (y[i] - cy) - unit_float(h1),
-                pz = (z[i] - cz) - unit_float(h2);
-    const float rest = math::max(0.0f, 1.0f - math::fma(px, px, math::fma(py, py, pz * pz)));
-    const float weight = rest * rest * rest;
-    // Sixteen bits place the direction's height in the cap, as many its azimuth; the phase has a hash of its
-    // own.
-    const float height = static_cast<float>(h3 >> 16) * 0x1p-16f,
-                azimuth = static_cast<float>(h3 & 0xffffu) * 0x1p-16f;
-    const Vec3f u = direction_in_cone(k.direction, k.spread, height, azimuth);
-    const float phase = unit_float(mix_bits(h + 0x78dde6e4u));
-    const float turns = math::fma(k.turns_per_cell, math::fma(u.x, px, math::fma(u.y, py, u.z * pz)), phase);
-    real[i] = math::fma(weight, math::cos_turns(turns), real[i]);
-    imaginary[i] = math::fma(weight, math::sin_turns(turns), imaginary[i]);
-  }
-}
-
-// A profile at a phase in turns, [-1/2, 1/2].
-float profile_at(PhasorProfile profile, float turns) {
-  switch (profile) {
-    case PhasorProfile::kTriangle:
-      return 1.0f - 4.0f * math::abs(turns);
-    case PhasorProfile::kSawtooth:
-      return 2.0f * turns;
-    case PhasorProfile::kSquare:
-      return turns < 0.0f ? -1.0f : 1.0f;
-    default:
-      return math::sin_turns(turns);
+    const PhasorSum sum = with_phasor_impulse(k, dx, dy, dz, seed, x[i], y[i], z[i], {real[i], imaginary[i]});
+    real[i] = sum.real;
+    imaginary[i] = sum.imaginary;
   }
 }
 
@@ -83,7 +45,7 @@ PhasorNoise::PhasorNoise(const PhasorLayer& layer, std::uint64_t seed, int layer
 }
 
 void PhasorNoise::evaluate_phase(int n, const float* x, const float* y, const float* z, float* turns) const {
-  const Kernels kernels{direction_, spread_, turns_per_cell_};
+  const PhasorKernels kernels{direction_, spread_, turns_per_cell_};
   Chunk px{}, py{}, pz{}, real, imaginary;
   for (int begin = 0; begin < n; begin += kChunk) {
     const int size = std::min(kChunk, n - begin);
@@ -97,9 +59,9 @@ void PhasorNoise::evaluate_phase(int n, const float* x, const float* y, const fl
     imaginary.fill(0.0f);
     for (int c = 0; c < 27; ++c) {
       for (int j = 0; j < impulses_; ++j) {
-        add_impulse(kernels, static_cast<float>(c % 3 - 1), static_cast<float>(c / 3 % 3 - 1),
-                    static_cast<float>(c / 9 - 1), hash_append(seed_, static_cast<std::uint32_t>(j)), size,
-                    px.data(), py.data(), pz.data(), real.data(), imaginary.data());
+        const Vec3f cell = phasor_cell(c);
+        add_impulse(kernels, cell.x, cell.y, cell.z, phasor_seed(seed_, j), size, px.data(), py.data(),
+                    pz.data(), real.data(), imaginary.data());
       }
     }
     for (int i = 0; i < size; ++i) {
@@ -111,7 +73,7 @@ void PhasorNoise::evaluate_phase(int n, const float* x, const float* y, const fl
 
 void PhasorNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
   evaluate_phase(n, x, y, z, height);
-  for (int i = 0; i < n; ++i) height[i] = amplitude_ * profile_at(profile_, height[i]);
+  for (int i = 0; i < n; ++i) height[i] = amplitude_ * phasor_profile(profile_, height[i]);
 }
 
 }  // namespace astrolith

@@ -4,10 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "numerics/hash_random.h"
 #include "numerics/scalar_math.h"
 #include "synthesis/largest_coordinate.h"
-#include "synthesis/perlin_noise.h"
 #include "synthesis/random_direction.h"
 
 namespace astrolith {
@@ -28,25 +26,18 @@ struct Windows {
   Chunk scale;  // 1 / norm
 };
 
-ASTROLITH_KERNEL float window(float t) { return math::cos_turns(0.25f * quintic_fade(t)); }
-
 ASTROLITH_SIMD_CLONES void find_windows(int n, const float* __restrict x, const float* __restrict y,
                                         const float* __restrict z, float inverse_cell, float coherence,
                                         std::uint32_t seed, Windows& out) {
   for (unsigned c = 0; c < 8; ++c) {
     float* __restrict weight = out.weight[c].data();
     std::uint32_t* __restrict corner = out.corner[c].data();
-    const std::uint32_t step =
-        ((c & 1) != 0 ? kLatticeX : 0u) + ((c & 2) != 0 ? kLatticeY : 0u) + ((c & 4) != 0 ? kLatticeZ : 0u);
-    const bool far_x = (c & 1) != 0, far_y = (c & 2) != 0, far_z = (c & 4) != 0;
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
-      const PerlinCell cell =
-          perlin_cell(x[i] * inverse_cell, y[i] * inverse_cell, z[i] * inverse_cell, seed);
-      const float wx = window(far_x ? 1.0f - cell.x : cell.x), wy = window(far_y ? 1.0f - cell.y : cell.y),
-                  wz = window(far_z ? 1.0f - cell.z : cell.z);
-      weight[i] = wx * wy * wz;
-      corner[i] = cell.first + step;
+      const PhaseCorner there =
+          phase_corner(c, x[i] * inverse_cell, y[i] * inverse_cell, z[i] * inverse_cell, seed);
+      weight[i] = there.weight;
+      corner[i] = there.hash;
     }
   }
   float* __restrict scale = out.scale.data();
@@ -54,7 +45,7 @@ ASTROLITH_SIMD_CLONES void find_windows(int n, const float* __restrict x, const 
     const auto k = static_cast<std::size_t>(i);
     float sum = 0.0f;
     for (unsigned c = 0; c < 8; ++c) sum += out.weight[c][k];
-    scale[i] = 1.0f / math::sqrt(math::fma(coherence, math::fma(sum, sum, -1.0f), 1.0f));
+    scale[i] = phase_scale(coherence, sum);
   }
 }
 
@@ -68,11 +59,7 @@ ASTROLITH_SIMD_CLONES void add_wave(const Wave& wave, float randomness, int n, c
     const std::uint32_t* __restrict corner = windows.corner[c].data();
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
-      const float turns =
-          math::fma(w.frequency.x, x[i], math::fma(w.frequency.y, y[i], w.frequency.z * z[i]));
-      const float random = unit_float(mix_bits(corner[i] ^ w.seed)) - 0.5f;
-      const float angle = (turns - math::round_even(turns)) + math::fma(randomness, random, w.phase);
-      height[i] = math::fma(w.amplitude * weight[i], math::cos_turns(angle), height[i]);
+      height[i] = with_wave(w, randomness, {weight[i], corner[i]}, x[i], y[i], z[i], height[i]);
     }
   }
 }

@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "numerics/hash_random.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise_octaves.h"
+#include "synthesis/perlin_noise.h"
 
 namespace astrolith {
 
@@ -22,6 +24,37 @@ struct Wave {
   float amplitude;  // length units
   std::uint32_t seed;
 };
+
+ASTROLITH_KERNEL float phase_window(float t) { return math::cos_turns(0.25f * quintic_fade(t)); }
+
+// How much the c-th lattice point around a point counts there, and its hash; coordinates in cells.
+struct PhaseCorner {
+  float weight;
+  std::uint32_t hash;
+};
+ASTROLITH_KERNEL PhaseCorner phase_corner(unsigned c, float x, float y, float z, std::uint32_t seed) {
+  const PerlinCell cell = perlin_cell(x, y, z, seed);
+  const bool far_x = (c & 1) != 0, far_y = (c & 2) != 0, far_z = (c & 4) != 0;
+  const float wx = phase_window(far_x ? 1.0f - cell.x : cell.x),
+              wy = phase_window(far_y ? 1.0f - cell.y : cell.y),
+              wz = phase_window(far_z ? 1.0f - cell.z : cell.z);
+  const std::uint32_t step = (far_x ? kLatticeX : 0u) + (far_y ? kLatticeY : 0u) + (far_z ? kLatticeZ : 0u);
+  return {wx * wy * wz, cell.first + step};
+}
+
+// 1 / norm, from the sum of the weights.
+ASTROLITH_KERNEL float phase_scale(float coherence, float sum) {
+  return 1.0f / math::sqrt(math::fma(coherence, math::fma(sum, sum, -1.0f), 1.0f));
+}
+
+// The height and one wave as a corner sees it.
+ASTROLITH_KERNEL float with_wave(const Wave& w, float randomness, const PhaseCorner& corner, float x, float y,
+                                 float z, float height) {
+  const float turns = math::fma(w.frequency.x, x, math::fma(w.frequency.y, y, w.frequency.z * z));
+  const float random = unit_float(mix_bits(corner.hash ^ w.seed)) - 0.5f;
+  const float angle = (turns - math::round_even(turns)) + math::fma(randomness, random, w.phase);
+  return math::fma(w.amplitude * corner.weight, math::cos_turns(angle), height);
+}
 
 class RandomPhaseNoise {
  public:
@@ -38,6 +71,15 @@ class RandomPhaseNoise {
   Interval bound_heights(const Box&) const { return {-height_bound(), height_bound()}; }
 
   const std::vector<Wave>& waves() const { return waves_; }
+  // What else it is made of.
+  struct Parts {
+    Vec3f domain_min, domain_max;
+    float inverse_cell, randomness, coherence, clip;
+    std::uint32_t seed;
+  };
+  Parts parts() const {
+    return {domain_min_, domain_max_, inverse_cell_, randomness_, coherence_, clip_, seed_};
+  }
 
  private:
   void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;

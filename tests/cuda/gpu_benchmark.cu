@@ -99,7 +99,7 @@ void measure_field(DeviceMachine& machine, const ImplicitField& field) {
   const FieldOnMachine<DeviceMachine> on_device(machine, data);
   const Vec3d c = field.bounds().center();
   const Vec3d half = 0.02 * field.bounds().extent();
-  FlatBlocksData blocks(data.spots.size());
+  FlatBlocksData blocks(data);
   blocks.add(field.gather({c - half, c + half}));
   const BlocksOnMachine<DeviceMachine> parts(machine, blocks);
   const std::size_t n = std::size_t{1} << 24;

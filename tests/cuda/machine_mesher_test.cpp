@@ -2,10 +2,12 @@
 #include "cuda/machine_mesher.h"
 
 #include <cstring>
+#include <filesystem>
 
 #include "cuda/device.h"
 #include "cuda/host_machine.h"
 #include "cuda/mesh_field.h"
+#include "recipe/recipe_json.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -86,6 +88,19 @@ TEST(MachineMesher, TreatsTiesAsTheCpu) {
 TEST(MachineMesher, MakesTheTilesOfTheCpu) {
   const ImplicitField field(asteroid());
   for (int i = 0; i < 3; ++i) expect_same(on_twin(field, 50, {i, 3}), on_cpu(field, 50, {i, 3}));
+}
+
+// Every example of a recipe that the GPU can mesh, on a coarse grid.
+TEST(MachineMesher, MeshesTheExamplesAsTheCpu) {
+  int meshed = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(ASTROLITH_EXAMPLES)) {
+    const ImplicitField field(read_recipe(entry.path()));
+    if (!obstacle_to_flattening(field).empty()) continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    expect_same(on_twin(field, 24), on_cpu(field, 24));
+    ++meshed;
+  }
+  EXPECT_GE(meshed, 19);
 }
 
 // Less memory means smaller batches, down to a layer each, and the same mesh.

@@ -1,5 +1,5 @@
 // Plain arrays give the bits of the field that they were made from.
-#include "synthesis/flat_field.h"
+#include "synthesis/flat_value.h"
 
 #include <vector>
 
@@ -43,6 +43,93 @@ SparseLayer random_sparse(CounterRandom& random) {
   return layer;
 }
 
+PhasorLayer random_phasor(CounterRandom& random) {
+  PhasorLayer layer;
+  layer.amplitude = 0.01;
+  layer.frequency = 6.0;
+  layer.cell_size = 0.3;
+  layer.profile = static_cast<PhasorProfile>(random.below(4));
+  return layer;
+}
+
+RandomPhaseLayer random_phase(CounterRandom& random) {
+  RandomPhaseLayer layer;
+  layer.height_rms = 0.01;
+  layer.cell_size = 0.3;
+  layer.waves = 5;
+  layer.randomness = random.uniform();
+  return layer;
+}
+
+Population drawn(double greatest_diameter) {
+  Population population;
+  population.count = 30;
+  population.least_diameter = 0.03;
+  population.greatest_diameter = greatest_diameter;
+  return population;
+}
+
+CraterLayer random_craters(CounterRandom& random) {
+  CraterLayer layer;
+  layer.complex_from = 0.1;
+  layer.population = CraterPopulation{};
+  layer.population->drawn = drawn(0.2);
+  layer.population->degradation = random.uniform();
+  return layer;
+}
+
+BoulderLayer random_boulders(CounterRandom& random) {
+  BoulderLayer layer;
+  layer.roughness = random.below(2) == 0 ? 0.1 : 0.0;
+  layer.smoothing = 0.2;
+  layer.population = BoulderPopulation{};
+  layer.population->drawn = drawn(0.1);
+  return layer;
+}
+
+Layer random_layer(CounterRandom& random) {
+  switch (random.below(9)) {
+    case 0:
+      return random_spots(random);
+    case 1:
+      return random_sparse(random);
+    case 2:
+      return random_phasor(random);
+    case 3:
+      return random_phase(random);
+    case 4:
+      return random_craters(random);
+    case 5:
+      return random_boulders(random);
+    default:
+      return random_fractal(random);
+  }
+}
+
+// A body that operations make of others, one of which has a warp and one operations of its own.
+void add_operations(MetaballBody& body, CounterRandom& random) {
+  const auto operand = [&](double x) {
+    MetaballBody ball;
+    ball.spheres = {{{x, 0.1, 0.0}, 0.15}, {{x, -0.1, 0.1}, 0.1}};
+    return ball;
+  };
+  for (int i = 0; i < 3; ++i) {
+    BodyOperation operation;
+    operation.kind = static_cast<Operator>(random.below(5));
+    if (operation.kind == Operator::kIntersection) operation.kind = Operator::kDifference;
+    operation.alpha = random.uniform();
+    operation.width = 0.05;
+    operation.bulge = -0.02;
+    operation.operand = {operand(0.3 * i - 0.3)};
+    if (i == 1) operation.operand[0].warp = Warp{.amplitude = 0.02, .frequency = 3.0, .octaves = 1};
+    if (i == 2) {
+      operation.operand[0].operations.push_back({});
+      operation.operand[0].operations[0].operand = {operand(0.45)};
+    }
+    body.operations.push_back(operation);
+  }
+}
+
 // Local or not, masked by a layer before or not, combined in any way.
 void use_somehow(LayerUse& use, int number, CounterRandom& random) {
   if (random.below(3) == 0) use.locality = Locality{.group = "some", .width = 0.1};
@@ -61,12 +148,10 @@ Recipe random_recipe(std::uint64_t seed) {
   recipe.body->kernel = static_cast<Kernel>(random.below(5));
   recipe.body->groups = {{"some", {0, 3, 7}}};
   if (random.below(3) == 0) recipe.body->warp = Warp{.amplitude = 0.04, .frequency = 2.0, .octaves = 2};
+  if (random.below(4) == 0) add_operations(*recipe.body, random);
   const int layers = static_cast<int>(random.below(5));
   for (int i = 0; i < layers; ++i) {
-    const std::uint64_t kind = random.below(4);
-    Layer layer = kind < 2    ? Layer(random_fractal(random))
-                  : kind == 2 ? Layer(random_spots(random))
-                              : Layer(random_sparse(random));
+    Layer layer = random_layer(random);
     std::visit(
         [&](auto& l) {
           l.name = std::to_string(i);
@@ -95,7 +180,7 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
                        random.uniform(bounds.min.z, bounds.max.z)};
     const double half = b < 10 ? 0.03 : 0.6;
     const FieldBlock block = field.gather(box_around(center, half));
-    FlatBlocksData blocks(data.spots.size());
+    FlatBlocksData blocks(data);
     blocks.add(field.gather(box_around(center, 0.01)));  // another one before it
     blocks.add(block);
     std::vector<float> x(100), y(100), z(100), value(100);
@@ -121,8 +206,8 @@ TEST(FlatField, HasTheBitsOfTheField) {
 TEST(FlatField, NamesWhatItLacks) {
   Recipe recipe = potato_recipe(20, 1);
   EXPECT_EQ(obstacle_to_flattening(ImplicitField(recipe)), "");
-  recipe.layers = {PhasorLayer{}};
-  EXPECT_EQ(obstacle_to_flattening(ImplicitField(recipe)), "layers of phasor noise");
+  recipe.layers = {testing::gabor_layer(0.01, 0.01)};
+  EXPECT_EQ(obstacle_to_flattening(ImplicitField(recipe)), "Gabor layers");
 }
 
 }  // namespace
