@@ -131,14 +131,14 @@ void add_operations(MetaballBody& body, CounterRandom& random) {
 }
 
 // Local or not, masked by a layer before or not, combined in any way.
-void use_somehow(LayerUse& use, int number, CounterRandom& random) {
+void use_somehow(LayerUse& use, int number, bool first_has_height, CounterRandom& random) {
   if (random.below(3) == 0) use.locality = Locality{.group = "some", .width = 0.1};
   if (number == 0) return;
   use.combination.kind = static_cast<Combine>(random.below(5));
   use.combination.intersection = random.below(2) == 0;
   use.combination.width = 0.01;
   use.combination.direction = {0.5, -1.0, 0.25};
-  if (random.below(2) == 0) use.mask = LayerMask{.layer = "0", .from = -0.01, .to = 0.01};
+  if (first_has_height && random.below(2) == 0) use.mask = LayerMask{.layer = "0", .from = -0.01, .to = 0.01};
 }
 
 // A body of any kernel, with or without a warp, under up to four layers, some of them local.
@@ -155,7 +155,8 @@ Recipe random_recipe(std::uint64_t seed) {
     std::visit(
         [&](auto& l) {
           l.name = std::to_string(i);
-          if constexpr (requires { l.use; }) use_somehow(l.use, i, random);
+          if constexpr (requires { l.use; })
+            use_somehow(l.use, i, i > 0 && use_of(recipe.layers[0]) != nullptr, random);
         },
         layer);
     recipe.layers.push_back(layer);
@@ -175,15 +176,15 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
   const FlatField flat = data.view();
   CounterRandom random(seed, 1);
   const Box bounds = field.bounds();
-  for (int b = 0; b < 12; ++b) {
+  for (int b = 0; b < 4; ++b) {
     const Vec3d center{random.uniform(bounds.min.x, bounds.max.x), random.uniform(bounds.min.y, bounds.max.y),
                        random.uniform(bounds.min.z, bounds.max.z)};
-    const double half = b < 10 ? 0.03 : 0.6;
+    const double half = b < 3 ? 0.03 : 0.15;
     const FieldBlock block = field.gather(box_around(center, half));
     FlatBlocksData blocks(data);
     blocks.add(field.gather(box_around(center, 0.01)));  // another one before it
     blocks.add(block);
-    std::vector<float> x(100), y(100), z(100), value(100);
+    std::vector<float> x(60), y(60), z(60), value(60);
     for (std::size_t i = 0; i < x.size(); ++i) {
       x[i] = static_cast<float>(center.x + 0.99 * random.uniform(-half, half));
       y[i] = static_cast<float>(center.y + 0.99 * random.uniform(-half, half));
@@ -200,7 +201,7 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
 }
 
 TEST(FlatField, HasTheBitsOfTheField) {
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) expect_same_bits(random_recipe(seed), seed);
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) expect_same_bits(random_recipe(seed), seed);
 }
 
 TEST(FlatField, NamesWhatItLacks) {
