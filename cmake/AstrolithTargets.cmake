@@ -14,10 +14,22 @@ if(ASTROLITH_SANITIZE)
   target_link_options(astrolith_compile_rules INTERFACE -fsanitize=${ASTROLITH_SANITIZE})
   target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_SANITIZED)
 endif()
+# One instruction set alone, to compare the bits of one with another (scripts/check_simd.sh); "scalar" vectorises
+# nothing.
+set(ASTROLITH_SIMD "" CACHE STRING "scalar or a -march value; empty: the machine chooses among three at start")
+set(vectorised -fopenmp-simd)
+if(ASTROLITH_SIMD)
+  target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_ONE_SIMD)
+endif()
+if(ASTROLITH_SIMD STREQUAL "scalar")
+  set(vectorised -fno-tree-vectorize -Wno-unknown-pragmas)
+elseif(ASTROLITH_SIMD)
+  target_compile_options(astrolith_compile_rules INTERFACE -march=${ASTROLITH_SIMD})
+endif()
 
 add_library(astrolith_warnings INTERFACE)
 target_compile_options(astrolith_warnings INTERFACE
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-psabi;-fopenmp-simd>
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-psabi;${vectorised}>
   $<$<AND:$<BOOL:${ASTROLITH_WERROR}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>>:-Werror>)
 
 # astrolith_library(NAME SOURCES a.cpp ... PUBLIC link ... PRIVATE link ...)

@@ -11,10 +11,10 @@
 #endif
 
 // A loop marked with ASTROLITH_SIMD_CLONES is compiled for baseline x86-64, AVX2 and AVX-512, and the
-// machine chooses at start. All clones give the same bits: the code says fma where it means it, and nothing
-// else is contracted. Sanitizers instrument the resolver before they are ready, so they get one version.
+// machine chooses at start. All give the same bits: the code says fma where it means it, and nothing else is
+// contracted. Sanitizers instrument the resolver before they are ready: one version, as with ASTROLITH_SIMD.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && \
-    !defined(ASTROLITH_SANITIZED)
+    !defined(ASTROLITH_SANITIZED) && !defined(ASTROLITH_ONE_SIMD)
 #define ASTROLITH_SIMD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define ASTROLITH_SIMD_CLONES

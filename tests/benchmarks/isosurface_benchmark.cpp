@@ -7,10 +7,10 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 
 #include "numerics/parallel_for.h"
@@ -139,10 +139,11 @@ class Discard : public MeshSink {
   void add_triangles(std::span<const Triangle>) override {}
 };
 
+// Of the processor, which other programs on the machine do not add to.
 double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 void write_raw(const Samples& samples, const char* file) {
