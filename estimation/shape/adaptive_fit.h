@@ -20,15 +20,15 @@ struct AdaptiveFitOptions {
   int first_iterations = 24;  // of the refinement before the first round
   int round_iterations = 12;  // after each round of growth
   int grown_iterations = 60;  // once the budget is reached
-  int relocations = 10;       // rounds of them, at most
+  int relocations = 20;       // rounds of them, at most
   int relocation_iterations = 20;
   int last_iterations = 60;     // at the end, on all samples
-  double relocated = 0.08;      // share of the spheres that a relocation takes elsewhere, at first
+  double relocated = 0.15;      // share of the spheres that a relocation takes elsewhere, at first
   int samples_per_sphere = 60;  // seen before the end
   double tolerance = 0.0;       // stops growing at this mean |s| over the samples, fraction of the diagonal
   double loss_scale = 1e-3;     // fraction of the diagonal
   double containment_weight = 0.2;
-  int repair_resolution = 128;  // cells along the longest side of the mesh in which islands are looked for
+  int repair_resolution = 256;  // cells along the longest side of the mesh in which islands are looked for
 };
 
 struct ConvergencePoint {

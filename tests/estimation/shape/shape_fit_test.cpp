@@ -67,11 +67,32 @@ TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballs) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels));
 
-TEST(ShapeFit, KeepsTwoBodiesApart) {
-  const TargetBody target = prepare_target(testing::two_spheres(3, 1.0, 2.6), "pair");
-  const ShapeFitResult fit = fit_shape(target, quick(8));
-  EXPECT_EQ(fit.check.topology.components, 2);
-  EXPECT_LT(fit.check.distance.mean, 3e-3);
+// Bodies of several parts, and with a hole.
+struct PartsCase {
+  const char* name;
+  TriangleMesh mesh;
+  std::int64_t components, genus;
+};
+std::vector<PartsCase> parts_cases() {
+  using namespace testing;
+  return {{"apart", two_spheres(3, 1.0, 2.6), 2, 0},
+          {"nearly touching", two_spheres(3, 1.0, 2.1), 2, 0},
+          {"overlapping", two_spheres(3, 1.0, 1.8), 1, 0},
+          {"ring", torus(1.0, 0.45), 1, 1}};
+}
+
+TEST(ShapeFit, KeepsThePartsOfItsTarget) {
+  for (const PartsCase& c : parts_cases()) {
+    const TargetBody target = prepare_target(c.mesh, c.name);
+    for (const std::uint64_t seed : {1u, 2u}) {
+      ShapeFitOptions options = quick(16);
+      options.seed = seed;
+      const ShapeFitResult fit = fit_shape(target, options);
+      EXPECT_EQ(fit.check.topology.components, c.components) << c.name << ", seed " << seed;
+      EXPECT_EQ(fit.check.topology.genus, c.genus) << c.name << ", seed " << seed;
+      EXPECT_LT(fit.check.distance.mean, 3e-3) << c.name << ", seed " << seed;
+    }
+  }
 }
 
 TEST(ShapeFit, SameBodyForOneAndTwoThreads) {
