@@ -15,6 +15,9 @@ namespace {
 constexpr double kBaseShare = 0.5;
 constexpr int kFewSpheres = 16;  // may all be the packing's
 
+// So many spheres settle slowly: their steps are given twice as many iterations.
+constexpr int kManySpheres = 500;
+
 constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
 
@@ -93,6 +96,11 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
   adaptive.spheres = options.spheres;
   adaptive.tolerance = options.tolerance;
   adaptive.repair_resolution = options.check_resolution;
+  if (options.spheres >= kManySpheres) {
+    adaptive.grown_iterations *= 2;
+    adaptive.relocation_iterations *= 2;
+    adaptive.last_iterations *= 2;
+  }
   return fit_adaptively(target, start, samples, containment, adaptive, progress);
 }
 
