@@ -197,7 +197,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   const int resolution = choose_resolution(program, request.size, discarded, output, use, region.tile.count);
 
   if (request.size.only_predict) return;
-  const bool gpu = request.device.use_gpu(program, lacking_on_gpu(field, region));
+  const bool gpu = request.device.use_gpu(program, lacking_on_gpu(field, region, resolution));
 
   MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool(), {}};
   if (region.is_patch) info.origin = region.center;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "cuda/machine_mesher.h"
 #include "cuda/mesh_field.h"
 #include "numerics/errors.h"
 #include "recipe/recipe.h"
@@ -68,8 +69,9 @@ Region parse_region(const std::string& tile, const std::vector<double>& patch) {
   return region;
 }
 
-std::string lacking_on_gpu(const ImplicitField& field, const Region& region) {
-  return region.is_patch ? "patches" : obstacle_to_flattening(field);
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
+  if (region.is_patch) return "patches";
+  return obstacle_to_flattening(field, block_side(field.bounds(), resolution));
 }
 
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,

@@ -25,7 +25,7 @@ struct Region {
 Region parse_region(const std::string& tile, const std::vector<double>& patch);
 
 // What of a field, or of a region, the GPU cannot mesh, in a few words; empty: nothing.
-std::string lacking_on_gpu(const ImplicitField& field, const Region& region);
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution);
 
 enum class MeshingDevice { kCpu, kGpu };
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,

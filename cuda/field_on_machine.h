@@ -19,6 +19,7 @@ class FieldOnMachine {
         sparse_levels_(upload(machine, data.sparse_levels, view_.sparse_levels)),
         spots_(upload(machine, data.spots, view_.spots)),
         waves_(upload(machine, data.waves, view_.waves)),
+        bands_(upload(machine, data.bands, view_.bands)),
         craters_(upload(machine, data.craters, view_.craters)),
         boulders_(upload(machine, data.boulders, view_.boulders)) {}
 
@@ -46,6 +47,7 @@ class FieldOnMachine {
   Array<SparseLevel> sparse_levels_;
   Array<FlatSpots> spots_;
   Array<Wave> waves_;
+  Array<FlatBand> bands_;
   Array<CraterKernel> craters_;
   Array<FlatBoulder> boulders_;
 };
@@ -59,13 +61,15 @@ class BlocksOnMachine {
         first_sphere_(machine.upload(std::span<const std::uint32_t>(data.first_sphere))),
         impulses_(machine.upload(std::span<const SpotImpulse>(data.impulses))),
         first_impulse_(machine.upload(std::span<const std::uint32_t>(data.first_impulse))),
+        gabor_(machine.upload(std::span<const GaborImpulse>(data.gabor))),
+        first_gabor_(machine.upload(std::span<const std::uint32_t>(data.first_gabor))),
         features_(machine.upload(std::span<const std::uint32_t>(data.features))),
         first_feature_(machine.upload(std::span<const std::uint32_t>(data.first_feature))) {}
 
   FlatBlocks view() const {
-    return {spheres_.data(),       first_sphere_.data(), impulses_.data(),
-            first_impulse_.data(), features_.data(),     first_feature_.data(),
-            view_.leaves,          view_.sizes,          view_.lists};
+    return {spheres_.data(), first_sphere_.data(), impulses_.data(), first_impulse_.data(),
+            gabor_.data(),   first_gabor_.data(),  features_.data(), first_feature_.data(),
+            view_.leaves,    view_.sizes,          view_.bands,      view_.lists};
   }
 
  private:
@@ -77,6 +81,8 @@ class BlocksOnMachine {
   Array<std::uint32_t> first_sphere_;
   Array<SpotImpulse> impulses_;
   Array<std::uint32_t> first_impulse_;
+  Array<GaborImpulse> gabor_;
+  Array<std::uint32_t> first_gabor_;
   Array<std::uint32_t> features_;
   Array<std::uint32_t> first_feature_;
 };

@@ -104,12 +104,14 @@ class MachineMesher {
   void mesh_batch(int first_z, std::size_t layers) {
     std::vector<std::vector<BlockColumn>> columns(layers);
     FlatBlocksData parts(data_);
+    std::vector<const FieldBlock*> blocks;
     for (std::size_t l = 0; l < layers; ++l) {
       for (const auto& node : culled_[l]) {
         columns[l].push_back({node.x, node.y});
-        parts.add(node.field);
+        blocks.push_back(&node.field);
       }
     }
+    parts.add(blocks);
     Kept last{{}, parts.size() - columns.back().size(), columns.back(), {}, first_z + int(layers) - 1};
     const std::vector<BlockPlace> places = place_blocks(grid_, first_z, columns, kept_.index, last.index);
     std::vector<std::uint32_t> rows_before{0};
@@ -283,6 +285,11 @@ MeshStatistics mesh_field_on(Machine& machine, const ImplicitField& field, const
   const SampleGrid grid = make_sample_grid(bounds, resolution);
   return MachineMesher<Machine>(machine, field, {grid, window_of_tile<kBlockCells>(grid, tile), true}, sink)
       .run(progress);
+}
+
+// The side of a block of that grid, as obstacle_to_flattening() asks for it.
+inline double block_side(const Box& bounds, int resolution) {
+  return (kBlockCells + 1) * make_sample_grid(bounds, resolution).step;
 }
 
 }  // namespace astrolith

@@ -196,10 +196,10 @@ struct TakeNormals {
   ASTROLITH_HD void operator()(std::size_t i) const {
     MeshVertex& vertex = vertices[i];
     const FlatBlock block = batch.parts.block(block_of[i]);
+    Vec3f corners[4];
+    for (int k = 0; k < 4; ++k) corners[k] = normal_probe(vertex.position, h, k);
     float values[4];
-    for (int k = 0; k < 4; ++k) {
-      values[k] = flat_value(batch.field, block, normal_probe(vertex.position, h, k), kExactEverywhere);
-    }
+    flat_tetrahedron(batch.field, block, corners, values);
     take_normal(values, vertex);
   }
 };

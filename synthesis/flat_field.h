@@ -9,6 +9,7 @@
 #include "synthesis/boulder_shape.h"
 #include "synthesis/crater_profile.h"
 #include "synthesis/fractal_noise.h"
+#include "synthesis/gabor_surface_noise.h"
 #include "synthesis/metaball_body.h"
 #include "synthesis/phasor_noise.h"
 #include "synthesis/random_phase_noise.h"
@@ -60,7 +61,12 @@ struct FlatJoin {
 // Heights that masks ask for.
 inline constexpr int kFlatSlots = 4;
 
-enum class FlatNoise { kFractal, kSparse, kSpots, kPhasor, kRandomPhase, kCraters };
+enum class FlatNoise { kFractal, kSparse, kSpots, kPhasor, kRandomPhase, kCraters, kGabor };
+
+// A bandwidth of Gabor noise. Its impulses are a block's list.
+struct FlatBand {
+  float amplitude;
+};
 
 // A layer; which members count depends on its noise. But for craters points are moved into the box low ..
 // high first.
@@ -68,8 +74,8 @@ struct FlatLayer {
   FlatNoise kind = FlatNoise::kFractal;
   FlatJoin join;
   Vec3f low, high;
-  FlatRange
-      parts;  // octaves, sparse levels, sizes of spots, waves or craters; as many impulses of phasor noise
+  FlatRange parts;  // octaves, sparse levels, sizes of spots, waves, bands or craters; as many impulses of
+                    // phasor noise
   std::uint32_t seed = 0;
   // Fractal noise.
   Noise noise = Noise::kSimplex;
@@ -84,7 +90,7 @@ struct FlatLayer {
   PhasorKernels kernels{};
   PhasorProfile profile = PhasorProfile::kSine;
   float randomness = 0.0f, coherence = 0.0f;
-  float clip = 0.0f;       // of random-phase noise; of the elevation after craters
+  float clip = 0.0f;       // of random-phase and Gabor noise; of the elevation after craters
   std::uint32_t list = 0;  // of craters that reach a block
 };
 
@@ -117,6 +123,7 @@ struct FlatField {
   const SparseLevel* sparse_levels;
   const FlatSpots* spots;
   const Wave* waves;
+  const FlatBand* bands;
   const CraterKernel* craters;
   const FlatBoulder* boulders;
   std::uint32_t num_layers, num_steps;
@@ -132,6 +139,8 @@ struct FlatBlock {
   const std::uint32_t* first_sphere;  // by leaf
   const SpotImpulse* impulses;
   const std::uint32_t* first_impulse;  // by size of spots
+  const GaborImpulse* gabor;
+  const std::uint32_t* first_gabor;    // by band
   const std::uint32_t* features;       // numbers of craters and boulders
   const std::uint32_t* first_feature;  // by list
 };
@@ -142,13 +151,15 @@ struct FlatBlocks {
   const std::uint32_t* first_sphere;  // (blocks * leaves + 1)
   const SpotImpulse* impulses;
   const std::uint32_t* first_impulse;  // (blocks * sizes + 1)
+  const GaborImpulse* gabor;
+  const std::uint32_t* first_gabor;  // (blocks * bands + 1)
   const std::uint32_t* features;
   const std::uint32_t* first_feature;  // (blocks * lists + 1)
-  std::uint32_t leaves, sizes, lists;
+  std::uint32_t leaves, sizes, bands, lists;
 
   ASTROLITH_HD FlatBlock block(std::size_t i) const {
-    return {spheres,  first_sphere + i * leaves, impulses, first_impulse + i * sizes,
-            features, first_feature + i * lists};
+    return {spheres, first_sphere + i * leaves, impulses, first_impulse + i * sizes,
+            gabor,   first_gabor + i * bands,   features, first_feature + i * lists};
   }
 };
 

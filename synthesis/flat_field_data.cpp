@@ -1,9 +1,13 @@
 #include "synthesis/flat_field_data.h"
 
+#include "numerics/parallel_for.h"
 #include "synthesis/field_model_internal.h"
 
 namespace astrolith {
 namespace {
+
+// Of a Gabor layer, that a block's impulses are drawn from: every point of the block adds them all.
+constexpr double kMostGaborCells = 32768.0;
 
 template <typename T>
 FlatRange append(std::span<const T> values, std::vector<T>& array) {
@@ -102,7 +106,15 @@ struct Flatten {
     layer.list = static_cast<std::uint32_t>(data.lists++);
     layer.parts = append(std::span<const CraterKernel>(relief.kernels()), data.craters);
   }
-  void operator()(const GaborSurfaceNoise&) const {}  // an obstacle
+  void operator()(const GaborSurfaceNoise& noise) const {
+    layer.kind = FlatNoise::kGabor;
+    layer.low = noise.domain_min();
+    layer.high = noise.domain_max();
+    layer.clip = noise.clip();
+    layer.parts = {static_cast<std::uint32_t>(data.bands.size()),
+                   static_cast<std::uint32_t>(noise.num_bands())};
+    for (std::size_t b = 0; b < noise.num_bands(); ++b) data.bands.push_back({noise.amplitude(b)});
+  }
 };
 
 // The body's leaves and steps, after those there are.
@@ -161,13 +173,15 @@ FlatJoin flat_join(const LayerJoin& join, float change_bound, FlatFieldData& dat
 
 }  // namespace
 
-std::string obstacle_to_flattening(const ImplicitField& field) {
+std::string obstacle_to_flattening(const ImplicitField& field, double block_side) {
   const FieldModel& model = field.model();
   if (model.kept_heights > kFlatSlots) return "masks by more than four layers";
+  double cells = 0.0;
   for (const PlacedLayer& layer : model.layers) {
-    if (std::holds_alternative<GaborSurfaceNoise>(layer.noise)) return "Gabor layers";
+    const auto* gabor = std::get_if<GaborSurfaceNoise>(&layer.noise);
+    if (gabor != nullptr) cells += gabor->cells(block_side + 2.0 * model.height_bound);
   }
-  return {};
+  return cells > kMostGaborCells ? "Gabor kernels so much smaller than the mesh's cells" : "";
 }
 
 FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
@@ -206,6 +220,7 @@ FlatField FlatFieldData::view() const {
   flat.sparse_levels = sparse_levels.data();
   flat.spots = spots.data();
   flat.waves = waves.data();
+  flat.bands = bands.data();
   flat.craters = craters.data();
   flat.boulders = boulders.data();
   return flat;
@@ -221,24 +236,33 @@ void FlatBlocksData::add(const PreparedBody& body) {
   for (const PreparedOperation& operation : body.operations) add(operation.operand);
 }
 
-void FlatBlocksData::add(const FieldBlock& block) {
+void FlatBlocksData::add(const FieldBlock& block, const BlockLists& of_block) {
   add(block.body());
-  for (const SpotImpulses& of_layer : block.all_spots()) {
-    for (const std::vector<SpotImpulse>& list : of_layer) {
-      append(std::span<const SpotImpulse>(list), impulses);
-      first_impulse.push_back(static_cast<std::uint32_t>(impulses.size()));
+  const auto append_all = [](const auto& parts, auto& array, std::vector<std::uint32_t>& first) {
+    for (const auto& list : parts) {
+      array.insert(array.end(), list.begin(), list.end());
+      first.push_back(static_cast<std::uint32_t>(array.size()));
     }
-  }
-  for (const std::vector<std::uint32_t>& list : block.all_features()) {
-    append(std::span<const std::uint32_t>(list), features);
-    first_feature.push_back(static_cast<std::uint32_t>(features.size()));
-  }
+  };
+  append_all(of_block.spots, impulses, first_impulse);
+  append_all(of_block.gabor, gabor, first_gabor);
+  append_all(of_block.features, features, first_feature);
+}
+
+void FlatBlocksData::add(std::span<const FieldBlock* const> blocks) {
+  std::vector<BlockLists> of_blocks(blocks.size());
+  parallel_for(0, static_cast<std::int64_t>(blocks.size()), [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    of_blocks[k] = blocks[k]->lists();
+  });
+  for (std::size_t i = 0; i < blocks.size(); ++i) add(*blocks[i], of_blocks[i]);
 }
 
 FlatBlocks FlatBlocksData::view() const {
   const auto number = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-  return {spheres.data(),       first_sphere.data(), impulses.data(), first_impulse.data(), features.data(),
-          first_feature.data(), number(leaves),      number(sizes),   number(lists)};
+  return {spheres.data(), first_sphere.data(), impulses.data(), first_impulse.data(),
+          gabor.data(),   first_gabor.data(),  features.data(), first_feature.data(),
+          number(leaves), number(sizes),       number(bands),   number(lists)};
 }
 
 }  // namespace astrolith

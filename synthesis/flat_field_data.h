@@ -1,6 +1,7 @@
 // Makes the plain arrays of flat_field.h from an ImplicitField and its blocks.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -9,8 +10,9 @@
 
 namespace astrolith {
 
-// What keeps a field from being flattened, in a few words ("layers of craters"); empty when nothing does.
-std::string obstacle_to_flattening(const ImplicitField& field);
+// What keeps a field from being flattened for blocks with sides so long, in a few words ("masks by ...");
+// empty when nothing does.
+std::string obstacle_to_flattening(const ImplicitField& field, double block_side);
 
 struct FlatFieldData {
   // Expects a field without an obstacle.
@@ -32,6 +34,7 @@ struct FlatFieldData {
   std::vector<SparseLevel> sparse_levels;
   std::vector<FlatSpots> spots;
   std::vector<Wave> waves;
+  std::vector<FlatBand> bands;
   std::vector<CraterKernel> craters;
   std::vector<FlatBoulder> boulders;
   std::size_t lists = 0;  // of craters and boulders that reach a block
@@ -44,24 +47,32 @@ struct FlatBlocksData {
   FlatBlocksData() = default;
   // Of this field.
   explicit FlatBlocksData(const FlatFieldData& field)
-      : leaves(field.leaves.size()), sizes(field.spots.size()), lists(field.lists) {}
+      : leaves(field.leaves.size()),
+        sizes(field.spots.size()),
+        bands(field.bands.size()),
+        lists(field.lists) {}
 
-  void add(const FieldBlock& block);
+  // Gathers in parallel.
+  void add(std::span<const FieldBlock* const> blocks);
+  void add(const FieldBlock& block) { add(std::array{&block}); }
   void add(std::span<const MetaballSphere<float>> of_leaf);
   // With this object's own arrays.
   FlatBlocks view() const;
   std::size_t size() const { return (first_sphere.size() - 1) / leaves; }
 
-  std::size_t leaves = 1, sizes = 0, lists = 0;  // a block
+  std::size_t leaves = 1, sizes = 0, bands = 0, lists = 0;  // a block
   std::vector<MetaballSphere<float>> spheres;
   std::vector<std::uint32_t> first_sphere{0};  // (blocks * leaves + 1)
   std::vector<SpotImpulse> impulses;
   std::vector<std::uint32_t> first_impulse{0};  // (blocks * sizes + 1)
+  std::vector<GaborImpulse> gabor;
+  std::vector<std::uint32_t> first_gabor{0};  // (blocks * bands + 1)
   std::vector<std::uint32_t> features;
   std::vector<std::uint32_t> first_feature{0};  // (blocks * lists + 1)
 
  private:
   void add(const PreparedBody& body);
+  void add(const FieldBlock& block, const BlockLists& lists_of_block);
 };
 
 }  // namespace astrolith

@@ -89,6 +89,38 @@ ASTROLITH_HD inline float flat_random_phase(const FlatField& f, const FlatLayer&
   return math::clamp(height * phase_scale(layer.coherence, weights), -layer.clip, layer.clip);
 }
 
+// At a point of the bare surface.
+ASTROLITH_HD inline float flat_gabor(const FlatField& f, const FlatLayer& layer, const FlatBlock& block,
+                                     const Vec3f& at) {
+  const Vec3f p = flat_moved(layer, at);
+  float height = 0.0f;
+  for (std::uint32_t b = layer.parts.first; b < layer.parts.first + layer.parts.count; ++b) {
+    const float amplitude = f.bands[b].amplitude;
+    for (std::uint32_t j = block.first_gabor[b]; j < block.first_gabor[b + 1]; ++j) {
+      height = math::fma(amplitude, gabor_kernel(block.gabor[j], p.x, p.y, p.z), height);
+    }
+  }
+  return math::clamp(height, -layer.clip, layer.clip);
+}
+
+// At four, to first order about their centre.
+ASTROLITH_HD inline void flat_gabor_tetrahedron(const FlatField& f, const FlatLayer& layer,
+                                                const FlatBlock& block, const Vec3f* p, float* heights) {
+  const Vec3f center{tetrahedron_center(p[0].x, p[1].x, p[2].x, p[3].x),
+                     tetrahedron_center(p[0].y, p[1].y, p[2].y, p[3].y),
+                     tetrahedron_center(p[0].z, p[1].z, p[2].z, p[3].z)};
+  const Vec3f q = flat_moved(layer, center);
+  GaborSample sum{};
+  for (std::uint32_t b = layer.parts.first; b < layer.parts.first + layer.parts.count; ++b) {
+    for (std::uint32_t j = block.first_gabor[b]; j < block.first_gabor[b + 1]; ++j) {
+      sum = with_impulse(block.gabor[j], f.bands[b].amplitude, q, sum);
+    }
+  }
+  for (int k = 0; k < 4; ++k) {
+    heights[k] = height_beside(sum, p[k].x - center.x, p[k].y - center.y, p[k].z - center.z, layer.clip);
+  }
+}
+
 // What the craters that reach a block make of the elevation at a point of the bare surface.
 ASTROLITH_HD inline float flat_cratered(const FlatField& f, const FlatLayer& layer, const FlatBlock& block,
                                         const Vec3f& p, float elevation) {

@@ -14,14 +14,15 @@ struct FlatState {
   float kept[kFlatSlots] = {};
 };
 
-ASTROLITH_HD inline void flat_apply(const FlatField& f, const FlatLayer& layer, const FlatBlock& block,
-                                    const FlatBodySample& body, const Vec3f& p, FlatState& state) {
-  if (layer.kind == FlatNoise::kCraters) {
-    state.elevation = flat_cratered(f, layer, block, flat_projected(f, body), state.elevation);
-    return;
-  }
+// Where a layer of noise in space is evaluated for a point.
+ASTROLITH_HD inline Vec3f flat_displaced(const FlatState& state, const Vec3f& p) {
+  return state.is_displaced ? p + state.displacement : p;
+}
+
+// Joins a layer's height with what is there.
+ASTROLITH_HD inline void flat_join(const FlatField& f, const FlatLayer& layer, const Vec3f& p, float height,
+                                   FlatState& state) {
   const FlatJoin& join = layer.join;
-  float height = flat_height(f, layer, block, state.is_displaced ? p + state.displacement : p);
   if (join.keeps >= 0) state.kept[join.keeps] = height;
   const bool weighted = join.local || join.mask >= 0;
   float weight = 1.0f;
@@ -38,6 +39,17 @@ ASTROLITH_HD inline void flat_apply(const FlatField& f, const FlatLayer& layer, 
   if (join.blends) height = blended_height(join.sign, join.width, state.elevation, height);
   state.elevation = weighted ? joined_elevation(join.is_change, weight, height, state.elevation)
                              : joined_elevation(join.is_change, height, state.elevation);
+}
+
+ASTROLITH_HD inline void flat_apply(const FlatField& f, const FlatLayer& layer, const FlatBlock& block,
+                                    const FlatBodySample& body, const Vec3f& p, FlatState& state) {
+  if (layer.kind == FlatNoise::kCraters) {
+    state.elevation = flat_cratered(f, layer, block, flat_projected(f, body), state.elevation);
+  } else if (layer.kind == FlatNoise::kGabor) {
+    flat_join(f, layer, p, flat_gabor(f, layer, block, flat_projected(f, body)), state);
+  } else {
+    flat_join(f, layer, p, flat_height(f, layer, block, flat_displaced(state, p)), state);
+  }
 }
 
 // Whether a boulder that reaches the block may change F at the point.
@@ -70,14 +82,41 @@ ASTROLITH_HD inline float flat_terrain(const FlatField& f, const FlatBlock& bloc
   return body.distance + state.elevation;
 }
 
-// F(p) as FieldBlock::evaluate has it for the same band; `block` must hold what reaches p.
-ASTROLITH_HD inline float flat_value(const FlatField& f, const FlatBlock& block, const Vec3f& p, float band) {
-  float value = flat_terrain(f, block, p, band * f.stretch);
+ASTROLITH_HD inline float flat_with_boulders(const FlatField& f, const FlatBlock& block, const Vec3f& p,
+                                             float value) {
   for (std::uint32_t k = block.first_feature[f.boulder_list]; k < block.first_feature[f.boulder_list + 1];
        ++k) {
     value = joined(f.boulders[block.features[k]].kernel, p.x, p.y, p.z, value);
   }
   return value;
+}
+
+// F(p) as FieldBlock::evaluate has it for the same band; `block` must hold what reaches p.
+ASTROLITH_HD inline float flat_value(const FlatField& f, const FlatBlock& block, const Vec3f& p, float band) {
+  return flat_with_boulders(f, block, p, flat_terrain(f, block, p, band * f.stretch));
+}
+
+// F at the corners of a small tetrahedron, as FieldBlock::evaluate_tetrahedra has it.
+ASTROLITH_HD inline void flat_tetrahedron(const FlatField& f, const FlatBlock& block, const Vec3f* p,
+                                          float* values) {
+  FlatBodySample body[4];
+  FlatState state[4];
+  for (int k = 0; k < 4; ++k) body[k] = flat_body(f, block, p[k]);
+  for (std::uint32_t i = 0; i < f.num_layers; ++i) {
+    const FlatLayer& layer = f.layers[i];
+    if (layer.kind != FlatNoise::kGabor) {
+      for (int k = 0; k < 4; ++k) flat_apply(f, layer, block, body[k], p[k], state[k]);
+      continue;
+    }
+    Vec3f projected[4];
+    float heights[4];
+    for (int k = 0; k < 4; ++k) projected[k] = flat_projected(f, body[k]);
+    flat_gabor_tetrahedron(f, layer, block, projected, heights);
+    for (int k = 0; k < 4; ++k) flat_join(f, layer, p[k], heights[k], state[k]);
+  }
+  for (int k = 0; k < 4; ++k) {
+    values[k] = flat_with_boulders(f, block, p[k], body[k].distance + state[k].elevation);
+  }
 }
 
 }  // namespace astrolith

@@ -11,14 +11,6 @@ namespace {
 // For the rounding of positions and frames to float.
 constexpr float kSlack = 1.0f + 1e-3f;
 
-// The impulse of a lane; `lane` is the first member's.
-ASTROLITH_KERNEL GaborImpulse impulse_at(const float* lane) {
-  constexpr std::size_t k = kLanes;
-  return {lane[0],      lane[k],      lane[2 * k],  lane[3 * k],  lane[4 * k],
-          lane[5 * k],  lane[6 * k],  lane[7 * k],  lane[8 * k],  lane[9 * k],
-          lane[10 * k], lane[11 * k], lane[12 * k], lane[13 * k], lane[14 * k]};
-}
-
 // Far beyond all bodies along all its axes.
 GaborImpulse nowhere() { return {1e18f, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0}; }
 

@@ -39,6 +39,12 @@ inline bool overlap(const PointBox& box, const std::array<float, 3>& low, const 
 
 // One impulse of a chunk: its first member, the others follow kLanes apart.
 using ImpulseLane = const float*;
+ASTROLITH_KERNEL GaborImpulse impulse_at(ImpulseLane lane) {
+  constexpr std::size_t k = kLanes;
+  return {lane[0],      lane[k],      lane[2 * k],  lane[3 * k],  lane[4 * k],
+          lane[5 * k],  lane[6 * k],  lane[7 * k],  lane[8 * k],  lane[9 * k],
+          lane[10 * k], lane[11 * k], lane[12 * k], lane[13 * k], lane[14 * k]};
+}
 
 // Appends the impulses of some chunks whose kernels may reach the box, in their order; never leaves one out
 // that does.

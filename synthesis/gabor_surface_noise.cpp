@@ -83,7 +83,7 @@ void GaborSurfaceNoise::evaluate(int n, const float* x, const float* y, const fl
 void GaborSurfaceNoise::evaluate_tetrahedra(int n, const float* x, const float* y, const float* z,
                                             float* height) const {
   const auto count = static_cast<std::size_t>(n / 4);
-  const auto center_of = [](const float* c) { return 0.25f * ((c[0] + c[1]) + (c[2] + c[3])); };
+  const auto center_of = [](const float* c) { return tetrahedron_center(c[0], c[1], c[2], c[3]); };
   std::vector<float> values(7 * count);
   float *cx = values.data(), *cy = cx + count, *cz = cy + count, *middle = cz + count, *sx = middle + count,
         *sy = sx + count, *sz = sy + count;
@@ -97,9 +97,35 @@ void GaborSurfaceNoise::evaluate_tetrahedra(int n, const float* x, const float* 
   points.store_slopes(sx, sy, sz);
   for (std::size_t i = 0; i < 4 * count; ++i) {
     const std::size_t t = i / 4;
-    const float rise = math::fma(x[i] - cx[t], sx[t], math::fma(y[i] - cy[t], sy[t], (z[i] - cz[t]) * sz[t]));
-    height[i] = math::clamp(middle[t] + rise, -clip_, clip_);
+    const GaborSample center{middle[t], {sx[t], sy[t], sz[t]}};
+    height[i] = height_beside(center, x[i] - cx[t], y[i] - cy[t], z[i] - cz[t], clip_);
   }
+}
+
+// Rounded outwards.
+PointBox GaborSurfaceNoise::in_domain(const Box& box) const {
+  const auto below = [](double v, float low, float high) {
+    return math::clamp(std::nextafterf(static_cast<float>(v), -INFINITY), low, high);
+  };
+  const auto above = [](double v, float low, float high) {
+    return math::clamp(std::nextafterf(static_cast<float>(v), INFINITY), low, high);
+  };
+  const Vec3f &a = domain_min_, &b = domain_max_;
+  return {{below(box.min.x, a.x, b.x), below(box.min.y, a.y, b.y), below(box.min.z, a.z, b.z)},
+          {above(box.max.x, a.x, b.x), above(box.max.y, a.y, b.y), above(box.max.z, a.z, b.z)}};
+}
+
+std::vector<GaborImpulse> GaborSurfaceNoise::impulses(std::size_t band, const Box& box) const {
+  return impulses_reaching(bands_[band], in_domain(box));
+}
+
+double GaborSurfaceNoise::cells(double side) const {
+  double cells = 0.0;
+  for (const GaborTiles& tiles : bands_) {
+    const SurfaceBand& band = tiles.band();
+    cells += std::pow((side + 2.0 * double{band.reach}) / double{band.cell} + 1.0, 3);
+  }
+  return cells;
 }
 
 }  // namespace astrolith

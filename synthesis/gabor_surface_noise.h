@@ -16,6 +16,24 @@
 
 namespace astrolith {
 
+// Noise and its slope at a point, and what tetrahedra make of them.
+ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amplitude, const Vec3f& p,
+                                          const GaborSample& sum) {
+  const GaborSample k = gabor_kernel_with_slope(impulse, p.x, p.y, p.z);
+  return {math::fma(amplitude, k.value, sum.value),
+          {math::fma(amplitude, k.slope.x, sum.slope.x), math::fma(amplitude, k.slope.y, sum.slope.y),
+           math::fma(amplitude, k.slope.z, sum.slope.z)}};
+}
+// The centre's coordinate from the four corners'.
+ASTROLITH_KERNEL float tetrahedron_center(float a, float b, float c, float d) {
+  return 0.25f * ((a + b) + (c + d));
+}
+// At a corner, to first order about the centre.
+ASTROLITH_KERNEL float height_beside(const GaborSample& center, float dx, float dy, float dz, float clip) {
+  const float rise = math::fma(dx, center.slope.x, math::fma(dy, center.slope.y, dz * center.slope.z));
+  return math::clamp(center.value + rise, -clip, clip);
+}
+
 class GaborSurfaceNoise {
  public:
   // Points outside `domain` are moved to its border; bands so fine that float coordinates within it could not
@@ -34,7 +52,19 @@ class GaborSurfaceNoise {
   // 6 times the standard deviation, where heights are cut.
   double height_bound() const { return static_cast<double>(clip_); }
 
+  // What it is made of.
+  const Vec3f& domain_min() const { return domain_min_; }
+  const Vec3f& domain_max() const { return domain_max_; }
+  float clip() const { return clip_; }
+  std::size_t num_bands() const { return bands_.size(); }
+  float amplitude(std::size_t band) const { return bands_[band].band().amplitude; }
+  // The impulses of a band that may reach points of a box, in the order in which they are added.
+  std::vector<GaborImpulse> impulses(std::size_t band, const Box& box) const;
+  // Cells that those of all bands are drawn from, for a box with sides so long.
+  double cells(double side) const;
+
  private:
+  PointBox in_domain(const Box& box) const;
   GaborSurfacePoints add_bands(int n, const float* x, const float* y, const float* z, bool with_slopes) const;
 
   Vec3f domain_min_, domain_max_;

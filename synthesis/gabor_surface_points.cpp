@@ -97,6 +97,17 @@ void find_chunks(const HeldTiles& tiles, const PointBox& box, Chunks& chunks) {
 
 }  // namespace
 
+std::vector<GaborImpulse> impulses_reaching(const GaborTiles& tiles, const PointBox& box) {
+  const HeldTiles held = whole_tiles(tiles, TileRange(cells_around(tiles.band(), box)));
+  Chunks chunks;
+  find_chunks(held, box, chunks);
+  std::vector<ImpulseLane> lanes;
+  append_reaching(chunks, box, lanes);
+  std::vector<GaborImpulse> impulses;
+  for (const ImpulseLane lane : lanes) impulses.push_back(impulse_at(lane));
+  return impulses;
+}
+
 GaborSurfacePoints::GaborSurfacePoints(int n, const float* x, const float* y, const float* z,
                                        bool with_slopes)
     : index_(static_cast<std::size_t>(n)) {

@@ -309,27 +309,26 @@ float value_at(const FieldModel& model, const Vec3d& p) {
 
 BlockContent FieldBlock::content() const { return content_of(*model_, body_, spots_, box_); }
 
-std::vector<SpotImpulses> FieldBlock::all_spots() const {
-  std::vector<SpotImpulses> all;
-  for (std::size_t i = 0; i < model_->layers.size(); ++i) {
-    const auto* noise = std::get_if<SpotNoise>(&model_->layers[i].noise);
-    if (noise == nullptr) continue;
-    const SpotImpulses* drawn = spots_of(spots_, i);
-    all.push_back(drawn != nullptr ? *drawn : noise->draw(layer_box(model_->layers[i], box_)));
-  }
-  return all;
-}
-
-std::vector<std::vector<std::uint32_t>> FieldBlock::all_features() const {
-  // Craters are looked up where points are projected to.
+BlockLists FieldBlock::lists() const {
+  // Craters and Gabor noise are looked up where points are projected to.
   const Box at = body_box(*model_, box_);
   const Box projected = widened(at, model_->height_bound * (1.0 + 1e-5) + 2e-6 * largest_coordinate(at));
-  std::vector<std::vector<std::uint32_t>> all;
-  for (const PlacedLayer& layer : model_->layers) {
-    const auto* craters = std::get_if<CraterRelief>(&layer.noise);
-    if (craters != nullptr) all.push_back(craters->reaching(projected));
+  BlockLists all;
+  for (std::size_t i = 0; i < model_->layers.size(); ++i) {
+    const HeightLayer& noise = model_->layers[i].noise;
+    if (const auto* spots = std::get_if<SpotNoise>(&noise)) {
+      const SpotImpulses* drawn = spots_of(spots_, i);
+      for (auto& size : drawn != nullptr ? *drawn : spots->draw(layer_box(model_->layers[i], box_))) {
+        all.spots.push_back(size);
+      }
+    } else if (const auto* gabor = std::get_if<GaborSurfaceNoise>(&noise)) {
+      for (std::size_t b = 0; b < gabor->num_bands(); ++b) all.gabor.push_back(gabor->impulses(b, projected));
+    } else if (const auto* craters = std::get_if<CraterRelief>(&noise)) {
+      all.features.push_back(craters->reaching(projected));
+    }
   }
-  all.push_back(model_->boulders.empty() ? std::vector<std::uint32_t>() : model_->boulders.reaching(box_));
+  all.features.push_back(model_->boulders.empty() ? std::vector<std::uint32_t>()
+                                                  : model_->boulders.reaching(box_));
   return all;
 }
 

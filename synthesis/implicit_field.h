@@ -22,6 +22,7 @@
 #include "recipe/recipe.h"
 #include "synthesis/block_field.h"
 #include "synthesis/combined_body.h"
+#include "synthesis/gabor_kernel.h"
 #include "synthesis/spot_noise.h"
 
 namespace astrolith {
@@ -33,6 +34,13 @@ struct LayerBoulders;  // synthesis/boulder_field.h
 // What of each layer of spots reaches a box, by layer; null where nothing was drawn. Empty without such
 // layers.
 using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
+
+// What of a field's layers reaches a box, as lists.
+struct BlockLists {
+  std::vector<std::vector<SpotImpulse>> spots;       // by layer of spots, then size
+  std::vector<std::vector<GaborImpulse>> gabor;      // by Gabor layer, then band
+  std::vector<std::vector<std::uint32_t>> features;  // numbers of craters, by layer of such; of boulders
+};
 
 // The part of a field that reaches a box. Lives no longer than its field. All members may be called from
 // many threads.
@@ -64,11 +72,7 @@ class FieldBlock {
 
   const Box& box() const { return box_; }
   const PreparedBody& body() const { return body_; }
-  // The impulses of every layer of spots, in the layers' order.
-  std::vector<SpotImpulses> all_spots() const;
-  // Numbers of the craters of every layer of such that reach the box, in the layers' order, then of the
-  // boulders.
-  std::vector<std::vector<std::uint32_t>> all_features() const;
+  BlockLists lists() const;
 
  private:
   friend class ImplicitField;

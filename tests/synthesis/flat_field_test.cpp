@@ -101,6 +101,8 @@ Layer random_layer(CounterRandom& random) {
       return random_craters(random);
     case 5:
       return random_boulders(random);
+    case 6:
+      return testing::gabor_layer(0.03, 0.005);
     default:
       return random_fractal(random);
   }
@@ -171,7 +173,7 @@ Box box_around(const Vec3d& p, double half) {
 // Blocks of all sizes, and the bands of meshes and of normals.
 void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
   const ImplicitField field(recipe);
-  ASSERT_EQ(obstacle_to_flattening(field), "");
+  ASSERT_EQ(obstacle_to_flattening(field, 0.1), "");
   const FlatFieldData data(field);
   const FlatField flat = data.view();
   CounterRandom random(seed, 1);
@@ -190,6 +192,19 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
       y[i] = static_cast<float>(center.y + 0.99 * random.uniform(-half, half));
       z[i] = static_cast<float>(center.z + 0.99 * random.uniform(-half, half));
     }
+    std::vector<float> corners(x.size());
+    block.evaluate_tetrahedra(x, y, z, corners);
+    for (std::size_t i = 0; i < x.size(); i += 4) {
+      const Vec3f p[] = {{x[i], y[i], z[i]},
+                         {x[i + 1], y[i + 1], z[i + 1]},
+                         {x[i + 2], y[i + 2], z[i + 2]},
+                         {x[i + 3], y[i + 3], z[i + 3]}};
+      float four[4];
+      flat_tetrahedron(flat, blocks.view().block(1), p, four);
+      for (std::size_t k = 0; k < 4; ++k) {
+        ASSERT_EQ(math::bits_of(four[k]), math::bits_of(corners[i + k])) << seed;
+      }
+    }
     for (const float band : {kExactEverywhere, 0.02f, 0.0f}) {
       block.evaluate(x, y, z, value, band);
       for (std::size_t i = 0; i < x.size(); ++i) {
@@ -206,9 +221,10 @@ TEST(FlatField, HasTheBitsOfTheField) {
 
 TEST(FlatField, NamesWhatItLacks) {
   Recipe recipe = potato_recipe(20, 1);
-  EXPECT_EQ(obstacle_to_flattening(ImplicitField(recipe)), "");
   recipe.layers = {testing::gabor_layer(0.01, 0.01)};
-  EXPECT_EQ(obstacle_to_flattening(ImplicitField(recipe)), "Gabor layers");
+  const ImplicitField field(recipe);
+  EXPECT_EQ(obstacle_to_flattening(field, 0.05), "");
+  EXPECT_NE(obstacle_to_flattening(field, 2.0), "");
 }
 
 }  // namespace
