@@ -73,6 +73,11 @@ TEST(MachineMesher, MakesTheMeshOfTheCpu) {
   }
   const ImplicitField bare(potato_recipe(60, 8));
   expect_same(on_twin(bare, 50), on_cpu(bare, 50));
+  Recipe gravel = potato_recipe(10, 8);
+  gravel.layers = {testing::gabor_layer(0.06, 0.003)};
+  const ImplicitField noisy(gravel);
+  ASSERT_EQ(obstacle_to_flattening(noisy, block_side(noisy.bounds(), 12)), "");
+  expect_same(on_twin(noisy, 12), on_cpu(noisy, 12));
 }
 
 // Samples whose field is exactly zero, and cells with many of them.
