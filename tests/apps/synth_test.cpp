@@ -330,6 +330,33 @@ TEST_F(Synth, BadRecipesAreRefused) {
   expect_recipe_refused(kTexture, "");  // no body to mesh
 }
 
+TEST_F(Synth, AbsurdSizesAreRefused) {
+  const auto with_layer = [](const std::string& layer) {
+    return R"({"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100]]},
+               "layers": [)" +
+           layer + "]}";
+  };
+  expect_recipe_refused(
+      with_layer(R"({"type": "craters", "craters": [{"direction": [0, 0, 1], "diameter": 900}]})"),
+      "layers[0].craters[0].diameter: is 900");
+  expect_recipe_refused(
+      with_layer(R"({"type": "boulders", "boulders": [{"direction": [0, 0, 1], "axes": [900, 800, 700]}]})"),
+      "layers[0].boulders[0].axes: is 900");
+  expect_recipe_refused(
+      with_layer(
+          R"({"type": "craters", "population": {"density": 1e5, "least_diameter": 1, "greatest_diameter": 2}})"),
+      "layers[0].population.density: would draw");
+  expect_recipe_refused(with_layer(R"({"type": "spots", "density": 1e9})"),
+                        "layers[0].density: must be at most");
+  expect_recipe_refused(with_layer(R"({"type": "lava"})"), "layers[0].type: must be one of");
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  for (const char* resolution : {"0", "1000000"}) {
+    expect_refusal(folder_, kSynth,
+                   {recipe, "-o", (folder_ / "out.ply").string(), "--resolution", resolution},
+                   "--resolution");
+  }
+}
+
 TEST_F(Synth, BadFilesAreRefused) {
   const std::string recipe = folder_.write("r.json", kTwoSpheres);
   std::filesystem::create_directory(folder_ / "folder.ply");

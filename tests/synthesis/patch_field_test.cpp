@@ -106,6 +106,32 @@ TEST(PatchField, ValuesDoNotDependOnTheOrigin) {
   }
 }
 
+// What has no local form sees float coordinates, 1.5e-5 m apart at 250 m: along a line in steps of a
+// millimetre, over which these layers are straight, that is all that values deviate from a straight line by.
+TEST(PatchField, SpotsCratersBouldersAndGaborNoiseAreRoughByTheRoundingAlone) {
+  CraterLayer craters;
+  craters.population = CraterPopulation{{300, std::nullopt, 5.0, 80.0, 2.0}, 1.0, 0.0, 0.0};
+  BoulderLayer boulders;
+  boulders.population.emplace().drawn = {2000, std::nullopt, 4.0, 30.0, 2.5};
+  const std::vector<Layer> each = {spots(3.0), craters, boulders, testing::gabor_layer(0.5, 0.1)};
+  for (const Layer& layer : each) {
+    Recipe recipe = testing::sphere_recipe(250.0);
+    recipe.layers = {layer};
+    const ImplicitField field(recipe);
+    std::vector<double> bends;
+    for (int k = 0; k < 40; ++k) {
+      const Vec3d direction = normalized(Vec3d{std::cos(0.37 * k), std::sin(0.37 * k), 0.05 * k - 1.0});
+      const Vec3d center = on_surface(field, direction, 200.0, 300.0);
+      const auto at = [&](int i) {
+        return double{value_near(field, center, 0.001 * i * Vec3d{1, 0.6, -0.3})};
+      };
+      for (int i = 0; i < 20; ++i) bends.push_back(std::abs(at(i - 1) - 2.0 * at(i) + at(i + 1)));
+    }
+    std::sort(bends.begin(), bends.end());
+    EXPECT_LT(bends[bends.size() * 95 / 100], 2e-5) << layer.index();  // where no edge of a boulder is
+  }
+}
+
 TEST(PatchField, CentimetresOnABodyOf500Metres) {
   const ImplicitField sphere(testing::sphere_recipe(250.0));
   const Vec3d center = 250.0 * normalized(Vec3d{0.3, -0.7, 0.65});
