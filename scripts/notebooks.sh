@@ -1,20 +1,24 @@
 #!/usr/bin/env bash
-# Executes the notebooks headless: notebooks.sh [--full] [NN ...]
+# Executes the notebooks headless: notebooks.sh [--full] [--jobs N] [NN ...]
 #   quick (default): small sizes, some minutes in all; results, figures and pages in build/notebooks/
 #   --full:          the thesis's sizes, much longer; the figures go to docs/figures/ and the table of claims to docs/claims.md
+#   --jobs N:        so many at a time (default 1: seconds that are measured want a machine of their own)
 #   NN ...:          only the notebooks with these numbers, such as 01 12
 # Installs what is missing, builds the programs and benchmarks. Says which notebooks failed; exit status 1 if any did.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 export ASTROLITH_FULL=0
+jobs=1
 numbers=()
-for argument in "$@"; do
-  case $argument in
+while [[ $# -gt 0 ]]; do
+  case $1 in
     --full) ASTROLITH_FULL=1 ;;
-    [0-9][0-9]) numbers+=("$argument") ;;
-    *) echo "notebooks.sh: '$argument' is neither --full nor a notebook's two digits" >&2; exit 2 ;;
+    --jobs) jobs=${2:-}; shift || true; [[ $jobs =~ ^[1-9][0-9]*$ ]] || { echo "notebooks.sh: --jobs wants a number, such as 2" >&2; exit 2; } ;;
+    [0-9][0-9]) numbers+=("$1") ;;
+    *) echo "notebooks.sh: '$1' is neither --full, --jobs nor a notebook's two digits" >&2; exit 2 ;;
   esac
+  shift || true
 done
 
 scripts/setup.sh --notebooks
@@ -45,28 +49,41 @@ for notebook in notebooks/[0-9][0-9]_*.ipynb; do
 done
 [[ ${#chosen[@]} -gt 0 ]] || { echo "notebooks.sh: no notebook has such a number" >&2; exit 2; }
 
-failed=()
-for notebook in "${chosen[@]}"; do
+# Executes one; exit status 1 where it failed. Debian's interpreter, whose packages setup.sh installs: another python3 may stand
+# before it in PATH.
+execute() {
+  local notebook=$1 name start=$SECONDS
   name=$(basename "$notebook" .ipynb)
-  echo "$name"
-  start=$SECONDS
-  # Debian's interpreter, whose packages setup.sh installs; another python3 may stand before it in PATH.
   if PYTHONPATH=notebooks /usr/bin/python3 -m nbconvert --to html --execute --ExecutePreprocessor.timeout=-1 \
        --output-dir "$out/executed" "$notebook" >"$out/executed/$name.log" 2>&1; then
-    echo "  done in $((SECONDS - start)) s: $out/executed/$name.html"
+    echo "$name: done in $((SECONDS - start)) s: $out/executed/$name.html"
   elif grep -q "^NotAtHand: " "$out/executed/$name.log"; then
-    sed -n 's/^NotAtHand: /  skipped: /p' "$out/executed/$name.log" | tail -n 1
+    sed -n "s/^NotAtHand: /$name: skipped: /p" "$out/executed/$name.log" | tail -n 1
   else
-    echo "  FAILED after $((SECONDS - start)) s:"
+    echo "$name: FAILED after $((SECONDS - start)) s:"
     tail -n 15 "$out/executed/$name.log" | sed 's/^/  /'
-    failed+=("$name")
+    return 1
   fi
+}
+
+failures=0
+running=0
+for notebook in "${chosen[@]}"; do
+  if ((running == jobs)); then
+    wait -n || failures=$((failures + 1))
+    running=$((running - 1))
+  fi
+  execute "$notebook" &
+  running=$((running + 1))
+done
+for ((; running > 0; --running)); do
+  wait -n || failures=$((failures + 1))
 done
 
 /usr/bin/python3 notebooks/claims_table.py "$out/claims" >"$out/claims.md"
 [[ $ASTROLITH_FULL == 1 && ${#numbers[@]} -eq 0 ]] && cp "$out/claims.md" docs/claims.md
-if [[ ${#failed[@]} -gt 0 ]]; then
-  echo "notebooks.sh: failed: ${failed[*]}" >&2
+if ((failures > 0)); then
+  echo "notebooks.sh: $failures of ${#chosen[@]} failed" >&2
   exit 1
 fi
 echo "All ${#chosen[@]} done; the table of claims is $out/claims.md"
