@@ -131,7 +131,8 @@ ASTROLITH_HD inline double sin_turns(double x) {
   return std::sin(6.283185307179586476925 * (x - std::round(x)));
 }
 
-// cos(2 pi x) = 1 - 2 sin^2(pi x), as sin_turns: no quadrant to fold.
+// cos(2 pi x) = 1 - 2 sin^2(pi x) for |x| < 2^22: no quadrant to fold, at the price of four times the error
+// of the sine. Absolute error < 7e-7.
 ASTROLITH_HD inline float cos_turns(float x) {
   const float r = x - round_even(x);  // [-1/2, 1/2]
   const float z = r * r;
