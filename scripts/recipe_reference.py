@@ -35,8 +35,8 @@ def resolved(field):
 
 
 def number(value):
-    if value == 2**53 - 1:
-        return "2^53 - 1"
+    if value > 1e5 and value == int(value) and int(value) & (int(value) + 1) == 0:
+        return f"2^{int(value).bit_length()} - 1"
     text = f"{value:g}" if abs(value) < 1e5 else f"{value:.0e}"
     return text.replace("e+", "e").replace("e0", "e").replace("e-0", "e-")
 
