@@ -176,6 +176,11 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles) {
   if (size() > 0) add_band(tiles, 0, size());
 }
 
+// A group is added to as a whole: one that was split belongs to more than one range.
+bool GaborSurfacePoints::whole_groups(int begin, int end) const {
+  return begin % kGroup == 0 && (end % kGroup == 0 || end == size());
+}
+
 void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
   const CellRange range = cells_around(tiles.band(), box_of(begin, end));
   if (range.cells() > kMostCells && end - begin > 1) {
@@ -183,7 +188,7 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
     const int middle = begin + ((end - begin) / 2 + unit - 1) / unit * unit;
     add_band(tiles, begin, middle);
     add_band(tiles, middle, end);
-  } else if (range.cells() <= kCellsPerPoint * (end - begin)) {
+  } else if (whole_groups(begin, end) && range.cells() <= kCellsPerPoint * (end - begin)) {
     add_to_dense(tiles, range, begin, end);
   } else {
     add_to_scattered(tiles, range, begin, end);

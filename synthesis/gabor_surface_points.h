@@ -39,6 +39,7 @@ class GaborSurfacePoints {
   void sort(int begin, int end);
   PointBox box_of(int begin, int end) const;
   HeightSums sums_from(int begin);
+  bool whole_groups(int begin, int end) const;
   void add_band(const GaborTiles& tiles, int begin, int end);
   void add_to_scattered(const GaborTiles& tiles, const CellRange& range, int begin, int end);
   void add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end);

@@ -133,6 +133,25 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
   }
 }
 
+// Few points in two places so far apart that the cells between them are not drawn: a group is split.
+TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
+  const GaborSurfaceNoise noise(layer_of({{1, 0.1, 0.2, 1.0}}, 0.002, 1.0), 7, 0,
+                                prepare_body(*sphere_recipe(1.0).body, 1), {{-2, -2, -2}, {2, 2, 2}});
+  CounterRandom random(3);
+  std::vector<float> x, y, z, height(11);
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    const double side = i < 6 ? 0.5773 : -0.5773;
+    for (auto* c : {&x, &y, &z}) c->push_back(static_cast<float>(side + random.uniform(-0.001, 0.001)));
+  }
+  noise.evaluate(11, x.data(), y.data(), z.data(), height.data());
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    float alone = 0.0f;
+    noise.evaluate(1, &x[i], &y[i], &z[i], &alone);
+    EXPECT_EQ(height[i], alone) << i;
+  }
+  EXPECT_NE(height[0], 0.0f);
+}
+
 // The error falls as the square of the size, whether corners share their impulses or each draws its own.
 TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
   const GaborSurfaceNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
