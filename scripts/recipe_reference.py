@@ -5,9 +5,10 @@ recipe_reference.py          rewrites docs/recipe.md
 recipe_reference.py --check  exit status 1, and a word, where docs/recipe.md is not what it would write
 
 A table stands between two comments, the first of which names one or more of the schema's definitions, all of whose
-fields it shows, or all but some:
+fields it shows, all but some, or some only:
 
     <!-- fields of gradient_noise, worley without type, locality -->
+    <!-- fields of worley only name, seed -->
     <!-- end -->
 """
 import json
@@ -18,7 +19,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCHEMA = json.loads((ROOT / "recipe/recipe.schema.json").read_text())
 REFERENCE = ROOT / "docs/recipe.md"
-TABLE = re.compile(r"<!-- fields of (?P<names>[\w, ]+?)(?: without (?P<omitted>[\w, ]+))? -->\n.*?<!-- end -->", re.S)
+TABLE = re.compile(r"<!-- fields of (?P<names>[\w, ]+?)(?: without (?P<omitted>[\w, ]+?))?(?: only (?P<only>[\w, ]+))? -->\n.*?<!-- end -->", re.S)
 HEADER = "| field | meaning | unit | range | default |\n|---|---|---|---|---|\n"
 BIG = 1e12  # the largest magnitude of any number: not worth a word in each row
 
@@ -99,19 +100,19 @@ def default_of(name, field, owner):
     return default if isinstance(default, str) else json.dumps(default)
 
 
-def rows(names, omitted):
+def rows(names, omitted, only):
     owners = [definition(name) for name in names]
     fields = {}  # by name, in the order of their first owner
     for owner in owners:
         for name, field in owner["properties"].items():
             fields.setdefault(name, (field, owner))
     for name, (field, owner) in fields.items():
-        if name in omitted:
+        if name in omitted or (only and name not in only):
             continue
-        only = [n for n in names if name in definition(n)["properties"]]
+        having = [n for n in names if name in definition(n)["properties"]]
         meaning = resolved(field)["description"]
-        if len(only) < len(names):
-            types = [t for n in only for t in definition(n)["properties"]["type"]["enum"]]
+        if len(having) < len(names):
+            types = [t for n in having for t in definition(n)["properties"]["type"]["enum"]]
             meaning += f"; {' and '.join(types)} only"
         yield f"| `{name}` | {meaning} | {field.get('unit', '')} | {range_of(field)} | {default_of(name, field, owner)} |"
 
@@ -120,16 +121,16 @@ def table(match):
     def split(names):
         return [name.strip() for name in (names or "").split(",") if name.strip()]
 
-    names, omitted = split(match["names"]), split(match["omitted"])
+    names, omitted, only = split(match["names"]), split(match["omitted"]), split(match["only"])
     comment = match[0].split("\n", 1)[0]
-    return f"{comment}\n{HEADER}" + "\n".join(rows(names, omitted)) + "\n<!-- end -->"
+    return f"{comment}\n{HEADER}" + "\n".join(rows(names, omitted, only)) + "\n<!-- end -->"
 
 
 def main():
     text = REFERENCE.read_text()
     filled = TABLE.sub(table, text)
     if sys.argv[1:] == ["--check"]:
-        shown = {n.strip() for m in TABLE.finditer(text) for n in m["names"].split(",")}
+        shown = {n.strip() for m in TABLE.finditer(text) if not m["only"] for n in m["names"].split(",")}
         hidden = [n for n, d in SCHEMA["definitions"].items() if "properties" in d and n not in shown]
         for name in hidden:
             print(f"docs/recipe.md has no table of the fields of {name}")

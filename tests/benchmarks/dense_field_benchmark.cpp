@@ -4,7 +4,6 @@
 //   dense_field_benchmark RECIPE.json N FIELD.raw
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
 #include <fstream>
 #include <vector>
@@ -13,15 +12,10 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/implicit_field.h"
 #include "synthesis/mesher.h"
+#include "tests/benchmarks/processor_seconds.h"
 
 namespace astrolith {
 namespace {
-
-double seconds_of(const auto& work) {
-  const std::clock_t start = std::clock();
-  work();
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 class Discard : public MeshSink {
  public:
@@ -85,9 +79,10 @@ class DenseField {
 void measure(const ImplicitField& field, int n, const char* file) {
   MeshStatistics statistics;
   Discard discard;
-  const double sparse = seconds_of([&] { statistics = mesh_field(field, field.bounds(), n - 1, discard); });
+  const double sparse =
+      processor_seconds([&] { statistics = mesh_field(field, field.bounds(), n - 1, discard); });
   DenseField samples(make_sample_grid(field.bounds(), n - 1), n);
-  const double dense = seconds_of([&] { samples.evaluate(field); });
+  const double dense = processor_seconds([&] { samples.evaluate(field); });
   samples.write(file);
   std::printf(
       "{\"size\": %d, \"triangles\": %lld, \"seconds_sparse\": %.2f, \"seconds_dense_field\": %.2f}\n", n,

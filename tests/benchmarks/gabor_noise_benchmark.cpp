@@ -4,30 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 #include "numerics/parallel_for.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/gabor_texture.h"
 #include "tests/benchmarks/lagae_gabor_noise.h"
+#include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
 
 constexpr float kFrequencyX = 0.1f, kFrequencyY = 0.05f;
-
-// Of the processor, which other programs on the machine do not add to; the least of five.
-double seconds_of(const auto& work) {
-  double best = INFINITY;
-  for (int repeat = 0; repeat < 5; ++repeat) {
-    const std::clock_t start = std::clock();
-    work();
-    best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return best;
-}
 
 GaborLayer layer_of(int bandwidth, double pixel_size) {
   GaborLayer layer;
@@ -45,14 +34,14 @@ testing::LagaeGaborNoise peer_of(int bandwidth) {
 double texture_rate(int bandwidth) {
   constexpr int n = 1024;
   const GaborLayer layer = layer_of(bandwidth, 1.0);
-  return n * n / seconds_of([&] { synthesize_texture(layer, n, n, {5}); });
+  return n * n / least_processor_seconds([&] { synthesize_texture(layer, n, n, {5}); });
 }
 
 double peer_texture_rate(int bandwidth) {
   constexpr int n = 128;
   const testing::LagaeGaborNoise peer = peer_of(bandwidth);
   volatile float sink = 0.0f;
-  return n * n / seconds_of([&] {
+  return n * n / least_processor_seconds([&] {
            float sum = 0.0f;
            for (int i = 0; i < n * n; ++i)
              sum += peer.on_plane(static_cast<float>(i % n), static_cast<float>(i / n));
@@ -85,7 +74,7 @@ double surface_rate(const SurfaceBlocks& blocks, int bandwidth) {
   const GaborSurfaceNoise noise(layer_of(bandwidth, blocks.pixel), 1, 0, body, {{-2, -2, -2}, {2, 2, 2}});
   constexpr int n = SurfaceBlocks::kSide * SurfaceBlocks::kSide;
   std::vector<float> height(n);
-  return static_cast<double>(blocks.x.size()) / seconds_of([&] {
+  return static_cast<double>(blocks.x.size()) / least_processor_seconds([&] {
            for (std::size_t i = 0; i < blocks.x.size(); i += n) {
              noise.evaluate(n, &blocks.x[i], &blocks.y[i], &blocks.z[i], height.data());
            }
@@ -96,7 +85,7 @@ double peer_surface_rate(const SurfaceBlocks& blocks, int bandwidth) {
   const testing::LagaeGaborNoise peer = peer_of(bandwidth);
   constexpr int kPoints = 4096;
   volatile float sink = 0.0f;
-  return kPoints / seconds_of([&] {
+  return kPoints / least_processor_seconds([&] {
            float sum = 0.0f;
            for (std::size_t i = 0; i < kPoints; ++i) {
              const auto scale = static_cast<float>(1.0 / blocks.pixel);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 #include "synthesis/fractal_noise.h"
+#include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -14,17 +14,6 @@ namespace {
 
 constexpr int kSide = 256;
 constexpr float kStep = 0.02f;
-
-// Of the processor, which other programs on the machine do not add to; the least of five.
-double seconds_of(const auto& work) {
-  double best = INFINITY;
-  for (int repeat = 0; repeat < 5; ++repeat) {
-    const std::clock_t start = std::clock();
-    work();
-    best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  return best;
-}
 
 FractalNoise noise_of(Noise noise, int octaves) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, octaves);
@@ -36,7 +25,7 @@ FractalNoise noise_of(Noise noise, int octaves) {
 double rate(const FractalNoise& noise, int nx, int ny, int nz, int boxes) {
   const auto n = static_cast<std::size_t>(nx * ny * nz);
   std::vector<float> x(n), y(n), z(n), height(n);
-  const double seconds = seconds_of([&] {
+  const double seconds = least_processor_seconds([&] {
     for (int box = 0; box < boxes; ++box) {
       std::size_t i = 0;
       for (int c = 0; c < nz; ++c) {
