@@ -6,7 +6,10 @@ cd "$(dirname "$0")/.."
 preset=$1
 shift
 launcher=()
-command -v ccache >/dev/null && launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+if command -v ccache >/dev/null; then
+  launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  command -v nvcc >/dev/null && launcher+=(-DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
+fi
 cmake --preset "$preset" "${launcher[@]}" >/dev/null
 targets=()
 [[ $# -gt 0 ]] && targets=(--target "$@")
