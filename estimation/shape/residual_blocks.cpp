@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t kPointsPerBlock = 24;
 
 // Derivatives are taken by the spheres that hold this share of the kernel sum at a point of the block when a
-// round starts; the residuals themselves see every sphere in reach.
-constexpr double kSmallestShare = 1e-3;
+// round starts; the residuals themselves see every sphere in reach. Smooth bodies are made of many wide
+// spheres with small shares each: with 1e-3 the steps there miss a good part of the slope.
+constexpr double kSmallestShare = 1e-4;
 
 // Containment points are left out of a round when their condition holds by more than this level.
 constexpr double kIdleLevel = 0.05;

@@ -14,9 +14,10 @@ namespace {
 
 constexpr std::size_t kPointsPerCluster = 32;
 
-// Kernel sum at the surface is 1; a new sphere adds this much there. A larger share makes a bump that is
-// larger than the error it is to mend, where kernels are soft (kappa near 1).
-constexpr double kStartShare = 0.02;
+// Kernel sum at the surface is 1; a new sphere adds this much there. That makes a bump far larger than the
+// error it is to mend, which the first steps of the refinement take back; with a smaller share the sphere
+// lies so deep that it is hardly told from others, and stays idle.
+constexpr double kStartShare = 0.3;
 
 MetaballSphere<double> kernel_of(const Sphere& s) { return {s.center, 1.0 / (s.radius * s.radius)}; }
 

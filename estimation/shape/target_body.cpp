@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "estimation/shape/outer_surface.h"
@@ -127,7 +128,9 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
   const Box box = mesh.bounds();
   const double diagonal = box.diagonal();
   if (!(diagonal > 1e-9 && diagonal < 1e9)) {
-    throw InputError(name + ": bounding-box diagonal " + std::to_string(diagonal) +
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", diagonal);
+    throw InputError(name + ": bounding-box diagonal " + text +
                      " is out of range; scale the mesh to metres or kilometres");
   }
   require_closed_body(mesh, name, remarks);

@@ -1,11 +1,12 @@
-// The base fit beside spherical harmonics and beside a decimated mesh of as many bytes: mean distance from
-// fresh samples of both surfaces, in percent of the bounding-box diagonal.
+// The base fit beside spherical harmonics and beside a decimated mesh of as many bytes: distances from fresh
+// samples of both surfaces, in percent of the bounding-box diagonal, as a table in Markdown
+// (docs/accuracy.md).
 //
-//   shape_peers_benchmark --spheres 200 MESH...
+//   shape_peers_benchmark --spheres 200 --degree 27 MESH...
 //
 // A fit of n metaballs holds 4 n + 1 numbers: 200 stand against degree 27 (784), 1000 against degree 62
 // (3969). Bytes are those of the recipe as written (JSON text, provenance left out) and of a binary PLY file
-// (12 a vertex, 13 a triangle, its header left out).
+// (12 a vertex, 13 a triangle, its header left out). Parts and genus are the fit's over the target's.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,8 +16,10 @@
 #include "geometry/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_sampling.h"
+#include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
 #include "tests/benchmarks/decimated_mesh.h"
+#include "tests/benchmarks/processor_seconds.h"
 #include "tests/benchmarks/spherical_harmonics.h"
 
 namespace {
@@ -44,33 +47,27 @@ std::size_t recipe_bytes(const MetaballBody& body) {
   return recipe_to_json(recipe).size();
 }
 
-void print(const char* what, std::size_t numbers, double bytes, const SurfaceDistanceReport& d) {
-  fmt::print("  {:32}{:9}{:10.0f}{:10.4f}{:9.3f}{:9.3f}\n", what, numbers, bytes, 100 * d.mean, 100 * d.p99,
-             100 * d.max);
-  std::fflush(stdout);
+TriangleMesh mesh_of_equal_bytes(const TargetBody& target, const MetaballBody& body) {
+  const auto bytes = static_cast<double>(recipe_bytes(body));
+  return decimated(target.mesh, static_cast<std::size_t>(bytes / kBytesPerVertex));
 }
 
-void compare_peers(const std::string& file, const ShapeFitOptions& options, const std::vector<int>& degrees) {
+std::string percent(const SurfaceDistanceReport& d) {
+  return fmt::format("{:.4f} / {:.3f}", 100 * d.mean, 100 * d.p99);
+}
+
+void print_row(const std::string& file, const ShapeFitOptions& options, int degree) {
   const TargetBody target = prepare_target(read_mesh(file), file);
-  fmt::print("{}\n", std::filesystem::path(file).stem().string());
-  const MetaballBody body = fit_shape(target, options).body;
-  MetaballBody moved = body;
-  for (Sphere& s : moved.spheres) {
-    s = {(s.center - target.center) * (1.0 / target.diagonal), s.radius / target.diagonal};
-  }
-  const auto bytes = static_cast<double>(recipe_bytes(body));
-  print("metaballs", 4 * body.spheres.size() + 1, bytes,
-        check_fit(target, moved, options.check_resolution, kSamples, 99).distance);
-  const TriangleMesh fewer = decimated(target.mesh, static_cast<std::size_t>(bytes / kBytesPerVertex));
-  print(
-      "decimated mesh of equal bytes", 3 * fewer.vertices.size(),
-      12.0 * static_cast<double>(fewer.vertices.size()) + 13.0 * static_cast<double>(fewer.triangles.size()),
-      distance(target, fewer));
-  for (const int degree : degrees) {
-    const auto count = static_cast<std::size_t>((degree + 1) * (degree + 1));
-    print(fmt::format("spherical harmonics, degree {}", degree).c_str(), count,
-          4.0 * static_cast<double>(count), harmonics_distance(target, degree));
-  }
+  ShapeFitResult fit;
+  const double seconds = processor_seconds([&] { fit = fit_shape(target, options); });
+  const MeshTopology& topology = fit.check.topology;
+  fmt::print("| {} | {} | {} | {} | {} / {} | {} / {} | {} | {:.0f} |\n",
+             std::filesystem::path(file).stem().string(), percent(fit.check.distance),
+             percent(harmonics_distance(target, degree)),
+             percent(distance(target, mesh_of_equal_bytes(target, fit.body))), topology.components,
+             target.components, topology.genus, analyze_topology(target.mesh).genus,
+             fmt::format("{:.2f}", fit.body.blend_exponent * fit.body.a), seconds);
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -78,13 +75,16 @@ void compare_peers(const std::string& file, const ShapeFitOptions& options, cons
 int main(int argc, char** argv) {
   CLI::App app{"The base fit beside spherical harmonics and decimated meshes."};
   std::vector<std::string> files;
-  std::vector<int> degrees{27};
+  int degree = 27;
   ShapeFitOptions options;
   app.add_option("meshes", files)->required();
   app.add_option("--spheres", options.spheres);
   app.add_option("--seed", options.seed);
-  app.add_option("--degree", degrees, "of the harmonics; may be given more than once");
+  app.add_option("--degree", degree, "of the harmonics");
   CLI11_PARSE(app, argc, argv);
-  fmt::print("{:34}{:>9}{:>10}{:>10}{:>9}{:>9}\n", "", "numbers", "bytes", "mean %", "p99 %", "max %");
-  for (const std::string& file : files) compare_peers(file, options, degrees);
+  fmt::print(
+      "| body | {} metaballs, mean / p99 % | harmonics of degree {} | decimated mesh | parts | genus | "
+      "sharpness | CPU s |\n|---|---|---|---|---|---|---|---|\n",
+      options.spheres, degree);
+  for (const std::string& file : files) print_row(file, options, degree);
 }

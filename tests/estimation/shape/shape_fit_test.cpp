@@ -70,30 +70,31 @@ INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels)
 // Bodies of several parts, and with a hole.
 struct PartsCase {
   const char* name;
-  TriangleMesh mesh;
+  TriangleMesh (*mesh)();
   std::int64_t components, genus;
 };
-std::vector<PartsCase> parts_cases() {
-  using namespace testing;
-  return {{"apart", two_spheres(3, 1.0, 2.6), 2, 0},
-          {"nearly touching", two_spheres(3, 1.0, 2.1), 2, 0},
-          {"overlapping", two_spheres(3, 1.0, 1.8), 1, 0},
-          {"ring", torus(1.0, 0.45), 1, 1}};
-}
 
-TEST(ShapeFit, KeepsThePartsOfItsTarget) {
-  for (const PartsCase& c : parts_cases()) {
-    const TargetBody target = prepare_target(c.mesh, c.name);
-    for (const std::uint64_t seed : {1u, 2u}) {
-      ShapeFitOptions options = quick(16);
-      options.seed = seed;
-      const ShapeFitResult fit = fit_shape(target, options);
-      EXPECT_EQ(fit.check.topology.components, c.components) << c.name << ", seed " << seed;
-      EXPECT_EQ(fit.check.topology.genus, c.genus) << c.name << ", seed " << seed;
-      EXPECT_LT(fit.check.distance.mean, 3e-3) << c.name << ", seed " << seed;
-    }
+class ShapeFitParts : public ::testing::TestWithParam<PartsCase> {};
+
+TEST_P(ShapeFitParts, AreThoseOfTheTarget) {
+  const TargetBody target = prepare_target(GetParam().mesh(), GetParam().name);
+  for (const std::uint64_t seed : {1u, 2u}) {
+    ShapeFitOptions options = quick(16);
+    options.seed = seed;
+    const ShapeFitResult fit = fit_shape(target, options);
+    EXPECT_EQ(fit.check.topology.components, GetParam().components) << "seed " << seed;
+    EXPECT_EQ(fit.check.topology.genus, GetParam().genus) << "seed " << seed;
+    EXPECT_LT(fit.check.distance.mean, 3e-3) << "seed " << seed;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Parts, ShapeFitParts,
+    ::testing::Values(PartsCase{"Apart", [] { return testing::two_spheres(3, 1.0, 2.6); }, 2, 0},
+                      PartsCase{"NearlyTouching", [] { return testing::two_spheres(3, 1.0, 2.1); }, 2, 0},
+                      PartsCase{"Overlapping", [] { return testing::two_spheres(3, 1.0, 1.8); }, 1, 0},
+                      PartsCase{"Ring", [] { return testing::torus(1.0, 0.45); }, 1, 1}),
+    [](const ::testing::TestParamInfo<PartsCase>& parts) { return std::string(parts.param.name); });
 
 TEST(ShapeFit, SameBodyForOneAndTwoThreads) {
   const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
