@@ -89,7 +89,7 @@ class AdaptiveFit {
       grow(options_.spheres, 1);
       watch_.add_dips(summary_.model, points_.inside);
       step(options_.relocation_iterations);
-      if (best_distance_ >= before) count /= 2;
+      if (best_distance_ >= before) count = 2 * count / 3;
     }
     summary_.model = best_;
   }

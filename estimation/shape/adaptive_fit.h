@@ -20,7 +20,7 @@ struct AdaptiveFitOptions {
   int first_iterations = 24;  // of the refinement before the first round
   int round_iterations = 12;  // after each round of growth
   int grown_iterations = 60;  // once the budget is reached
-  int relocations = 20;       // rounds of them, at most
+  int relocations = 40;       // rounds of them, at most
   int relocation_iterations = 20;
   int last_iterations = 60;     // at the end, on all samples
   double relocated = 0.15;      // share of the spheres that a relocation takes elsewhere, at first
