@@ -98,7 +98,7 @@ class Notebook:
     def claim(self, what, thesis, ours, comment=""):
         """A row of the table of claims; every number in it was computed in a cell."""
         self._claims.append({"notebook": self.name, "what": what, "thesis": thesis, "ours": ours, "comment": comment})
-        folder = OUT / "claims"
+        folder = OUT / ("claims_full" if FULL else "claims")
         folder.mkdir(parents=True, exist_ok=True)
         (folder / f"{self.name}.json").write_text(json.dumps(self._claims, indent=1))
         say(f"**{what}**: thesis {thesis}, ours {ours}. {comment}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Executes the notebooks headless: notebooks.sh [--full] [--jobs N] [NN ...]
 #   quick (default): small sizes, some minutes in all; results, figures and pages in build/notebooks/
-#   --full:          the thesis's sizes, much longer; the figures go to docs/figures/ and the table of claims to docs/claims.md
+#   --full:          the thesis's sizes, hours in all; the figures go to docs/figures/, the claims to docs/claims.md and README.md
 #   --jobs N:        so many at a time (default 1: seconds that are measured want a machine of their own)
 #   NN ...:          only the notebooks with these numbers, such as 01 12
 # Installs what is missing, builds the programs and benchmarks. Says which notebooks failed; exit status 1 if any did.
@@ -32,11 +32,12 @@ out=${ASTROLITH_OUT:-$PWD/build/notebooks}
 export ASTROLITH_OUT=$out
 mkdir -p "$out/executed"
 # Peers from the Python package index. Without it, the notebooks that need them are skipped with a word.
-if [[ ! -x $out/venv/bin/python ]]; then
-  rm -rf "$out/venv"
+if ! cmp -s notebooks/requirements.txt "$out/venv/requirements.txt"; then
+  rm -rf "$out/venv" "$out/venv.new"
   if /usr/bin/python3 -m venv --system-site-packages "$out/venv.new" &&
      "$out/venv.new/bin/pip" install -q -r notebooks/requirements.txt; then
     mv "$out/venv.new" "$out/venv"
+    cp notebooks/requirements.txt "$out/venv/"
   else
     rm -rf "$out/venv.new"
     echo "notebooks.sh: the Python package index cannot be reached; notebooks that compare with its packages are skipped" >&2
@@ -80,10 +81,15 @@ for ((; running > 0; --running)); do
   wait -n || failures=$((failures + 1))
 done
 
-/usr/bin/python3 notebooks/claims_table.py "$out/claims" >"$out/claims.md"
-[[ $ASTROLITH_FULL == 1 && ${#numbers[@]} -eq 0 ]] && cp "$out/claims.md" docs/claims.md
+if [[ $ASTROLITH_FULL == 1 ]]; then
+  claims=docs/claims.md
+  /usr/bin/python3 notebooks/claims_table.py "$out/claims_full" --keep docs/claims.md README.md
+else
+  claims=$out/claims.md
+  /usr/bin/python3 notebooks/claims_table.py "$out/claims" >"$claims"
+fi
 if ((failures > 0)); then
   echo "notebooks.sh: $failures of ${#chosen[@]} failed" >&2
   exit 1
 fi
-echo "All ${#chosen[@]} done; the table of claims is $out/claims.md"
+echo "All ${#chosen[@]} done; the table of claims is $claims"

@@ -177,7 +177,8 @@ TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
   for (const char* more : {"--mm-per-px", "20000", "--micro-height", "3000"}) arguments.push_back(more);
   const testing::Outcome outcome = run_program(kFitShape, arguments);
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  const auto& layer = std::get<GaborLayer>(read_recipe(out).layers.at(0));
+  const Recipe made = read_recipe(out);
+  const auto& layer = std::get<GaborLayer>(made.layers.at(0));
   EXPECT_NEAR(layer.pixel_size, 0.02, 1e-12);  // km
   EXPECT_NEAR(layer.height_rms, 0.003, 1e-12);
 }

@@ -1,6 +1,7 @@
 // Seconds to a certified gap: the working set beside FISTA, on the power spectra of photos.
 //
 //   basis_pursuit_benchmark gravel.png grass.png sand.png
+//   basis_pursuit_benchmark gravel.png --side 32 --export FOLDER && pursuit_peers.py FOLDER
 //
 // Each photo's upper left square, bandwidths 2 up to the narrowest; on its periodogram (the problem of
 // Galerne et al. 2012) and on the estimated spectrum with the weights that fit_gabor gives it. FISTA stops
@@ -12,6 +13,8 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "estimation/gabor/basis_pursuit.h"
 #include "estimation/gabor/image_reader.h"
@@ -28,6 +31,7 @@ struct Options {
   int side = 256;
   double penalty = 0.01;
   double fista_seconds = 60.0;
+  std::string export_folder;  // of problems for other solvers; empty = none
 };
 
 double now() {
@@ -74,6 +78,36 @@ std::string row(const Run& run) {
   return text + fmt::format("  {:9.1e} {:6} {:6}", run.result.relative_gap, run.result.iterations, atoms);
 }
 
+void write_doubles(const std::filesystem::path& file, std::span<const double> values) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+// For solvers that want a matrix: FOLDER/NAME.json, and float64 beside it: .matrix (a column after the other)
+// and .target.
+void write_problem(const std::string& folder, const std::string& name, const BasisPursuitProblem& problem,
+                   const Run& ours) {
+  const GaborDictionary& dictionary = problem.dictionary;
+  std::vector<double> matrix(dictionary.rows() * dictionary.size()), unit(dictionary.size(), 0.0);
+  for (std::size_t j = 0; j < dictionary.size(); ++j) {
+    unit[j] = 1.0;
+    dictionary.synthesize(unit, {matrix.data() + j * dictionary.rows(), dictionary.rows()});
+    unit[j] = 0.0;
+  }
+  const std::filesystem::path stem = std::filesystem::path(folder) / name;
+  write_doubles(stem.string() + ".matrix", matrix);
+  write_doubles(stem.string() + ".target", problem.target);
+  nlohmann::json gaps = nlohmann::json::array();
+  for (std::size_t i = 0; i < ours.seconds.size(); ++i)
+    gaps.push_back({{"seconds", ours.seconds[i]}, {"relative_gap", ours.result.history[i].relative_gap}});
+  std::ofstream(stem.string() + ".json") << nlohmann::json{{"rows", dictionary.rows()},
+                                                           {"columns", dictionary.size()},
+                                                           {"penalty", problem.penalty},
+                                                           {"primal", ours.result.primal},
+                                                           {"relative_gap", ours.result.relative_gap},
+                                                           {"history", gaps}};
+}
+
 void compare(const std::string& name, const PowerSpectrum& spectrum, std::vector<double> weight,
              const Options& o) {
   weight[0] = 0.0;
@@ -87,7 +121,9 @@ void compare(const std::string& name, const PowerSpectrum& spectrum, std::vector
   const auto working_set = [](const auto& p, const auto& options, const Progress& progress) {
     return solve_working_set(p, options, progress);
   };
-  fmt::print("  working set {}\n", row(timed(working_set, problem, 1e9)));
+  const Run ours = timed(working_set, problem, 1e9);
+  fmt::print("  working set {}\n", row(ours));
+  if (!o.export_folder.empty()) write_problem(o.export_folder, name, problem, ours);
   if (o.fista_seconds > 0.0)
     fmt::print("  FISTA       {}\n", row(timed(solve_fista, problem, o.fista_seconds)));
   std::fflush(stdout);
@@ -97,12 +133,12 @@ void measure(const std::string& file, const Options& o) {
   PowerSpectrum periodogram = exemplar_periodogram(corner(read_grey_image(file).image, o.side));
   const double variance = periodogram.variance();
   for (double& p : periodogram.power) p /= variance;
-  const std::string name = std::filesystem::path(file).filename().string();
-  compare(name + ", periodogram", periodogram, std::vector<double>(periodogram.power.size(), 1.0), o);
+  const std::string name = std::filesystem::path(file).stem().string();
+  compare(name + "_periodogram", periodogram, std::vector<double>(periodogram.power.size(), 1.0), o);
   const PowerSpectrum estimate = estimate_spectrum(periodogram).spectrum;
   std::vector<double> weight;
   for (const double p : estimate.power) weight.push_back(1.0 / std::sqrt(p + 1e-6));
-  compare(name + ", estimated spectrum", estimate, std::move(weight), o);
+  compare(name + "_estimate", estimate, std::move(weight), o);
 }
 
 }  // namespace
@@ -117,6 +153,8 @@ int main(int argc, char** argv) {
   app.add_option("--penalty", o.penalty, "over the largest useful one")->capture_default_str();
   app.add_option("--fista-seconds", o.fista_seconds, "FISTA stops after so long; 0 = leave it out")
       ->capture_default_str();
+  app.add_option("--export", o.export_folder, "folder for the problems as matrices, which grow with side^4")
+      ->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
   fmt::print("seconds to a gap of");
   for (const double gap : kGaps) fmt::print(" {:>7.0e}", gap);
