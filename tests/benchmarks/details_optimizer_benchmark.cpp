@@ -5,13 +5,12 @@
 //   --base-only)
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cstdlib>
-#include <vector>
 
 #include "estimation/shape/details/details_fit.h"
 #include "geometry/mesh_io.h"
 #include "recipe/recipe_json.h"
+#include "tests/benchmarks/optimizer_table.h"
 
 namespace astrolith {
 namespace {
@@ -24,22 +23,13 @@ MetaballBody in_target_frame(MetaballBody body, const TargetBody& target) {
 }
 
 void compare_optimizers(const TargetBody& target, const MetaballBody& base, int evaluations, int seeds) {
-  fmt::print("fitness after {} evaluations, {} seeds\n{:8} {:>8} {:>8} {:>8}\n", evaluations, seeds, "",
-             "least", "median", "largest");
-  for (const char* name : {"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}) {
-    std::vector<double> values;
-    for (int seed = 1; seed <= seeds; ++seed) {
-      DetailsFitOptions options;
-      options.optimizer = optimizer_from_name(name);
-      options.generations = evaluations / options.population;
-      options.seed = static_cast<std::uint64_t>(seed);
-      values.push_back(fit_details(target, base, options).optimization.value);
-    }
-    std::sort(values.begin(), values.end());
-    fmt::print("{:8} {:8.5f} {:8.5f} {:8.5f}\n", name, values.front(), values[values.size() / 2],
-               values.back());
-    std::fflush(stdout);
-  }
+  print_optimizer_table(evaluations, seeds, [&](OptimizerAlgorithm algorithm, std::uint64_t seed) {
+    DetailsFitOptions options;
+    options.optimizer = algorithm;
+    options.generations = evaluations / options.population;
+    options.seed = seed;
+    return fit_details(target, base, options).optimization.value;
+  });
 }
 
 }  // namespace
