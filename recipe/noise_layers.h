@@ -2,6 +2,8 @@
 // are in the recipe's unit. Included by recipe/recipe.h.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -133,24 +135,52 @@ struct GaborLayer {
   std::vector<GaborLobe> lobes;  // at least one
 };
 
-// Locally controlled spot noise (thesis eq. 5.4 to 5.6): craters, or boulders when inverted.
+// One of the ellipsoids that a spot is made of (thesis eq. 5.3): adds
+//   weight K(diag(axes)^-1 R^-1 (q - center)),   R the turns about x, then y, then z.
+struct SpotPart {
+  Vec3d center;         // units of q
+  Vec3d axes{1, 1, 1};  // kLeastSpotAxis .. 1 / kLeastSpotAxis
+  Vec3d turn;           // degrees
+  double weight = 1.0;
+};
+inline constexpr double kLeastSpotAxis = 0.01;
+inline constexpr int kMaxSpotParts = 16;
+
+// The edges of a lattice's cells, in sides of a cube: each of length kLeastCellHeight to kLongestCellEdge, no
+// two opposite faces nearer than kLeastCellHeight.
+struct CellEdges {
+  Vec3d a{1, 0, 0}, b{0, 1, 0}, c{0, 0, 1};
+};
+inline constexpr double kLeastCellHeight = 0.4, kLongestCellEdge = 2.0;
+// The least distance of two opposite faces of a cell; 0 of a flat one.
+inline double least_height(const CellEdges& e) {
+  const double volume = std::fabs(dot(e.a, cross(e.b, e.c)));
+  return volume > 0.0
+             ? volume / std::max({norm(cross(e.b, e.c)), norm(cross(e.c, e.a)), norm(cross(e.a, e.b))})
+             : 0.0;
+}
+
+// Locally controlled spot noise (thesis eq. 5.3 to 5.6): craters, or boulders when inverted.
 //   n(p) = -amplitude sum_j gain^j sum_l w_l K(lacunarity^j (p - p_l) / size),      j = 0 .. layers - 1
 //   K(q) = gaussian exp(-alpha q.q) + kappa exp(-beta (log(gamma q.q))^2) where q.V^-1 q <= sigma, else 0
-// with V diagonal. Impulses p_l lie in a lattice of cells, cell_size / lacunarity^j wide: a cell is occupied
-// with `probability`, and then holds a Poisson number of impulses, density_j on average, uniform within
-// `reach` cells of it. Weights w_l are uniform in [least_weight, 1]. On a surface the number of spots above a
+// with V diagonal; where there are parts, the sum of what they make of K stands for it. Impulses p_l lie in a
+// lattice of cells, cell_size / lacunarity^j wide: a cell is occupied with `probability`, and then holds a
+// Poisson number of impulses, density_j on average, or with `even` as many in each, uniform within `reach`
+// cells of it. Weights w_l are uniform in [least_weight, 1]. On a surface the number of spots above a
 // size falls as the size to the power -exponent, by density_j = density * lacunarity^(j (exponent - 2)).
 struct SpotLayer {
   std::string name;
   LayerSeed seed;
   LayerUse use;
-  double amplitude = 0.0;     // length units
-  bool inverted = false;      // without the minus
-  double size = 1.0;          // length units to a unit of q, > 0
-  double cell_size = 4.0;     // length units, > 0; no half axis of a spot exceeds kMaxSpotCells of it
+  double amplitude = 0.0;  // length units
+  bool inverted = false;   // without the minus
+  double size = 1.0;       // length units to a unit of q, > 0
+  double cell_size = 4.0;  // length units, > 0; no spot reaches further than kMaxSpotCells heights of a cell
+  CellEdges lattice;
   double density = 1.0;       // [0, kMaxSpotDensity]; so is that of every j
   double probability = 1.0;   // [0, 1]
-  double reach = 0.5;         // cells, [0, 1]
+  bool even = false;          // an occupied cell has density_j impulses; a fraction is the chance of one more
+  double reach = 0.5;         // cells, [-1/2, 1]; at -1/2 impulses lie in the middle of their cells
   double least_weight = 0.5;  // [0, 1]
   double gaussian = 1.0;      // weight of the first kernel
   double alpha = 1.0;         // >= 0
@@ -163,7 +193,15 @@ struct SpotLayer {
   double lacunarity = 2.0;    // (1, 16]
   double gain = 0.5;          // [0, 4]
   double exponent = 2.0;      // [0, 6]
+  std::vector<SpotPart> parts;  // none: K itself
 };
+
+// How far a spot reaches from its impulse, in units of q.
+inline double spot_extent(const SpotLayer& layer, const SpotPart& part) {
+  const Vec3d &v = layer.variances, &a = part.axes;
+  const Vec3d half{a.x * std::sqrt(v.x), a.y * std::sqrt(v.y), a.z * std::sqrt(v.z)};
+  return norm(part.center) + std::sqrt(layer.sigma) * std::max({half.x, half.y, half.z});
+}
 
 inline constexpr double kMaxSpotDensity = 64.0;
 inline constexpr double kMaxSpotCells = 4.0;

@@ -52,6 +52,25 @@ void read_profile(ObjectReader& object, PhasorProfile& out) {
                             quote_text(word));
 }
 
+void read_part(const json& value, const Place& place, SpotPart& out) {
+  ObjectReader object(value, place);
+  object.allow("center", out.center);
+  object.allow("axes", out.axes);
+  object.allow("turn", out.turn);
+  object.allow("weight", out.weight);
+  object.finish();
+}
+
+void read_lattice(ObjectReader& object, CellEdges& out) {
+  const json* value = object.find("lattice");
+  if (value == nullptr) return;
+  const Place place = object.at("lattice");
+  expect_row(*value, place, {"edge", "edge", "edge"});
+  read_value((*value)[0], place.element(0), out.a);
+  read_value((*value)[1], place.element(1), out.b);
+  read_value((*value)[2], place.element(2), out.c);
+}
+
 }  // namespace
 
 void read_fields(ObjectReader& object, FractalLayer& out) {
@@ -60,8 +79,6 @@ void read_fields(ObjectReader& object, FractalLayer& out) {
   } else {
     object.allow("gradient_modulation", out.gradient_modulation);
   }
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("frequency", out.frequency);
   object.allow("octaves", out.octaves);
@@ -74,8 +91,6 @@ void read_fields(ObjectReader& object, FractalLayer& out) {
 }
 
 void read_fields(ObjectReader& object, GaborLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("pixel_size", out.pixel_size);
   object.allow("height_rms", out.height_rms);
   object.allow("impulses_per_kernel", out.impulses_per_kernel);
@@ -86,14 +101,14 @@ void read_fields(ObjectReader& object, GaborLayer& out) {
 }
 
 void read_fields(ObjectReader& object, SpotLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("inverted", out.inverted);
   object.allow("size", out.size);
   object.allow("cell_size", out.cell_size);
+  read_lattice(object, out.lattice);
   object.allow("density", out.density);
   object.allow("probability", out.probability);
+  object.allow("even", out.even);
   object.allow("reach", out.reach);
   object.allow("least_weight", out.least_weight);
   object.allow("gaussian", out.gaussian);
@@ -107,11 +122,11 @@ void read_fields(ObjectReader& object, SpotLayer& out) {
   object.allow("lacunarity", out.lacunarity);
   object.allow("gain", out.gain);
   object.allow("exponent", out.exponent);
+  if (const json* parts = object.find("parts"))
+    read_elements(*parts, object.at("parts"), out.parts, read_part);
 }
 
 void read_fields(ObjectReader& object, SparseLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("cell_size", out.cell_size);
   object.allow("levels", out.levels);
@@ -122,8 +137,6 @@ void read_fields(ObjectReader& object, SparseLayer& out) {
 }
 
 void read_fields(ObjectReader& object, RandomPhaseLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("height_rms", out.height_rms);
   object.allow("cell_size", out.cell_size);
   object.allow("waves", out.waves);
@@ -136,8 +149,6 @@ void read_fields(ObjectReader& object, RandomPhaseLayer& out) {
 }
 
 void read_fields(ObjectReader& object, PhasorLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("amplitude", out.amplitude);
   object.allow("frequency", out.frequency);
   object.allow("cell_size", out.cell_size);

@@ -24,15 +24,56 @@ void check(const LayerColor& color, const Place& place) {
 }
 
 // What bounds the number of impulses that one point needs.
+void check(const SpotPart& part, const Place& place) {
+  expect_vector(part.center, place.field("center"));
+  const Place axes = place.field("axes");
+  for (const auto& [axis, name] : {std::pair{part.axes.x, "x"}, {part.axes.y, "y"}, {part.axes.z, "z"}}) {
+    expect_range(axis, axes.field(name), kLeastSpotAxis, 1.0 / kLeastSpotAxis);
+  }
+  const Place turn = place.field("turn");
+  for (const auto& [angle, name] : {std::pair{part.turn.x, "x"}, {part.turn.y, "y"}, {part.turn.z, "z"}}) {
+    expect_range(angle, turn.field(name), -360.0, 360.0);
+  }
+  expect_range(part.weight, place.field("weight"), -1e3, 1e3);
+}
+
+void check(const CellEdges& lattice, const Place& place) {
+  std::size_t i = 0;
+  for (const Vec3d& edge : {lattice.a, lattice.b, lattice.c}) {
+    expect_vector(edge, place.element(i));
+    const double length = norm(edge);
+    if (!(length >= kLeastCellHeight && length <= kLongestCellEdge)) {
+      place.element(i).fail(fmt::format("must be {:g} to {:g} long, is {:.3g}; change it", kLeastCellHeight,
+                                        kLongestCellEdge, length));
+    }
+    ++i;
+  }
+  if (!(least_height(lattice) >= kLeastCellHeight)) {
+    place.fail(
+        fmt::format("its cells must be {:g} high at least over each face, are {:.3g}; make them less oblique",
+                    kLeastCellHeight, least_height(lattice)));
+  }
+}
+
+void check_parts(const SpotLayer& layer, const Place& place) {
+  const Place parts = place.field("parts");
+  if (layer.parts.size() > kMaxSpotParts) {
+    parts.fail(
+        fmt::format("must hold at most {}, are {}; leave some out", kMaxSpotParts, layer.parts.size()));
+  }
+  for (std::size_t i = 0; i < layer.parts.size(); ++i) check(layer.parts[i], parts.element(i));
+}
+
 void check_spot_counts(const SpotLayer& layer, const Place& place) {
-  const Vec3d& v = layer.variances;
-  const double half_axis = layer.size * std::sqrt(layer.sigma * std::max({v.x, v.y, v.z}));
-  if (!(half_axis <= kMaxSpotCells * layer.cell_size)) {
+  double extent = layer.parts.empty() ? spot_extent(layer, {}) : 0.0;
+  for (const SpotPart& part : layer.parts) extent = std::max(extent, spot_extent(layer, part));
+  const double cells = layer.size * extent / (layer.cell_size * least_height(layer.lattice));
+  if (!(cells <= kMaxSpotCells)) {
     place.field("cell_size")
         .fail(fmt::format(
-            "a spot's half axis size * sqrt(sigma * variance) must be at most {:g} cells, is {:.3g}; "
-            "use larger cells or smaller spots",
-            kMaxSpotCells, half_axis / layer.cell_size));
+            "a spot's half axis size * sqrt(sigma * variance), and that of each of its parts, must be "
+            "at most {:g} cells, is {:.3g}; use larger cells or smaller spots",
+            kMaxSpotCells, cells));
   }
   const double finest =
       layer.density * std::pow(layer.lacunarity, (layer.layers - 1) * (layer.exponent - 2.0));
@@ -80,7 +121,7 @@ void check(const SpotLayer& layer, const Place& place) {
   expect_positive(layer.cell_size, place.field("cell_size"));
   expect_not_negative(layer.density, place.field("density"));
   expect_range(layer.probability, place.field("probability"), 0.0, 1.0);
-  expect_range(layer.reach, place.field("reach"), 0.0, 1.0);
+  expect_range(layer.reach, place.field("reach"), -0.5, 1.0);
   expect_range(layer.least_weight, place.field("least_weight"), 0.0, 1.0);
   expect_range(layer.gaussian, place.field("gaussian"), -1e6, 1e6);
   expect_range(layer.alpha, place.field("alpha"), 0.0, 1e6);
@@ -96,6 +137,8 @@ void check(const SpotLayer& layer, const Place& place) {
   expect_above_one(layer.lacunarity, place.field("lacunarity"), 16.0);
   expect_range(layer.gain, place.field("gain"), 0.0, 4.0);
   expect_range(layer.exponent, place.field("exponent"), 0.0, 6.0);
+  check(layer.lattice, place.field("lattice"));
+  check_parts(layer, place);
   check_spot_counts(layer, place);
 }
 

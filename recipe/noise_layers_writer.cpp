@@ -26,6 +26,13 @@ ordered_json to_json(const Combination& combination) {
   return object;
 }
 
+ordered_json to_json(const SpotPart& part) {
+  return {{"center", to_json(part.center)},
+          {"axes", to_json(part.axes)},
+          {"turn", to_json(part.turn)},
+          {"weight", part.weight}};
+}
+
 }  // namespace
 
 void add_use(const LayerUse& use, ordered_json& layer) {
@@ -69,27 +76,33 @@ ordered_json to_json(const GaborLayer& layer) {
 }
 
 ordered_json to_json(const SpotLayer& layer) {
-  return {{"type", "spots"},
-          {"name", layer.name},
-          {"amplitude", layer.amplitude},
-          {"inverted", layer.inverted},
-          {"size", layer.size},
-          {"cell_size", layer.cell_size},
-          {"density", layer.density},
-          {"probability", layer.probability},
-          {"reach", layer.reach},
-          {"least_weight", layer.least_weight},
-          {"gaussian", layer.gaussian},
-          {"alpha", layer.alpha},
-          {"kappa", layer.kappa},
-          {"beta", layer.beta},
-          {"gamma", layer.gamma},
-          {"variances", to_json(layer.variances)},
-          {"sigma", layer.sigma},
-          {"layers", layer.layers},
-          {"lacunarity", layer.lacunarity},
-          {"gain", layer.gain},
-          {"exponent", layer.exponent}};
+  const CellEdges& edges = layer.lattice;
+  ordered_json object{
+      {"type", "spots"},
+      {"name", layer.name},
+      {"amplitude", layer.amplitude},
+      {"inverted", layer.inverted},
+      {"size", layer.size},
+      {"cell_size", layer.cell_size},
+      {"lattice", ordered_json::array({to_json(edges.a), to_json(edges.b), to_json(edges.c)})},
+      {"density", layer.density},
+      {"probability", layer.probability},
+      {"even", layer.even},
+      {"reach", layer.reach},
+      {"least_weight", layer.least_weight},
+      {"gaussian", layer.gaussian},
+      {"alpha", layer.alpha},
+      {"kappa", layer.kappa},
+      {"beta", layer.beta},
+      {"gamma", layer.gamma},
+      {"variances", to_json(layer.variances)},
+      {"sigma", layer.sigma},
+      {"layers", layer.layers},
+      {"lacunarity", layer.lacunarity},
+      {"gain", layer.gain},
+      {"exponent", layer.exponent}};
+  for (const SpotPart& part : layer.parts) object["parts"].push_back(to_json(part));
+  return object;
 }
 
 ordered_json to_json(const SparseLayer& layer) {

@@ -29,6 +29,12 @@ constexpr const char* kLayerTypes =
     "\"random_phase\", "
     "\"phasor\" and \"gabor\"";
 
+// What all kinds of layer have.
+void read_identity(ObjectReader& object, auto& layer) {
+  object.allow("name", layer.name);
+  object.allow("seed", layer.seed);
+}
+
 void read_layer(const json& value, const Place& place, Layer& out) {
   ObjectReader object(value, place);
   std::string type;
@@ -62,6 +68,7 @@ void read_layer(const json& value, const Place& place, Layer& out) {
   } else {
     object.at("type").fail(std::string("must be one of ") + kLayerTypes + ", is " + quote_text(type));
   }
+  std::visit([&](auto& layer) { read_identity(object, layer); }, out);
   if (LayerUse* use = use_of(out)) read_use(object, *use);
   object.finish();
 }

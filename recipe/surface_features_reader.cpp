@@ -71,8 +71,6 @@ void read_list(ObjectReader& parent, std::string_view name, std::vector<T>& out,
 }  // namespace
 
 void read_fields(ObjectReader& object, CraterLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   read_profile(object, "simple", out.simple);
   read_profile(object, "complex", out.complex);
   object.allow("complex_from", out.complex_from);
@@ -90,8 +88,6 @@ void read_fields(ObjectReader& object, CraterLayer& out) {
 }
 
 void read_fields(ObjectReader& object, BoulderLayer& out) {
-  object.allow("name", out.name);
-  object.allow("seed", out.seed);
   object.allow("smoothing", out.smoothing);
   object.allow("roughness", out.roughness);
   read_list(object, "boulders", out.boulders, read_boulder);

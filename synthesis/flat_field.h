@@ -39,7 +39,7 @@ struct FlatSphere {
   float radius;
 };
 
-// The spots of one size. Their impulses are a block's list.
+// The spots of one kind. Their impulses are a block's list.
 struct FlatSpots {
   SpotKernel kernel;
   float clip;
@@ -74,7 +74,7 @@ struct FlatLayer {
   FlatNoise kind = FlatNoise::kFractal;
   FlatJoin join;
   Vec3f low, high;
-  FlatRange parts;  // octaves, sparse levels, sizes of spots, waves, bands or craters; as many impulses of
+  FlatRange parts;  // octaves, sparse levels, kinds of spots, waves, bands or craters; as many impulses of
                     // phasor noise
   std::uint32_t seed = 0;
   // Fractal noise.
@@ -138,7 +138,7 @@ struct FlatBlock {
   const MetaballSphere<float>* spheres;
   const std::uint32_t* first_sphere;  // by leaf
   const SpotImpulse* impulses;
-  const std::uint32_t* first_impulse;  // by size of spots
+  const std::uint32_t* first_impulse;  // by kind of spots
   const GaborImpulse* gabor;
   const std::uint32_t* first_gabor;    // by band
   const std::uint32_t* features;       // numbers of craters and boulders

@@ -71,8 +71,8 @@ struct Flatten {
     layer.low = noise.domain_min();
     layer.high = noise.domain_max();
     layer.parts = {static_cast<std::uint32_t>(data.spots.size()),
-                   static_cast<std::uint32_t>(noise.num_sizes())};
-    for (int j = 0; j < noise.num_sizes(); ++j) {
+                   static_cast<std::uint32_t>(noise.num_kinds())};
+    for (int j = 0; j < noise.num_kinds(); ++j) {
       data.spots.push_back({noise.kernel(j), noise.clip(j), static_cast<std::uint32_t>(data.spots.size())});
     }
   }

@@ -1,4 +1,4 @@
-// The kernel of spot noise (thesis eq. 5.5 and 5.6) at one point.
+// The kernel of spot noise (thesis eq. 5.3, 5.5 and 5.6) at one point.
 #pragma once
 
 #include "numerics/host_device.h"
@@ -12,9 +12,9 @@ struct SpotImpulse {
 };
 
 struct SpotKernel {
-  float scale;               // lacunarity^j / size, per length unit
-  float gaussian, alpha;     // gaussian is in length units, amplitude and sign included
-  float kappa, beta, gamma;  // so is kappa
+  float xx, xy, xz, yx, yy, yz, zx, zy, zz;  // from length units to those of q: stretched and turned
+  float gaussian, alpha;                     // gaussian is in length units, amplitude and sign included
+  float kappa, beta, gamma;                  // so is kappa
   float inverse_vx, inverse_vy, inverse_vz, sigma;
 };
 
@@ -29,8 +29,11 @@ ASTROLITH_KERNEL float spot_profile(const SpotKernel& k, float q2) {
 // weight K(p - impulse), exactly zero beyond sigma.
 ASTROLITH_KERNEL float spot_height(const SpotKernel& k, const SpotImpulse& impulse, float x, float y,
                                    float z) {
-  const float dx = k.scale * (x - impulse.x), dy = k.scale * (y - impulse.y), dz = k.scale * (z - impulse.z);
-  const float xx = dx * dx, yy = dy * dy, zz = dz * dz;
+  const float dx = x - impulse.x, dy = y - impulse.y, dz = z - impulse.z;
+  const float qx = math::fma(k.xx, dx, math::fma(k.xy, dy, k.xz * dz));
+  const float qy = math::fma(k.yx, dx, math::fma(k.yy, dy, k.yz * dz));
+  const float qz = math::fma(k.zx, dx, math::fma(k.zy, dy, k.zz * dz));
+  const float xx = qx * qx, yy = qy * qy, zz = qz * qz;
   const float inside = math::fma(xx, k.inverse_vx, math::fma(yy, k.inverse_vy, zz * k.inverse_vz));
   const float height = impulse.weight * spot_profile(k, xx + (yy + zz));
   return inside <= k.sigma ? height : 0.0f;

@@ -1,11 +1,15 @@
 #include "synthesis/spot_noise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "numerics/hash_random.h"
 #include "synthesis/largest_coordinate.h"
+#include "synthesis/spot_bounds.h"
 
 namespace astrolith {
 namespace {
@@ -14,8 +18,7 @@ constexpr double kLargestCell =
     1048576.0;                         // 2^20 cells from the origin: floats hold three bits within a cell
 constexpr double kMostCells = 4096.0;  // drawn at once
 constexpr double kClip = 2.0;          // of a sum of overlapping spots, in greatest kernels
-constexpr double kSlack = 1e-5;        // relative, for the rounding of positions and kernels
-constexpr std::uint32_t kCountStream = 0x636f756eu, kOccupiedStream = 0x6f636375u;
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotImpulse* impulses,
                                      std::size_t num_impulses, int n, const float* __restrict x,
@@ -27,37 +30,6 @@ ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotIm
 #pragma omp simd
     for (int i = 0; i < n; ++i) height[i] += spot_height(kernel, impulse, x[i], y[i], z[i]);
   }
-}
-
-// For l = 0, 1, ..: the share of hashes below P(count <= l), as an integer threshold; up to where 2^-32 ends.
-std::vector<std::uint32_t> poisson_thresholds(double mean) {
-  std::vector<std::uint32_t> thresholds;
-  double probability = std::exp(-mean), sum = probability;
-  for (int l = 1; sum < 1.0 - 0x1p-32 && l < 1000; ++l) {
-    thresholds.push_back(static_cast<std::uint32_t>(std::min(sum * 0x1p32, 0x1p32 - 1.0)));
-    probability *= mean / l;
-    if (l > mean && probability < 0x1p-33) break;
-    sum += probability;
-  }
-  return thresholds;
-}
-
-// Squared distances from a point to a box, in units that differ from axis to axis.
-struct Range {
-  double nearest = 0.0, farthest = 0.0;
-};
-Range squared_distance(const SpotImpulse& p, const Box& box, const Vec3d& per_axis) {
-  Range range;
-  const auto add = [&](double c, double low, double high, double weight) {
-    const double near = std::max({0.0, low - c, c - high}),
-                 far = std::max(std::fabs(c - low), std::fabs(c - high));
-    range.nearest += weight * near * near;
-    range.farthest += weight * far * far;
-  };
-  add(p.x, box.min.x, box.max.x, per_axis.x);
-  add(p.y, box.min.y, box.max.y, per_axis.y);
-  add(p.z, box.min.z, box.max.z, per_axis.z);
-  return range;
 }
 
 // Whether a spot of these half axes touches the box.
@@ -79,97 +51,108 @@ std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses
   return found;
 }
 
-// K over squared distances, as spot_profile: one falls, the other rises to its ring and falls.
-Interval bound_profile(const SpotKernel& k, const Range& q2) {
-  const auto bowl = [&](double q) { return std::exp(-double{k.alpha} * q); };
-  const auto ring = [&](double q) {
-    const double log_ring = std::log(std::max(double{k.gamma} * q, 1e-38));
-    return std::exp(-double{k.beta} * log_ring * log_ring);
+// Of a part of a spot: R of its turns, then what takes length units to those of q.
+using Rotation = std::array<Vec3d, 3>;  // columns
+
+Rotation rotation(const Vec3d& degrees) {
+  const auto turned = [](double angle, double& u, double& v) {
+    const double c = std::cos(angle * kDegree), s = std::sin(angle * kDegree);
+    std::tie(u, v) = std::pair{c * u - s * v, s * u + c * v};
   };
-  const double at_ring = std::clamp(1.0 / double{k.gamma}, q2.nearest, q2.farthest);
-  const Interval b{bowl(q2.farthest), bowl(q2.nearest)};
-  const double g = k.gaussian, kappa = k.kappa;
-  if (kappa == 0.0) return {std::min(g * b.low, g * b.high), std::max(g * b.low, g * b.high)};
-  const Interval r{std::min(ring(q2.nearest), ring(q2.farthest)), ring(at_ring)};
-  return {std::min(g * b.low, g * b.high) + std::min(kappa * r.low, kappa * r.high),
-          std::max(g * b.low, g * b.high) + std::max(kappa * r.low, kappa * r.high)};
+  Rotation columns{Vec3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (Vec3d& p : columns) {
+    if (degrees.x != 0.0) turned(degrees.x, p.y, p.z);
+    if (degrees.y != 0.0) turned(degrees.y, p.z, p.x);
+    if (degrees.z != 0.0) turned(degrees.z, p.x, p.y);
+  }
+  return columns;
+}
+
+SpotKernel kernel_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit,
+                     double amplitude) {
+  const auto scaled = [&](double c, double axis) { return static_cast<float>(c / (axis * unit)); };
+  const Vec3d &a = part.axes, &v = layer.variances;
+  return {scaled(r[0].x, a.x),
+          scaled(r[0].y, a.x),
+          scaled(r[0].z, a.x),
+          scaled(r[1].x, a.y),
+          scaled(r[1].y, a.y),
+          scaled(r[1].z, a.y),
+          scaled(r[2].x, a.z),
+          scaled(r[2].y, a.z),
+          scaled(r[2].z, a.z),
+          static_cast<float>(part.weight * amplitude * layer.gaussian),
+          static_cast<float>(layer.alpha),
+          static_cast<float>(part.weight * amplitude * layer.kappa),
+          static_cast<float>(layer.beta),
+          static_cast<float>(layer.gamma),
+          static_cast<float>(1.0 / v.x),
+          static_cast<float>(1.0 / v.y),
+          static_cast<float>(1.0 / v.z),
+          static_cast<float>(layer.sigma)};
+}
+
+// Half the sides of the box around a part: of the ellipsoid q.V^-1 q = sigma.
+Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit) {
+  const Vec3d &a = part.axes, &v = layer.variances;
+  const auto side = [&](double x, double y, double z) {
+    return std::sqrt(v.x * (a.x * x) * (a.x * x) + v.y * (a.y * y) * (a.y * y) + v.z * (a.z * z) * (a.z * z));
+  };
+  return unit * std::sqrt(layer.sigma) * (1.0 + kSpotSlack) *
+         Vec3d{side(r[0].x, r[1].x, r[2].x), side(r[0].y, r[1].y, r[2].y), side(r[0].z, r[1].z, r[2].z)};
 }
 
 }  // namespace
 
 SpotNoise::SpotNoise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain)
-    : layer_(layer),
-      domain_min_{static_cast<float>(domain.min.x), static_cast<float>(domain.min.y),
+    : domain_min_{static_cast<float>(domain.min.x), static_cast<float>(domain.min.y),
                   static_cast<float>(domain.min.z)},
       domain_max_{static_cast<float>(domain.max.x), static_cast<float>(domain.max.y),
                   static_cast<float>(domain.max.z)} {
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
-  const Vec3d& v = layer.variances;
   for (int j = 0; j < layer.layers; ++j) {
     const double shrink = std::pow(layer.lacunarity, j);
     const double cell = layer.cell_size / shrink, unit = layer.size / shrink;
-    if (!(largest_coordinate(domain) / cell <= kLargestCell)) break;
+    if (!(largest_coordinate(domain) / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
+    const SpotLattice lattice(layer, cell, layer.density * std::pow(shrink, layer.exponent - 2.0),
+                              hash_append(layer_seed, static_cast<std::uint32_t>(j)));
     const double amplitude = (layer.inverted ? 1.0 : -1.0) * layer.amplitude * std::pow(layer.gain, j);
-    const double clip = kClip * std::fabs(amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
-    const SpotKernel kernel{static_cast<float>(1.0 / unit),  static_cast<float>(amplitude * layer.gaussian),
-                            static_cast<float>(layer.alpha), static_cast<float>(amplitude * layer.kappa),
-                            static_cast<float>(layer.beta),  static_cast<float>(layer.gamma),
-                            static_cast<float>(1.0 / v.x),   static_cast<float>(1.0 / v.y),
-                            static_cast<float>(1.0 / v.z),   static_cast<float>(layer.sigma)};
-    const double half = unit * std::sqrt(layer.sigma) * (1.0 + kSlack);
-    sizes_.push_back({kernel, hash_append(layer_seed, static_cast<std::uint32_t>(j)),
-                      static_cast<float>(cell), static_cast<float>(clip),
-                      half * Vec3d{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)},
-                      poisson_thresholds(layer.density * std::pow(shrink, layer.exponent - 2.0))});
-    height_bound_ += clip * (1.0 + kSlack);
+    if (layer.parts.empty()) add_kind(layer, {}, lattice, unit, amplitude);
+    for (const SpotPart& part : layer.parts) add_kind(layer, part, lattice, unit, amplitude);
   }
 }
 
-double SpotNoise::Cells::count() const {
-  return (double(last[0]) - first[0] + 1) * (double(last[1]) - first[1] + 1) *
-         (double(last[2]) - first[2] + 1);
+void SpotNoise::add_kind(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice,
+                         double unit, double amplitude) {
+  const Rotation turn = rotation(part.turn);
+  const double clip =
+      kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
+  kinds_.push_back({kernel_of(layer, part, turn, unit, amplitude), lattice, unit * part.center,
+                    support_of(layer, part, turn, unit), static_cast<float>(clip)});
+  height_bound_ += clip * (1.0 + kSpotSlack);
 }
 
-SpotNoise::Cells SpotNoise::cells_around(const Size& size, const Box& box) const {
-  const double cell = size.cell, reach = layer_.reach + 1e-3;
-  const auto first = [&](double low, double half) {
-    return static_cast<int>(std::floor((low - half) / cell - reach));
-  };
-  const auto last = [&](double high, double half) {
-    return static_cast<int>(std::floor((high + half) / cell + reach));
-  };
-  const Vec3d& h = size.support;
-  return {{first(box.min.x, h.x), first(box.min.y, h.y), first(box.min.z, h.z)},
-          {last(box.max.x, h.x), last(box.max.y, h.y), last(box.max.z, h.z)}};
+SpotLattice::Cells SpotNoise::cells_around(const Kind& kind, const Box& box) {
+  const Vec3d margin = kind.support;
+  return kind.lattice.around({box.min - kind.offset - margin, box.max - kind.offset + margin});
 }
 
-void SpotNoise::draw_cell(const Size& size, int cx, int cy, int cz, const Box& box,
-                          std::vector<SpotImpulse>& out) const {
-  const std::uint32_t cell = hash_cell(size.seed, cx, cy, cz);
-  const float occupied = unit_float(hash_append(cell, kOccupiedStream));
-  if (!(static_cast<double>(occupied) < layer_.probability)) return;
-  const std::uint32_t number = hash_append(cell, kCountStream);
-  const float width = 1.0f + 2.0f * static_cast<float>(layer_.reach);
-  const float least_weight = static_cast<float>(layer_.least_weight);
-  for (std::uint32_t l = 0; l < size.least.size() && number >= size.least[l]; ++l) {
-    const auto random = [&](std::uint32_t k) { return unit_float(hash_append(cell, 4 * l + k)); };
-    const auto along = [&](int c, std::uint32_t k) {
-      return size.cell * (static_cast<float>(c) + math::fma(width, random(k) - 0.5f, 0.5f));
-    };
-    const SpotImpulse impulse{along(cx, 0), along(cy, 1), along(cz, 2),
-                              math::fma(1.0f - least_weight, random(3), least_weight)};
-    if (reaches(impulse, size.support, box)) out.push_back(impulse);
-  }
-}
-
-std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) const {
-  const Size& size = sizes_[static_cast<std::size_t>(j)];
+std::vector<SpotImpulse> SpotNoise::impulses_reaching(int k, const Box& box) const {
+  const Kind& kind = kinds_[static_cast<std::size_t>(k)];
   const Box wide = widened_by_rounding(box);
-  const Cells cells = cells_around(size, wide);
+  const auto [first, last] = cells_around(kind, wide);
+  const Vec3f offset{static_cast<float>(kind.offset.x), static_cast<float>(kind.offset.y),
+                     static_cast<float>(kind.offset.z)};
   std::vector<SpotImpulse> impulses;
-  for (int z = cells.first[2]; z <= cells.last[2]; ++z) {
-    for (int y = cells.first[1]; y <= cells.last[1]; ++y) {
-      for (int x = cells.first[0]; x <= cells.last[0]; ++x) draw_cell(size, x, y, z, wide, impulses);
+  const auto keep = [&](SpotImpulse impulse) {
+    impulse.x += offset.x;
+    impulse.y += offset.y;
+    impulse.z += offset.z;
+    if (reaches(impulse, kind.support, wide)) impulses.push_back(impulse);
+  };
+  for (int c = first[2]; c <= last[2]; ++c) {
+    for (int b = first[1]; b <= last[1]; ++b) {
+      for (int a = first[0]; a <= last[0]; ++a) kind.lattice.draw_cell(a, b, c, keep);
     }
   }
   return impulses;
@@ -177,18 +160,18 @@ std::vector<SpotImpulse> SpotNoise::impulses_reaching(int j, const Box& box) con
 
 SpotImpulses SpotNoise::draw(const Box& box) const {
   SpotImpulses impulses;
-  for (int j = 0; j < num_sizes(); ++j) impulses.push_back(impulses_reaching(j, moved_into_domain(box)));
+  for (int j = 0; j < num_kinds(); ++j) impulses.push_back(impulses_reaching(j, moved_into_domain(box)));
   return impulses;
 }
 
 std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
   const Box moved = moved_into_domain(box);
-  const auto too_many = [&](const Size& size) { return cells_around(size, moved).count() > kMostCells; };
-  if (of_larger == nullptr && std::any_of(sizes_.begin(), sizes_.end(), too_many)) return nullptr;
+  const auto too_many = [&](const Kind& kind) { return cells_around(kind, moved).count() > kMostCells; };
+  if (of_larger == nullptr && std::any_of(kinds_.begin(), kinds_.end(), too_many)) return nullptr;
   if (of_larger == nullptr) return std::make_shared<const SpotImpulses>(draw(box));
-  auto impulses = std::make_shared<SpotImpulses>(sizes_.size());
-  for (std::size_t j = 0; j < sizes_.size(); ++j) {
-    (*impulses)[j] = those_reaching((*of_larger)[j], sizes_[j].support, moved);
+  auto impulses = std::make_shared<SpotImpulses>(kinds_.size());
+  for (std::size_t j = 0; j < kinds_.size(); ++j) {
+    (*impulses)[j] = those_reaching((*of_larger)[j], kinds_[j].support, moved);
   }
   return impulses;
 }
@@ -205,54 +188,32 @@ void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, 
   std::fill(height, height + n, 0.0f);
   Box points_box;
   for (int i = 0; i < n; ++i) points_box.extend({px[i], py[i], pz[i]});
-  for (std::size_t j = 0; j < sizes_.size(); ++j) {
-    const Size& size = sizes_[j];
+  for (std::size_t j = 0; j < kinds_.size(); ++j) {
+    const Kind& kind = kinds_[j];
     std::fill(sum, sum + n, 0.0f);
     if (impulses == nullptr) {
-      add_size(size, n, px, py, pz, sum);
+      add_sum(kind, n, px, py, pz, sum);
     } else {
-      const std::vector<SpotImpulse> near = those_reaching((*impulses)[j], size.support, points_box);
-      add_spots(size.kernel, near.data(), near.size(), n, px, py, pz, sum);
+      const std::vector<SpotImpulse> near = those_reaching((*impulses)[j], kind.support, points_box);
+      add_spots(kind.kernel, near.data(), near.size(), n, px, py, pz, sum);
     }
-    for (int i = 0; i < n; ++i) height[i] += math::clamp(sum[i], -size.clip, size.clip);
+    for (int i = 0; i < n; ++i) height[i] += math::clamp(sum[i], -kind.clip, kind.clip);
   }
 }
 
-void SpotNoise::add_size(const Size& size, int n, const float* x, const float* y, const float* z,
-                         float* height) const {
+void SpotNoise::add_sum(const Kind& kind, int n, const float* x, const float* y, const float* z,
+                        float* height) const {
   Box box;
   for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  if (n > 1 && cells_around(size, box).count() > kMostCells) {
+  if (n > 1 && cells_around(kind, box).count() > kMostCells) {
     const int half = n / 2;
-    add_size(size, half, x, y, z, height);
-    add_size(size, n - half, x + half, y + half, z + half, height + half);
+    add_sum(kind, half, x, y, z, height);
+    add_sum(kind, n - half, x + half, y + half, z + half, height + half);
     return;
   }
-  const int j = static_cast<int>(&size - sizes_.data());
+  const int j = static_cast<int>(&kind - kinds_.data());
   const std::vector<SpotImpulse> impulses = impulses_reaching(j, box);
-  add_spots(size.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
-}
-
-Interval SpotNoise::bound_size(const Size& size, const Box& box,
-                               const std::vector<SpotImpulse>& impulses) const {
-  const double clip = size.clip;
-  const SpotKernel& k = size.kernel;
-  const double scale_squared = double{k.scale} * double{k.scale};
-  const Vec3d ones{scale_squared, scale_squared, scale_squared};
-  const Vec3d shape = scale_squared * Vec3d{k.inverse_vx, k.inverse_vy, k.inverse_vz};
-  Interval sum;
-  for (const SpotImpulse& impulse : impulses) {
-    const Range inside = squared_distance(impulse, box, shape);
-    if (inside.nearest > double{k.sigma} * (1.0 + kSlack)) continue;
-    const Range q2 = squared_distance(impulse, box, ones);
-    Interval profile = bound_profile(k, {q2.nearest * (1.0 - kSlack), q2.farthest * (1.0 + kSlack)});
-    if (inside.farthest > double{k.sigma} * (1.0 - kSlack)) {
-      profile = {std::min(0.0, profile.low), std::max(0.0, profile.high)};
-    }
-    sum.low += static_cast<double>(impulse.weight) * profile.low;
-    sum.high += static_cast<double>(impulse.weight) * profile.high;
-  }
-  return {std::clamp(sum.low, -clip, clip), std::clamp(sum.high, -clip, clip)};
+  add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
 }
 
 Box SpotNoise::moved_into_domain(const Box& box) const {
@@ -266,19 +227,19 @@ Box SpotNoise::moved_into_domain(const Box& box) const {
 
 Interval SpotNoise::bound_heights(const Box& box, const SpotImpulses* impulses) const {
   const Box moved = moved_into_domain(box);
-  const double slack = 3.0 * kSlack * height_bound_;
+  const double slack = 3.0 * kSpotSlack * height_bound_;
   Interval sum{-slack, slack};
-  for (std::size_t j = 0; j < sizes_.size(); ++j) {
-    const Size& size = sizes_[j];
-    const double clip = size.clip;
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    const Kind& kind = kinds_[k];
+    const double clip = kind.clip;
     Interval heights{-clip, clip};
     if (impulses != nullptr) {
-      heights = bound_size(size, moved, (*impulses)[j]);
-    } else if (cells_around(size, moved).count() <= kMostCells) {
-      heights = bound_size(size, moved, impulses_reaching(static_cast<int>(j), moved));
+      heights = bound_spots(kind.kernel, (*impulses)[k], moved);
+    } else if (cells_around(kind, moved).count() <= kMostCells) {
+      heights = bound_spots(kind.kernel, impulses_reaching(static_cast<int>(k), moved), moved);
     }
-    sum.low += heights.low;
-    sum.high += heights.high;
+    sum.low += std::clamp(heights.low, -clip, clip);
+    sum.high += std::clamp(heights.high, -clip, clip);
   }
   return sum;
 }

@@ -1,4 +1,4 @@
-// A spot layer of the recipe, ready for evaluation over many points (thesis eq. 5.4 to 5.6).
+// A spot layer of the recipe, ready for evaluation over many points (thesis eq. 5.3 to 5.6).
 //
 // Impulses are hashes of their cells: whoever needs some points' heights draws those whose spots reach them,
 // in the order of cells, and a spot adds exactly nothing beyond its support. The bits of a height do not
@@ -12,10 +12,11 @@
 #include "recipe/recipe.h"
 #include "synthesis/noise_octaves.h"
 #include "synthesis/spot_kernel.h"
+#include "synthesis/spot_lattice.h"
 
 namespace astrolith {
 
-// Drawn ones, by size.
+// Drawn ones, by kind.
 using SpotImpulses = std::vector<std::vector<SpotImpulse>>;
 
 class SpotNoise {
@@ -42,40 +43,33 @@ class SpotNoise {
   // Points outside are moved to the border.
   const Vec3f& domain_min() const { return domain_min_; }
   const Vec3f& domain_max() const { return domain_max_; }
-  // Of size j: the kernel, and where the |sum| of its spots is cut, length units.
-  const SpotKernel& kernel(int j) const { return sizes_[static_cast<std::size_t>(j)].kernel; }
-  float clip(int j) const { return sizes_[static_cast<std::size_t>(j)].clip; }
+  // A kind is one part of the spots of one size; all parts of a size have the same impulses, each moved by
+  // its own centre. Of kind k: the kernel, and where the |sum| of its spots is cut, length units.
+  const SpotKernel& kernel(int k) const { return kinds_[static_cast<std::size_t>(k)].kernel; }
+  float clip(int k) const { return kinds_[static_cast<std::size_t>(k)].clip; }
   // All that reach a box, however many.
   SpotImpulses draw(const Box& box) const;
 
-  int num_sizes() const { return static_cast<int>(sizes_.size()); }
-  // The impulses of size j whose spots may reach the box, in the order of their cells (z, then y, then x).
-  std::vector<SpotImpulse> impulses_reaching(int j, const Box& box) const;
+  int num_kinds() const { return static_cast<int>(kinds_.size()); }
+  // The impulses of kind k whose spots may reach the box, in the order of their cells (z, then y, then x).
+  std::vector<SpotImpulse> impulses_reaching(int k, const Box& box) const;
 
  private:
-  // The spots of one j.
-  struct Size {
+  struct Kind {
     SpotKernel kernel;
-    std::uint32_t seed;
-    float cell;                        // side, length units
-    float clip;                        // of |sum|, length units
-    Vec3d support;                     // half axes, length units
-    std::vector<std::uint32_t> least;  // a cell whose hash is at least the l-th of these has l + 1 impulses
-  };
-  struct Cells {
-    int first[3], last[3];
-    double count() const;
+    SpotLattice lattice;
+    Vec3d offset;   // from an impulse, length units
+    Vec3d support;  // half axes, length units
+    float clip;     // of |sum|, length units
   };
 
-  Cells cells_around(const Size& size, const Box& box) const;
-  void draw_cell(const Size& size, int cx, int cy, int cz, const Box& box,
-                 std::vector<SpotImpulse>& out) const;
-  void add_size(const Size& size, int n, const float* x, const float* y, const float* z, float* height) const;
-  Interval bound_size(const Size& size, const Box& box, const std::vector<SpotImpulse>& impulses) const;
+  void add_kind(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
+                double amplitude);
+  static SpotLattice::Cells cells_around(const Kind& kind, const Box& box);
+  void add_sum(const Kind& kind, int n, const float* x, const float* y, const float* z, float* height) const;
   Box moved_into_domain(const Box& box) const;
 
-  SpotLayer layer_;
-  std::vector<Size> sizes_;
+  std::vector<Kind> kinds_;
   Vec3f domain_min_, domain_max_;
   double height_bound_ = 0.0;
 };

@@ -135,7 +135,7 @@ TEST(SpotNoise, SizesOnASurfaceFollowTheExponent) {
     const SpotNoise noise(layer, 5, 0, kDomain);
     double slope = 0.0, error = 0.0;
     std::vector<double> count;
-    for (int j = 0; j < noise.num_sizes(); ++j) {
+    for (int j = 0; j < noise.num_kinds(); ++j) {
       double n = 0;
       for (const SpotImpulse& p : noise.impulses_reaching(j, {{-20, -20, 0.3}, {20, 20, 0.3}})) {
         n += std::fabs(p.x) < 20 && std::fabs(p.y) < 20;
@@ -147,6 +147,19 @@ TEST(SpotNoise, SizesOnASurfaceFollowTheExponent) {
     error = std::sqrt(1.0 / count[0] + 1.0 / count[3]) / std::log(2.0) / 3.0;
     EXPECT_NEAR(slope, exponent, 3.0 * error) << count[0] << " " << count[3];
   }
+}
+
+SpotPart random_part(CounterRandom& random) {
+  const auto triple = [&](double low, double high) {
+    const double x = random.uniform(low, high), y = random.uniform(low, high);
+    return Vec3d{x, y, random.uniform(low, high)};
+  };
+  SpotPart part;
+  part.center = triple(-1, 1);
+  part.axes = triple(0.3, 1.5);
+  part.turn = triple(-180, 180);
+  part.weight = random.uniform(-1, 1);
+  return part;
 }
 
 SpotLayer random_layer(CounterRandom& random) {
@@ -165,6 +178,11 @@ SpotLayer random_layer(CounterRandom& random) {
   layer.beta = random.uniform(0, 20);
   layer.gamma = random.uniform(0.2, 2);
   layer.layers = 1 + static_cast<int>(random.below(3));
+  for (auto parts = random.below(4); parts > 1; --parts) layer.parts.push_back(random_part(random));
+  if (random.uniform() < 0.5) {
+    layer.even = random.uniform() < 0.5;
+    layer.lattice = {{1, 0, 0}, {random.uniform(-0.5, 0.5), 1, 0}, {0, random.uniform(-0.5, 0.5), 0.8}};
+  }
   return layer;
 }
 
@@ -207,6 +225,76 @@ TEST(SpotNoise, GroupsDoNotMatter) {
     noise.evaluate(300, x.data(), y.data(), z.data(), h.data());
     for (std::size_t i = 0; i < h.size(); i += 3) ASSERT_EQ(h[i], height_at(noise, x[i], y[i], z[i]));
   }
+}
+
+// A lone impulse: each part is the kernel, moved, stretched and turned.
+TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
+  SpotLayer layer = small_spots(0.02);
+  layer.size = 0.1;
+  layer.amplitude = 2.0;
+  layer.alpha = 1.5;
+  layer.kappa = -0.4;
+  layer.gamma = 0.5;
+  layer.parts = {{{1, 0, 0}, {2, 0.5, 1}, {0, 0, 30}, 0.75}, {{0, -2, 1}, {1, 1, 3}, {90, 0, 0}, -1.0}};
+  const SpotNoise noise(layer, 8, 0, kDomain);
+  ASSERT_EQ(noise.num_kinds(), 2);
+  SpotLayer plain = layer;
+  plain.parts.clear();
+  const SpotImpulse spot =
+      SpotNoise(plain, 8, 0, kDomain).impulses_reaching(0, {{0, 0, 0}, {20, 20, 20}}).front();
+  const auto kernel = [](const Vec3d& q) {
+    const double q2 = squared_norm(q);
+    return q2 <= 4.0 ? std::exp(-1.5 * q2) - 0.4 * std::exp(-10 * std::pow(std::log(0.5 * q2), 2)) : 0.0;
+  };
+  const double c = std::cos(std::acos(-1.0) / 6), s = 0.5;
+  CounterRandom random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d q{random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)};
+    const Vec3d u{q.x - 1, q.y, q.z}, first{(c * u.x + s * u.y) / 2, (c * u.y - s * u.x) / 0.5, u.z};
+    const Vec3d v{q.x, q.y + 2, q.z - 1}, second{v.x, v.z, -v.y / 3};  // z turned about x to -y
+    if (std::fabs(squared_norm(first) - 4) < 1e-2 || std::fabs(squared_norm(second) - 4) < 1e-2) continue;
+    const double expected = -2.0 * static_cast<double>(spot.weight) * (0.75 * kernel(first) - kernel(second));
+    const float x = spot.x + 0.1f * static_cast<float>(q.x), y = spot.y + 0.1f * static_cast<float>(q.y),
+                z = spot.z + 0.1f * static_cast<float>(q.z);
+    ASSERT_NEAR(static_cast<double>(height_at(noise, x, y, z)), expected, 2e-4);
+  }
+}
+
+// One spot in the middle of every cell of an oblique lattice: the height repeats along each of its edges.
+TEST(SpotNoise, AnEvenLatticeRepeats) {
+  SpotLayer layer = small_spots(1.0);
+  layer.size = 0.3;
+  layer.even = true;
+  layer.reach = -0.5;
+  layer.least_weight = 1.0;
+  layer.lattice = {{1, 0, 0}, {0.5, 0.75, 0}, {0.25, 0, 1.25}};
+  const SpotNoise noise(layer, 5, 0, kDomain);
+  CounterRandom random(2);
+  double lowest = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    const auto at = [&] { return static_cast<float>(random.uniform(-9, 9)); };
+    const float x = at(), y = at(), z = at(), height = height_at(noise, x, y, z);
+    ASSERT_NEAR(height_at(noise, x + 1.0f, y, z), height, 1e-4f);
+    ASSERT_NEAR(height_at(noise, x + 0.5f, y + 0.75f, z), height, 1e-4f);
+    ASSERT_NEAR(height_at(noise, x + 0.25f, y, z + 1.25f), height, 1e-4f);
+    lowest = std::min(lowest, static_cast<double>(height));
+  }
+  EXPECT_LT(lowest, -0.5);
+  EXPECT_NEAR(height_at(noise, 0.875f, 0.375f, 0.625f), -1.0f, 1e-3f);
+}
+
+TEST(SpotNoise, EvenCellsHoldTheFractionByChance) {
+  SpotLayer layer = small_spots(2.25);
+  layer.even = true;
+  double total = 0.0;
+  int others = 0;  // whose impulse is rounded onto the side of the next cell
+  for (const int count : counts_by_cell(layer)) {
+    others += count != 2 && count != 3;
+    total += count;
+  }
+  EXPECT_LE(others, 8);
+  const double cells = kSide * kSide * kSide;
+  EXPECT_NEAR(total / cells, 2.25, 4.0 * std::sqrt(0.25 * 0.75 / cells));
 }
 
 TEST(SpotNoise, NoDensityNoSpots) {
