@@ -20,14 +20,16 @@ struct DeviceOption {
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   }
 
-  // Looks at the GPU unless told not to. Where there is none, notes so; with "cuda" that is an InputError.
-  // States in the summary what computes.
+  // Looks at the GPU unless told not to. Where there is none, the CPU computes without a word; one that
+  // cannot be trusted is worth a word, and with "cuda" either is an InputError. States in the summary what
+  // computes.
   bool use_gpu(Program& program) const {
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
       throw InputError("--device cuda: " + status.reason + "; leave it out for the CPU");
     }
-    if (!status.usable && device == "auto") program.note("no GPU: " + status.reason + "; the CPU computes");
+    const bool is_there = status.compute_capability > 0;
+    if (is_there && !status.usable) program.note(status.name + " is not used: " + status.reason);
     program.summary["device"] = status.usable ? status.name : "cpu";
     return status.usable;
   }
