@@ -100,7 +100,7 @@ int choose_resolution(Program& program, const MeshSizeRequest& request,
                                   {"seconds", growth.seconds(mesh)}};
   if (memory > memory_limit(request.max_memory_gb)) {
     throw InputError(fmt::format(
-        "{}: the mesh of about {} triangles needs {:.1f} GB of memory, more than {:.1f} GB; "
+        "{}: the mesh of about {} triangles needs {:.2g} GB of memory, more than {:.2g} GB; "
         "lower the resolution, raise --max-memory{}",
         output.string(), rounded(mesh.triangles), memory / 1e9, memory_limit(request.max_memory_gb) / 1e9,
         cost.memory > 0.0 ? ", or write .ply without --preview, which is streamed" : ""));

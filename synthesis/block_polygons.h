@@ -135,28 +135,33 @@ ASTROLITH_HD inline float crossing_fraction(float from, float to) {
   return t >= kEndMargin ? (t <= 1.0f - kEndMargin ? t : 1.0f - kEndMargin) : kEndMargin;
 }
 
-// The vertex on the edge that ends at local sample x, y, z along axis; its normal is the axis's direction
-// out of the body until a better one is known.
-template <int B>
-ASTROLITH_HD MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block, int x,
-                                     int y, int z, int axis) {
-  const int gx = block.x * B + x, gy = block.y * B + y, gz = layer_z * B + z;
-  const float from = block.values[LayerBlock<B>::sample(x - (axis == 0), y - (axis == 1), z - (axis == 2))];
-  const float to = block.values[LayerBlock<B>::sample(x, y, z)];
-  const float t = crossing_fraction(from, to);
-  const float out = to > 0.0f ? -1.0f : 1.0f;
-  MeshVertex vertex{{grid.samples.x(gx), grid.samples.y(gy), grid.samples.z(gz)}, {}};
+// The vertex on the edge that ends at sample x, y, z of the grid along axis, at this fraction of it; its
+// normal is the axis's direction out of the body until a better one is known.
+ASTROLITH_HD inline MeshVertex vertex_on_edge(const SampleGrid& grid, int x, int y, int z, int axis, float t,
+                                              bool upper_inside) {
+  const float out = upper_inside ? -1.0f : 1.0f;
+  MeshVertex vertex{{grid.x(x), grid.y(y), grid.z(z)}, {}};
   if (axis == 0) {
-    vertex.position.x = std::lerp(grid.samples.x(gx - 1), vertex.position.x, t);
+    vertex.position.x = std::lerp(grid.x(x - 1), vertex.position.x, t);
     vertex.normal.x = out;
   } else if (axis == 1) {
-    vertex.position.y = std::lerp(grid.samples.y(gy - 1), vertex.position.y, t);
+    vertex.position.y = std::lerp(grid.y(y - 1), vertex.position.y, t);
     vertex.normal.y = out;
   } else {
-    vertex.position.z = std::lerp(grid.samples.z(gz - 1), vertex.position.z, t);
+    vertex.position.z = std::lerp(grid.z(z - 1), vertex.position.z, t);
     vertex.normal.z = out;
   }
   return vertex;
+}
+
+// At local sample x, y, z of a block.
+template <int B>
+ASTROLITH_HD MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block, int x,
+                                     int y, int z, int axis) {
+  const float from = block.values[LayerBlock<B>::sample(x - (axis == 0), y - (axis == 1), z - (axis == 2))];
+  const float to = block.values[LayerBlock<B>::sample(x, y, z)];
+  return vertex_on_edge(grid.samples, block.x * B + x, block.y * B + y, layer_z * B + z, axis,
+                        crossing_fraction(from, to), to > 0.0f);
 }
 
 // Finished together: enough to keep a field's vector loops busy, few enough for the stack.
