@@ -150,6 +150,21 @@ void add_operation(CounterRandom& random, MetaballBody& body) {
   body.operations.push_back(std::move(operation));
 }
 
+// Spots of several parts on oblique lattices.
+void compose_spots(CounterRandom& random, Recipe& recipe) {
+  for (Layer& layer : recipe.layers) {
+    auto* spots = std::get_if<SpotLayer>(&layer);
+    if (spots == nullptr || random.uniform() < 0.5) continue;
+    spots->even = random.uniform() < 0.5;
+    spots->reach = random.uniform(-0.5, 0.5);
+    spots->lattice.b = {random.uniform(-0.5, 0.5), 1.0, 0.0};
+    SpotPart& part = spots->parts.emplace_back();
+    part.axes = {random.uniform(0.3, 0.8), random.uniform(0.3, 0.8), random.uniform(0.3, 0.8)};
+    part.turn = {random.uniform(-90, 90), 0.0, random.uniform(-90, 90)};
+    spots->parts.push_back({{random.uniform(-0.3, 0.3), 0.2, 0.0}, {0.5, 0.6, 0.7}, {}, -0.5});
+  }
+}
+
 Recipe random_recipe(std::uint64_t seed) {
   CounterRandom random(seed);
   Recipe recipe =
@@ -179,6 +194,8 @@ Recipe random_recipe(std::uint64_t seed) {
   }
   if (random.uniform() < 0.25) add_operation(random, *recipe.body);
   if (CounterRandom own(seed, 1); own.uniform() < 0.3) choose_joins(own, recipe);
+  CounterRandom for_spots(seed, 2);
+  compose_spots(for_spots, recipe);
   add_features(random, recipe);
   return recipe;
 }

@@ -31,6 +31,9 @@ SpotLayer random_spots(CounterRandom& random) {
   layer.kappa = random.uniform(-0.5, 0.5);
   layer.inverted = random.below(2) == 0;
   layer.layers = 1 + static_cast<int>(random.below(3));
+  layer.lattice.b = {0.4, 0.9, 0.0};
+  layer.parts = {{{0.1, 0.0, 0.2}, {1.0, 0.5, 0.8}, {0, 40, 30}, 1.0},
+                 {{0, 0.3, 0}, {0.5, 0.5, 0.5}, {}, -0.5}};
   return layer;
 }
 
