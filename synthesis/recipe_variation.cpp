@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "numerics/hash_random.h"
@@ -82,16 +83,40 @@ class Deformation {
   Vec3d stretch_{1, 1, 1};
 };
 
-void vary(FractalLayer& layer, double strength, CounterRandom random) {
-  layer.amplitude =
-      round_to_seven_digits(layer.amplitude * std::exp(kAmplitudeChange * strength * random.normal()));
+// Returns by what the layer's heights have grown.
+double vary(FractalLayer& layer, double strength, CounterRandom random) {
+  const double growth = std::exp(kAmplitudeChange * strength * random.normal());
+  layer.amplitude = round_to_seven_digits(layer.amplitude * growth);
   layer.frequency =
       round_to_seven_digits(layer.frequency * std::exp(kFrequencyChange * strength * random.normal()));
+  return growth;
 }
 
 // Other layers change with the seed alone.
 template <typename OtherLayer>
-void vary(OtherLayer&, double, CounterRandom) {}
+double vary(OtherLayer&, double, CounterRandom) {
+  return 1.0;
+}
+
+const std::string& name_of(const Layer& layer) {
+  return std::visit([](const auto& l) -> const std::string& { return l.name; }, layer);
+}
+
+// A mask follows the heights that it asks for, those of the last layer of its name before, and a blend's
+// joint those that it joins: what was covered stays covered. `growth` of each layer's heights.
+void follow_heights(const std::vector<double>& growth, std::vector<Layer>& layers) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    LayerUse* use = use_of(layers[i]);
+    if (use == nullptr) continue;
+    use->combination.width = round_to_seven_digits(use->combination.width * growth[i]);
+    if (!use->mask) continue;
+    std::size_t asked = i;
+    while (asked > 0 && name_of(layers[asked - 1]) != use->mask->layer) --asked;
+    if (asked == 0) continue;
+    use->mask->from = round_to_seven_digits(use->mask->from * growth[asked - 1]);
+    use->mask->to = round_to_seven_digits(use->mask->to * growth[asked - 1]);
+  }
+}
 
 }  // namespace
 
@@ -105,10 +130,13 @@ Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variatio
     s.radius = round_to_seven_digits(s.radius * deform.growth(s.center));
     s.center = {round_to_seven_digits(c.x), round_to_seven_digits(c.y), round_to_seven_digits(c.z)};
   });
+  std::vector<double> growth;
   for (std::size_t i = 0; i < varied.layers.size(); ++i) {
     const CounterRandom random(variation_seed, (std::uint64_t{kLayerStream} << 32) + i);
-    std::visit([&](auto& layer) { vary(layer, strength, random); }, varied.layers[i]);
+    growth.push_back(
+        std::visit([&](auto& layer) { return vary(layer, strength, random); }, varied.layers[i]));
   }
+  follow_heights(growth, varied.layers);
   return varied;
 }
 

@@ -9,9 +9,9 @@ namespace astrolith {
 
 // The recipe with another seed, so that every noise is drawn anew, and, in proportion to `strength` >= 0,
 //   - the whole body stretched along its axes and bent by noise about as wide as itself: spheres move
-//   together
-//     and grow with the space around them, so that what was joined stays joined;
-//   - amplitudes and frequencies of fractal layers multiplied by log-normal factors.
+//     together and grow with the space around them, so that what was joined stays joined;
+//   - amplitudes and frequencies of fractal layers multiplied by log-normal factors; masks and joints of
+//     blends follow the heights they are about.
 // At strength 1 axes change by about a third, and details by about a half. The same recipe, strength and
 // variation seed give the same recipe; strengths of one seed lie on one path. Provenance stays that of the
 // original but for what it achieved. Expects a valid recipe with a body.

@@ -63,6 +63,27 @@ TEST(RecipeVariation, WithoutStrengthOnlyTheNoiseIsNew) {
   EXPECT_EQ(std::get<FractalLayer>(varied.layers[0]).amplitude, 0.02);
 }
 
+// Dust where the hills are low, joined to them: after a variation it lies where their heights are as low a
+// share.
+TEST(RecipeVariation, MasksAndJointsFollowTheHeights) {
+  Recipe recipe = worm();
+  std::get<FractalLayer>(recipe.layers[0]).name = "hills";
+  FractalLayer dust = std::get<FractalLayer>(recipe.layers[0]);
+  dust.name = "dust";
+  dust.amplitude = 0.01;
+  dust.use.mask = LayerMask{"hills", 0.005, -0.01};
+  dust.use.combination.kind = Combine::kBlend;
+  dust.use.combination.width = 0.002;
+  recipe.layers.push_back(dust);
+  const Recipe varied = vary_recipe(recipe, 0.8, 5);
+  const auto& hills = std::get<FractalLayer>(varied.layers[0]);
+  const auto& changed = std::get<FractalLayer>(varied.layers[1]);
+  EXPECT_GT(std::fabs(hills.amplitude / 0.02 - 1.0), 0.01);
+  EXPECT_NEAR(changed.use.mask->from / 0.005, hills.amplitude / 0.02, 1e-5);
+  EXPECT_NEAR(changed.use.mask->to / -0.01, hills.amplitude / 0.02, 1e-5);
+  EXPECT_NEAR(changed.use.combination.width / 0.002, changed.amplitude / 0.01, 1e-5);
+}
+
 TEST(RecipeVariation, WhatWasJoinedStaysJoined) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const ImplicitField field(vary_recipe(worm(), 0.6, seed));
