@@ -3,6 +3,7 @@
 #include "cuda/device.h"
 #include "cuda/device_buffer.h"
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 #include "numerics/scalar_math.h"
 
 namespace astrolith {
@@ -10,25 +11,34 @@ namespace {
 
 constexpr int kProbeSize = 1024;
 
-// Touches everything the field functions are made of.
-ASTROLITH_HD float probe_value(std::uint32_t i) {
+// Touches everything the field functions and their bounds are made of.
+struct Probe {
+  std::int32_t single;
+  std::int64_t wide;
+};
+ASTROLITH_HD Probe probe_value(std::uint32_t i) {
   const float x = 20.0f * unit_float(hash_cell(hash_seed(7, 1), static_cast<std::int32_t>(i), 2, 3)) - 10.0f;
-  return math::exp(x) + math::log(math::abs(x)) * math::sin_turns(x) / math::sqrt(math::fma(x, x, 1.0f));
+  const float point =
+      math::exp(x) + math::log(math::abs(x)) * math::sin_turns(x) / math::sqrt(math::fma(x, x, 1.0f));
+  const double y = static_cast<double>(x);
+  const double bound = portable::exp(y) + portable::log(std::fabs(y)) / std::sqrt(std::fma(y, y, 1.0));
+  return {math::bits_of(point), portable::bits_of(bound)};
 }
 
-__global__ void probe_kernel(float* out) {
+__global__ void probe_kernel(Probe* out) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i < kProbeSize) out[i] = probe_value(i);
 }
 
 bool device_agrees_with_host() {
-  DeviceBuffer<float> buffer(kProbeSize);
+  DeviceBuffer<Probe> buffer(kProbeSize);
   probe_kernel<<<kProbeSize / 128, 128>>>(buffer.data());
   check_cuda(cudaGetLastError(), "launching the probe");
-  std::array<float, kProbeSize> values{};
+  std::array<Probe, kProbeSize> values{};
   buffer.download(values);
   for (std::uint32_t i = 0; i < kProbeSize; ++i) {
-    if (math::bits_of(values[i]) != math::bits_of(probe_value(i))) return false;
+    const Probe known = probe_value(i);
+    if (values[i].single != known.single || values[i].wide != known.wide) return false;
   }
   return true;
 }
@@ -38,8 +48,14 @@ bool device_agrees_with_host() {
 DeviceStatus probe_device() {
   DeviceStatus status;
   int count = 0;
-  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
+  const cudaError_t found = cudaGetDeviceCount(&count);
+  if (found != cudaSuccess || count == 0) {
     status.reason = "no CUDA device";
+    if (found == cudaErrorInsufficientDriver) {
+      status.reason += " (its driver is missing, or older than this program)";
+    } else if (found != cudaSuccess && found != cudaErrorNoDevice) {
+      status.reason += std::string(" (") + cudaGetErrorString(found) + ")";
+    }
     return status;
   }
   try {

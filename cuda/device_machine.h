@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cub/device/device_scan.cuh>
+#include <limits>
 
 #include "cuda/device_buffer.h"
 #include "cuda/machine.h"
@@ -40,7 +41,8 @@ __global__ void run_threads(std::size_t threads, Body body) {
 
 template <typename Body>
 __global__ void run_groups(Body body) {
-  __shared__ std::uint64_t shared[kSharedBytes / sizeof(std::uint64_t)];
+  static_assert(Body::kGroupBytes <= kSharedBytes);
+  __shared__ std::uint64_t shared[(Body::kGroupBytes + 7) / sizeof(std::uint64_t)];
   body(DeviceGroup(blockIdx.x, shared));
 }
 
@@ -66,6 +68,13 @@ class DeviceMachine {
   void download(const Array<T>& array, std::span<T> values) {
     array.download(values);
   }
+  template <typename T>
+  T read(const Array<T>& array, std::size_t index) {
+    T value;
+    check_cuda(cudaMemcpy(&value, array.data() + index, sizeof(T), cudaMemcpyDeviceToHost),
+               "reading a value from the device");
+    return value;
+  }
 
   template <typename Body>
   void launch(const char* what, std::size_t threads, const Body& body) {
@@ -83,6 +92,9 @@ class DeviceMachine {
   // For all launches to end.
   void wait() { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }
   void running_sum(Array<std::uint32_t>& values) {
+    if (values.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw OutOfDeviceMemory("GPU: more than 2^31 counts");
+    }
     std::size_t bytes = 0;
     const auto sum = [&](void* scratch) {
       check_cuda(cub::DeviceScan::ExclusiveSum(scratch, bytes, values.data(), values.data(),

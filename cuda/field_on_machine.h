@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cuda/machine.h"
-#include "synthesis/flat_field_data.h"
+#include "synthesis/flat_blocks_data.h"
 
 namespace astrolith {
 
@@ -13,14 +13,18 @@ class FieldOnMachine {
       : view_(data.view()),
         layers_(upload(machine, data.layers, view_.layers)),
         leaves_(upload(machine, data.leaves, view_.leaves)),
+        spheres_(upload(machine, data.spheres, view_.spheres)),
         steps_(upload(machine, data.steps, view_.steps)),
         octaves_(upload(machine, data.octaves, view_.octaves)),
         weight_spheres_(upload(machine, data.weight_spheres, view_.weight_spheres)),
         sparse_levels_(upload(machine, data.sparse_levels, view_.sparse_levels)),
         spots_(upload(machine, data.spots, view_.spots)),
+        spot_thresholds_(upload(machine, data.spot_thresholds, view_.spot_thresholds)),
         waves_(upload(machine, data.waves, view_.waves)),
         bands_(upload(machine, data.bands, view_.bands)),
+        lobes_(upload(machine, data.lobes, view_.lobes)),
         craters_(upload(machine, data.craters, view_.craters)),
+        crater_layers_(upload(machine, data.crater_layers, view_.crater_layers)),
         boulders_(upload(machine, data.boulders, view_.boulders)) {}
 
   // With the machine's arrays.
@@ -41,14 +45,18 @@ class FieldOnMachine {
   FlatField view_;
   Array<FlatLayer> layers_;
   Array<FlatLeaf> leaves_;
+  Array<MetaballSphere<float>> spheres_;
   Array<FlatStep> steps_;
   Array<NoiseOctave> octaves_;
-  Array<FlatSphere> weight_spheres_;
+  Array<WeightSphere> weight_spheres_;
   Array<SparseLevel> sparse_levels_;
   Array<FlatSpots> spots_;
+  Array<std::uint32_t> spot_thresholds_;
   Array<Wave> waves_;
   Array<FlatBand> bands_;
+  Array<GaborLobeShare> lobes_;
   Array<CraterKernel> craters_;
+  Array<std::uint32_t> crater_layers_;
   Array<FlatBoulder> boulders_;
 };
 

@@ -1,5 +1,7 @@
 // The twin of a GPU on the CPU: arrays are vectors, a launch is a loop. It computes what the GPU does, thread
-// by thread, for tests; and it runs out of memory where it is told to.
+// by thread, for tests; it runs out of memory where it is told to, and threads come in any order that it is
+// told. Each array is an allocation of its own and a group's memory is as large as the group says, so that
+// the address sanitizer sees what reads or writes beyond one.
 #pragma once
 
 #include <algorithm>
@@ -15,31 +17,47 @@
 
 namespace astrolith {
 
+// In which order threads come: one after the other, or as seemingly at random as a step through them makes
+// it.
+struct HostOrder {
+  std::size_t seed = 0;  // 0: one after the other
+
+  // Calls step(i) for 0 .. n - 1.
+  template <typename Step>
+  void each(std::size_t n, const Step& step) const {
+    std::size_t stride = seed == 0 ? 1 : 1 + seed * 2654435761u % std::max<std::size_t>(n, 1);
+    while (std::gcd(stride, n) > 1) ++stride;
+    for (std::size_t i = 0, at = seed % std::max<std::size_t>(n, 1); i < n; ++i, at = (at + stride) % n)
+      step(at);
+  }
+};
+
 // The threads of a group one after the other.
 class HostGroup {
  public:
-  HostGroup(std::size_t index, unsigned threads, void* shared)
-      : index_(index), threads_(threads), shared_(shared) {}
+  HostGroup(std::size_t index, unsigned threads, void* shared, HostOrder order)
+      : index_(index), threads_(threads), shared_(shared), order_(order) {}
   ASTROLITH_HD std::size_t index() const { return index_; }
   ASTROLITH_HD unsigned threads() const { return threads_; }
-  // Of kSharedBytes; holds anything at first.
+  // Holds anything at first.
   ASTROLITH_HD void* shared() const { return shared_; }
   template <typename Step>
-  ASTROLITH_HD void each_thread(const Step& step) const {
-    for (unsigned thread = 0; thread < threads_; ++thread) step(thread);
+  void each_thread(const Step& step) const {
+    order_.each(threads_, [&](std::size_t thread) { step(static_cast<unsigned>(thread)); });
   }
 
  private:
   std::size_t index_;
   unsigned threads_;
   void* shared_;
+  HostOrder order_;
 };
 
 class HostMachine {
  public:
   // Bytes of its arrays together.
-  explicit HostMachine(std::size_t memory = std::numeric_limits<std::size_t>::max())
-      : left_(std::make_shared<std::size_t>(memory)) {}
+  explicit HostMachine(std::size_t memory = std::numeric_limits<std::size_t>::max(), HostOrder order = {})
+      : left_(std::make_shared<std::size_t>(memory)), order_(order) {}
 
   template <typename T>
   class Array {
@@ -94,17 +112,23 @@ class HostMachine {
     std::copy_n(array.data(), values.size(), values.begin());
   }
 
+  template <typename T>
+  T read(const Array<T>& array, std::size_t index) {
+    return array.data()[index];
+  }
+
   template <typename Body>
   void launch(const char*, std::size_t threads, const Body& body) {
-    for (std::size_t i = 0; i < threads; ++i) body(i);
+    order_.each(threads, body);
   }
   template <typename Body>
   void launch_groups(const char*, std::size_t groups, unsigned threads, const Body& body) {
-    std::vector<std::uint64_t> shared(kSharedBytes / sizeof(std::uint64_t));
-    for (std::size_t i = 0; i < groups; ++i) {
-      std::fill(shared.begin(), shared.end(), std::uint64_t{0x7777777777777777u});
-      body(HostGroup(i, threads, shared.data()));
-    }
+    static_assert(Body::kGroupBytes <= kSharedBytes);
+    std::vector<char> shared(Body::kGroupBytes);
+    order_.each(groups, [&](std::size_t i) {
+      std::fill(shared.begin(), shared.end(), char{0x77});
+      body(HostGroup(i, threads, shared.data(), order_));
+    });
   }
   void wait() {}
   // values[i] becomes the sum of those before it.
@@ -114,6 +138,7 @@ class HostMachine {
 
  private:
   std::shared_ptr<std::size_t> left_;
+  HostOrder order_;
 };
 
 }  // namespace astrolith

@@ -11,8 +11,9 @@
 //   }
 //
 // machine.launch_groups(what, groups, threads, body) calls body(group) for groups of threads that share
-// kSharedBytes of memory. There group.each_thread(step) calls step(thread) for every thread, and no thread
-// goes on before all have done: what a thread must remember from step to step stays in the shared memory.
+// Body::kGroupBytes of memory, kSharedBytes at most. There group.each_thread(step) calls step(thread) for
+// every thread, and no thread goes on before all have done: what a thread must remember from step to step
+// stays in the shared memory.
 #pragma once
 
 #include <cstddef>

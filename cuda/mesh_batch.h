@@ -15,6 +15,9 @@ namespace astrolith {
 using MeshBlock = LayerBlock<kBlockCells>;
 using MeshGrid = BlockGrid<kBlockCells>;
 
+// Why a batch could not be meshed; as a number in the machine's memory.
+enum class MeshFailure : std::uint32_t { kNone, kBorder, kMissingBlock, kOpenSide };
+
 struct BlockPlace {
   static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
 

@@ -8,9 +8,6 @@
 
 namespace astrolith {
 
-// Why a batch could not be meshed; as a number in the machine's memory.
-enum class MeshFailure : std::uint32_t { kNone, kBorder, kMissingBlock, kOpenSide };
-
 // A batch in a machine's memory.
 struct MeshBatch {
   static constexpr std::size_t kRows = std::size_t{kBlockCells} * kBlockCells;
@@ -84,31 +81,6 @@ struct StartBlocks {
 };
 
 // A thread a sample.
-struct EvaluateSamples {
-  MeshBatch batch;
-  float band;
-
-  ASTROLITH_HD void operator()(std::size_t thread) const {
-    const SampleThread t(thread);
-    MeshBlock& block = batch.blocks[t.block];
-    const int layer_z = batch.places[t.block].z;
-    const SampleRow row = row_to_evaluate(batch.grid, layer_z, batch.owners(t.block), block, t.y, t.z);
-    float value = kOutsideGrid;
-    if (t.x >= row.first && t.x <= row.last) {
-      const SampleGrid& samples = batch.grid.samples;
-      const int gx = block.x * kBlockCells + t.x, gy = block.y * kBlockCells + t.y,
-                gz = layer_z * kBlockCells + t.z;
-      const Vec3f p{samples.x(gx), samples.y(gy), samples.z(gz)};
-      value = flat_value(batch.field, batch.parts.block(t.block), p, band);
-      if (batch.grid.closed && value > 0.0f && on_border(batch.grid, gx, gy, gz)) {
-        batch.fail(MeshFailure::kBorder);
-      }
-    }
-    block.values[MeshBlock::sample(t.x, t.y, t.z)] = value;
-  }
-};
-
-// A thread a sample.
 struct BorrowSamples {
   MeshBatch batch;
 
@@ -165,13 +137,12 @@ struct CountRows {
   }
 };
 
-// A thread a row of owned samples: its vertices, with the normals of their edges, and the block of each.
+// A thread a row of owned samples: its vertices, with the normals of their edges.
 struct PlaceVertices {
   MeshBatch batch;
   const std::uint32_t* first;  // by row of the batch
   std::uint32_t first_number;  // of the batch's vertices in the mesh
   MeshVertex* vertices;
-  std::uint32_t* block_of;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
     const RowThread t(thread);
@@ -180,27 +151,8 @@ struct PlaceVertices {
     std::uint32_t next = first[place.row(static_cast<std::uint32_t>(t.block), t.y, t.z)];
     for_each_meshed_edge_of_row(block, batch.window(t.block), t.y, t.z, [&](int x, int y, int z, int axis) {
       block.vertices[3 * MeshBlock::sample(x, y, z) + static_cast<unsigned>(axis)] = first_number + next;
-      vertices[next] = place_vertex(batch.grid, place.z, block, x, y, z, axis);
-      block_of[next++] = static_cast<std::uint32_t>(t.block);
+      vertices[next++] = place_vertex(batch.grid, place.z, block, x, y, z, axis);
     });
-  }
-};
-
-// A thread a vertex.
-struct TakeNormals {
-  MeshBatch batch;
-  float h;
-  MeshVertex* vertices;
-  const std::uint32_t* block_of;
-
-  ASTROLITH_HD void operator()(std::size_t i) const {
-    MeshVertex& vertex = vertices[i];
-    const FlatBlock block = batch.parts.block(block_of[i]);
-    Vec3f corners[4];
-    for (int k = 0; k < 4; ++k) corners[k] = normal_probe(vertex.position, h, k);
-    float values[4];
-    flat_tetrahedron(batch.field, block, corners, values);
-    take_normal(values, vertex);
   }
 };
 

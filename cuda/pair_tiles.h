@@ -45,6 +45,8 @@ struct CountPairTiles {
   static constexpr std::int64_t kWindow = std::min(kCodes, kCounters);  // codes counted in one pass
   static constexpr std::int64_t kCopies = std::min<std::int64_t>(kCounters / kWindow, kTileRows / 32);
 
+  static constexpr std::size_t kGroupBytes = kSharedBytes;
+
   const PairTile* tiles;
   const float* surflets;
   std::size_t stride;

@@ -4,7 +4,8 @@
 #   gpu.sh binaries FILE.tar.gz  here: builds them, and packs the programs with the libraries they load; that machine
 #                                then needs a driver alone
 #   gpu.sh build                 there, in the unpacked sources: builds them (scripts/setup.sh --synth installs the packages)
-#   gpu.sh run                   there: tests, compute-sanitizer where it is installed, and the benchmark's table
+#   gpu.sh run                   there: tests, compute-sanitizer where it is installed, and the benchmark's table; exit status 3
+#                                where there is no GPU to use
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,7 +13,13 @@ folders=(numerics recipe geometry descriptor synthesis cuda apps cmake scripts t
 build=build/synth-only
 programs=("$build/bin/synth" "$build/bin/describe" "$build/tests/cuda/cuda_tests" "$build/tests/cuda/gpu_benchmark")
 
+refuse() {
+  echo "gpu.sh: $1" >&2
+  exit 1
+}
+
 build_programs() {
+  command -v "${CUDACXX:-nvcc}" >/dev/null || refuse "nvcc is not here, without which nothing for a GPU can be built: install CUDA's compiler, put it on the PATH"
   scripts/build.sh synth-only synth describe cuda_tests gpu_benchmark
 }
 
@@ -23,6 +30,8 @@ pack_binaries() {
   trap 'rm -rf "$pack"' EXIT
   mkdir -p "$pack/astrolith/scripts" "$pack/astrolith/lib"
   cp scripts/gpu.sh "$pack/astrolith/scripts/"
+  mkdir "$pack/astrolith/synthesis"
+  cp -r synthesis/examples "$pack/astrolith/synthesis/"
   for program in "${programs[@]}"; do
     install -D "$program" "$pack/astrolith/$program"
     ldd "$program" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm|ld-linux[^/]*|libpthread|libdl|librt)\.so' |
@@ -31,23 +40,29 @@ pack_binaries() {
   tar -C "$pack" -czf "$1" astrolith
 }
 
+sanitize() {
+  if ! command -v compute-sanitizer >/dev/null; then
+    echo "compute-sanitizer is not installed here: left out"
+    return
+  fi
+  for tool in memcheck racecheck synccheck initcheck; do
+    compute-sanitizer --tool "$tool" --error-exitcode 1 "${programs[2]}" --gtest_filter='*OnGpu*:Device*'
+  done
+}
+
 run() {
+  [[ -x "${programs[2]}" && -x "${programs[3]}" ]] ||
+    refuse "the programs are not here: unpack what 'gpu.sh binaries' packed, or run 'gpu.sh build' first"
   [[ -d lib ]] && export LD_LIBRARY_PATH=$PWD/lib
   date -u
+  if ! "${programs[3]}" --probe; then
+    echo "gpu.sh: the tests run on the host alone, and there is no table." >&2
+    "${programs[2]}"
+    exit 3
+  fi
   "${programs[2]}"
-  if command -v compute-sanitizer >/dev/null; then
-    for tool in memcheck racecheck synccheck; do
-      compute-sanitizer --tool "$tool" --error-exitcode 1 "${programs[2]}" --gtest_filter='*OnGpu*:Device*'
-    done
-  else
-    echo "compute-sanitizer is not installed here: left out"
-  fi
+  sanitize
   "${programs[3]}"
-  if command -v cuobjdump >/dev/null; then
-    echo
-    echo "Instructions of the kernels, counted in the machine code of the newest architecture:"
-    cuobjdump -sass -arch sm_90 "${programs[3]}" | awk '/Function :/ {name=$3} /^ *\/\*[0-9a-f]+\*\/ / {n[name]++} END {for (k in n) print n[k], k}' | sort -n
-  fi
 }
 
 case "${1:-} ${2:-}" in

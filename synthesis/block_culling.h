@@ -76,7 +76,7 @@ struct BlockGrid {
     return local;
   }
   // Half a step wider than its samples, so that normals can be taken at its border.
-  Box box(int x, int y, int z, int size) const {
+  ASTROLITH_HD Box box(int x, int y, int z, int size) const {
     const auto last = [&](unsigned axis, int block) { return std::min(block * B, samples.cells[axis]); };
     return samples.box({x * B, y * B, z * B}, {last(0, x + size), last(1, y + size), last(2, z + 1)},
                        0.5 * samples.step);

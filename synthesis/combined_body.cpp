@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
-#include "synthesis/largest_coordinate.h"
+#include "synthesis/operator_bounds.h"
 #include "synthesis/surface_projection.h"
 
 namespace astrolith {
@@ -75,41 +75,12 @@ void combine(const OperatorParameters<double>& parameters, int n, Columns& other
   }
 }
 
-// s of the metaballs from what is certain about their level and divisor.
 Interval bound_leaf(const PreparedBody& body, const Box& box, double height) {
   const Box at = body.warp ? body.warp->image(box) : box;
   const MetaballInterval all = bound_metaballs(body.metaballs, at);
-  const double least = 0.999 * std::sqrt(static_cast<double>(body.metaballs.parameters.gradient_floor));
-  Interval s{all.level_min / (all.level_min > 0.0 ? all.gradient_max : least),
-             all.level_max / (all.level_max < 0.0 ? all.gradient_max : least)};
-  if (height == 0.0 || (all.level_min <= 0.0 && all.level_max >= 0.0)) return s;
-  const double reach = height * bound_metaballs(body.metaballs, at, height).gradient_max;
-  if (all.level_max < -reach) s.high = std::min(s.high, -height);
-  if (all.level_min > reach) s.low = std::max(s.low, height);
-  return s;
-}
-
-// Of (v / reach)^2 for v in an interval.
-Interval squares(const Interval& v, double inverse_reach) {
-  const double a = v.low * inverse_reach, b = v.high * inverse_reach;
-  const double near = a > 0.0 ? a : b < 0.0 ? b : 0.0, far = std::max(std::fabs(a), std::fabs(b));
-  return {near * near, far * far};
-}
-
-Interval combined_interval(const OperatorParameters<double>& o, const Interval& f, const Interval& g) {
-  OperatorParameters<double> monotone = o;
-  monotone.bulge = 0.0;
-  const bool difference = o.kind == Operator::kDifference;
-  Interval s{combined(monotone, f.low, difference ? g.high : g.low),
-             combined(monotone, f.high, difference ? g.low : g.high)};
-  if (o.kind == Operator::kCleanUnion) {
-    const Interval u = squares(f, o.inverse_reach[0]), v = squares(g, o.inverse_reach[1]);
-    const double nearest = o.bulge / (1.0 + u.low + v.low), farthest = o.bulge / (1.0 + u.high + v.high);
-    s.low += std::min(nearest, farthest) - 1e-5 * std::fabs(o.bulge);
-    s.high += std::max(nearest, farthest) + 1e-5 * std::fabs(o.bulge);
-  }
-  const double rounding = o.kind == Operator::kBlend ? 1e-5 * o.width : 0.0;
-  return {s.low - 2e-5 * std::fabs(s.low) - rounding, s.high + 2e-5 * std::fabs(s.high) + rounding};
+  const double near =
+      is_off_surface(all, height) ? bound_metaballs(body.metaballs, at, height).gradient_max : 0.0;
+  return bound_leaf_distance(body.metaballs.parameters, all, height, near);
 }
 
 // The largest sum of |ds/df| and |ds/dg|.
@@ -179,7 +150,7 @@ void evaluate_body(const PreparedBody& body, int n, const float* x, const float*
 Interval bound_distance(const PreparedBody& body, const Box& box, double height) {
   Interval s = bound_leaf(body, box, height);
   for (const PreparedOperation& o : body.operations) {
-    s = combined_interval(o.parameters, s, bound_distance(o.operand, box, height));
+    s = bound_combined(o.parameters, s, bound_distance(o.operand, box, height));
   }
   return s;
 }

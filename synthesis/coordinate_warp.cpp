@@ -5,7 +5,7 @@
 
 #include "numerics/hash_random.h"
 #include "numerics/scalar_math.h"
-#include "synthesis/largest_coordinate.h"
+#include "synthesis/octave_bounds.h"
 
 namespace astrolith {
 namespace {
@@ -17,11 +17,6 @@ ASTROLITH_SIMD_CLONES void clamp_all(int n, const float* __restrict p, float low
                                      float* __restrict clamped) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) clamped[i] = math::clamp(p[i], low, high);
-}
-
-Vec3d clamped(const Vec3d& p, const Vec3f& low, const Vec3f& high) {
-  return {std::clamp(p.x, double{low.x}, double{high.x}), std::clamp(p.y, double{low.y}, double{high.y}),
-          std::clamp(p.z, double{low.z}, double{high.z})};
 }
 
 }  // namespace
@@ -64,15 +59,11 @@ void CoordinateWarp::evaluate(int n, const float* x, const float* y, const float
 }
 
 Box CoordinateWarp::image(const Box& box) const {
-  const Box inside{clamped(box.min, domain_min_, domain_max_), clamped(box.max, domain_min_, domain_max_)};
+  const Box inside = moved_into(box, domain_min_, domain_max_);
   const auto displacement = [&](std::size_t axis) {
     return bound_sum(Noise::kSimplex, octaves_[axis], inside, false);
   };
-  const Interval dx = displacement(0), dy = displacement(1), dz = displacement(2);
-  const double rounding = 1e-6 * (largest_coordinate(box) + bound_);
-  const Vec3d margin{rounding, rounding, rounding};
-  return {box.min + Vec3d{dx.low, dy.low, dz.low} - margin,
-          box.max + Vec3d{dx.high, dy.high, dz.high} + margin};
+  return displaced_box(box, displacement(0), displacement(1), displacement(2), bound_);
 }
 
 }  // namespace astrolith

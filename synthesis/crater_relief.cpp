@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "numerics/errors.h"
-#include "synthesis/largest_coordinate.h"
-#include "synthesis/metaball_box_internal.h"
+#include "synthesis/crater_bounds.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kSlack = 1e-5;           // relative, for the rounding of distances and heights
 constexpr double kMostOverlaps = 2000.0;  // of craters at a place, on average: what a point may cost
 constexpr double kClip = 2.0;             // of craters that pile up, in the greatest relief of one
 
@@ -96,14 +94,6 @@ CraterKernel kernel_of(const CraterProfile& profile, const PlacedCrater& crater,
   return kernel;
 }
 
-Box reach_of(const CraterKernel& c) {
-  const double reach =
-      std::sqrt(double{c.extent_squared} / double{c.inverse_radius_squared}) * (1.0 + kSlack);
-  const Vec3d center{c.x, c.y, c.z};
-  const Box box{center, center};
-  return widened(box, reach + 1e-6 * largest_coordinate(box));
-}
-
 ASTROLITH_SIMD_CLONES void apply_crater(const CraterKernel& kernel, int n, const float* __restrict x,
                                         const float* __restrict y, const float* __restrict z,
                                         float* __restrict elevation) {
@@ -112,44 +102,6 @@ ASTROLITH_SIMD_CLONES void apply_crater(const CraterKernel& kernel, int n, const
   for (int i = 0; i < n; ++i) {
     elevation[i] = cratered(crater, crater_distance_squared(crater, x[i], y[i], z[i]), elevation[i]);
   }
-}
-
-// x^2 over a box.
-Interval squared_range(const CraterKernel& c, const Box& box) {
-  const MetaballSphere<float> sphere{{c.x, c.y, c.z}, 0.0f};
-  const SquaredDistances range = squared_distances(sphere, box);
-  const double scale = double{c.inverse_radius_squared};
-  const double rounding = 2e-6 * std::sqrt(scale) * largest_coordinate(box);  // of x, by that of positions
-  const double near = std::max(0.0, std::sqrt(range.nearest * scale) * (1.0 - kSlack) - rounding);
-  const double far = std::sqrt(range.farthest * scale) * (1.0 + kSlack) + rounding;
-  return {near * near, far * far};
-}
-
-// Cavities rise with x, rims and peaks fall.
-Interval bound_height(const CraterKernel& c, const Interval& x_squared) {
-  const float low = static_cast<float>(x_squared.low), high = static_cast<float>(x_squared.high);
-  const float cavity_low = crater_cavity(c, low), cavity_high = crater_cavity(c, high);
-  const float rim_low = crater_rim(c, high), rim_high = crater_rim(c, low);
-  const double k = double{c.smoothing} / 4.0, floor = -double{c.depth};
-  const double pit_low = double{std::min(std::min(cavity_low, rim_high), std::min(cavity_high, rim_low))} - k;
-  const double pit_high = double{std::min({cavity_high, rim_high, c.rim_height})};
-  const double peak_low = double{crater_peak(c, high)}, peak_high = double{crater_peak(c, low)};
-  const double slack = kSlack * (double{c.depth} + double{c.rim_height} + double{c.peak_height});
-  Interval height{std::max(pit_low, floor) + peak_low - slack,
-                  std::max(pit_high, floor) + k + peak_high + slack};
-  if (high >= c.extent_squared) height = {std::min(height.low, 0.0), std::max(height.high, 0.0)};
-  return height;
-}
-
-// As `cratered`.
-Interval bound_cratered(const CraterKernel& c, const Interval& x_squared, const Interval& before) {
-  const double least = std::min(x_squared.low, 1.0), most = std::min(x_squared.high, 1.0);
-  const double base = double{c.base};
-  const Interval height = bound_height(c, x_squared);
-  const double slack = kSlack * (std::fabs(base) + std::max(std::fabs(before.low), std::fabs(before.high)));
-  const auto kept = [&](double elevation, double share) { return base + (elevation - base) * share; };
-  return {std::min(kept(before.low, least), kept(before.low, most)) + height.low - slack,
-          std::max(kept(before.high, least), kept(before.high, most)) + height.high + slack};
 }
 
 }  // namespace
@@ -174,7 +126,7 @@ CraterRelief::CraterRelief(const CraterLayer& layer, std::span<const PlacedCrate
   for (std::size_t i = 0; i < oldest_first.size(); ++i) {
     const PlacedCrater& crater = oldest_first[i];
     craters_.push_back(kernel_of(profile_of(layer, crater.complex), crater, centers[i]));
-    boxes.push_back(reach_of(craters_.back()));
+    boxes.push_back(crater_reach(craters_.back()));
     const double peak = double{craters_.back().peak_height};
     greatest = std::max({greatest, crater.depth, crater.rim_height + peak});
   }
@@ -208,7 +160,7 @@ void CraterRelief::apply(int n, const float* x, const float* y, const float* z, 
 Interval CraterRelief::bound(const Box& box, const Interval& before) const {
   Interval elevation = before;
   for (const std::uint32_t k : tree_.touching(box)) {
-    elevation = bound_cratered(craters_[k], squared_range(craters_[k], box), elevation);
+    elevation = bound_cratered(craters_[k], box, elevation);
   }
   return {std::clamp(elevation.low, -elevation_bound_, elevation_bound_),
           std::clamp(elevation.high, -elevation_bound_, elevation_bound_)};

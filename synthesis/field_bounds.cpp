@@ -4,15 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include "synthesis/content_bounds.h"
 #include "synthesis/field_model_internal.h"
-#include "synthesis/largest_coordinate.h"
 
 namespace astrolith {
 namespace {
-
-constexpr double kRoundingSlack = 1e-5;  // of heights and their sums, relative to their bound
-
-Interval plus(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
 
 // A box as a layer needs it.
 struct LayerBox {
@@ -36,8 +32,6 @@ Interval bound_layer(const GaborSurfaceNoise& noise, const LayerBox&) {
 // Heights over a box that masks ask for, by slot.
 using KeptIntervals = std::vector<Interval>;
 
-Interval product(const Interval& a, const Interval& b) { return {a.low * b.low, a.high * b.high}; }
-
 // Weights over a box; neither is below 0.
 Interval bound_weight(const LayerJoin& join, const Box& box, const KeptIntervals& kept) {
   const Interval all{1.0, 1.0};
@@ -51,7 +45,7 @@ Interval bound_elevation(const Noise& noise, const LayerJoin& join, const LayerB
                          const Interval& before, KeptIntervals& kept) {
   const Interval heights = bound_layer(noise, at);
   if (join.keeps >= 0) {
-    const double slack = kRoundingSlack * join.height_bound;
+    const double slack = kHeightSlack * join.height_bound;
     kept[static_cast<std::size_t>(join.keeps)] = plus(heights, {-slack, slack});
   }
   return join.changes_elevation() ? joined(join.how, bound_weight(join, box, kept), before, heights) : before;
@@ -59,14 +53,6 @@ Interval bound_elevation(const Noise& noise, const LayerJoin& join, const LayerB
 Interval bound_elevation(const CraterRelief& relief, const LayerJoin&, const LayerBox& at, const Box&,
                          const Interval& before, KeptIntervals&) {
   return relief.bound(at.projected, before);
-}
-
-// A point is projected by its |s|, which no surface has above the bound of all heights.
-Box projected_box(const FieldModel& model, const PreparedBody& body, const Box& at,
-                  const MetaballInterval& bound) {
-  const double level = std::max(std::fabs(bound.level_min), std::fabs(bound.level_max));
-  const double distance = std::min(model.height_bound, level / smallest_gradient(body.metaballs, at));
-  return widened(at, distance * (1.0 + kRoundingSlack) + 2e-6 * largest_coordinate(at));
 }
 
 Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const Box& box,
@@ -80,48 +66,15 @@ Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const B
     elevation = std::visit(
         [&](const auto& l) { return bound_elevation(l, layer.join, at, box, elevation, kept); }, layer.noise);
   }
-  const double slack = kRoundingSlack * model.height_bound;
+  const double slack = kHeightSlack * model.height_bound;
   return {elevation.low - slack, elevation.high + slack};
 }
 
-// F has the sign of L - log T + height * divisor.
-BlockContent content_by(const MetaballInterval& bound, double margin) {
-  if (bound.level_max < -margin) return BlockContent::kOutside;
-  if (bound.level_min > margin) return BlockContent::kInside;
-  return BlockContent::kMixed;
-}
-
-// By the bound of all heights everywhere, which costs nothing.
-BlockContent content_by_height_bound(const FieldModel& model, const MetaballInterval& bound) {
-  return content_by(bound, model.height_bound * bound.gradient_max * (1.0 + kRoundingSlack));
-}
-
-// Of a body with operations: F is s plus heights.
-BlockContent content_by_distance(const Interval& distance, const Interval& heights) {
-  if (distance.high + heights.high < 0.0) return BlockContent::kOutside;
-  if (distance.low + heights.low > 0.0) return BlockContent::kInside;
-  return BlockContent::kMixed;
-}
-
-// The same of either kind of body, near the surface or far.
+// By the bound of all heights everywhere, which costs nothing; near the surface or far.
 BlockContent content_by_height_bound(const FieldModel& model, const PreparedBody& body, const Box& at) {
-  if (body.plain()) return content_by_height_bound(model, bound_metaballs(body.metaballs, at));
-  const double height = model.height_bound * (1.0 + kRoundingSlack);
+  if (body.plain()) return content_by_height_bound(bound_metaballs(body.metaballs, at), model.height_bound);
+  const double height = model.height_bound * (1.0 + kHeightSlack);
   return content_by_distance(bound_distance(body, at, height), {-height, height});
-}
-
-// By what the heights are in this box.
-BlockContent content_by_heights(const PreparedBody& body, const Box& at, const MetaballInterval& bound,
-                                const Interval& heights) {
-  const double divisor_max = bound.gradient_max;
-  if (heights.high >= 0.0 && bound.level_max < -heights.high * divisor_max) return BlockContent::kOutside;
-  if (heights.low <= 0.0 && bound.level_min > -heights.low * divisor_max) return BlockContent::kInside;
-  if (heights.high >= 0.0 && heights.low <= 0.0) return BlockContent::kMixed;
-  // All heights have one sign: now the smallest divisor counts.
-  const double divisor_min = smallest_gradient(body.metaballs, at);
-  if (heights.high < 0.0 && bound.level_max < -heights.high * divisor_min) return BlockContent::kOutside;
-  if (heights.low > 0.0 && bound.level_min > -heights.low * divisor_min) return BlockContent::kInside;
-  return BlockContent::kMixed;
 }
 
 std::array<Box, 8> octants(const Box& box) {
@@ -163,15 +116,13 @@ Box body_box(const FieldModel& model, const Box& box) { return model.warp ? mode
 
 namespace {
 
-// A point is projected by its |s|, here as there.
 BlockContent content_of_combined(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,
                                  const Box& box) {
-  const double height = model.height_bound * (1.0 + kRoundingSlack);
+  const double height = model.height_bound * (1.0 + kHeightSlack);
   const Interval distance = bound_distance(body, box, height);
   const BlockContent content = content_by_distance(distance, {-height, height});
   if (content != BlockContent::kMixed || model.layers.empty()) return content;
-  const double farthest = std::min(height, std::max(std::fabs(distance.low), std::fabs(distance.high)));
-  const Box projected = widened(box, farthest + 2e-6 * largest_coordinate(box));
+  const Box projected = projected_box(box, distance, height);
   return content_by_distance(distance, bound_heights(model, spots, box, projected));
 }
 
@@ -180,10 +131,11 @@ BlockContent content_without_boulders(const FieldModel& model, const PreparedBod
   if (!body.plain()) return content_of_combined(model, body, spots, box);
   const Box at = body_box(model, box);
   const MetaballInterval bound = bound_metaballs(body.metaballs, at, model.height_bound);
-  const BlockContent content = content_by_height_bound(model, bound);
+  const BlockContent content = content_by_height_bound(bound, model.height_bound);
   if (content != BlockContent::kMixed || model.layers.empty()) return content;
-  const Box projected = model.craters.empty() ? at : projected_box(model, body, at, bound);
-  return content_by_heights(body, at, bound, bound_heights(model, spots, box, projected));
+  const auto divisor = [&] { return smallest_gradient(body.metaballs, at); };
+  const Box projected = model.craters.empty() ? at : projected_box(at, bound, model.height_bound, divisor());
+  return content_by_heights(bound, bound_heights(model, spots, box, projected), divisor);
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 #include "synthesis/block_field.h"
 #include "synthesis/boulder_field.h"
 #include "synthesis/combined_body.h"
+#include "synthesis/content_bounds.h"
 #include "synthesis/coordinate_warp.h"
 #include "synthesis/crater_relief.h"
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
 #include "synthesis/implicit_field.h"
-#include "synthesis/largest_coordinate.h"
 #include "synthesis/layer_join.h"
 #include "synthesis/phasor_noise.h"
 #include "synthesis/random_phase_noise.h"
@@ -34,10 +34,7 @@ struct PlacedLayer {
 
 // Where a layer is evaluated for the float points of a box.
 inline Box layer_box(const PlacedLayer& layer, const Box& box) {
-  const Vec3d& d = layer.join.displaced;
-  if (d.x == 0.0 && d.y == 0.0 && d.z == 0.0) return box;
-  const Box moved{box.min - d, box.max + d};
-  return widened(moved, 1e-6 * largest_coordinate(moved));
+  return displaced_layer_box(box, layer.join.displaced);
 }
 
 struct FieldModel {

@@ -10,11 +10,13 @@
 #include "synthesis/crater_profile.h"
 #include "synthesis/fractal_noise.h"
 #include "synthesis/gabor_surface_noise.h"
+#include "synthesis/join_bounds.h"
+#include "synthesis/local_weight.h"
 #include "synthesis/metaball_body.h"
 #include "synthesis/phasor_noise.h"
 #include "synthesis/random_phase_noise.h"
 #include "synthesis/sparse_noise.h"
-#include "synthesis/spot_kernel.h"
+#include "synthesis/spot_draw.h"
 
 namespace astrolith {
 
@@ -27,6 +29,7 @@ struct FlatRange {
 struct FlatWarp {
   FlatRange octaves[3];  // along x, y, z
   Vec3f low, high;       // points outside are displaced as the nearest one inside
+  double bound = 0.0;    // of a displacement, length units
 };
 
 // LocalWeight.
@@ -34,16 +37,11 @@ struct FlatWeight {
   FlatRange near, others;  // spheres
   float inverse_width = 0.0f;
 };
-struct FlatSphere {
-  Vec3f center;
-  float radius;
-};
 
 // The spots of one kind. Their impulses are a block's list.
 struct FlatSpots {
-  SpotKernel kernel;
-  float clip;
-  std::uint32_t list;
+  SpotKind kind;
+  std::uint32_t list, layer;
 };
 
 // LayerJoin.
@@ -55,7 +53,11 @@ struct FlatJoin {
   bool local = false;
   FlatWeight locality;
   int keeps = -1, mask = -1;  // slots
-  float mask_from = 0.0f, mask_inverse_range = 0.0f;
+  float mask_from = 0.0f, mask_to = 1.0f, mask_inverse_range = 0.0f;
+  // For bounds.
+  JoinKind how;
+  Vec3d displaced;            // of the layer's coordinates, at most, by axis
+  double height_bound = 0.0;  // of its heights, times what they weigh
 };
 
 // Heights that masks ask for.
@@ -65,7 +67,9 @@ enum class FlatNoise { kFractal, kSparse, kSpots, kPhasor, kRandomPhase, kCrater
 
 // A bandwidth of Gabor noise. Its impulses are a block's list.
 struct FlatBand {
-  float amplitude;
+  GaborDraw draw;
+  FlatRange lobes;
+  std::uint32_t layer;
 };
 
 // A layer; which members count depends on its noise. But for craters points are moved into the box low ..
@@ -90,8 +94,9 @@ struct FlatLayer {
   PhasorKernels kernels{};
   PhasorProfile profile = PhasorProfile::kSine;
   float randomness = 0.0f, coherence = 0.0f;
-  float clip = 0.0f;       // of random-phase and Gabor noise; of the elevation after craters
-  std::uint32_t list = 0;  // of craters that reach a block
+  float clip = 0.0f;          // of random-phase and Gabor noise; of the elevation after craters
+  std::uint32_t list = 0;     // of craters that reach a block
+  double height_bound = 0.0;  // of the heights; of the elevation after craters
 };
 
 // Metaballs, and how a body is made of them: each step puts a leaf's distance on a stack, or combines the
@@ -100,11 +105,13 @@ struct FlatLeaf {
   MetaballParameters<float> body;
   bool warped = false;
   FlatWarp warp;  // of the leaf's coordinates
+  FlatRange spheres;
 };
 struct FlatStep {
   bool is_leaf = true;
   std::uint32_t leaf = 0;
   OperatorParameters<float> combine;
+  OperatorParameters<double> bounds;
 };
 
 // A boulder, and the box that it reaches.
@@ -117,20 +124,25 @@ struct FlatBoulder {
 struct FlatField {
   const FlatLayer* layers;
   const FlatLeaf* leaves;
+  const MetaballSphere<float>* spheres;  // of all leaves
   const FlatStep* steps;
   const NoiseOctave* octaves;
-  const FlatSphere* weight_spheres;
+  const WeightSphere* weight_spheres;
   const SparseLevel* sparse_levels;
   const FlatSpots* spots;
+  const std::uint32_t* spot_thresholds;
   const Wave* waves;
   const FlatBand* bands;
+  const GaborLobeShare* lobes;
   const CraterKernel* craters;
+  const std::uint32_t* crater_layers;  // by list
   const FlatBoulder* boulders;
-  std::uint32_t num_layers, num_steps;
+  std::uint32_t num_layers, num_leaves, num_steps;
   std::uint32_t boulder_list;  // of boulders that reach a block
   float stretch;               // s changes so much faster than a distance
   float height_reach;          // no elevation exceeds it
   float longest_step;          // on the way to the bare surface
+  double height_bound;         // of the |elevation| that all layers make
 };
 
 // What of the field reaches a box; of list l: first[l] .. first[l + 1] - 1.

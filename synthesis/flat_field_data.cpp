@@ -1,13 +1,20 @@
 #include "synthesis/flat_field_data.h"
 
-#include "numerics/parallel_for.h"
 #include "synthesis/field_model_internal.h"
 
 namespace astrolith {
 namespace {
 
-// Of a Gabor layer, that a block's impulses are drawn from: every point of the block adds them all.
-constexpr double kMostGaborCells = 32768.0;
+// Of all Gabor layers, and of all layers of spots, that a block's impulses are drawn from: every point of the
+// block adds them all.
+constexpr double kMostCells = 32768.0;
+
+double cells_of(const SpotNoise& spots, double side) {
+  double cells = 0.0;
+  for (const SpotKind& kind : spots.kinds())
+    cells += spot_cells_around(kind, {{}, {side, side, side}}).count();
+  return cells;
+}
 
 template <typename T>
 FlatRange append(std::span<const T> values, std::vector<T>& array) {
@@ -23,17 +30,8 @@ FlatWarp flat_warp(const CoordinateWarp& warp, FlatFieldData& data) {
   }
   flat.low = warp.domain_min();
   flat.high = warp.domain_max();
+  flat.bound = warp.bound();
   return flat;
-}
-
-FlatRange flat_spheres(const std::vector<Sphere>& spheres, FlatFieldData& data) {
-  std::vector<FlatSphere> single;
-  for (const Sphere& s : spheres) {
-    single.push_back(
-        {{static_cast<float>(s.center.x), static_cast<float>(s.center.y), static_cast<float>(s.center.z)},
-         static_cast<float>(s.radius)});
-  }
-  return append(std::span<const FlatSphere>(single), data.weight_spheres);
 }
 
 // One overload for every layer that can be flattened.
@@ -72,8 +70,11 @@ struct Flatten {
     layer.high = noise.domain_max();
     layer.parts = {static_cast<std::uint32_t>(data.spots.size()),
                    static_cast<std::uint32_t>(noise.num_kinds())};
-    for (int j = 0; j < noise.num_kinds(); ++j) {
-      data.spots.push_back({noise.kernel(j), noise.clip(j), static_cast<std::uint32_t>(data.spots.size())});
+    const FlatRange thresholds =
+        append(std::span<const std::uint32_t>(noise.thresholds()), data.spot_thresholds);
+    for (SpotKind kind : noise.kinds()) {
+      kind.lattice.first_threshold += thresholds.first;
+      data.spots.push_back({kind, static_cast<std::uint32_t>(data.spots.size()), data.next_layer()});
     }
   }
   void operator()(const PhasorNoise& noise) const {
@@ -104,6 +105,7 @@ struct Flatten {
     layer.kind = FlatNoise::kCraters;
     layer.clip = static_cast<float>(relief.elevation_bound());
     layer.list = static_cast<std::uint32_t>(data.lists++);
+    data.crater_layers.push_back(data.next_layer());
     layer.parts = append(std::span<const CraterKernel>(relief.kernels()), data.craters);
   }
   void operator()(const GaborSurfaceNoise& noise) const {
@@ -113,27 +115,34 @@ struct Flatten {
     layer.clip = noise.clip();
     layer.parts = {static_cast<std::uint32_t>(data.bands.size()),
                    static_cast<std::uint32_t>(noise.num_bands())};
-    for (std::size_t b = 0; b < noise.num_bands(); ++b) data.bands.push_back({noise.amplitude(b)});
+    for (std::size_t b = 0; b < noise.num_bands(); ++b) {
+      const SurfaceBand& band = noise.band(b);
+      data.bands.push_back(
+          {band, append(std::span<const GaborLobeShare>(band.band.lobes), data.lobes), data.next_layer()});
+    }
   }
 };
 
+FlatLeaf flat_leaf(const PreparedMetaballs& metaballs, const CoordinateWarp* warp, FlatFieldData& data) {
+  FlatLeaf leaf{metaballs.parameters, warp != nullptr, {}, {}};
+  if (leaf.warped) leaf.warp = flat_warp(*warp, data);
+  leaf.spheres = append(std::span<const MetaballSphere<float>>(metaballs.spheres), data.spheres);
+  return leaf;
+}
+
 // The body's leaves and steps, after those there are.
 void add_steps(const PreparedBody& body, FlatFieldData& data) {
-  FlatLeaf leaf{body.metaballs.parameters, body.warp != nullptr, {}};
-  if (leaf.warped) leaf.warp = flat_warp(*body.warp, data);
-  data.steps.push_back({true, static_cast<std::uint32_t>(data.leaves.size()), {}});
-  data.leaves.push_back(leaf);
+  data.steps.push_back({true, static_cast<std::uint32_t>(data.leaves.size()), {}, {}});
+  data.leaves.push_back(flat_leaf(body.metaballs, body.warp.get(), data));
   for (const PreparedOperation& operation : body.operations) {
     add_steps(operation.operand, data);
-    data.steps.push_back({false, 0, in_float(operation.parameters)});
+    data.steps.push_back({false, 0, in_float(operation.parameters), operation.parameters});
   }
 }
 
 void add_body(const FieldModel& model, FlatFieldData& data) {
   if (!model.body.plain()) return add_steps(model.body, data);
-  FlatLeaf leaf{model.body.metaballs.parameters, model.warp.has_value(), {}};
-  if (leaf.warped) leaf.warp = flat_warp(*model.warp, data);
-  data.leaves.push_back(leaf);
+  data.leaves.push_back(flat_leaf(model.body.metaballs, model.warp ? &*model.warp : nullptr, data));
 }
 
 void add_boulders(const BoulderField& field, FlatFieldData& data) {
@@ -141,6 +150,16 @@ void add_boulders(const BoulderField& field, FlatFieldData& data) {
     data.boulders.push_back({field.kernels()[i], field.boxes()[i].min, field.boxes()[i].max});
   }
   data.values.boulder_list = static_cast<std::uint32_t>(data.lists++);
+}
+
+double height_bound_of(const HeightLayer& layer) {
+  if (const auto* craters = std::get_if<CraterRelief>(&layer)) return craters->elevation_bound();
+  return std::visit(
+      [](const auto& noise) {
+        if constexpr (requires { noise.height_bound(); }) return noise.height_bound();
+        return 0.0;
+      },
+      layer);
 }
 
 Vec3f single(const Vec3d& v) {
@@ -158,14 +177,19 @@ FlatJoin flat_join(const LayerJoin& join, float change_bound, FlatFieldData& dat
   flat.width = static_cast<float>(join.how.width);
   flat.direction = single(join.how.direction);
   flat.keeps = join.keeps;
+  flat.how = {join.how.kind, join.how.intersection, join.how.width};
+  flat.displaced = join.displaced;
+  flat.height_bound = join.height_bound;
   if (join.locality) {
     flat.local = true;
-    flat.locality = {flat_spheres(join.locality->near(), data), flat_spheres(join.locality->others(), data),
+    flat.locality = {append(std::span<const WeightSphere>(join.locality->near()), data.weight_spheres),
+                     append(std::span<const WeightSphere>(join.locality->others()), data.weight_spheres),
                      join.locality->inverse_width()};
   }
   if (join.mask) {
     flat.mask = join.mask->slot;
     flat.mask_from = join.mask->from;
+    flat.mask_to = join.mask->to;
     flat.mask_inverse_range = 1.0f / (join.mask->to - join.mask->from);
   }
   return flat;
@@ -176,12 +200,16 @@ FlatJoin flat_join(const LayerJoin& join, float change_bound, FlatFieldData& dat
 std::string obstacle_to_flattening(const ImplicitField& field, double block_side) {
   const FieldModel& model = field.model();
   if (model.kept_heights > kFlatSlots) return "masks by more than four layers";
-  double cells = 0.0;
+  double gabor_cells = 0.0, spot_cells = 0.0;
   for (const PlacedLayer& layer : model.layers) {
-    const auto* gabor = std::get_if<GaborSurfaceNoise>(&layer.noise);
-    if (gabor != nullptr) cells += gabor->cells(block_side + 2.0 * model.height_bound);
+    if (const auto* gabor = std::get_if<GaborSurfaceNoise>(&layer.noise)) {
+      gabor_cells += gabor->cells(block_side + 2.0 * model.height_bound);
+    } else if (const auto* spots = std::get_if<SpotNoise>(&layer.noise)) {
+      spot_cells += cells_of(*spots, block_side);
+    }
   }
-  return cells > kMostGaborCells ? "Gabor kernels so much smaller than the mesh's cells" : "";
+  if (spot_cells > kMostCells) return "spots so much smaller than the mesh's cells";
+  return gabor_cells > kMostCells ? "Gabor kernels so much smaller than the mesh's cells" : "";
 }
 
 FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
@@ -190,17 +218,20 @@ FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
   values.stretch = model.warp ? static_cast<float>(model.warp->stretch()) : model.stretch;
   values.height_reach = height_reach(model);
   values.longest_step = static_cast<float>(model.height_bound);
+  values.height_bound = model.height_bound;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const PlacedLayer& placed = model.layers[i];
     FlatLayer layer;
     std::visit(Flatten{*this, layer}, placed.noise);
+    layer.height_bound = height_bound_of(placed.noise);
     layer.join = flat_join(placed.join, change_bound(model, i), *this);
     layers.push_back(layer);
   }
   add_boulders(model.boulders, *this);
 }
 
-FlatFieldData::FlatFieldData(const MetaballParameters<float>& body) : leaves{{body, false, {}}}, values{} {}
+FlatFieldData::FlatFieldData(const MetaballParameters<float>& body)
+    : leaves{{body, false, {}, {}}}, values{} {}
 
 void FlatFieldData::add(const FractalNoise& noise) {
   FlatLayer layer;
@@ -211,58 +242,24 @@ void FlatFieldData::add(const FractalNoise& noise) {
 FlatField FlatFieldData::view() const {
   FlatField flat = values;
   flat.num_layers = static_cast<std::uint32_t>(layers.size());
+  flat.num_leaves = static_cast<std::uint32_t>(leaves.size());
   flat.num_steps = static_cast<std::uint32_t>(steps.size());
   flat.layers = layers.data();
   flat.leaves = leaves.data();
+  flat.spheres = spheres.data();
   flat.steps = steps.data();
   flat.octaves = octaves.data();
   flat.weight_spheres = weight_spheres.data();
   flat.sparse_levels = sparse_levels.data();
   flat.spots = spots.data();
+  flat.spot_thresholds = spot_thresholds.data();
   flat.waves = waves.data();
   flat.bands = bands.data();
+  flat.lobes = lobes.data();
   flat.craters = craters.data();
+  flat.crater_layers = crater_layers.data();
   flat.boulders = boulders.data();
   return flat;
-}
-
-void FlatBlocksData::add(std::span<const MetaballSphere<float>> of_leaf) {
-  append(of_leaf, spheres);
-  first_sphere.push_back(static_cast<std::uint32_t>(spheres.size()));
-}
-
-void FlatBlocksData::add(const PreparedBody& body) {
-  add(std::span<const MetaballSphere<float>>(body.metaballs.spheres));
-  for (const PreparedOperation& operation : body.operations) add(operation.operand);
-}
-
-void FlatBlocksData::add(const FieldBlock& block, const BlockLists& of_block) {
-  add(block.body());
-  const auto append_all = [](const auto& parts, auto& array, std::vector<std::uint32_t>& first) {
-    for (const auto& list : parts) {
-      array.insert(array.end(), list.begin(), list.end());
-      first.push_back(static_cast<std::uint32_t>(array.size()));
-    }
-  };
-  append_all(of_block.spots, impulses, first_impulse);
-  append_all(of_block.gabor, gabor, first_gabor);
-  append_all(of_block.features, features, first_feature);
-}
-
-void FlatBlocksData::add(std::span<const FieldBlock* const> blocks) {
-  std::vector<BlockLists> of_blocks(blocks.size());
-  parallel_for(0, static_cast<std::int64_t>(blocks.size()), [&](std::int64_t i) {
-    const auto k = static_cast<std::size_t>(i);
-    of_blocks[k] = blocks[k]->lists();
-  });
-  for (std::size_t i = 0; i < blocks.size(); ++i) add(*blocks[i], of_blocks[i]);
-}
-
-FlatBlocks FlatBlocksData::view() const {
-  const auto number = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-  return {spheres.data(), first_sphere.data(), impulses.data(), first_impulse.data(),
-          gabor.data(),   first_gabor.data(),  features.data(), first_feature.data(),
-          number(leaves), number(sizes),       number(bands),   number(lists)};
 }
 
 }  // namespace astrolith

@@ -50,9 +50,9 @@ ASTROLITH_HD inline float flat_spots(const FlatField& f, const FlatLayer& layer,
     const FlatSpots& spots = f.spots[s];
     float sum = 0.0f;
     for (std::uint32_t j = block.first_impulse[spots.list]; j < block.first_impulse[spots.list + 1]; ++j) {
-      sum += spot_height(spots.kernel, block.impulses[j], p.x, p.y, p.z);
+      sum += spot_height(spots.kind.kernel, block.impulses[j], p.x, p.y, p.z);
     }
-    height += math::clamp(sum, -spots.clip, spots.clip);
+    height += math::clamp(sum, -spots.kind.clip, spots.kind.clip);
   }
   return height;
 }
@@ -95,7 +95,7 @@ ASTROLITH_HD inline float flat_gabor(const FlatField& f, const FlatLayer& layer,
   const Vec3f p = flat_moved(layer, at);
   float height = 0.0f;
   for (std::uint32_t b = layer.parts.first; b < layer.parts.first + layer.parts.count; ++b) {
-    const float amplitude = f.bands[b].amplitude;
+    const float amplitude = f.bands[b].draw.amplitude;
     for (std::uint32_t j = block.first_gabor[b]; j < block.first_gabor[b + 1]; ++j) {
       height = math::fma(amplitude, gabor_kernel(block.gabor[j], p.x, p.y, p.z), height);
     }
@@ -113,7 +113,7 @@ ASTROLITH_HD inline void flat_gabor_tetrahedron(const FlatField& f, const FlatLa
   GaborSample sum{};
   for (std::uint32_t b = layer.parts.first; b < layer.parts.first + layer.parts.count; ++b) {
     for (std::uint32_t j = block.first_gabor[b]; j < block.first_gabor[b + 1]; ++j) {
-      sum = with_impulse(block.gabor[j], f.bands[b].amplitude, q, sum);
+      sum = with_impulse(block.gabor[j], f.bands[b].draw.amplitude, q, sum);
     }
   }
   for (int k = 0; k < 4; ++k) {
@@ -135,7 +135,7 @@ ASTROLITH_HD inline float flat_weight(const FlatField& f, const FlatWeight& weig
   const auto distance = [&](const FlatRange& spheres) {
     float least = std::numeric_limits<float>::max();
     for (std::uint32_t s = spheres.first; s < spheres.first + spheres.count; ++s) {
-      const FlatSphere& sphere = f.weight_spheres[s];
+      const WeightSphere& sphere = f.weight_spheres[s];
       least = nearer_sphere(sphere.center, sphere.radius, p.x, p.y, p.z, least);
     }
     return least;

@@ -7,6 +7,7 @@
 
 #include "numerics/hash_random.h"
 #include "numerics/scalar_math.h"
+#include "synthesis/octave_bounds.h"
 
 namespace astrolith {
 namespace {
@@ -18,14 +19,6 @@ ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, fl
                                  float bias, float* __restrict q) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) q[i] = placed_coordinate(p[i], low, high, scale, bias);
-}
-
-// What `place` makes of the values low .. high.
-Interval placed(double low, double high, float domain_low, float domain_high, float scale, float bias) {
-  const auto at = [&](double p) {
-    return static_cast<double>(scale) * std::clamp(p, double{domain_low}, double{domain_high}) + double{bias};
-  };
-  return {std::min(at(low), at(high)), std::max(at(low), at(high))};
 }
 
 double farthest_coordinate(double low, double high, double scale, double bias) {
@@ -112,10 +105,7 @@ void FractalNoise::add_octaves(const std::vector<NoiseOctave>& octaves, int n, c
 
 Interval FractalNoise::bound_heights(const Box& box) const {
   const Box p = warp_ ? warp_->image(box) : box;
-  const Interval x = placed(p.min.x, p.max.x, domain_min_.x, domain_max_.x, scale_.x, bias_.x);
-  const Interval y = placed(p.min.y, p.max.y, domain_min_.y, domain_max_.y, scale_.y, bias_.y);
-  const Interval z = placed(p.min.z, p.max.z, domain_min_.z, domain_max_.z, scale_.z, bias_.z);
-  return bound_sum(noise_, octaves_, {{x.low, y.low, z.low}, {x.high, y.high, z.high}},
+  return bound_sum(noise_, octaves_, bound_placed(p, domain_min_, domain_max_, scale_, bias_),
                    gradient_modulation_ != 0.0f);
 }
 

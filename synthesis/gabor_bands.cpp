@@ -33,8 +33,7 @@ GaborBand band_of(int bandwidth, const std::vector<GaborLobe>& lobes, double tot
 }  // namespace
 
 const GaborBand::Lobe& GaborBand::draw(float uniform) const {
-  return *std::upper_bound(lobes.begin(), lobes.end() - 1, uniform,
-                           [](float value, const Lobe& lobe) { return value < lobe.cumulative; });
+  return drawn_lobe(lobes.data(), static_cast<std::uint32_t>(lobes.size()), uniform);
 }
 
 std::vector<GaborBand> gabor_bands(const GaborLayer& layer) {

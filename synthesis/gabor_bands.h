@@ -6,14 +6,12 @@
 #include <vector>
 
 #include "recipe/recipe.h"
+#include "synthesis/gabor_draw.h"
 
 namespace astrolith {
 
 struct GaborBand {
-  struct Lobe {
-    float cumulative;                // share of the band's variance in lobes up to this one; the last is 1
-    float frequency_x, frequency_y;  // over a
-  };
+  using Lobe = GaborLobeShare;
 
   int bandwidth = 0;
   double a = 1.0;               // 2^-bandwidth sqrt(pi / (2 ln 2)), cycles per pixel

@@ -9,20 +9,13 @@
 
 #include "synthesis/combined_body.h"
 #include "synthesis/gabor_bands.h"
-#include "synthesis/gabor_kernel.h"
+#include "synthesis/gabor_draw.h"
 
 namespace astrolith {
 
 // A band of a layer at the body's scale.
-struct SurfaceBand {
+struct SurfaceBand : GaborDraw {
   GaborBand band;
-  std::uint32_t seed;
-  float a;      // cycles per length unit
-  float cell;   // side, length units
-  float reach;  // of a kernel from its impulse, length units
-  int impulses_per_cell;
-  float amplitude;  // of a kernel, length units
-  float farthest;   // impulses farther than this from the surface, to first order, are left out; length units
 };
 
 using GaborCell = std::array<int, 3>;

@@ -8,9 +8,6 @@
 namespace astrolith {
 namespace {
 
-// For the rounding of positions and frames to float.
-constexpr float kSlack = 1.0f + 1e-3f;
-
 // Far beyond all bodies along all its axes.
 GaborImpulse nowhere() { return {1e18f, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0}; }
 
@@ -18,7 +15,7 @@ GaborImpulse nowhere() { return {1e18f, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0
 std::array<double, 3> half_extents(const GaborImpulse& k, double a) {
   const auto along = [a](float u, float v, float n) {
     const double tangential = std::fabs(double{u}) + std::fabs(double{v});
-    return double{kSlack} *
+    return double{kGaborSlack} *
            (double{kGaborReach} * tangential + double{kGaborSlabReach} * std::fabs(double{n})) / (a * a);
   };
   return {along(k.ux, k.vx, k.nx), along(k.uy, k.vy, k.ny), along(k.uz, k.vz, k.nz)};
@@ -33,27 +30,13 @@ void extend(const GaborImpulse& impulse, double a, ImpulseChunk& chunk) {
   }
 }
 
-// How far along an axis of a kernel the nearest point of a box lies, the box's extent being `half`.
-ASTROLITH_KERNEL float nearest(float ax, float ay, float az, float dx, float dy, float dz,
-                               const float* half) {
-  const float center = math::abs(math::fma(ax, dx, math::fma(ay, dy, az * dz)));
-  const float spread =
-      math::fma(math::abs(ax), half[0], math::fma(math::abs(ay), half[1], math::abs(az) * half[2]));
-  return center - spread;
-}
-
 // reaches[i] = 1 where the kernel of lane i may reach the box about a center, else 0.
 ASTROLITH_KERNEL void find_reaching(const ImpulseChunk& chunk, const float* center, const float* half,
                                     int* reaches) {
 #pragma omp simd
   for (std::size_t i = 0; i < kLanes; ++i) {
     const GaborImpulse k = impulse_at(&chunk.members[i]);
-    const float dx = center[0] - k.x, dy = center[1] - k.y, dz = center[2] - k.z;
-    const float u = nearest(k.ux, k.uy, k.uz, dx, dy, dz, half);
-    const float v = nearest(k.vx, k.vy, k.vz, dx, dy, dz, half);
-    const float n = nearest(k.nx, k.ny, k.nz, dx, dy, dz, half);
-    const float beyond = math::max(math::max(u, v) - kSlack * kGaborReach, n - kSlack * kGaborSlabReach);
-    reaches[i] = beyond <= 0.0f ? 1 : 0;
+    reaches[i] = beyond_gabor_reach(k, center, half) <= 0.0f ? 1 : 0;
   }
 }
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "synthesis/gabor_kernel.h"
+#include "synthesis/gabor_draw.h"
 
 namespace astrolith {
 

@@ -54,9 +54,10 @@ GaborSurfaceNoise::GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed
     const double farthest_impulse = 1.0 / a < kSmallKernel * longest_side(domain)
                                         ? kFarthestReach / a
                                         : std::numeric_limits<double>::infinity();
-    bands_.emplace_back(SurfaceBand{std::move(band), band_seed, static_cast<float>(a),
-                                    static_cast<float>(cell), static_cast<float>(kCornerReach / a), count,
-                                    static_cast<float>(amplitude), static_cast<float>(farthest_impulse)},
+    bands_.emplace_back(SurfaceBand{{band_seed, static_cast<float>(a), static_cast<float>(cell),
+                                     static_cast<float>(kCornerReach / a), count,
+                                     static_cast<float>(amplitude), static_cast<float>(farthest_impulse)},
+                                    std::move(band)},
                         body);
   }
 }

@@ -53,6 +53,7 @@ class GaborSurfaceNoise {
   double height_bound() const { return static_cast<double>(clip_); }
 
   // What it is made of.
+  const SurfaceBand& band(std::size_t number) const { return bands_[number].band(); }
   const Vec3f& domain_min() const { return domain_min_; }
   const Vec3f& domain_max() const { return domain_max_; }
   float clip() const { return clip_; }

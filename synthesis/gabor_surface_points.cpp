@@ -19,24 +19,21 @@ constexpr std::int64_t kCellsPerPoint = 300;
 
 // The cells whose impulses may reach a point of the box.
 CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
-  constexpr double kSlack = 1.0 + 1e-3;
-  const double cell = band.cell, reach = kSlack * double{band.reach};
   CellRange range;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    range.first[axis] = static_cast<int>(std::floor((double{box.low[axis]} - reach) / cell));
-    range.last[axis] = static_cast<int>(std::floor((double{box.high[axis]} + reach) / cell));
+    const GaborCellSpan span = gabor_cells_around(band, box.low[axis], box.high[axis]);
+    range.first[axis] = span.first;
+    range.last[axis] = span.last;
   }
   return range;
 }
-
-int tile_of(int cell) { return cell >= 0 ? cell / kTileCells : -((-cell + kTileCells - 1) / kTileCells); }
 
 // Tiles in their order (z, then y, then x), numbered.
 struct TileRange {
   explicit TileRange(const CellRange& cells) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] = tile_of(cells.first[axis]);
-      count[axis] = tile_of(cells.last[axis]) - first[axis] + 1;
+      first[axis] = gabor_tile_of(cells.first[axis]);
+      count[axis] = gabor_tile_of(cells.last[axis]) - first[axis] + 1;
     }
   }
   std::size_t size() const { return static_cast<std::size_t>(count[0] * count[1] * count[2]); }
@@ -65,7 +62,7 @@ void mark(const CellRange& cells, const TileRange& range, std::vector<TileCells>
   for (int z = cells.first[2]; z <= cells.last[2]; ++z) {
     for (int y = cells.first[1]; y <= cells.last[1]; ++y) {
       for (int x = cells.first[0]; x <= cells.last[0]; ++x) {
-        const int tx = tile_of(x), ty = tile_of(y), tz = tile_of(z);
+        const int tx = gabor_tile_of(x), ty = gabor_tile_of(y), tz = gabor_tile_of(z);
         const int bit =
             ((z - tz * kTileCells) * kTileCells + y - ty * kTileCells) * kTileCells + x - tx * kTileCells;
         marks[range.number(tx, ty, tz)] |= TileCells{1} << bit;

@@ -14,9 +14,6 @@
 
 namespace astrolith {
 
-// Cells along a tile's side.
-inline constexpr int kTileCells = 4;
-
 // Impulses in the order of their cells (z, then y, then x), and a box that holds their supports.
 struct GaborTile {
   std::vector<ImpulseChunk> chunks;

@@ -15,7 +15,7 @@ BlockContent FieldBlock::content() const { return content_of(*model_, body_, spo
 BlockLists FieldBlock::lists() const {
   // Craters and Gabor noise are looked up where points are projected to.
   const Box at = body_box(*model_, box_);
-  const Box projected = widened(at, model_->height_bound * (1.0 + 1e-5) + 2e-6 * largest_coordinate(at));
+  const Box projected = farthest_projected_box(at, model_->height_bound);
   BlockLists all;
   for (std::size_t i = 0; i < model_->layers.size(); ++i) {
     const HeightLayer& noise = model_->layers[i].noise;

@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/host_device.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
 
-inline double largest_coordinate(const Box& box) {
-  return std::max({std::abs(box.min.x), std::abs(box.min.y), std::abs(box.min.z), std::abs(box.max.x),
-                   std::abs(box.max.y), std::abs(box.max.z)});
+ASTROLITH_HD inline double largest_coordinate(const Box& box) {
+  const double x = std::max(std::fabs(box.min.x), std::fabs(box.max.x)),
+               y = std::max(std::fabs(box.min.y), std::fabs(box.max.y)),
+               z = std::max(std::fabs(box.min.z), std::fabs(box.max.z));
+  return std::max(std::max(x, y), z);
 }
 
 }  // namespace astrolith

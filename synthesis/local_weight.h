@@ -23,6 +23,12 @@ ASTROLITH_KERNEL float local_weight(float near, float others, float inverse_widt
   return math::fma(-2.0f, math::atan2_turns((near - others) * inverse_width, 1.0f), 0.5f);
 }
 
+// A sphere as points and boxes are measured from it.
+struct WeightSphere {
+  Vec3f center;
+  float radius;
+};
+
 class LocalWeight {
  public:
   // Throws InputError, with the layer's name, when the body has no such group.
@@ -34,12 +40,12 @@ class LocalWeight {
   // The weight at every float point of a box.
   Interval bound(const Box& box) const;
 
-  const std::vector<Sphere>& near() const { return near_; }
-  const std::vector<Sphere>& others() const { return others_; }  // none: the weight is 1 everywhere
+  const std::vector<WeightSphere>& near() const { return near_; }
+  const std::vector<WeightSphere>& others() const { return others_; }  // none: the weight is 1 everywhere
   float inverse_width() const { return inverse_width_; }
 
  private:
-  std::vector<Sphere> near_, others_;  // the group's spheres and all others
+  std::vector<WeightSphere> near_, others_;  // the group's spheres and all others
   float inverse_width_;
 };
 

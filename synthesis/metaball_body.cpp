@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synthesis/metaball_box_internal.h"
+#include "synthesis/metaball_box.h"
 
 namespace astrolith {
 namespace {

@@ -4,50 +4,13 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
-#include "synthesis/largest_coordinate.h"
-#include "synthesis/octave_sum.h"
+#include "synthesis/octave_bounds.h"
 
 namespace astrolith {
 namespace {
 
 constexpr double kLargestLatticeCoordinate = 1048576.0;  // 2^20: leaves three bits within a cell
 constexpr double kSteepestOctave = 1e12;                 // keeps the squares of slopes finite in a float
-
-// A noise's values and its greatest slope: 6.960 and 3.619 for simplex and Perlin noise (by search over all
-// positions and gradients), and a distance changes by no more than the way gone.
-struct NoiseRange {
-  double low, high, slope;
-};
-NoiseRange range_of(Noise noise) {
-  constexpr double kF1 = kWorleyMeanF1, kF2 = kWorleyMeanF2, kSlope = 1.0 / kWorleyFarthest;
-  switch (noise) {
-    case Noise::kSimplex:
-      return {-1.0, 1.0, 7.0};
-    case Noise::kPerlin:
-      return {-1.0, 1.0, 3.65};
-    case Noise::kWorleyF1:
-      return {-kF1, 1.0 - kF1, kSlope};
-    case Noise::kWorleyF2:
-      return {-kF2, 1.0 - kF2, kSlope};
-    default:
-      return {kF1 - kF2, 1.0 + kF1 - kF2, 2.0 * kSlope};
-  }
-}
-
-float noise_at(Noise noise, float x, float y, float z, std::uint32_t seed) {
-  switch (noise) {
-    case Noise::kSimplex:
-      return simplex_noise(x, y, z, seed);
-    case Noise::kPerlin:
-      return perlin_noise(x, y, z, seed);
-    case Noise::kWorleyF1:
-      return worley_f1(x, y, z, seed);
-    case Noise::kWorleyF2:
-      return worley_f2(x, y, z, seed);
-    default:
-      return worley_f2_minus_f1(x, y, z, seed);
-  }
-}
 
 // One loop a noise: a choice inside it would keep it from vectorising.
 #define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
@@ -84,20 +47,6 @@ ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
 ASTROLITH_MODULATED_LOOP(add_modulated_simplex, simplex_with_gradient)
 ASTROLITH_MODULATED_LOOP(add_modulated_perlin, perlin_with_gradient)
 #undef ASTROLITH_MODULATED_LOOP
-
-// One octave's noise over a box: its value at the centre and its greatest slope tell more than its range
-// where the box is small beside the noise's features.
-Interval bound_noise(Noise noise, const NoiseOctave& octave, const Box& box) {
-  const NoiseRange range = range_of(noise);
-  const double f = octave.frequency;
-  const double rounding = 1e-6 * f * largest_coordinate(box);  // of coordinates, in cells
-  const double spread = range.slope * (0.5 * f * box.diagonal() + rounding) + 1e-5;
-  if (spread >= 1.0) return {range.low, range.high};
-  const Vec3d c = f * box.center();
-  const double value = static_cast<double>(noise_at(noise, static_cast<float>(c.x), static_cast<float>(c.y),
-                                                    static_cast<float>(c.z), octave.seed));
-  return {std::max(range.low, value - spread), std::min(range.high, value + spread)};
-}
 
 }  // namespace
 
@@ -178,15 +127,7 @@ void add_modulated_octave(Noise noise, const NoiseOctave& octave, float modulati
 }
 
 Interval bound_sum(Noise noise, const std::vector<NoiseOctave>& octaves, const Box& box, bool modulated) {
-  Interval sum;
-  for (const NoiseOctave& o : octaves) {
-    Interval noise_values = bound_noise(noise, o, box);
-    if (modulated) noise_values = {std::min(0.0, noise_values.low), std::max(0.0, noise_values.high)};
-    const double a = o.amplitude, slack = 1e-5 * std::fabs(a);
-    sum.low += std::min(a * noise_values.low, a * noise_values.high) - slack;
-    sum.high += std::max(a * noise_values.low, a * noise_values.high) + slack;
-  }
-  return sum;
+  return bound_octaves(noise, octaves.data(), static_cast<std::uint32_t>(octaves.size()), box, modulated);
 }
 
 }  // namespace astrolith

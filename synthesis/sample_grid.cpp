@@ -28,17 +28,6 @@ void check_resolution(int resolution) {
 
 }  // namespace
 
-Box SampleGrid::box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const {
-  const Vec3d m{margin, margin, margin};
-  const auto at = [this](const std::array<int, 3>& i) {
-    return origin + Vec3d{step * i[0], step * i[1], step * i[2]};
-  };
-  Box result;
-  result.min = at(first) - m;
-  result.max = at(last) + m;
-  return result;
-}
-
 SampleGrid make_sample_grid(const Box& bounds, int resolution) {
   check_resolution(resolution);
   const Vec3d extent = bounds.extent();

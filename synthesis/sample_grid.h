@@ -19,7 +19,12 @@ struct SampleGrid {
   ASTROLITH_HD float z(int index) const { return static_cast<float>(origin.z + step * index); }
 
   // The box of the samples first .. last, widened by margin (length units) on every side.
-  Box box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const;
+  ASTROLITH_HD Box box(const std::array<int, 3>& first, const std::array<int, 3>& last, double margin) const {
+    const Vec3d m{margin, margin, margin};
+    const Vec3d low{step * first[0], step * first[1], step * first[2]},
+        high{step * last[0], step * last[1], step * last[2]};
+    return {origin + low - m, origin + high + m};
+  }
 };
 
 // The cells that are meshed, by the samples of their upper corners: first .. last along each axis. Around a

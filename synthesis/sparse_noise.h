@@ -100,8 +100,6 @@ class SparseNoise {
   }
 
  private:
-  double greatest_noise(const SparseLevel& level, const Box& box) const;
-
   std::vector<SparseLevel> levels_;
   float amplitude_, threshold_, probability_, inverse_probability_;
   bool merged_;

@@ -39,40 +39,25 @@ Vec3d across(const Vec3d& edge, const Vec3d& other, const Vec3d& another) {
 
 }  // namespace
 
-SpotLattice::SpotLattice(const SpotLayer& layer, double cell_size, double density, std::uint32_t seed)
-    : a_(to_float(cell_size * layer.lattice.a)),
-      b_(to_float(cell_size * layer.lattice.b)),
-      c_(to_float(cell_size * layer.lattice.c)),
-      seed_(seed),
-      probability_(layer.probability),
-      reach_(layer.reach + 1e-3),
-      width_(1.0f + 2.0f * static_cast<float>(layer.reach)),
-      least_weight_(static_cast<float>(layer.least_weight)),
-      least_(layer.even ? even_thresholds(density) : poisson_thresholds(density)) {
+SpotLattice make_spot_lattice(const SpotLayer& layer, double cell_size, double density, std::uint32_t seed,
+                              std::vector<std::uint32_t>& thresholds) {
   const Vec3d a = cell_size * layer.lattice.a, b = cell_size * layer.lattice.b,
               c = cell_size * layer.lattice.c;
-  cells_per_ = {across(a, b, c), across(b, c, a), across(c, a, b)};
-}
-
-double SpotLattice::Cells::count() const {
-  double product = 1.0;
-  for (std::size_t i = 0; i < 3; ++i) product *= double(last[i]) - first[i] + 1;
-  return product;
-}
-
-SpotLattice::Cells SpotLattice::around(const Box& box) const {
-  Cells cells;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3d& per = cells_per_[i];
-    const auto lower = [](double k, double low, double high) { return k * (k > 0.0 ? low : high); };
-    const double low = lower(per.x, box.min.x, box.max.x) + lower(per.y, box.min.y, box.max.y) +
-                       lower(per.z, box.min.z, box.max.z);
-    const double high = lower(per.x, box.max.x, box.min.x) + lower(per.y, box.max.y, box.min.y) +
-                        lower(per.z, box.max.z, box.min.z);
-    cells.first[i] = static_cast<int>(std::floor(low - reach_));
-    cells.last[i] = static_cast<int>(std::floor(high + reach_));
-  }
-  return cells;
+  const std::vector<std::uint32_t> least =
+      layer.even ? even_thresholds(density) : poisson_thresholds(density);
+  const auto first = static_cast<std::uint32_t>(thresholds.size());
+  thresholds.insert(thresholds.end(), least.begin(), least.end());
+  return {to_float(a),
+          to_float(b),
+          to_float(c),
+          {across(a, b, c), across(b, c, a), across(c, a, b)},
+          seed,
+          layer.probability,
+          layer.reach + 1e-3,
+          1.0f + 2.0f * static_cast<float>(layer.reach),
+          static_cast<float>(layer.least_weight),
+          first,
+          static_cast<std::uint32_t>(least.size())};
 }
 
 }  // namespace astrolith

@@ -8,16 +8,14 @@
 #include <utility>
 
 #include "numerics/hash_random.h"
-#include "synthesis/largest_coordinate.h"
 #include "synthesis/spot_bounds.h"
 
 namespace astrolith {
 namespace {
 
 constexpr double kLargestCell =
-    1048576.0;                         // 2^20 cells from the origin: floats hold three bits within a cell
-constexpr double kMostCells = 4096.0;  // drawn at once
-constexpr double kClip = 2.0;          // of a sum of overlapping spots, in greatest kernels
+    1048576.0;                 // 2^20 cells from the origin: floats hold three bits within a cell
+constexpr double kClip = 2.0;  // of a sum of overlapping spots, in greatest kernels
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
 ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotImpulse* impulses,
@@ -32,22 +30,12 @@ ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotIm
   }
 }
 
-// Whether a spot of these half axes touches the box.
-bool reaches(const SpotImpulse& impulse, const Vec3d& half, const Box& box) {
-  const auto near = [](double c, double low, double high, double h) { return c >= low - h && c <= high + h; };
-  return near(impulse.x, box.min.x, box.max.x, half.x) && near(impulse.y, box.min.y, box.max.y, half.y) &&
-         near(impulse.z, box.min.z, box.max.z, half.z);
-}
-
-// For the rounding of float positions.
-Box widened_by_rounding(const Box& box) { return widened(box, 2e-6 * largest_coordinate(box)); }
-
 std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses, const Vec3d& half,
                                         const Box& box) {
-  const Box wide = widened_by_rounding(box);
+  const Box wide = spot_box(box);
   std::vector<SpotImpulse> found;
   std::copy_if(impulses.begin(), impulses.end(), std::back_inserter(found),
-               [&](const SpotImpulse& impulse) { return reaches(impulse, half, wide); });
+               [&](const SpotImpulse& impulse) { return spot_reaches(impulse, half, wide); });
   return found;
 }
 
@@ -114,8 +102,9 @@ SpotNoise::SpotNoise(const SpotLayer& layer, std::uint64_t seed, int layer_index
     const double shrink = std::pow(layer.lacunarity, j);
     const double cell = layer.cell_size / shrink, unit = layer.size / shrink;
     if (!(largest_coordinate(domain) / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
-    const SpotLattice lattice(layer, cell, layer.density * std::pow(shrink, layer.exponent - 2.0),
-                              hash_append(layer_seed, static_cast<std::uint32_t>(j)));
+    const SpotLattice lattice =
+        make_spot_lattice(layer, cell, layer.density * std::pow(shrink, layer.exponent - 2.0),
+                          hash_append(layer_seed, static_cast<std::uint32_t>(j)), thresholds_);
     const double amplitude = (layer.inverted ? 1.0 : -1.0) * layer.amplitude * std::pow(layer.gain, j);
     if (layer.parts.empty()) add_kind(layer, {}, lattice, unit, amplitude);
     for (const SpotPart& part : layer.parts) add_kind(layer, part, lattice, unit, amplitude);
@@ -132,41 +121,25 @@ void SpotNoise::add_kind(const SpotLayer& layer, const SpotPart& part, const Spo
   height_bound_ += clip * (1.0 + kSpotSlack);
 }
 
-SpotLattice::Cells SpotNoise::cells_around(const Kind& kind, const Box& box) {
-  const Vec3d margin = kind.support;
-  return kind.lattice.around({box.min - kind.offset - margin, box.max - kind.offset + margin});
-}
-
 std::vector<SpotImpulse> SpotNoise::impulses_reaching(int k, const Box& box) const {
-  const Kind& kind = kinds_[static_cast<std::size_t>(k)];
-  const Box wide = widened_by_rounding(box);
-  const auto [first, last] = cells_around(kind, wide);
-  const Vec3f offset{static_cast<float>(kind.offset.x), static_cast<float>(kind.offset.y),
-                     static_cast<float>(kind.offset.z)};
   std::vector<SpotImpulse> impulses;
-  const auto keep = [&](SpotImpulse impulse) {
-    impulse.x += offset.x;
-    impulse.y += offset.y;
-    impulse.z += offset.z;
-    if (reaches(impulse, kind.support, wide)) impulses.push_back(impulse);
-  };
-  for (int c = first[2]; c <= last[2]; ++c) {
-    for (int b = first[1]; b <= last[1]; ++b) {
-      for (int a = first[0]; a <= last[0]; ++a) kind.lattice.draw_cell(a, b, c, keep);
-    }
-  }
+  for_each_spot(kinds_[static_cast<std::size_t>(k)], thresholds_.data(), box,
+                [&](const SpotImpulse& impulse) { impulses.push_back(impulse); });
   return impulses;
 }
 
 SpotImpulses SpotNoise::draw(const Box& box) const {
   SpotImpulses impulses;
-  for (int j = 0; j < num_kinds(); ++j) impulses.push_back(impulses_reaching(j, moved_into_domain(box)));
+  for (int j = 0; j < num_kinds(); ++j)
+    impulses.push_back(impulses_reaching(j, moved_into(box, domain_min_, domain_max_)));
   return impulses;
 }
 
 std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
-  const Box moved = moved_into_domain(box);
-  const auto too_many = [&](const Kind& kind) { return cells_around(kind, moved).count() > kMostCells; };
+  const Box moved = moved_into(box, domain_min_, domain_max_);
+  const auto too_many = [&](const SpotKind& kind) {
+    return spot_cells_around(kind, moved).count() > kMostSpotCells;
+  };
   if (of_larger == nullptr && std::any_of(kinds_.begin(), kinds_.end(), too_many)) return nullptr;
   if (of_larger == nullptr) return std::make_shared<const SpotImpulses>(draw(box));
   auto impulses = std::make_shared<SpotImpulses>(kinds_.size());
@@ -189,7 +162,7 @@ void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, 
   Box points_box;
   for (int i = 0; i < n; ++i) points_box.extend({px[i], py[i], pz[i]});
   for (std::size_t j = 0; j < kinds_.size(); ++j) {
-    const Kind& kind = kinds_[j];
+    const SpotKind& kind = kinds_[j];
     std::fill(sum, sum + n, 0.0f);
     if (impulses == nullptr) {
       add_sum(kind, n, px, py, pz, sum);
@@ -201,11 +174,11 @@ void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, 
   }
 }
 
-void SpotNoise::add_sum(const Kind& kind, int n, const float* x, const float* y, const float* z,
+void SpotNoise::add_sum(const SpotKind& kind, int n, const float* x, const float* y, const float* z,
                         float* height) const {
   Box box;
   for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  if (n > 1 && cells_around(kind, box).count() > kMostCells) {
+  if (n > 1 && spot_cells_around(kind, box).count() > kMostSpotCells) {
     const int half = n / 2;
     add_sum(kind, half, x, y, z, height);
     add_sum(kind, n - half, x + half, y + half, z + half, height + half);
@@ -216,30 +189,18 @@ void SpotNoise::add_sum(const Kind& kind, int n, const float* x, const float* y,
   add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
 }
 
-Box SpotNoise::moved_into_domain(const Box& box) const {
-  const auto inside = [&](const Vec3d& p) {
-    return Vec3d{std::clamp(p.x, double{domain_min_.x}, double{domain_max_.x}),
-                 std::clamp(p.y, double{domain_min_.y}, double{domain_max_.y}),
-                 std::clamp(p.z, double{domain_min_.z}, double{domain_max_.z})};
-  };
-  return {inside(box.min), inside(box.max)};
-}
-
 Interval SpotNoise::bound_heights(const Box& box, const SpotImpulses* impulses) const {
-  const Box moved = moved_into_domain(box);
+  const Box moved = moved_into(box, domain_min_, domain_max_);
   const double slack = 3.0 * kSpotSlack * height_bound_;
   Interval sum{-slack, slack};
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    const Kind& kind = kinds_[k];
-    const double clip = kind.clip;
-    Interval heights{-clip, clip};
-    if (impulses != nullptr) {
-      heights = bound_spots(kind.kernel, (*impulses)[k], moved);
-    } else if (cells_around(kind, moved).count() <= kMostCells) {
-      heights = bound_spots(kind.kernel, impulses_reaching(static_cast<int>(k), moved), moved);
+    if (impulses == nullptr) {
+      sum = plus(sum, bound_drawn_spots(kinds_[k], thresholds_.data(), moved));
+      continue;
     }
-    sum.low += std::clamp(heights.low, -clip, clip);
-    sum.high += std::clamp(heights.high, -clip, clip);
+    SpotSumBound bound{kinds_[k], moved};
+    for (const SpotImpulse& impulse : (*impulses)[k]) bound.add(impulse);
+    sum = plus(sum, bound.clipped());
   }
   return sum;
 }

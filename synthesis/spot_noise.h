@@ -43,10 +43,9 @@ class SpotNoise {
   // Points outside are moved to the border.
   const Vec3f& domain_min() const { return domain_min_; }
   const Vec3f& domain_max() const { return domain_max_; }
-  // A kind is one part of the spots of one size; all parts of a size have the same impulses, each moved by
-  // its own centre. Of kind k: the kernel, and where the |sum| of its spots is cut, length units.
-  const SpotKernel& kernel(int k) const { return kinds_[static_cast<std::size_t>(k)].kernel; }
-  float clip(int k) const { return kinds_[static_cast<std::size_t>(k)].clip; }
+  // What it is made of; the kinds' lattices point into the thresholds.
+  const std::vector<SpotKind>& kinds() const { return kinds_; }
+  const std::vector<std::uint32_t>& thresholds() const { return thresholds_; }
   // All that reach a box, however many.
   SpotImpulses draw(const Box& box) const;
 
@@ -55,21 +54,13 @@ class SpotNoise {
   std::vector<SpotImpulse> impulses_reaching(int k, const Box& box) const;
 
  private:
-  struct Kind {
-    SpotKernel kernel;
-    SpotLattice lattice;
-    Vec3d offset;   // from an impulse, length units
-    Vec3d support;  // half axes, length units
-    float clip;     // of |sum|, length units
-  };
-
   void add_kind(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
                 double amplitude);
-  static SpotLattice::Cells cells_around(const Kind& kind, const Box& box);
-  void add_sum(const Kind& kind, int n, const float* x, const float* y, const float* z, float* height) const;
-  Box moved_into_domain(const Box& box) const;
+  void add_sum(const SpotKind& kind, int n, const float* x, const float* y, const float* z,
+               float* height) const;
 
-  std::vector<Kind> kinds_;
+  std::vector<SpotKind> kinds_;
+  std::vector<std::uint32_t> thresholds_;
   Vec3f domain_min_, domain_max_;
   double height_bound_ = 0.0;
 };

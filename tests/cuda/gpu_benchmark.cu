@@ -1,10 +1,11 @@
 // What a GPU reaches: a table of rates, and what share of the device's limit each is.
 //
-//   gpu_benchmark        on the first GPU; says so where there is none
+//   gpu_benchmark            on the first GPU; says so, and exits with 3, where there is none
+//   gpu_benchmark --probe    only says which
 //
-// Limits are measured in the same run: fused multiply-adds a second of a kernel that does nothing else, and
-// bytes a second of a copy within the device. A rate's share of the arithmetic limit needs the number of
-// instructions of one item: scripts/gpu.sh counts them in the machine code and prints them beside.
+// Limits are measured in the same run: instructions a second of a kernel that issues fused multiply-adds and
+// nothing else, bytes a second of a copy within the device, and of one to the host. What an item takes of
+// them stands in `cost` below.
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -14,12 +15,16 @@
 #include "cuda/field_on_machine.h"
 #include "cuda/mesh_field.h"
 #include "cuda/pair_count.h"
+#include "cuda/pair_tiles.h"
+#include "cuda/swarm.h"
+#include "cuda/swarm_on_gpu.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
 
 constexpr std::size_t kPoints = std::size_t{1} << 26;
+constexpr int kOctaves = 5;  // of the asteroid's noise
 
 double seconds_of(const auto& work) {
   work();  // warm
@@ -30,8 +35,25 @@ double seconds_of(const auto& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void row(const std::string& what, double amount, const char* unit, double seconds) {
-  std::printf("| %-44s | %12.4g | %-14s | %9.4f |\n", what.c_str(), amount, unit, seconds);
+// Of one item: instructions other than moves in the PTX of this file's kernels, which have no loops (nvcc
+// -ptx -arch=compute_90, release 13.0), less twelve for the index and the store; and bytes.
+namespace cost {
+constexpr double kSimplex = 254.0, kPerlin = 310.0, kWorleyF1 = 615.0, kWorleyF2MinusF1 = 669.0;
+constexpr double kMetaball = 42.0, kPair = 111.0;
+// To the host: half a vertex of six floats, and three numbers.
+constexpr double kTriangleBytes = 24.0;
+}  // namespace cost
+
+// A second.
+struct Limits {
+  double instructions, memory_bytes, bytes_to_host;
+};
+
+// `share` is of the limit that is named.
+void row(const std::string& what, double amount, const char* unit, double seconds, double share,
+         const char* limit) {
+  std::printf("| %-44s | %12.4g | %-14s | %9.4f | %5.1f %% of %s |\n", what.c_str(), amount, unit, seconds,
+              100.0 * share, limit);
 }
 
 struct FmaChains {
@@ -48,16 +70,24 @@ struct FmaChains {
   }
 };
 
-void limits(DeviceMachine& machine) {
+Limits measure_limits(DeviceMachine& machine) {
+  Limits limits{};
   auto out = machine.allocate<float>(1);
   const std::size_t threads = std::size_t{1} << 22;
   const double s = seconds_of([&] { machine.launch("fma", threads, FmaChains{out.data()}); });
-  row("limit: fused multiply-adds", threads * 8.0 * 1024.0 / s / 1e9, "G fma/s", s);
+  limits.instructions = static_cast<double>(threads) * 8.0 * 1024.0 / s;
+  row("limit: fused multiply-adds", limits.instructions / 1e9, "G fma/s", s, 1.0, "itself");
   const std::size_t bytes = std::size_t{1} << 30;
   auto from = machine.allocate<char>(bytes), to = machine.allocate<char>(bytes);
   const double c = seconds_of(
       [&] { check_cuda(cudaMemcpy(to.data(), from.data(), bytes, cudaMemcpyDeviceToDevice), "copying"); });
-  row("limit: memory, read and written", 2.0 * bytes / c / 1e9, "GB/s", c);
+  limits.memory_bytes = 2.0 * static_cast<double>(bytes) / c;
+  row("limit: memory, read and written", limits.memory_bytes / 1e9, "GB/s", c, 1.0, "itself");
+  std::vector<char> host(bytes / 4);
+  const double h = seconds_of([&] { machine.download(from, std::span(host)); });
+  limits.bytes_to_host = static_cast<double>(host.size()) / h;
+  row("limit: to the host", limits.bytes_to_host / 1e9, "GB/s", h, 1.0, "itself");
+  return limits;
 }
 
 // One octave over a lattice of points.
@@ -73,11 +103,12 @@ struct EvaluateNoise {
 };
 
 template <auto noise>
-void measure_noise(DeviceMachine& machine, const char* name) {
+void measure_noise(DeviceMachine& machine, const char* name, const Limits& limits, double instructions) {
   auto out = machine.allocate<float>(kPoints);
   const EvaluateNoise<noise> body{{3.0f, 1.0f, 1.0f, 7u, {}}, out.data()};
   const double s = seconds_of([&] { machine.launch(name, kPoints, body); });
-  row(name, static_cast<double>(kPoints) / s / 1e6, "M points/s", s);
+  const double rate = static_cast<double>(kPoints) / s;
+  row(name, rate / 1e6, "M points/s", s, rate * instructions / limits.instructions, "arithmetic");
 }
 
 // The whole field at points around the surface.
@@ -94,7 +125,43 @@ struct EvaluateField {
   }
 };
 
-void measure_field(DeviceMachine& machine, const ImplicitField& field) {
+// One pair of surflets a thread; for the count of its instructions.
+struct OnePair {
+  const float* surflets;
+  std::size_t count;
+  std::int64_t* codes;
+  ASTROLITH_HD void operator()(std::size_t i) const {
+    const auto surflet = [&](std::size_t k) {
+      const auto c = [&](std::size_t d) { return surflets[d * count + k]; };
+      return Surflet{{c(0), c(1), c(2)}, {c(3), c(4), c(5)}, {c(6), c(7), c(8)}};
+    };
+    codes[i] = surflet_code<5>(surflet(i), surflet(i + 1));
+  }
+};
+// One metaball; for the same.
+struct OneMetaball {
+  MetaballParameters<float> body;
+  MetaballSphere<float> sphere;
+  MetaballSums<float>* sums;
+  ASTROLITH_HD void operator()(std::size_t i) const {
+    const Vec3f p{static_cast<float>(i), 1.0f, 2.0f};
+    accumulate_gaussian(body, sphere, p, sums[i]);
+  }
+};
+
+// Runs both once, so that they are compiled.
+void run_counted_kernels(DeviceMachine& machine) {
+  auto surflets = machine.allocate<float>(9 * 65);
+  machine.fill_zero(surflets);
+  auto codes = machine.allocate<std::int64_t>(64);
+  machine.launch("one pair", 64, OnePair{surflets.data(), 65, codes.data()});
+  auto sums = machine.allocate<MetaballSums<float>>(64);
+  machine.fill_zero(sums);
+  machine.launch("one metaball", 64, OneMetaball{{}, {}, sums.data()});
+  machine.wait();
+}
+
+void measure_field(DeviceMachine& machine, const ImplicitField& field, const Limits& limits) {
   const FlatFieldData data(field);
   const FieldOnMachine<DeviceMachine> on_device(machine, data);
   const Vec3d c = field.bounds().center();
@@ -107,8 +174,11 @@ void measure_field(DeviceMachine& machine, const ImplicitField& field) {
   const auto single = [](const Vec3d& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
   const EvaluateField body{on_device.view(), parts.view(), single(c - half), single(2.0 * half), out.data()};
   const double s = seconds_of([&] { machine.launch("field", n, body); });
-  row("field of a block, " + std::to_string(blocks.spheres.size()) + " metaballs", n / s / 1e6, "M points/s",
-      s);
+  const auto metaballs = static_cast<double>(blocks.spheres.size());
+  const double rate = static_cast<double>(n) / s;
+  row("body and layers, " + std::to_string(blocks.spheres.size()) + " metaballs", rate / 1e6, "M points/s", s,
+      rate * (metaballs * cost::kMetaball + kOctaves * cost::kSimplex) / limits.instructions,
+      "arithmetic (without spots)");
 }
 
 Recipe asteroid() {
@@ -119,24 +189,25 @@ Recipe asteroid() {
   craters.cell_size = 0.12;
   craters.kappa = -0.4;
   craters.layers = 3;
-  recipe.layers = {testing::fractal_layer(0.02, 3.0, 5), craters};
+  recipe.layers = {testing::fractal_layer(0.02, 3.0, kOctaves), craters};
   return recipe;
 }
 
 // Resolutions for about 1, 10 and 100 million triangles: their number goes as the square.
-void measure_mesh(const ImplicitField& field) {
+void measure_mesh(const ImplicitField& field, const Limits& limits) {
   MeshDiscard sink;
   const MeshStatistics small = mesh_field_on_gpu(field, field.bounds(), 200, sink);
   for (const double wanted : {1e6, 1e7, 1e8}) {
     const int resolution = static_cast<int>(200.0 * std::sqrt(wanted / static_cast<double>(small.triangles)));
     MeshStatistics made;
     const double s = seconds_of([&] { made = mesh_field_on_gpu(field, field.bounds(), resolution, sink); });
-    row("mesh of " + std::to_string(made.triangles) + " triangles",
-        static_cast<double>(made.triangles) / s / 1e6, "M triangles/s", s);
+    const double rate = static_cast<double>(made.triangles) / s;
+    row("mesh of " + std::to_string(made.triangles) + " triangles", rate / 1e6, "M triangles/s", s,
+        rate * cost::kTriangleBytes / limits.bytes_to_host, "copying to the host");
   }
 }
 
-void measure_pairs(int n) {
+void measure_pairs(int n, const Limits& limits) {
   CounterRandom random(1);
   std::vector<Vec3d> points, normals;
   std::vector<std::int32_t> local;
@@ -146,31 +217,84 @@ void measure_pairs(int n) {
     local.push_back(static_cast<std::int32_t>(random.below(25)));
   }
   const double s = seconds_of([&] { count_pairs_on_gpu(points, normals, local, 25, 5, {}); });
-  row("pairs of " + std::to_string(n) + " points", 0.5 * n * (n - 1.0) / s / 1e9, "G pairs/s", s);
+  const double rate = 0.5 * n * (n - 1.0) / s;
+  row("pairs of " + std::to_string(n) + " points", rate / 1e9, "G pairs/s", s,
+      rate * cost::kPair / limits.instructions, "arithmetic");
+}
+
+// What the search for details asks of a GPU in 2,000 evaluations: 100 generations of 20 candidates with three
+// noises of eight octaves, 25,000 lines each, and the pairs of 4,000 samples.
+void measure_swarm(const Limits& limits) {
+  constexpr std::size_t kCandidates = 20, kLines = 25000, kGenerations = 100;
+  constexpr int kSamples = 4000;
+  CounterRandom random(2);
+  const PreparedMetaballs body = prepare_metaballs(*testing::potato_recipe(50, 4).body);
+  ProbeLines lines;
+  lines.metaballs.add(std::span<const MetaballSphere<float>>(body.spheres));
+  lines.parameters = body.parameters;
+  lines.reach = 0.05f;
+  lines.steps = 3;
+  for (std::size_t i = 0; i < kLines; ++i) {
+    const Vec3d u = normalized(Vec3d{random.normal(), random.normal(), random.normal()});
+    const Vec3f d{float(u.x), float(u.y), float(u.z)};
+    lines.start.push_back(d * 0.5f);
+    lines.direction.push_back(d);
+    lines.block.push_back(0);
+  }
+  const Box domain{{-1, -1, -1}, {1, 1, 1}};
+  CandidateLayers layers;
+  for (int l = 0; l < 3; ++l) layers.emplace_back(testing::fractal_layer(0.01, 4.0, 8), 1, l, domain);
+  const std::vector<CandidateLayers> candidates(kCandidates, layers);
+  std::vector<SurfletArrays> sets;
+  for (std::size_t c = 0; c < kCandidates; ++c) {
+    std::vector<Vec3d> points, normals;
+    for (int i = 0; i < kSamples; ++i) {
+      normals.push_back(normalized(Vec3d{random.normal(), random.normal(), random.normal()}));
+      points.push_back(0.5 * normals.back());
+    }
+    sets.emplace_back(points, normals, std::vector<std::int32_t>(kSamples, 0), 25);
+  }
+  const std::unique_ptr<SwarmMachine> swarm = swarm_on_gpu();
+  const double s = seconds_of([&] {
+    for (std::size_t g = 0; g < kGenerations; ++g) {
+      swarm->heights(lines, candidates);
+      swarm->count(sets, 5);
+    }
+  });
+  const double evaluations = kCandidates * kGenerations, rate = evaluations / s;
+  const double points = double{kLines} * (lines.steps * (24.0 * cost::kSimplex + 50.0 * cost::kMetaball));
+  row("search for details, 2,000 evaluations", rate, "evaluations/s", s,
+      rate * (points + 0.5 * kSamples * (kSamples - 1.0) * cost::kPair) / limits.instructions, "arithmetic");
 }
 
 void measure_all() {
   DeviceMachine machine;
-  limits(machine);
-  measure_noise<simplex_noise>(machine, "simplex noise");
-  measure_noise<perlin_noise>(machine, "Perlin noise");
-  measure_noise<worley_f1>(machine, "Worley noise, nearest");
-  measure_noise<worley_f2_minus_f1>(machine, "Worley noise, second less nearest");
+  const Limits limits = measure_limits(machine);
+  run_counted_kernels(machine);
+  measure_noise<simplex_noise>(machine, "simplex noise", limits, cost::kSimplex);
+  measure_noise<perlin_noise>(machine, "Perlin noise", limits, cost::kPerlin);
+  measure_noise<worley_f1>(machine, "Worley noise, nearest", limits, cost::kWorleyF1);
+  measure_noise<worley_f2_minus_f1>(machine, "Worley noise, second less nearest", limits,
+                                    cost::kWorleyF2MinusF1);
   const ImplicitField field(asteroid());
-  measure_field(machine, field);
-  measure_mesh(field);
-  measure_pairs(100000);
-  measure_pairs(1000000);
+  measure_field(machine, field, limits);
+  measure_mesh(field, limits);
+  measure_pairs(100000, limits);
+  measure_pairs(1000000, limits);
+  measure_swarm(limits);
 }
 
 }  // namespace
 }  // namespace astrolith
 
-int main() {
+int main(int argc, char** argv) {
   const astrolith::DeviceStatus status = astrolith::probe_device();
-  if (!status.usable) return std::printf("no GPU here: %s\n", status.reason.c_str()), 0;
-  std::printf("%s, compute capability %d\n\n", status.name.c_str(), status.compute_capability);
-  std::printf("| %-44s | %12s | %-14s | %9s |\n|---|---|---|---|\n", "what", "rate", "unit", "seconds");
+  if (!status.usable) return std::fprintf(stderr, "no GPU here: %s\n", status.reason.c_str()), 3;
+  std::printf("%s, compute capability %d.%d\n\n", status.name.c_str(), status.compute_capability / 10,
+              status.compute_capability % 10);
+  if (argc > 1 && std::string(argv[1]) == "--probe") return 0;
+  std::printf("| %-44s | %12s | %-14s | %9s | %s |\n|---|---|---|---|---|\n", "what", "rate", "unit",
+              "seconds", "share of the limit");
   try {
     astrolith::measure_all();
   } catch (const std::exception& e) {

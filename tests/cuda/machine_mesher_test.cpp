@@ -17,6 +17,9 @@ using testing::fractal_layer;
 using testing::potato_recipe;
 using testing::sphere_recipe;
 
+// Two blocks along a side.
+constexpr int kExampleCells = 12;
+
 struct Made {
   MeshStatistics statistics;
   TriangleMesh mesh;
@@ -40,7 +43,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 void expect_same(const Made& twin, const Made& cpu) {
-  EXPECT_GT(cpu.mesh.triangles.size(), 100u);
+  EXPECT_GT(cpu.mesh.triangles.size(), 30u);
   EXPECT_TRUE(same_bytes(twin.mesh.vertices, cpu.mesh.vertices));
   EXPECT_TRUE(same_bytes(twin.mesh.normals, cpu.mesh.normals));
   EXPECT_TRUE(same_bytes(twin.mesh.triangles, cpu.mesh.triangles));
@@ -77,7 +80,7 @@ TEST(MachineMesher, MakesTheMeshOfTheCpu) {
   gravel.layers = {testing::gabor_layer(0.06, 0.003)};
   const ImplicitField noisy(gravel);
   ASSERT_EQ(obstacle_to_flattening(noisy, block_side(noisy.bounds(), 12)), "");
-  expect_same(on_twin(noisy, 12), on_cpu(noisy, 12));
+  expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
 }
 
 // Samples whose field is exactly zero, and cells with many of them.
@@ -95,17 +98,34 @@ TEST(MachineMesher, MakesTheTilesOfTheCpu) {
   for (int i = 0; i < 3; ++i) expect_same(on_twin(field, 50, {i, 3}), on_cpu(field, 50, {i, 3}));
 }
 
+// Of the sources, or beside the programs where these were taken elsewhere (scripts/gpu.sh).
+std::filesystem::path examples() {
+  const std::filesystem::path sources = ASTROLITH_EXAMPLES;
+  return std::filesystem::exists(sources) ? sources : std::filesystem::path("synthesis/examples");
+}
+
 // Every example of a recipe that the GPU can mesh, on a coarse grid.
 TEST(MachineMesher, MeshesTheExamplesAsTheCpu) {
+  if (!std::filesystem::exists(examples())) GTEST_SKIP() << "the examples are not here";
   int meshed = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(ASTROLITH_EXAMPLES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(examples())) {
+    if (entry.path().extension() != ".json") continue;
     const ImplicitField field(read_recipe(entry.path()));
-    if (!obstacle_to_flattening(field, block_side(field.bounds(), 16)).empty()) continue;
+    if (!obstacle_to_flattening(field, block_side(field.bounds(), kExampleCells)).empty()) continue;
     SCOPED_TRACE(entry.path().filename().string());
-    expect_same(on_twin(field, 16), on_cpu(field, 16));
+    expect_same(on_twin(field, kExampleCells), on_cpu(field, kExampleCells));
     ++meshed;
   }
   EXPECT_GE(meshed, 19);
+}
+
+// Threads come at the same time on a GPU: whatever their order, the bytes are the same.
+TEST(MachineMesher, TakesThreadsInAnyOrder) {
+  const ImplicitField field(asteroid());
+  const Made cpu = on_cpu(field, 33);
+  for (const std::size_t seed : {1, 2, 31}) {
+    expect_same(on_twin(field, 33, {}, HostMachine(std::size_t{1} << 34, {seed})), cpu);
+  }
 }
 
 // Less memory means smaller batches, down to a layer each, and the same mesh.

@@ -85,6 +85,14 @@ TEST(PairTiles, CountWhatTheCpuCounts) {
   EXPECT_EQ(on_twin(many, 1, 5), on_cpu(many, 1, 5));
 }
 
+TEST(PairTiles, TakeThreadsInAnyOrder) {
+  const Surflets s = random_input(700, 4, 12);
+  for (const std::size_t seed : {1, 2, 31}) {
+    HostMachine machine(std::size_t{1} << 30, {seed});
+    EXPECT_EQ(count_pairs_on(machine, s.points, s.normals, s.local, 4, 5, {}), on_cpu(s, 4, 5));
+  }
+}
+
 TEST(PairTiles, CountTiesAsTheCpu) {
   for (const int num_local : {1, 9}) {
     EXPECT_EQ(on_twin(tied_input(num_local), num_local, 5), on_cpu(tied_input(num_local), num_local, 5));

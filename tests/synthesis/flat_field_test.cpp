@@ -3,171 +3,13 @@
 
 #include <vector>
 
-#include "synthesis/flat_field_data.h"
-#include "tests/synthesis/bodies.h"
+#include "synthesis/flat_blocks_data.h"
+#include "tests/synthesis/random_recipes.h"
 
 namespace astrolith {
 namespace {
 
-using testing::fractal_layer;
 using testing::potato_recipe;
-
-FractalLayer random_fractal(CounterRandom& random) {
-  FractalLayer layer =
-      fractal_layer(random.uniform(-0.03, 0.03), random.uniform(1, 6), 1 + static_cast<int>(random.below(5)));
-  layer.noise = static_cast<Noise>(random.below(5));
-  layer.scale = {1.0, random.uniform(0.5, 2), 1.5};
-  layer.bias = {random.uniform(-1, 1), 0.0, 0.25};
-  if (!is_worley(layer.noise) && random.below(2) == 0) layer.gradient_modulation = random.uniform(0.1, 2);
-  if (random.below(3) == 0) layer.warp = Warp{.amplitude = 0.05, .frequency = 3.0, .octaves = 2};
-  return layer;
-}
-
-SpotLayer random_spots(CounterRandom& random) {
-  SpotLayer layer;
-  layer.amplitude = 0.02;
-  layer.size = 0.06;
-  layer.cell_size = random.uniform(0.15, 0.3);
-  layer.kappa = random.uniform(-0.5, 0.5);
-  layer.inverted = random.below(2) == 0;
-  layer.layers = 1 + static_cast<int>(random.below(3));
-  layer.lattice.b = {0.4, 0.9, 0.0};
-  layer.parts = {{{0.1, 0.0, 0.2}, {1.0, 0.5, 0.8}, {0, 40, 30}, 1.0},
-                 {{0, 0.3, 0}, {0.5, 0.5, 0.5}, {}, -0.5}};
-  return layer;
-}
-
-SparseLayer random_sparse(CounterRandom& random) {
-  SparseLayer layer;
-  layer.amplitude = random.uniform(-0.03, 0.03);
-  layer.cell_size = 0.2;
-  layer.levels = 3;
-  layer.merged = random.below(2) == 0;
-  return layer;
-}
-
-PhasorLayer random_phasor(CounterRandom& random) {
-  PhasorLayer layer;
-  layer.amplitude = 0.01;
-  layer.frequency = 6.0;
-  layer.cell_size = 0.3;
-  layer.profile = static_cast<PhasorProfile>(random.below(4));
-  return layer;
-}
-
-RandomPhaseLayer random_phase(CounterRandom& random) {
-  RandomPhaseLayer layer;
-  layer.height_rms = 0.01;
-  layer.cell_size = 0.3;
-  layer.waves = 5;
-  layer.randomness = random.uniform();
-  return layer;
-}
-
-Population drawn(double greatest_diameter) {
-  Population population;
-  population.count = 30;
-  population.least_diameter = 0.03;
-  population.greatest_diameter = greatest_diameter;
-  return population;
-}
-
-CraterLayer random_craters(CounterRandom& random) {
-  CraterLayer layer;
-  layer.complex_from = 0.1;
-  layer.population = CraterPopulation{};
-  layer.population->drawn = drawn(0.2);
-  layer.population->degradation = random.uniform();
-  return layer;
-}
-
-BoulderLayer random_boulders(CounterRandom& random) {
-  BoulderLayer layer;
-  layer.roughness = random.below(2) == 0 ? 0.1 : 0.0;
-  layer.smoothing = 0.2;
-  layer.population = BoulderPopulation{};
-  layer.population->drawn = drawn(0.1);
-  return layer;
-}
-
-Layer random_layer(CounterRandom& random) {
-  switch (random.below(9)) {
-    case 0:
-      return random_spots(random);
-    case 1:
-      return random_sparse(random);
-    case 2:
-      return random_phasor(random);
-    case 3:
-      return random_phase(random);
-    case 4:
-      return random_craters(random);
-    case 5:
-      return random_boulders(random);
-    case 6:
-      return testing::gabor_layer(0.03, 0.005);
-    default:
-      return random_fractal(random);
-  }
-}
-
-// A body that operations make of others, one of which has a warp and one operations of its own.
-void add_operations(MetaballBody& body, CounterRandom& random) {
-  const auto operand = [&](double x) {
-    MetaballBody ball;
-    ball.spheres = {{{x, 0.1, 0.0}, 0.15}, {{x, -0.1, 0.1}, 0.1}};
-    return ball;
-  };
-  for (int i = 0; i < 3; ++i) {
-    BodyOperation operation;
-    operation.kind = static_cast<Operator>(random.below(5));
-    if (operation.kind == Operator::kIntersection) operation.kind = Operator::kDifference;
-    operation.alpha = random.uniform();
-    operation.width = 0.05;
-    operation.bulge = -0.02;
-    operation.operand = {operand(0.3 * i - 0.3)};
-    if (i == 1) operation.operand[0].warp = Warp{.amplitude = 0.02, .frequency = 3.0, .octaves = 1};
-    if (i == 2) {
-      operation.operand[0].operations.push_back({});
-      operation.operand[0].operations[0].operand = {operand(0.45)};
-    }
-    body.operations.push_back(operation);
-  }
-}
-
-// Local or not, masked by a layer before or not, combined in any way.
-void use_somehow(LayerUse& use, int number, bool first_has_height, CounterRandom& random) {
-  if (random.below(3) == 0) use.locality = Locality{.group = "some", .width = 0.1};
-  if (number == 0) return;
-  use.combination.kind = static_cast<Combine>(random.below(5));
-  use.combination.intersection = random.below(2) == 0;
-  use.combination.width = 0.01;
-  use.combination.direction = {0.5, -1.0, 0.25};
-  if (first_has_height && random.below(2) == 0) use.mask = LayerMask{.layer = "0", .from = -0.01, .to = 0.01};
-}
-
-// A body of any kernel, with or without a warp, under up to four layers, some of them local.
-Recipe random_recipe(std::uint64_t seed) {
-  CounterRandom random(seed);
-  Recipe recipe = potato_recipe(20 + static_cast<int>(random.below(40)), seed);
-  recipe.body->kernel = static_cast<Kernel>(random.below(5));
-  recipe.body->groups = {{"some", {0, 3, 7}}};
-  if (random.below(3) == 0) recipe.body->warp = Warp{.amplitude = 0.04, .frequency = 2.0, .octaves = 2};
-  if (random.below(4) == 0) add_operations(*recipe.body, random);
-  const int layers = static_cast<int>(random.below(5));
-  for (int i = 0; i < layers; ++i) {
-    Layer layer = random_layer(random);
-    std::visit(
-        [&](auto& l) {
-          l.name = std::to_string(i);
-          if constexpr (requires { l.use; })
-            use_somehow(l.use, i, i > 0 && use_of(recipe.layers[0]) != nullptr, random);
-        },
-        layer);
-    recipe.layers.push_back(layer);
-  }
-  return recipe;
-}
 
 Box box_around(const Vec3d& p, double half) {
   return {p - Vec3d{half, half, half}, p + Vec3d{half, half, half}};
@@ -219,7 +61,7 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
 }
 
 TEST(FlatField, HasTheBitsOfTheField) {
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) expect_same_bits(random_recipe(seed), seed);
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) expect_same_bits(testing::random_recipe(seed), seed);
 }
 
 TEST(FlatField, NamesWhatItLacks) {
@@ -228,6 +70,14 @@ TEST(FlatField, NamesWhatItLacks) {
   const ImplicitField field(recipe);
   EXPECT_EQ(obstacle_to_flattening(field, 0.05), "");
   EXPECT_NE(obstacle_to_flattening(field, 2.0), "");
+  SpotLayer fine;
+  fine.amplitude = 0.001;
+  fine.size = 0.005;
+  fine.cell_size = 0.01;
+  recipe.layers = {fine};
+  const ImplicitField pitted(recipe);
+  EXPECT_EQ(obstacle_to_flattening(pitted, 0.05), "");
+  EXPECT_NE(obstacle_to_flattening(pitted, 2.0), "");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How far the points of a box are from a metaball's centre, and bounds of kernels other than the Gaussian.
+// How far the points of a box are from a metaball's centre.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 
 namespace astrolith {
 
-inline double nearest_offset(double c, double lo, double hi) {
+ASTROLITH_HD inline double nearest_offset(double c, double lo, double hi) {
   return c < lo ? lo - c : c > hi ? c - hi : 0.0;
 }
-inline double farthest_offset(double c, double lo, double hi) {
+ASTROLITH_HD inline double farthest_offset(double c, double lo, double hi) {
   return std::max(std::fabs(c - lo), std::fabs(c - hi));
 }
 
@@ -22,7 +22,7 @@ struct SquaredDistances {
 };
 
 // From a sphere's centre to the box.
-inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, const Box& box) {
+ASTROLITH_HD inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, const Box& box) {
   const Vec3d c{sphere.center.x, sphere.center.y, sphere.center.z};
   const Vec3d near{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
                    nearest_offset(c.z, box.min.z, box.max.z)};
@@ -33,10 +33,5 @@ inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, c
 
 // Relative slack on squared distances: float points and float arithmetic differ from ours by less.
 inline constexpr double kDistanceSlack = 1e-5;
-
-// bound_metaballs and smallest_gradient for kernels other than the Gaussian, with M(p) - 1 and |grad M| in
-// the place of L and |grad L|.
-MetaballInterval bound_profiles(const PreparedMetaballs& metaballs, const Box& box, double height);
-double smallest_profile_gradient(const PreparedMetaballs& metaballs, const Box& box);
 
 }  // namespace astrolith
