@@ -27,7 +27,7 @@ build_programs() {
 pack_binaries() {
   local pack
   pack=$(mktemp -d)
-  trap 'rm -rf "$pack"' EXIT
+  trap "rm -rf '$pack'" EXIT  # expanded now: the function's variable is gone at exit
   mkdir -p "$pack/astrolith/scripts" "$pack/astrolith/lib"
   cp scripts/gpu.sh "$pack/astrolith/scripts/"
   mkdir "$pack/astrolith/synthesis"
