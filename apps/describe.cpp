@@ -45,7 +45,8 @@ void run(Program& program, const Arguments& arguments) {
   require_writable(arguments.output);
   const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
   DescriptionOptions options = arguments.options.with_seed(program.seed);
-  if (arguments.device.use_gpu(program)) options.count_pairs = count_pairs_on_gpu;
+  const ChosenDevice chosen = arguments.device.choose(program);
+  if (chosen) options.count_pairs = count_pairs_on_gpu;
   const Progress progress = program.progress("describe");
   const ShapeDescription shape =
       mesh.triangles.empty() ? describe_file(arguments.shape, mesh.vertices, mesh.normals, options, progress)
@@ -54,6 +55,8 @@ void run(Program& program, const Arguments& arguments) {
   const std::vector<int> axes(static_cast<std::size_t>(dimensions(options.features)), options.bins);
   write_npy(shape.histogram.frequencies(), axes, arguments.output);
   summarize(program, shape, arguments.options.features);
+  program.say(arguments.output + ": " + std::to_string(shape.points) + " points, " +
+              std::to_string(shape.histogram.pairs) + " pairs; " + chosen.words);
 }
 
 }  // namespace

@@ -10,6 +10,14 @@
 
 namespace astrolith {
 
+// What computes, once it is known.
+struct ChosenDevice {
+  bool gpu = false;
+  std::string words;  // "computed on the CPU: no CUDA device": for the line that closes the work
+
+  explicit operator bool() const { return gpu; }
+};
+
 struct DeviceOption {
   std::string device = "auto";
 
@@ -20,10 +28,10 @@ struct DeviceOption {
         ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   }
 
-  // Looks at the GPU unless told not to. Where there is none, the CPU computes without a word; one that
-  // cannot be trusted is worth a word, and with "cuda" either is an InputError. States in the summary what
-  // computes.
-  bool use_gpu(Program& program) const {
+  // Looks at the GPU unless told not to. Where there is none, the CPU computes and the words say why; one
+  // that cannot be trusted is worth a line of its own, and with "cuda" either is an InputError. States in
+  // the summary what computes.
+  ChosenDevice choose(Program& program) const {
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
       throw InputError("--device cuda: " + status.reason + "; leave it out for the CPU");
@@ -31,18 +39,23 @@ struct DeviceOption {
     const bool is_there = status.compute_capability > 0;
     if (is_there && !status.usable) program.note(status.name + " is not used: " + status.reason);
     program.summary["device"] = status.usable ? status.name : "cpu";
-    return status.usable;
+    if (status.usable) return {true, "computed on " + status.name};
+    return on_cpu(status.reason);
   }
 
   // The same for work of which the GPU lacks a part, in a few words; nothing where `lacking` is empty.
-  bool use_gpu(Program& program, const std::string& lacking) const {
-    if (lacking.empty() || device == "cpu") return use_gpu(program);
+  ChosenDevice choose(Program& program, const std::string& lacking) const {
+    if (lacking.empty() || device == "cpu") return choose(program);
     const std::string words = "the GPU does not compute " + lacking;
     if (device == "cuda") throw InputError("--device cuda: " + words + "; leave it out for the CPU");
-    const bool usable = use_gpu(program);
-    if (usable) program.note(words + "; the CPU computes");
+    const ChosenDevice chosen = choose(program);
     program.summary["device"] = "cpu";
-    return false;
+    return chosen.gpu ? on_cpu(words) : chosen;
+  }
+
+ private:
+  static ChosenDevice on_cpu(const std::string& why) {
+    return {false, "computed on the CPU" + (why.empty() ? "" : ": " + why)};
   }
 };
 

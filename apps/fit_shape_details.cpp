@@ -125,12 +125,13 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
   details.fitness.seed = options.seed;
   details.fitness.recipe_seed = recipe.seed;
   details.log = &log;
-  const std::unique_ptr<SwarmMachine> swarm =
-      arguments.device.use_gpu(program) ? swarm_on_gpu() : std::unique_ptr<SwarmMachine>();
+  const ChosenDevice chosen = arguments.device.choose(program);
+  const std::unique_ptr<SwarmMachine> swarm = chosen ? swarm_on_gpu() : std::unique_ptr<SwarmMachine>();
   details.swarm = swarm.get();
   DetailsFitResult result = fit_details(target, in_target_frame(*recipe.body, target), details, progress);
   for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))
     recipe.layers.push_back(layer);
+  program.say(fmt::format("details: {} candidates {}", result.optimization.evaluations, chosen.words));
   return result;
 }
 

@@ -197,7 +197,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   const int resolution = choose_resolution(program, request.size, discarded, output, use, region.tile.count);
 
   if (request.size.only_predict) return;
-  const bool gpu = request.device.use_gpu(program, lacking_on_gpu(field, region, resolution));
+  const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));
 
   MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool(), {}};
   if (region.is_patch) info.origin = region.center;
@@ -219,7 +219,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   }
   const MeshStatistics statistics =
       mesh_without_crumbs(program, field, region, resolution, request.least_component,
-                          gpu ? MeshingDevice::kGpu : MeshingDevice::kCpu, sinks);
+                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, sinks);
   const ManifoldReport report = check.finish();
   if (report.triangles == 0) fail_empty(field, region, file);
   require_closed_manifold(report, statistics);
@@ -234,7 +234,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   if (!request.features.empty()) write_feature_list(field, recipe.length_unit, request.features);
   summarize_mesh(program, region, statistics, report);
   summarize_output(program, output);
-  program.say(output.string() + ": " + describe_mesh(report, request));
+  program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);
 }
 
 void summarize_output(Program& program, const fs::path& output) {

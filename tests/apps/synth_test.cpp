@@ -54,6 +54,9 @@ TEST_F(Synth, TheDeviceChangesNothing) {
   const std::string by_cpu = synthesise("cpu.ply", {"--device", "cpu"});
   EXPECT_EQ(synthesise("auto.ply", {"--device", "auto"}), by_cpu);
   const std::string out = (folder_ / "cuda.ply").string();
+  const testing::Outcome chosen = run_program(
+      kSynth, {folder_.write("r.json", kTwoSpheres), "-o", out, "--resolution", "16", "--device", "auto"});
+  EXPECT_NE(chosen.errors.find("; computed on "), std::string::npos) << chosen.errors;
   const testing::Outcome outcome = run_program(
       kSynth, {folder_.write("r.json", kTwoSpheres), "-o", out, "--resolution", "32", "--device", "cuda"});
   if (outcome.status == 0) {
