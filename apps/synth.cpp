@@ -42,9 +42,11 @@ void declare_options(Program& program, Options& options) {
                   "convert")
       ->option_text("BODY.json");
   program.app
-      .add_option("--vary", options.vary,
-                  "another body of the same kind: the strongest variation that --seed draws whose similarity "
-                  "with the recipe's own body, as `compare` measures it, is at least 1 less this")
+      .add_option(
+          "--vary", options.vary,
+          "another body of the same kind: the strongest variation that --seed draws whose similarity "
+          "with the recipe's own body, as `compare` measures it, is at least 1 less this; with new noise, "
+          "unless that alone is too different")
       ->check(CLI::Range(1e-3, 1.0))
       ->default_str("");
   declare_texture_options(program, options.texture);

@@ -35,6 +35,44 @@ ShapeHistogram histogram_of(const TriangleMesh& mesh, std::uint64_t seed) {
   return describe_shape(mesh, options).histogram;
 }
 
+// What is asked for, and variations of one seed on the way to it.
+struct Search {
+  const Recipe& recipe;
+  const VariationReference& reference;
+  double least;  // similarity
+  std::uint64_t seed;
+
+  // Nothing where the variation may not be given out.
+  std::optional<Variation> attempt(VariedNoise noise, double strength) const {
+    Variation variation{vary_recipe(recipe, strength, seed, noise), strength, 0.0};
+    const TriangleMesh mesh = mesh_of(variation.recipe);
+    if (mesh.triangles.empty()) return {};
+    variation.similarity = similarity(reference.histogram, histogram_of(mesh, 2 + seed));
+    if (variation.similarity < least) return {};
+    if (analyze_topology(mesh).components != reference.components) return {};
+    return variation;
+  }
+
+  // Nothing where even strength 0 is too much.
+  std::optional<Variation> strongest(VariedNoise noise, const Progress& progress) const {
+    std::optional<Variation> best = attempt(noise, 0.0);
+    if (!best) return {};
+    double low = 0.0, high = 1.0;
+    if (auto strong = attempt(noise, high)) return strong;
+    for (int i = 0; i < kHalvings; ++i) {
+      if (!report(progress, (i + 1.0) / kHalvings, fmt::format("similarity {:.3f}", best->similarity))) break;
+      const double middle = 0.5 * (low + high);
+      if (auto better = attempt(noise, middle)) {
+        best = std::move(better);
+        low = middle;
+      } else {
+        high = middle;
+      }
+    }
+    return best;
+  }
+};
+
 }  // namespace
 
 VariationReference reference_of(const Recipe& recipe) {
@@ -49,33 +87,17 @@ VariationReference reference_of(const TriangleMesh& mesh, std::int64_t component
 
 Variation find_variation(const Recipe& recipe, const VariationReference& reference, double delta,
                          std::uint64_t variation_seed, const Progress& progress) {
-  std::optional<Variation> best;
-  // Whether the variation is one that may be given out.
-  const auto attempt = [&](double strength) {
-    Variation variation{vary_recipe(recipe, strength, variation_seed), strength, 0.0};
-    const TriangleMesh mesh = mesh_of(variation.recipe);
-    if (mesh.triangles.empty()) return false;
-    variation.similarity = similarity(reference.histogram, histogram_of(mesh, 2 + variation_seed));
-    const bool good =
-        variation.similarity >= 1.0 - delta && analyze_topology(mesh).components == reference.components;
-    if (good) best = std::move(variation);
-    return good;
-  };
-  if (!attempt(0.0)) {
+  const Search search{recipe, reference, 1.0 - delta, variation_seed};
+  std::optional<Variation> found = search.strongest(VariedNoise::kNew, progress);
+  if (!found) found = search.strongest(VariedNoise::kKept, progress);
+  if (!found) {
     throw InputError(
-        fmt::format("a similarity of {:.3g} is out of reach: other noise of the same kind leaves "
-                    "less; allow for more difference",
+        fmt::format("a similarity of {:.3g} is out of reach: two samplings of the same body differ by more; "
+                    "allow for more difference",
                     1.0 - delta));
   }
-  double low = 0.0, high = 1.0;
-  if (attempt(high)) low = high;
-  for (int i = 0; i < kHalvings && low < high; ++i) {
-    if (!report(progress, (i + 1.0) / kHalvings, fmt::format("similarity {:.3f}", best->similarity))) break;
-    const double middle = 0.5 * (low + high);
-    (attempt(middle) ? low : high) = middle;
-  }
-  best->recipe.provenance.achieved = {{"similarity", round_to_seven_digits(best->similarity)}};
-  return *std::move(best);
+  found->recipe.provenance.achieved = {{"similarity", round_to_seven_digits(found->similarity)}};
+  return *std::move(found);
 }
 
 }  // namespace astrolith

@@ -28,8 +28,8 @@ struct Variation {
 };
 
 // The strongest variation (of five halvings of the strength's range) whose mesh has a similarity of at least
-// 1
-// - delta and as many components as the reference. Throws InputError when even new noise alone leaves less.
+// 1 - delta and as many components as the reference: with new noise, or, where that alone leaves less, with
+// the recipe's own. Throws InputError when two samplings of one body differ by more than delta.
 Variation find_variation(const Recipe& recipe, const VariationReference& reference, double delta,
                          std::uint64_t variation_seed, const Progress& progress = {});
 

@@ -120,9 +120,12 @@ void follow_heights(const std::vector<double>& growth, std::vector<Layer>& layer
 
 }  // namespace
 
-Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variation_seed) {
+Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variation_seed, VariedNoise noise) {
   Recipe varied = recipe;
-  varied.seed = CounterRandom(recipe.seed ^ (variation_seed * 0x9e3779b97f4a7c15u), kSeedStream).next() >> 11;
+  if (noise == VariedNoise::kNew) {
+    varied.seed =
+        CounterRandom(recipe.seed ^ (variation_seed * 0x9e3779b97f4a7c15u), kSeedStream).next() >> 11;
+  }
   varied.provenance.achieved.clear();
   const Deformation deform(sphere_bounds(*recipe.body), strength, variation_seed);
   for_each_sphere(*varied.body, [&](Sphere& s) {

@@ -63,6 +63,16 @@ TEST(RecipeVariation, WithoutStrengthOnlyTheNoiseIsNew) {
   EXPECT_EQ(std::get<FractalLayer>(varied.layers[0]).amplitude, 0.02);
 }
 
+TEST(RecipeVariation, KeptNoiseIsThatOfTheOriginalOnAnotherBody) {
+  const Recipe recipe = worm();
+  const Recipe varied = vary_recipe(recipe, 0.5, 7, VariedNoise::kKept);
+  EXPECT_EQ(varied.seed, recipe.seed);
+  Recipe renewed = vary_recipe(recipe, 0.5, 7);
+  EXPECT_NE(renewed.seed, recipe.seed);
+  renewed.seed = recipe.seed;
+  EXPECT_EQ(recipe_to_json(renewed), recipe_to_json(varied));
+}
+
 // Dust where the hills are low, joined to them: after a variation it lies where their heights are as low a
 // share.
 TEST(RecipeVariation, MasksAndJointsFollowTheHeights) {
