@@ -18,13 +18,17 @@ struct KnownBody {
 };
 
 inline constexpr std::array kKnownBodies{
-    KnownBody{"apophis", 0.17},  KnownBody{"arrokoth", 9.1}, KnownBody{"bennu", 0.245},
-    KnownBody{"ceres", 470.0},   KnownBody{"deimos", 6.2},   KnownBody{"didymos", 0.38},
-    KnownBody{"epimetheus", 58}, KnownBody{"eros", 8.4},     KnownBody{"gaspra", 6.1},
-    KnownBody{"hyperion", 135},  KnownBody{"ida", 15.7},     KnownBody{"itokawa", 0.165},
-    KnownBody{"kleopatra", 60},  KnownBody{"lutetia", 49.0}, KnownBody{"mathilde", 26.5},
-    KnownBody{"phobos", 11.1},   KnownBody{"ryugu", 0.448},  KnownBody{"steins", 2.65},
-    KnownBody{"tempel1", 2.8},   KnownBody{"toutatis", 1.3}, KnownBody{"vesta", 262.0}};
+    KnownBody{"amalthea", 83.5},   KnownBody{"apophis", 0.17},   KnownBody{"arrokoth", 9.1},
+    KnownBody{"bacchus", 0.32},    KnownBody{"bennu", 0.245},    KnownBody{"castalia", 0.54},
+    KnownBody{"ceres", 470},       KnownBody{"deimos", 6.2},     KnownBody{"didymos", 0.38},
+    KnownBody{"dimorphos", 0.075}, KnownBody{"epimetheus", 58},  KnownBody{"eros", 8.4},
+    KnownBody{"gaspra", 6.1},      KnownBody{"geographos", 1.3}, KnownBody{"halley", 5},
+    KnownBody{"hygiea", 216},      KnownBody{"hyperion", 135},   KnownBody{"ida", 15.7},
+    KnownBody{"interamnia", 166},  KnownBody{"itokawa", 0.165},  KnownBody{"juno", 127},
+    KnownBody{"kleopatra", 60},    KnownBody{"lutetia", 49},     KnownBody{"mathilde", 26.5},
+    KnownBody{"moshup", 0.66},     KnownBody{"pandora", 40.5},   KnownBody{"phobos", 11.1},
+    KnownBody{"psyche", 111},      KnownBody{"ryugu", 0.448},    KnownBody{"steins", 2.65},
+    KnownBody{"tempel1", 2.8},     KnownBody{"toutatis", 1.3},   KnownBody{"vesta", 262}};
 
 // The body that the file's name begins with ("Eros_gaskell.ply"; not "erosion.ply").
 inline std::optional<KnownBody> known_body(std::string_view file_name) {
