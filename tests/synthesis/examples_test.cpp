@@ -1,5 +1,6 @@
 // Every example recipe says what it shows and becomes a closed manifold at any resolution; so do random
 // recipes.
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -8,12 +9,14 @@
 #include "synthesis/bare_surface.h"
 #include "synthesis/implicit_field.h"
 #include "synthesis/mesher.h"
+#include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
 
 TEST(Examples, BecomeClosedManifolds) {
+  const std::array resolutions = testing::by_size(std::array{17, 33, 52}, std::array{64, 128, 256});
   int examples = 0;
   for (const auto& entry : std::filesystem::directory_iterator(ASTROLITH_EXAMPLES)) {
     SCOPED_TRACE(entry.path().filename());
@@ -21,12 +24,15 @@ TEST(Examples, BecomeClosedManifolds) {
     EXPECT_FALSE(recipe.description.empty());
     EXPECT_EQ(recipe_to_json(parse_recipe(recipe_to_json(recipe), "r")), recipe_to_json(recipe));
     const ImplicitField field(recipe);
-    for (const int resolution : {17, 33, 52}) {
+    for (const int resolution : resolutions) {
       MeshCollector collector;
       mesh_field(field, field.bounds(), resolution, collector);
       const MeshTopology topology = analyze_topology(collector.mesh);
       EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
       EXPECT_GT(collector.mesh.triangles.size(), 100u);
+      RecordProperty(
+          entry.path().stem().string() + "_" + std::to_string(resolution),
+          "genus " + std::to_string(topology.genus) + ", components " + std::to_string(topology.components));
     }
     ++examples;
   }
