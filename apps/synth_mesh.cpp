@@ -90,8 +90,11 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
     return triangles + (request.patch.empty() ? "tile " + request.tile : "a patch") +
            ", open where cut, manifold";
   }
+  // Rough noise leaves crumbs in the air, which few people want.
+  const bool crumbs = report.components > 1 && !(request.least_component > 0.0);
   return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
-         std::to_string(report.components) + (report.components == 1 ? " component" : " components");
+         std::to_string(report.components) + (report.components == 1 ? " component" : " components") +
+         (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
 }
 
 bool is_gabor(const Layer& layer) { return std::holds_alternative<GaborLayer>(layer); }
