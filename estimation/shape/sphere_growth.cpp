@@ -19,6 +19,10 @@ constexpr std::size_t kPointsPerCluster = 32;
 // lies so deep that it is hardly told from others, and stays idle.
 constexpr double kStartShare = 0.3;
 
+// A new Gaussian's bump falls by e at this many patches along the surface, whatever the sharpness: with the
+// patch as the sphere's radius bumps of soft blends were twice as wide as what they were to mend.
+constexpr double kBumpWidth = 0.7;
+
 MetaballSphere<double> kernel_of(const Sphere& s) { return {s.center, 1.0 / (s.radius * s.radius)}; }
 
 // Mean s^2 of the samples within `radius` of sample i.
@@ -74,6 +78,11 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
     for (const auto& [i, square] : list) use[static_cast<std::size_t>(i)] += square;
   }
   return use;
+}
+
+// Radius of a new sphere. Along the surface a Gaussian falls as exp(-kappa x^2 / r^2).
+double radius_for_patch(const MetaballModel& model, double patch) {
+  return model.kernel == Kernel::kGaussian ? kBumpWidth * patch * std::sqrt(model.sharpness) : patch;
 }
 
 // How many radii from its centre a kernel has fallen to `value` < 1: bisection, for it falls all the way.
@@ -139,7 +148,8 @@ std::vector<Sphere> spheres_for_largest_errors(const MetaballModel& model, const
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t i, std::size_t j) { return errors[i] > errors[j]; });
 
-  const double depth = patch * radii_at_kernel(model, kStartShare);
+  const double radius = radius_for_patch(model, patch);
+  const double depth = radius * radii_at_kernel(model, kStartShare);
   std::vector<Sphere> grown;
   std::vector<Vec3d> taken;
   for (const std::size_t i : order) {
@@ -149,7 +159,7 @@ std::vector<Sphere> spheres_for_largest_errors(const MetaballModel& model, const
                                    [&](const Vec3d& q) { return squared_norm(p - q) < 4.0 * patch * patch; });
     if (!free) continue;
     taken.push_back(p);
-    grown.push_back({p - samples.normals[i] * depth, patch});
+    grown.push_back({p - samples.normals[i] * depth, radius});
   }
   return grown;
 }

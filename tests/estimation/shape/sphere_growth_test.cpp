@@ -1,5 +1,7 @@
 #include "estimation/shape/sphere_growth.h"
 
+#include <cmath>
+
 #include "estimation/shape/isosurface_projection.h"
 #include "geometry/mesh_measure.h"
 #include "tests/support/meshes.h"
@@ -19,6 +21,17 @@ TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {
   ASSERT_EQ(grown.size(), 1u);
   EXPECT_GT(normalized(grown[0].center).x, 0.9);
   EXPECT_LT(norm(grown[0].center), 1.0);
+}
+
+TEST(SphereGrowth, BumpsAreAsWideAtEverySharpness) {
+  const TriangleMesh mesh = testing::icosphere(3);
+  const SurfaceSamples samples = sample_surface(mesh, 500, 1, SampleNormals::interpolated);
+  const auto width = [&](double sharpness) {
+    const MetaballModel model{sharpness, {{{0, 0, 0}, 1.1}}};
+    const Sphere grown = spheres_for_largest_errors(model, samples, surface_area(mesh), 20, 1).at(0);
+    return grown.radius / std::sqrt(sharpness);
+  };
+  EXPECT_NEAR(width(0.4), width(4.0), 1e-12);
 }
 
 TEST(SphereGrowth, IdleAndOutsideSpheresGo) {
