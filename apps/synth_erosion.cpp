@@ -10,7 +10,7 @@ namespace astrolith {
 
 void erode_mesh(Program& program, const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh) {
   const Erosion& erosion = *recipe.erosion;
-  const std::vector<Mascon> mascons = mascons_of(field, all_spheres(*recipe.body));
+  const std::vector<Mascon> mascons = mascons_of(field, adding_spheres(*recipe.body));
   const std::vector<Vec3d> up =
       vertical_directions(mascons, {erosion.density, erosion.rotation_period}, mesh.vertices);
   const ErosionStatistics done =

@@ -85,6 +85,10 @@ inline constexpr int kMaxOperations = 256;    // in a whole recipe
 // cutoff_radii, whichever comes first (synthesis/kernel_profile.h). That needs a tension of
 // least_tension(body) at least. Their blend is a p-norm with m >= 1.
 //
+// Spheres can also take away: with g_j their kernels and T the iso-value,
+//   m(p) = (sum_i f_i(p)^m / (1 + sum_j (g_j(p) / T)^m))^(1/m),
+// whose surface is that of the difference, sum_i f_i^m - sum_j g_j^m = T^m.
+//
 // With a warp, m is taken at p + warp(p) instead of p: low frequencies and high amplitudes make caves,
 // tunnels and arches.
 struct MetaballBody {
@@ -95,9 +99,12 @@ struct MetaballBody {
   double iso_value = 1.0;           // the thesis's T, > 0
   double cutoff_radii = 5.0;        // support of each kernel in its own radii, > 1
   std::vector<Sphere> spheres;      // at least one
+  std::vector<Sphere> subtract;     // spheres that take away; not in groups
   std::vector<SphereGroup> groups;  // sorted by name, each name once
   std::vector<BodyOperation> operations;  // done to these metaballs, in order
   std::optional<Warp> warp;
+
+  std::size_t num_metaballs() const { return spheres.size() + subtract.size(); }
 
   // Null where there is none of that name.
   const SphereGroup* find_group(std::string_view name) const {

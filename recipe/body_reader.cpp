@@ -112,6 +112,9 @@ void read_body(const json& value, const Place& place, MetaballBody& out) {
   object.allow("iso_value", out.iso_value);
   object.allow("cutoff_radii", out.cutoff_radii);
   require_elements(object, "spheres", out.spheres, read_sphere);
+  if (const json* list = object.find("subtract")) {
+    read_elements(*list, object.at("subtract"), out.subtract, read_sphere);
+  }
   if (const json* groups = object.find("groups")) read_groups(*groups, object.at("groups"), out.groups);
   read_warp(object, out.warp);
   if (const json* list = object.find("operations")) {

@@ -116,6 +116,8 @@ void check(const MetaballBody& body, const Place& place) {
   const Place spheres = place.field("spheres");
   if (body.spheres.empty()) spheres.fail("must hold at least one [x, y, z, radius]");
   for (std::size_t i = 0; i < body.spheres.size(); ++i) check(body.spheres[i], spheres.element(i));
+  const Place subtract = place.field("subtract");
+  for (std::size_t i = 0; i < body.subtract.size(); ++i) check(body.subtract[i], subtract.element(i));
   check_groups(body, place.field("groups"));
   if (body.warp) check(*body.warp, place.field("warp"));
   const Place operations = place.field("operations");

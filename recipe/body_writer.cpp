@@ -31,13 +31,17 @@ ordered_json to_json(const BodyOperation& operation) {
   return object;
 }
 
+ordered_json to_json(const std::vector<Sphere>& spheres) {
+  ordered_json rows = ordered_json::array();
+  for (const Sphere& s : spheres) {
+    rows.push_back(ordered_json::array({s.center.x, s.center.y, s.center.z, s.radius}));
+  }
+  return rows;
+}
+
 }  // namespace
 
 ordered_json to_json(const MetaballBody& body) {
-  ordered_json spheres = ordered_json::array();
-  for (const Sphere& s : body.spheres) {
-    spheres.push_back(ordered_json::array({s.center.x, s.center.y, s.center.z, s.radius}));
-  }
   ordered_json object{{"type", "metaballs"},
                       {"kernel", kernel_word(body.kernel)},
                       {"a", body.a},
@@ -45,7 +49,8 @@ ordered_json to_json(const MetaballBody& body) {
                       {"blend_exponent", body.blend_exponent},
                       {"iso_value", body.iso_value},
                       {"cutoff_radii", body.cutoff_radii},
-                      {"spheres", std::move(spheres)}};
+                      {"spheres", to_json(body.spheres)}};
+  if (!body.subtract.empty()) object["subtract"] = to_json(body.subtract);
   for (const SphereGroup& group : body.groups) object["groups"][group.name] = group.spheres;
   if (body.warp) object["warp"] = to_json(*body.warp);
   for (const BodyOperation& operation : body.operations) object["operations"].push_back(to_json(operation));

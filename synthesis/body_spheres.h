@@ -1,4 +1,4 @@
-// All spheres of a body and of the bodies that it is combined with.
+// The spheres of a body and of the bodies that it is combined with.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,24 @@
 
 namespace astrolith {
 
+// Those that take away included.
 template <typename Body, typename Visit>
 void for_each_sphere(Body& body, const Visit& visit) {
   for (auto& sphere : body.spheres) visit(sphere);
+  for (auto& sphere : body.subtract) visit(sphere);
   for (auto& operation : body.operations) {
     for (auto& operand : operation.operand) for_each_sphere(operand, visit);
   }
 }
 
-inline std::vector<Sphere> all_spheres(const MetaballBody& body) {
-  std::vector<Sphere> spheres;
-  for_each_sphere(body, [&](const Sphere& s) { spheres.push_back(s); });
+inline std::vector<Sphere> adding_spheres(const MetaballBody& body) {
+  std::vector<Sphere> spheres = body.spheres;
+  for (const BodyOperation& operation : body.operations) {
+    for (const MetaballBody& operand : operation.operand) {
+      const std::vector<Sphere> of_operand = adding_spheres(operand);
+      spheres.insert(spheres.end(), of_operand.begin(), of_operand.end());
+    }
+  }
   return spheres;
 }
 

@@ -24,11 +24,15 @@ ASTROLITH_HD inline Vec3f flat_warped(const FlatField& f, const FlatWarp& warp, 
 ASTROLITH_HD inline SurfaceDistance<float> flat_leaf(const FlatField& f, const FlatBlock& block,
                                                      std::uint32_t leaf, const Vec3f& p) {
   const MetaballParameters<float>& body = f.leaves[leaf].body;
-  MetaballSums<float> sums{};
-  for (std::uint32_t j = block.first_sphere[leaf]; j < block.first_sphere[leaf + 1]; ++j) {
-    accumulate_metaball(body, block.spheres[j], p, sums);
+  std::uint32_t j = block.first_sphere[leaf];
+  const std::uint32_t end = block.first_sphere[leaf + 1];
+  MetaballTotals<float> totals{};
+  for (; j < end && !block.spheres[j].takes_away(); ++j) {
+    accumulate_metaball(body, block.spheres[j], p, totals.added);
   }
-  return metaball_distance(body, sums);
+  if (j == end) return metaball_distance(body, totals.added);
+  for (; j < end; ++j) accumulate_metaball(body, block.spheres[j].adding(), p, totals.taken);
+  return metaball_distance(body, totals.net());
 }
 
 // s, its gradient's direction, and where a plain body was evaluated.

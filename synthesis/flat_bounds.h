@@ -46,9 +46,7 @@ ASTROLITH_HD inline Box flat_body_box(const FlatField& f, const Box& box) {
 // Which metaballs of a leaf reach the points of flat_leaf_box(), and which craters and boulders a box.
 ASTROLITH_HD inline bool metaball_reaches(const FlatField& f, std::uint32_t leaf, std::uint32_t number,
                                           const Box& leaf_box) {
-  const MetaballSphere<float>& s = f.spheres[number];
-  const double limit = double{f.leaves[leaf].body.cutoff_squared} * (1.0 + kDistanceSlack);
-  return !(squared_distances(s, leaf_box).nearest * double{s.inverse_radius_squared} > limit);
+  return reaches_box(f.spheres[number], double{f.leaves[leaf].body.cutoff_squared}, leaf_box);
 }
 ASTROLITH_HD inline bool boulder_reaches(const FlatField& f, std::uint32_t number, const Box& box) {
   return boxes_touch({f.boulders[number].low, f.boulders[number].high}, box);

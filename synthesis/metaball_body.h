@@ -2,6 +2,7 @@
 // an interval that is never wrong.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <vector>
@@ -12,10 +13,21 @@
 namespace astrolith {
 
 // A set of spheres under one set of parameters: the whole body, or what of it reaches a box. Spheres keep the
-// recipe's order. A sphere adds exactly nothing beyond its support, so a superset gives the same bits.
+// recipe's order, those that take away after those that add. A sphere adds exactly nothing beyond its
+// support, so a superset gives the same bits.
 struct PreparedMetaballs {
   MetaballParameters<float> parameters;
   std::vector<MetaballSphere<float>> spheres;
+
+  // The two kinds.
+  std::span<const MetaballSphere<float>> adding() const { return {spheres.begin(), first_taking()}; }
+  std::span<const MetaballSphere<float>> taking() const { return {first_taking(), spheres.end()}; }
+
+ private:
+  std::vector<MetaballSphere<float>>::const_iterator first_taking() const {
+    return std::partition_point(spheres.begin(), spheres.end(),
+                                [](const MetaballSphere<float>& s) { return !s.takes_away(); });
+  }
 };
 
 // The iso-value is folded into the exponents, so that the sum of kernels is 1 on the surface whatever T is.
@@ -26,7 +38,7 @@ PreparedMetaballs prepare_metaballs(const MetaballBody& body);
 // The spheres whose support reaches the box.
 PreparedMetaballs metaballs_reaching(const PreparedMetaballs& metaballs, const Box& box);
 
-// A box that holds the supports of all spheres.
+// A box that holds the supports of all spheres that add.
 Box support_bounds(const PreparedMetaballs& metaballs);
 
 // s(p) and grad L(p) at n points given as three arrays; writes four arrays of n floats, which may not

@@ -31,12 +31,49 @@ struct KernelInterval {
   double slope_min, slope_max;  // of -dK/dq; not the Gaussian
 };
 
-// Of the spheres that reach a box, and of the sum of their kernels there.
+// Of the spheres of one kind that reach a box, and of the sum of their kernels there and of what is added to
+// it: the kernels' floor to those that add, 1 to those that take away.
 struct KernelIntervals {
   KernelInterval* kernels;
   std::uint32_t count;
   double sum_min, sum_max;
+
+  ASTROLITH_HD void add(const KernelInterval& kernel) {
+    kernels[count++] = kernel;
+    sum_min += kernel.min;
+    sum_max += kernel.max;
+  }
 };
+
+// Of a body, with A = P / (1 + N) as in metaballs.h: P + floor <= added.sum_max, 1 + N <= taken.sum_max.
+struct BodyIntervals {
+  KernelIntervals added, taken;
+
+  // Of A + floor.
+  ASTROLITH_HD double net_min() const { return added.sum_min / taken.sum_max; }
+  ASTROLITH_HD double net_max() const {
+    return (added.sum_max - double{kKernelFloor}) / taken.sum_min + double{kKernelFloor};
+  }
+  ASTROLITH_HD bool takes_away() const { return taken.count != 0; }
+};
+
+// `interval_of(sphere, kernel)` is false for spheres that do not reach the box. Expects those that take away
+// last; `kernels` takes as many as there are spheres.
+template <typename IntervalOf>
+ASTROLITH_HD BodyIntervals bound_kernels(const MetaballList& spheres, KernelInterval* kernels,
+                                         const IntervalOf& interval_of) {
+  BodyIntervals bounds{{kernels, 0, double{kKernelFloor}, double{kKernelFloor}}, {nullptr, 0, 1.0, 1.0}};
+  std::uint32_t i = 0;
+  KernelInterval kernel;
+  for (; i < spheres.count && !spheres[i].takes_away(); ++i) {
+    if (interval_of(spheres[i], kernel)) bounds.added.add(kernel);
+  }
+  bounds.taken.kernels = kernels + bounds.added.count;
+  for (; i < spheres.count; ++i) {
+    if (interval_of(spheres[i], kernel)) bounds.taken.add(kernel);
+  }
+  return bounds;
+}
 
 // The divisor of s for a |grad L|, rounded up.
 ASTROLITH_HD inline double metaball_divisor(const MetaballParameters<float>& body, double gradient) {
@@ -45,7 +82,7 @@ ASTROLITH_HD inline double metaball_divisor(const MetaballParameters<float>& bod
 
 // The least and the largest |p - c|^2 / r^2 in a box.
 ASTROLITH_HD inline Interval squared_radii(const MetaballSphere<float>& s, const Box& box) {
-  const double inverse = static_cast<double>(s.inverse_radius_squared);
+  const double inverse = inverse_square(s);
   const SquaredDistances d = squared_distances(s, box);
   return {d.nearest * inverse * (1.0 - kDistanceSlack), d.farthest * inverse * (1.0 + kDistanceSlack)};
 }
@@ -55,29 +92,25 @@ ASTROLITH_HD inline double gaussian_at(const MetaballParameters<float>& body, do
       std::min(static_cast<double>(body.m_a) - static_cast<double>(body.m_b) * q, double{kLargestExponent}));
 }
 
-// `kernels` takes as many as there are spheres.
-ASTROLITH_HD inline KernelIntervals bound_gaussians(const MetaballParameters<float>& body,
-                                                    const MetaballList& spheres, const Box& box,
-                                                    KernelInterval* kernels) {
+ASTROLITH_HD inline BodyIntervals bound_gaussians(const MetaballParameters<float>& body,
+                                                  const MetaballList& spheres, const Box& box,
+                                                  KernelInterval* kernels) {
   const double m_b = static_cast<double>(body.m_b), m = 1.0 / static_cast<double>(body.inverse_m);
   const double cutoff = static_cast<double>(body.cutoff_squared);
-  KernelIntervals result{kernels, 0, double{kKernelFloor}, double{kKernelFloor}};
-  for (std::uint32_t i = 0; i < spheres.count; ++i) {
-    const MetaballSphere<float>& s = spheres[i];
+  return bound_kernels(spheres, kernels, [&](const MetaballSphere<float>& s, KernelInterval& kernel) {
     const Interval q = squared_radii(s, box);
-    if (q.low >= cutoff) continue;
+    if (q.low >= cutoff) return false;
     const double f_max = gaussian_at(body, q.low);
     const double f_min = q.high < cutoff ? gaussian_at(body, q.high) : 0.0;
-    const double slope = std::sqrt(std::min(q.high, cutoff) * static_cast<double>(s.inverse_radius_squared));
-    kernels[result.count++] = {&s, f_min, f_max, 2.0 * m_b / m * slope, 0.0, 0.0};
-    result.sum_min += f_min;
-    result.sum_max += f_max;
-  }
-  return result;
+    const double slope = std::sqrt(std::min(q.high, cutoff) * inverse_square(s));
+    kernel = {&s, f_min, f_max, 2.0 * m_b / m * slope, 0.0, 0.0};
+    return true;
+  });
 }
 
-// Of |grad L| = |sum_i w_i grad log f_i| / m, with w_i <= f_i,max / (f_i,max + the others' minima) and
-// weights that add up to at most one. The bounds of meshes, and so their grids, depend on it.
+// Of |sum_i w_i grad log f_i| / m over one kind, with w_i <= f_i,max / (f_i,max + the others' minima) and
+// weights that add up to at most one: f_i / P, or f_i / (1 + N). |grad L| is at most the sum of both kinds'.
+// The bounds of meshes, and so their grids, depend on it.
 ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& bounds) {
   double weighted = 0.0, steepest = 0.0;
   for (std::uint32_t i = 0; i < bounds.count; ++i) {
@@ -129,30 +162,34 @@ ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameter
                                                          const MetaballList& spheres, const Box& box,
                                                          double height, KernelInterval* scratch) {
   const double m = 1.0 / static_cast<double>(body.inverse_m);
-  const KernelIntervals bounds = bound_gaussians(body, spheres, box, scratch);
-  const double steepest = largest_gaussian_gradient(bounds);
+  const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
+  const double of_taken = largest_gaussian_gradient(bounds.taken);
+  const double steepest = largest_gaussian_gradient(bounds.added) + of_taken;
   double gradient = steepest;
   if (height < std::numeric_limits<double>::infinity()) {
-    sort_steepest_first(bounds.kernels, bounds.count);
-    // There the kernels' sum is at least e^(-m height |grad L|).
+    sort_steepest_first(bounds.added.kernels, bounds.added.count);
+    // There A is at least e^(-m height |grad L|), and P that times 1 + N.
     for (int pass = 0; pass < 3; ++pass) {
-      const double sum = 0.999 * portable::exp(-m * height * metaball_divisor(body, gradient));
-      gradient = std::min(gradient, largest_gaussian_gradient(bounds, sum));
+      const double net = 0.999 * portable::exp(-m * height * metaball_divisor(body, gradient));
+      const double sum = net * bounds.taken.sum_min;
+      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + of_taken);
     }
   }
   // Float rounding: of the exponents and the logarithm, and of the coordinates.
-  const double slack = (3e-5 + 1e-6 * std::fabs(static_cast<double>(body.m_a))) / m +
+  const double kinds = bounds.takes_away() ? 2.0 : 1.0;
+  const double slack = kinds * (3e-5 + 1e-6 * std::fabs(static_cast<double>(body.m_a))) / m +
                        1e-6 * largest_coordinate(box) * steepest;
-  return {portable::log(bounds.sum_min) / m - slack, portable::log(bounds.sum_max) / m + slack,
+  return {portable::log(bounds.net_min()) / m - slack, portable::log(bounds.net_max()) / m + slack,
           metaball_divisor(body, gradient)};
 }
 
-// The direction in which the sum of kernels falls fastest at a point.
+// The direction in which the sum of the kernels that add falls fastest at a point.
 ASTROLITH_HD inline Vec3d gaussians_outward(const MetaballParameters<float>& body,
                                             const MetaballList& spheres, const Vec3d& p) {
   Vec3d sum;
   for (std::uint32_t i = 0; i < spheres.count; ++i) {
     const MetaballSphere<float>& s = spheres[i];
+    if (s.takes_away()) break;
     const double inverse = static_cast<double>(s.inverse_radius_squared);
     const Vec3d d = p - Vec3d{s.center.x, s.center.y, s.center.z};
     const double q = squared_norm(d) * inverse;
@@ -171,29 +208,33 @@ ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<f
                                                       const MetaballList& spheres, const Box& box,
                                                       KernelInterval* scratch) {
   const double b = static_cast<double>(body.m_b) * static_cast<double>(body.inverse_m);
-  const KernelIntervals bounds = bound_gaussians(body, spheres, box, scratch);
+  const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
+  const KernelIntervals& added = bounds.added;
+  // Weights are f_i / (P + floor (1 + N)).
+  const double floor_max = double{kKernelFloor} * bounds.taken.sum_max;
+  const double sum_max = added.sum_max - double{kKernelFloor} + floor_max;
   // The component along one direction, of each grad log f_i / m and of their weighted mean.
   const Vec3d center = center_of(box), u = gaussians_outward(body, spheres, center);
   const double spread = spread_along(box, u);
   double weighted = 0.0, least = std::numeric_limits<double>::infinity(), sharpest = 0.0;
-  for (std::uint32_t i = 0; i < bounds.count; ++i) {
-    const KernelInterval& k = bounds.kernels[i];
+  for (std::uint32_t i = 0; i < added.count; ++i) {
+    const KernelInterval& k = added.kernels[i];
     const double inverse = static_cast<double>(k.sphere->inverse_radius_squared);
     const Vec3d c{k.sphere->center.x, k.sphere->center.y, k.sphere->center.z};
     const double component = 2.0 * b * inverse * (dot(center - c, u) - spread);
-    weighted += component * (component > 0.0 ? k.min / (bounds.sum_max - k.max + k.min)
-                                             : k.max / (bounds.sum_min - k.min + k.max));
+    weighted += component * (component > 0.0 ? k.min / (sum_max - k.max + k.min)
+                                             : k.max / (added.sum_min - k.min + k.max));
     least = std::min(least, component);
     sharpest = std::max(sharpest, inverse);
   }
-  if (bounds.count == 0) least = 0.0;
-  const double floor_weight = double{kKernelFloor} / bounds.sum_min;  // of what has no gradient
+  if (added.count == 0) least = 0.0;
+  const double floor_weight = std::min(1.0, floor_max / added.sum_min);  // of what has no gradient
   const double coordinate = norm(center) + 0.5 * norm(extent_of(box));
   const double rounding = 1e-6 * coordinate * 2.0 * b * sharpest;  // how fast a gradient changes with that
   const double gradient =
       std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
   return std::max(std::sqrt(static_cast<double>(body.gradient_floor)) * (1.0 - kDistanceSlack),
-                  gradient - rounding);
+                  gradient - rounding - largest_gaussian_gradient(bounds.taken));
 }
 
 }  // namespace astrolith

@@ -31,7 +31,19 @@ ASTROLITH_HD inline SquaredDistances squared_distances(const MetaballSphere<floa
   return {squared_norm(near), squared_norm(far)};
 }
 
+// 1 / r^2 of either kind.
+ASTROLITH_HD inline double inverse_square(const MetaballSphere<float>& sphere) {
+  return std::fabs(static_cast<double>(sphere.inverse_radius_squared));
+}
+
 // Relative slack on squared distances: float points and float arithmetic differ from ours by less.
 inline constexpr double kDistanceSlack = 1e-5;
+
+// Whether the sphere's support, of so many squared radii, reaches the box.
+ASTROLITH_HD inline bool reaches_box(const MetaballSphere<float>& sphere, double cutoff_squared,
+                                     const Box& box) {
+  return !(squared_distances(sphere, box).nearest * inverse_square(sphere) >
+           cutoff_squared * (1.0 + kDistanceSlack));
+}
 
 }  // namespace astrolith

@@ -12,6 +12,11 @@
 // there. With them s is taken from the p-norm itself,
 //   M(p) = (sum_i K_i^m)^(1/m) / T,    s(p) = (M(p) - 1) / |grad M(p)|,
 //   grad M = -2 M / (sum_i K_i^m) sum_i K_i^m (-K_i'/K_i) (p - c_i) / r_i^2,     K_i' = dK_i/dq.
+//
+// Spheres may also take away. With P the sum over those that add and N over those that take away,
+//   A = P / (1 + N),    grad A = (grad P - A grad N) / (1 + N)
+// stands for the sum in all of the above. A = 1 is the surface P - N = 1 of the difference, but A is positive
+// and smooth everywhere, so that its logarithm and its roots exist. Without such spheres A = P, bit for bit.
 #pragma once
 
 #include "numerics/host_device.h"
@@ -59,7 +64,11 @@ inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) 
 template <typename T>
 struct MetaballSphere {
   Vec3<T> center{};
-  T inverse_radius_squared{};
+  T inverse_radius_squared{};  // with a minus where the sphere takes away
+
+  ASTROLITH_HD bool takes_away() const { return inverse_radius_squared < T(0); }
+  // The same sphere, adding.
+  ASTROLITH_HD MetaballSphere adding() const { return {center, -inverse_radius_squared}; }
 };
 
 // Running sums over spheres at one point.
@@ -124,6 +133,35 @@ ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, con
       return accumulate_profile<Kernel::kWyvill>(body, sphere, p, sums);
     case Kernel::kCauchy:
       return accumulate_profile<Kernel::kCauchy>(body, sphere, p, sums);
+  }
+}
+
+// The sum A, and what its gradient is made of, from those of P and of N.
+template <typename T>
+ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const MetaballSums<T>& taken) {
+  const T part = T(1) / (T(1) + taken.kernel);
+  const T kernel = added.kernel * part;
+  const auto net = [&](T of_added, T of_taken) { return of_added * part - of_taken * part * kernel; };
+  return {kernel,
+          {net(added.weighted.x, taken.weighted.x), net(added.weighted.y, taken.weighted.y),
+           net(added.weighted.z, taken.weighted.z)}};
+}
+
+// Running sums over spheres of both kinds.
+template <typename T>
+struct MetaballTotals {
+  MetaballSums<T> added, taken;
+
+  ASTROLITH_HD MetaballSums<T> net() const { return net_sums(added, taken); }
+};
+
+template <typename T>
+ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+                                          const Vec3<T>& p, MetaballTotals<T>& totals) {
+  if (sphere.takes_away()) {
+    accumulate_metaball(body, sphere.adding(), p, totals.taken);
+  } else {
+    accumulate_metaball(body, sphere, p, totals.added);
   }
 }
 

@@ -15,11 +15,11 @@ void evaluate_metaballs_near(const PreparedMetaballs& metaballs, const Vec3d& or
   const MetaballParameters<double> body = in_double(metaballs.parameters);
   for (int i = 0; i < n; ++i) {
     const Vec3d p = origin + Vec3d{x[i], y[i], z[i]};
-    MetaballSums<double> sums;
+    MetaballTotals<double> totals;
     for (const MetaballSphere<float>& s : metaballs.spheres) {
-      accumulate_metaball(body, in_double(s), p, sums);
+      accumulate_metaball(body, in_double(s), p, totals);
     }
-    const SurfaceDistance<double> d = metaball_distance(body, sums);
+    const SurfaceDistance<double> d = metaball_distance(body, totals.net());
     distance[i] = static_cast<float>(d.distance);
     gradient_x[i] = static_cast<float>(d.log_gradient.x);
     gradient_y[i] = static_cast<float>(d.log_gradient.y);

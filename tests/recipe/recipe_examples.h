@@ -21,7 +21,7 @@ inline const std::string kCompleteRecipe = R"({
   },
   "body": {
     "type": "metaballs", "kernel": "gaussian", "a": 1.5, "b": 1.25, "blend_exponent": 2, "iso_value": 1, "cutoff_radii": 5,
-    "spheres": [[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]], "groups": {"both": [1, 0], "head": [1]},
+    "spheres": [[0, 0, 0, 1], [0.5, -0.25, 1e-3, 0.75]], "subtract": [[1.25, 0, 0, 0.5]], "groups": {"both": [1, 0], "head": [1]},
     "warp": {"amplitude": 0.1, "frequency": 2, "octaves": 2, "gain": 0.4, "lacunarity": 2.5},
     "operations": [
       {"type": "difference", "alpha": 0.5, "body": {"type": "metaballs", "spheres": [[1, 1, 0, 0.5]]}},

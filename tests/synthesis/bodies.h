@@ -37,6 +37,14 @@ inline Recipe potato_recipe(int num_spheres, std::uint64_t seed, double sharpnes
   return recipe;
 }
 
+// Spheres that take away, about a potato's surface and within it.
+inline void add_dents(MetaballBody& body, int count, CounterRandom& random) {
+  for (int i = 0; i < count; ++i) {
+    const double x = random.uniform(-0.6, 0.6), y = random.uniform(-0.4, 0.4), z = random.uniform(-0.4, 0.4);
+    body.subtract.push_back({{x, y, z}, random.uniform(0.05, 0.2)});
+  }
+}
+
 inline FractalLayer fractal_layer(double amplitude, double frequency, int octaves) {
   FractalLayer layer;
   layer.amplitude = amplitude;

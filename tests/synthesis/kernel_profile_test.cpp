@@ -91,6 +91,8 @@ MetaballBody random_body(CounterRandom& random, int spheres) {
   body.a = body.b;
   body.iso_value = std::pow(10.0, random.uniform(-0.3, 0.3));
   body.a = body.b = std::max(body.a, least_tension(body) + 0.01);
+  CounterRandom dents(static_cast<std::uint64_t>(spheres), 1);
+  if (spheres % 3 == 0) testing::add_dents(body, spheres / 3, dents);
   return body;
 }
 

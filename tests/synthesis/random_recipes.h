@@ -148,6 +148,8 @@ inline Recipe random_recipe(std::uint64_t seed) {
   recipe.body->groups = {{"some", {0, 3, 7}}};
   if (random.below(3) == 0) recipe.body->warp = Warp{.amplitude = 0.04, .frequency = 2.0, .octaves = 2};
   if (random.below(4) == 0) add_operations(*recipe.body, random);
+  CounterRandom dents(seed, 1);
+  if (dents.below(2) == 0) add_dents(*recipe.body, 1 + static_cast<int>(dents.below(20)), dents);
   const int layers = static_cast<int>(random.below(5));
   for (int i = 0; i < layers; ++i) {
     Layer layer = random_layer(random);
