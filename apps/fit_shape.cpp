@@ -94,7 +94,8 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
 
 void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
   nlohmann::ordered_json& summary = program.summary;
-  summary["spheres"] = fit.body.spheres.size();
+  summary["spheres"] = fit.body.num_metaballs();
+  summary["subtracting_spheres"] = fit.body.subtract.size();
   for (const auto& [name, value] : achieved(fit)) summary[name] = value;
   summary["closed"] = fit.check.topology.closed;
   summary["manifold"] = fit.check.topology.manifold;
@@ -117,7 +118,7 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
       line, sizeof line,
       "%zu metaballs%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the diagonal; similarity %.2f %% "
       "(two samplings of the target: %.2f %%)",
-      fit.body.spheres.size(), with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max,
+      fit.body.num_metaballs(), with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max,
       100 * fit.similarity, 100 * fit.similarity_floor);
   program.say(line);
   if (fit.check.topology.components != target.components) {

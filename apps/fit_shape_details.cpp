@@ -18,14 +18,6 @@ namespace {
 
 constexpr std::int64_t kSimilarityPoints = 5000;
 
-MetaballBody in_target_frame(MetaballBody body, const TargetBody& target) {
-  for (Sphere& s : body.spheres) {
-    s.center = (s.center - target.center) * (1.0 / target.diagonal);
-    s.radius /= target.diagonal;
-  }
-  return body;
-}
-
 // Diagonal of the bare body's box, in the recipe's unit.
 double size_of(const Recipe& recipe) {
   Recipe bare;
@@ -128,7 +120,7 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
   const ChosenDevice chosen = arguments.device.choose(program);
   const std::unique_ptr<SwarmMachine> swarm = chosen ? swarm_on_gpu() : std::unique_ptr<SwarmMachine>();
   details.swarm = swarm.get();
-  DetailsFitResult result = fit_details(target, in_target_frame(*recipe.body, target), details, progress);
+  DetailsFitResult result = fit_details(target, in_target_frame(target, *recipe.body), details, progress);
   for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))
     recipe.layers.push_back(layer);
   program.say(fmt::format("details: {} candidates {}", result.optimization.evaluations, chosen.words));
@@ -177,7 +169,7 @@ std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, c
   ResidualTextureOptions options;
   options.seed = seed;
   const ResidualTexture texture =
-      fit_residual_texture(target, in_target_frame(*recipe.body, target), options, progress);
+      fit_residual_texture(target, in_target_frame(target, *recipe.body), options, progress);
   GaborLayer layer = texture.layer;
   layer.pixel_size = round_to_seven_digits(target.diagonal * layer.pixel_size);
   layer.height_rms = round_to_seven_digits(target.diagonal * layer.height_rms);

@@ -26,6 +26,10 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
   app.add_option("--spheres", arguments.fit.spheres, "metaballs at most")->check(CLI::Range(1, 10000));
   app.add_option("--kernel", arguments.kernel, "of the metaballs")
       ->check(CLI::IsMember({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
+  app.add_option("--subtract", arguments.fit.subtract,
+                 "share of the metaballs that may take away instead of adding; Gaussians alone. 0: none, for "
+                 "mascons or other programs")
+      ->check(CLI::Range(0.0, 0.9));
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{10000000}));
@@ -55,8 +59,8 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
   for (const char* option :
-       {"--kernel", "--points", "--optimizer", "--population", "--generations", "--base-only", "--details",
-        "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
+       {"--kernel", "--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only",
+        "--details", "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
     packing_only->excludes(app.get_option(option));
   }
   app.add_option("--density", arguments.density,

@@ -13,9 +13,6 @@
 namespace astrolith {
 namespace {
 
-// A sphere that holds less than this share of the kernel sum everywhere is idle.
-constexpr double kIdleShare = 0.02;
-
 // Centres may stick out of the target this far (fraction of the diagonal) before their sphere is taken away.
 constexpr double kOutsideMargin = 0.002;
 
@@ -128,14 +125,23 @@ class AdaptiveFit {
 
   // Adds this round's share of what is missing up to `wanted` spheres.
   void grow(int wanted, int rounds_left) {
-    std::vector<Sphere>& spheres = summary_.model.spheres;
+    std::vector<ModelSphere>& spheres = summary_.model.spheres;
     remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
-    remove_idle_spheres(summary_.model, points_, kIdleShare);
+    remove_idle_spheres(summary_.model, points_, mean_distance());
     const int missing = wanted - static_cast<int>(spheres.size());
     const int count = (missing + rounds_left - 1) / rounds_left;
-    const std::vector<Sphere> grown =
-        spheres_for_largest_errors(summary_.model, samples_, target_.area, options_.spheres, count);
+    const std::vector<ModelSphere> grown = spheres_for_largest_errors(
+        summary_.model, samples_, {target_.area, options_.spheres, count, more_taking()});
     spheres.insert(spheres.end(), grown.begin(), grown.end());
+  }
+
+  // How many more spheres may take away.
+  int more_taking() const {
+    if (summary_.model.kernel != Kernel::kGaussian) return 0;
+    const std::vector<ModelSphere>& spheres = summary_.model.spheres;
+    const auto taking =
+        std::count_if(spheres.begin(), spheres.end(), [](const ModelSphere& s) { return s.takes_away; });
+    return std::max(0, static_cast<int>(options_.taking * options_.spheres) - static_cast<int>(taking));
   }
 
   // Looks for islands, cavities and bridges, and mends them: islands lose their spheres, cavities are filled,

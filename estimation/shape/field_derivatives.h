@@ -8,6 +8,10 @@
 // where  dk_i/dc_i = 2 kappa u_i,  dk_i/dlog r_i = 2 kappa q_i,  dk_i/dkappa = 1 - q_i,
 //        du_i/dc_i = -1 / r_i^2,   du_i/dlog r_i = -2 u_i.
 // The sums carry the kernel floor of synthesis/metaballs.h; the cut-off counts as constant.
+// Where spheres take away, Lambda = log P - log(1 + N), and theirs are the weights -exp k_j / (1 + N). Then
+//   dG = w_i dk_i (u_i - G_i) + w_i du_i
+// where the floor is small beside A, with G_i the mean of u over the kind of sphere i: sum exp k u / P, or
+// sum exp k u / (1 + N).
 #pragma once
 
 #include <array>

@@ -64,7 +64,7 @@ RgbImage target_and_fit(const TargetBody& target, const ShapeFitResult& fit) {
   RgbImage right = render_preview(fit.check.mesh, small_preview());
   draw_label(left, "target", 14, 24);
   draw_label(right,
-             std::to_string(fit.body.spheres.size()) + " metaballs, mean distance " +
+             std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
                  percent(fit.check.distance.mean) + " of the diagonal",
              14, 24);
   return side_by_side(left, right);
@@ -124,7 +124,7 @@ PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
           {{"parts", std::to_string(target.components), std::to_string(fit.check.topology.components)},
            {"handles", "", std::to_string(fit.check.topology.genus)},
            {"triangles or metaballs", std::to_string(target.mesh.triangles.size()),
-            std::to_string(fit.body.spheres.size())},
+            std::to_string(fit.body.num_metaballs())},
            {"sharpness m a of the blend", "", number(fit.body.blend_exponent * fit.body.a, "%.4g")}}};
 }
 
@@ -139,7 +139,7 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
                                       std::max(1.2 * fit.check.distance.p99, 1e-9)),
                  folder / "error_histogram.png");
   ReportPage page{title,
-                  std::to_string(fit.body.spheres.size()) + " metaballs, mean distance " +
+                  std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
                       percent(fit.check.distance.mean) + " of the bounding-box diagonal.",
                   {distance_table(fit.check.distance), likeness_table(fit), body_table(target, fit)},
                   {{"target_and_fit.png", "Target and fit, from four sides, under the same sun."},

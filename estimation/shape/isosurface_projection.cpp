@@ -14,17 +14,15 @@ class Projector {
       : model_(model),
         parameters_(evaluation_parameters(model)),
         cutoff_(support_radii(model)),
-        longest_step_(largest_radius(model.spheres)),
+        longest_step_(largest_radius(model)),
         steps_(steps) {}
 
   // Spheres that may reach a point of the cluster after it moved a little.
   std::vector<MetaballSphere<double>> neighbours(const PointCluster& cluster) const {
     std::vector<MetaballSphere<double>> found;
     const double reach = cluster.radius + 0.5 * longest_step_;
-    for (const Sphere& s : model_.spheres) {
-      if (norm(s.center - cluster.center) < reach + cutoff_ * s.radius) {
-        found.push_back({s.center, 1.0 / (s.radius * s.radius)});
-      }
+    for (const ModelSphere& s : model_.spheres) {
+      if (norm(s.center - cluster.center) < reach + cutoff_ * s.radius) found.push_back(kernel_of(s));
     }
     return found;
   }
@@ -32,9 +30,9 @@ class Projector {
   void project(const std::vector<MetaballSphere<double>>& spheres, Vec3d& point, Vec3d& normal) const {
     normal = nearest_sphere_direction(point);
     for (int step = 0; step <= steps_; ++step) {
-      MetaballSums<double> sums;
-      for (const MetaballSphere<double>& s : spheres) accumulate_metaball(parameters_, s, point, sums);
-      const SurfaceDistance<double> at = metaball_distance(parameters_, sums);
+      MetaballTotals<double> totals;
+      for (const MetaballSphere<double>& s : spheres) accumulate_metaball(parameters_, s, point, totals);
+      const SurfaceDistance<double> at = metaball_distance(parameters_, totals.net());
       if (squared_norm(at.log_gradient) == 0.0) return;
       normal = normalized(-at.log_gradient);
       // The last evaluation is for the normal alone.
@@ -46,9 +44,9 @@ class Projector {
   Vec3d nearest_sphere_direction(const Vec3d& p) const {
     Vec3d direction;
     double nearest = 1e300;
-    for (const Sphere& s : model_.spheres) {
+    for (const ModelSphere& s : model_.spheres) {
       const double distance = norm(p - s.center) - s.radius;
-      if (distance >= nearest) continue;
+      if (s.takes_away || distance >= nearest) continue;
       nearest = distance;
       direction = normalized(p - s.center);
     }

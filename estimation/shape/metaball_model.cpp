@@ -38,15 +38,17 @@ ProfileTension tension_derivatives(Kernel kernel, double tension) {
 
 }  // namespace
 
-double largest_radius(const std::vector<Sphere>& spheres) {
+double largest_radius(const MetaballModel& model) {
   double largest = 0.0;
-  for (const Sphere& s : spheres) largest = std::max(largest, s.radius);
+  for (const ModelSphere& s : model.spheres) {
+    if (!s.takes_away) largest = std::max(largest, s.radius);
+  }
   return largest;
 }
 
 ModelEvaluation evaluation_parameters(const MetaballModel& model) {
   ModelEvaluation evaluation;
-  const double floor = slope_floor(model.kernel) / largest_radius(model.spheres);
+  const double floor = slope_floor(model.kernel) / largest_radius(model);
   evaluation.gradient_floor = floor * floor;
   if (model.kernel == Kernel::kGaussian) {
     const double support = gaussian_support(model.sharpness);
@@ -88,9 +90,9 @@ MetaballBody metaball_body(const MetaballModel& model) {
     body.a = body.b = rounded(model.sharpness);
     body.cutoff_radii = kCutoffRadii;
   }
-  for (const Sphere& s : model.spheres) {
-    body.spheres.push_back(
-        {{rounded(s.center.x), rounded(s.center.y), rounded(s.center.z)}, rounded(s.radius)});
+  for (const ModelSphere& s : model.spheres) {
+    (s.takes_away ? body.subtract : body.spheres)
+        .push_back({{rounded(s.center.x), rounded(s.center.y), rounded(s.center.z)}, rounded(s.radius)});
   }
   return body;
 }
@@ -102,9 +104,13 @@ MetaballModel model_of(const MetaballBody& body) {
     throw InputError("body: blend_exponent: the fit knows kernel " + std::string(kernel_word(body.kernel)) +
                      " with exponent 1 alone");
   }
-  MetaballModel model{body.blend_exponent * body.a, body.spheres, body.kernel};
+  if (!gaussian && !body.subtract.empty()) {
+    throw InputError("body: subtract: the fit knows Gaussians alone that take away");
+  }
+  MetaballModel model{body.blend_exponent * body.a, {body.spheres.begin(), body.spheres.end()}, body.kernel};
+  for (const Sphere& s : body.subtract) model.spheres.emplace_back(s, true);
   const double scale = std::sqrt(body.a / body.b);
-  for (Sphere& s : model.spheres) s.radius *= scale;
+  for (ModelSphere& s : model.spheres) s.radius *= scale;
   return model;
 }
 

@@ -7,6 +7,8 @@
 // The other kernels are summed as they are, m = 1, and their sharpness is the tension a = b:
 //   L(p) = sum_i K(|p - c_i|^2 / r_i^2) - 1,      K(0) = e^a, K(1) = 1     (synthesis/kernel_profile.h).
 // Either way a lone sphere's surface, L = 0, has its own radius.
+//
+// Gaussians may also take away (synthesis/metaballs.h): the sum is then A = P / (1 + N).
 #pragma once
 
 #include <vector>
@@ -16,11 +18,29 @@
 
 namespace astrolith {
 
+struct ModelSphere : Sphere {
+  bool takes_away = false;  // Gaussians alone
+
+  ModelSphere(const Sphere& sphere, bool takes = false) : Sphere(sphere), takes_away(takes) {}
+  ModelSphere(const Vec3d& at, double r, bool takes = false) : Sphere{at, r}, takes_away(takes) {}
+};
+
 struct MetaballModel {
-  double sharpness = 3.0;  // kappa or a, > 0; the latter at most kMaxTension
-  std::vector<Sphere> spheres;
+  double sharpness = 3.0;            // kappa or a, > 0; the latter at most kMaxTension
+  std::vector<ModelSphere> spheres;  // at least one that adds
   Kernel kernel = Kernel::kGaussian;
 };
+
+// As synthesis takes it.
+inline MetaballSphere<double> kernel_of(const ModelSphere& s) {
+  const double inverse_square = 1.0 / (s.radius * s.radius);
+  return {s.center, s.takes_away ? -inverse_square : inverse_square};
+}
+
+// The part that a kernel has in its sum: k / P of a sphere that adds, k / (1 + N) of one that takes away.
+inline double share_in(const MetaballTotals<double>& totals, double kernel, bool takes_away) {
+  return kernel / (takes_away ? 1.0 + totals.taken.kernel : totals.added.kernel + double{kKernelFloor});
+}
 
 // Derivatives of K's scale, of the logarithm of its height, and of its end by the tension.
 struct ProfileTension {
@@ -32,7 +52,8 @@ struct ModelEvaluation : MetaballParameters<double> {
   ProfileTension tension;  // of kernels other than the Gaussian
 };
 
-double largest_radius(const std::vector<Sphere>& spheres);
+// Of the spheres that add.
+double largest_radius(const MetaballModel& model);
 
 // As synthesis evaluates the body, but for the scale of s away from the surface.
 ModelEvaluation evaluation_parameters(const MetaballModel& model);
@@ -40,8 +61,8 @@ ModelEvaluation evaluation_parameters(const MetaballModel& model);
 // Support of a kernel in its own radii.
 double support_radii(const MetaballModel& model);
 
-// L where the sum of kernels is `sum`, and how far it falls there without a sphere that holds `share` < 1 of
-// the sum.
+// L where the sum A is `sum`, and how far it moves there without a sphere that holds `share` < 1 of its
+// kind's sum.
 double level_of(const MetaballModel& model, double sum);
 double level_lost(const MetaballModel& model, double sum, double share);
 

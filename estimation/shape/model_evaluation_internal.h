@@ -39,6 +39,38 @@ void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3
   });
 }
 
+inline void add_sums(const MetaballSums<double>& more, MetaballSums<double>& sums) {
+  sums.kernel += more.kernel;
+  sums.weighted += more.weighted;
+}
+
+// The sums at a point over some of the model's spheres, each one's kernel kept in `kernels`.
+inline MetaballTotals<double> totals_with_kernels(const MetaballModel& model,
+                                                  const ModelEvaluation& evaluation,
+                                                  std::span<const std::int32_t> spheres, const Vec3d& p,
+                                                  std::vector<double>& kernels) {
+  MetaballTotals<double> totals;
+  kernels.resize(spheres.size());
+  for (std::size_t j = 0; j < spheres.size(); ++j) {
+    MetaballTotals<double> own;
+    accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(spheres[j])]), p, own);
+    kernels[j] = own.added.kernel + own.taken.kernel;
+    add_sums(own.added, totals.added);
+    add_sums(own.taken, totals.taken);
+  }
+  return totals;
+}
+
+// And over those spheres alone.
+inline MetaballSums<double> net_sums_at(const MetaballModel& model, const ModelEvaluation& evaluation,
+                                        std::span<const std::int32_t> spheres, const Vec3d& p) {
+  MetaballTotals<double> totals;
+  for (const std::int32_t i : spheres) {
+    accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(i)]), p, totals);
+  }
+  return totals.net();
+}
+
 // L(p), the level of every point: 0 on the surface, positive inside.  (#points)
 std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points);
 

@@ -27,6 +27,25 @@ std::size_t count_cavities(const std::vector<StrayPart>& strays) {
       std::count_if(strays.begin(), strays.end(), [](const StrayPart& s) { return s.cavity; }));
 }
 
+// Which spheres, in which strays.
+struct Makers {
+  bool cavities, taking;
+};
+
+// Those whose centre is in such a stray. At least one that adds stays.
+void remove_within(MetaballModel& model, const std::vector<StrayPart>& strays, const Makers& makers) {
+  const auto is_maker = [&](const ModelSphere& s) {
+    return s.takes_away == makers.taking &&
+           std::any_of(strays.begin(), strays.end(), [&](const StrayPart& stray) {
+             return stray.cavity == makers.cavities && norm(s.center - stray.center) < stray.radius;
+           });
+  };
+  std::vector<ModelSphere> kept;
+  std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), is_maker);
+  const auto adds = [](const ModelSphere& s) { return !s.takes_away; };
+  if (std::any_of(kept.begin(), kept.end(), adds)) model.spheres = std::move(kept);
+}
+
 }  // namespace
 
 InsideWatch::InsideWatch(const TargetBody& target) {
@@ -47,25 +66,19 @@ void InsideWatch::add_dips(const MetaballModel& model, std::vector<Vec3d>& insid
 
 void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
                    const std::vector<Vec3d>& on_surface) {
+  remove_within(model, strays, {.cavities = true, .taking = true});
   const std::size_t cavities = std::min(count_cavities(strays), model.spheres.size() - 1);
   remove_least_useful_spheres(model, on_surface, static_cast<int>(cavities));
   std::size_t filled = 0;
   for (const StrayPart& stray : strays) {
     if (!stray.cavity || filled == cavities) continue;
-    model.spheres.push_back({stray.center, std::max(kFillerScale * stray.radius, kSmallestFiller)});
+    model.spheres.emplace_back(stray.center, std::max(kFillerScale * stray.radius, kSmallestFiller));
     ++filled;
   }
 }
 
 void remove_islands(MetaballModel& model, const std::vector<StrayPart>& strays) {
-  const auto makes_island = [&](const Sphere& s) {
-    return std::any_of(strays.begin(), strays.end(), [&](const StrayPart& island) {
-      return !island.cavity && norm(s.center - island.center) < island.radius;
-    });
-  };
-  std::vector<Sphere> kept;
-  std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), makes_island);
-  if (!kept.empty()) model.spheres = std::move(kept);
+  remove_within(model, strays, {.cavities = false, .taking = false});
 }
 
 }  // namespace astrolith

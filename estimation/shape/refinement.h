@@ -4,7 +4,7 @@
 // Residuals, in length units:
 //   on the surface   phi(s(p)),  phi^2 = 2 c^2 (sqrt(1 + s^2 / c^2) - 1)   pseudo-Huber: bad vertices pull
 //   little inside, outside  weight * max(0, margin - L(p)),  weight * max(0, margin + L(p))
-//   of every centre      center_weight * max(0, r_i / 20 - d(c_i)),  d the target's signed distance
+//   of every centre that adds      center_weight * max(0, r_i / 20 - d(c_i)),  d the target's signed distance
 // The second and third kind keep cavities and islands away: a surface that no sample lies on costs nothing
 // otherwise. Every centre is inside the model, so one outside the target is an island or a spike.
 // The solver is our own and not Ceres: at these sizes Ceres spent most of its time multiplying small blocks,

@@ -20,13 +20,17 @@ struct RefinementParameters {
         half(0.5 * std::log(sharpest(model.kernel) / kSoftest)) {
     const double part = (std::log(model.sharpness) - middle) / half;
     sharpness = half * std::atanh(std::clamp(part, -0.99, 0.99));
-    for (const Sphere& s : model.spheres) {
+    for (const ModelSphere& s : model.spheres) {
       spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
+      takes_away.push_back(s.takes_away);
     }
   }
   MetaballModel model() const {
     MetaballModel m{std::exp(middle + half * std::tanh(sharpness / half)), {}, kernel};
-    for (const auto& s : spheres) m.spheres.push_back({{s[0], s[1], s[2]}, std::exp(s[3])});
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const SphereDerivatives& s = spheres[i];
+      m.spheres.emplace_back(Vec3d{s[0], s[1], s[2]}, std::exp(s[3]), takes_away[i]);
+    }
     return m;
   }
   // Adds a step: four numbers a sphere, then one for the sharpness.
@@ -46,7 +50,8 @@ struct RefinementParameters {
   Kernel kernel;
   double middle, half;
   std::vector<SphereDerivatives> spheres;
-  double sharpness = 0.0;  // t
+  std::vector<bool> takes_away;  // by sphere; fixed
+  double sharpness = 0.0;        // t
 };
 
 }  // namespace astrolith

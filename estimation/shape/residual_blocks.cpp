@@ -32,21 +32,17 @@ ScaledResidual pseudo_huber(double s, double c) {
   return {s * shrink, 1.0 / (shrink * t)};
 }
 
-// Those of `spheres` that hold kSmallestShare of the kernel sum at one of the points.
+// Those of `spheres` that hold kSmallestShare of their kind's sum at one of the points.
 std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const ModelEvaluation& evaluation,
                                              const std::vector<Vec3d>& points,
                                              const std::vector<std::int32_t>& spheres) {
   std::vector<double> kernels(spheres.size()), largest(spheres.size());
   for (const Vec3d& p : points) {
-    double total = double{kKernelFloor};
+    const MetaballTotals<double> totals = totals_with_kernels(model, evaluation, spheres, p, kernels);
     for (std::size_t j = 0; j < spheres.size(); ++j) {
-      const Sphere& s = model.spheres[static_cast<std::size_t>(spheres[j])];
-      MetaballSums<double> own;
-      accumulate_metaball(evaluation, MetaballSphere<double>{s.center, 1.0 / (s.radius * s.radius)}, p, own);
-      kernels[j] = own.kernel;
-      total += own.kernel;
+      const bool takes_away = model.spheres[static_cast<std::size_t>(spheres[j])].takes_away;
+      largest[j] = std::max(largest[j], share_in(totals, kernels[j], takes_away));
     }
-    for (std::size_t j = 0; j < spheres.size(); ++j) largest[j] = std::max(largest[j], kernels[j] / total);
   }
   std::vector<std::int32_t> kept;
   for (std::size_t j = 0; j < spheres.size(); ++j) {
@@ -55,7 +51,8 @@ std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const M
   return kept;
 }
 
-CenterCondition center_condition(const SurfaceTree& target, double weight, const Sphere& sphere) {
+CenterCondition center_condition(const SurfaceTree& target, double weight, const ModelSphere& sphere) {
+  if (sphere.takes_away) return {};
   const ClosestPoint closest = target.closest(sphere.center);
   const double sign = dot(sphere.center - closest.point, closest.normal) > 0.0 ? -1.0 : 1.0;
   const double depth = kCenterDepth * sphere.radius;

@@ -53,6 +53,7 @@ void check_options(const ShapeFitOptions& options) {
   if (options.population < 1 || options.generations < 1) {
     throw InputError("--population and --generations: give at least 1");
   }
+  if (!(options.subtract >= 0.0 && options.subtract <= 0.9)) throw InputError("--subtract: give 0 to 0.9");
   if (!(options.tolerance >= 0.0))
     throw InputError("--tolerance: give a fraction of the diagonal, at least 0");
 }
@@ -96,6 +97,7 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
   AdaptiveFitOptions adaptive;
   adaptive.spheres = options.spheres;
   adaptive.tolerance = options.tolerance;
+  adaptive.taking = options.subtract;
   adaptive.repair_resolution = options.check_resolution;
   if (options.spheres >= kManySpheres) {
     adaptive.relocations /= 2;
@@ -108,20 +110,11 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
 
 MetaballBody body_in_file_frame(const MetaballModel& model, const TargetBody& target) {
   MetaballModel moved = model;
-  for (Sphere& s : moved.spheres) {
+  for (ModelSphere& s : moved.spheres) {
     s.center = target.center + target.diagonal * s.center;
     s.radius *= target.diagonal;
   }
   return metaball_body(moved);
-}
-
-// The body as the recipe states it, rounding included, in the target's frame.
-MetaballBody body_in_target_frame(MetaballBody body, const TargetBody& target) {
-  for (Sphere& s : body.spheres) {
-    s.center = (s.center - target.center) * (1.0 / target.diagonal);
-    s.radius /= target.diagonal;
-  }
-  return body;
 }
 
 // With the features that `compare` takes unless told otherwise.
@@ -136,7 +129,7 @@ ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
 
 void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
   const std::uint64_t seed = options.seed;
-  result.check = check_fit(target, body_in_target_frame(result.body, target), options.check_resolution,
+  result.check = check_fit(target, in_target_frame(target, result.body), options.check_resolution,
                            options.check_samples, stream_seed(seed, kDistances));
   const ShapeHistogram wanted = fresh_histogram(target.surface, stream_seed(seed, kFreshTarget));
   result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));

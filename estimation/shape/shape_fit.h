@@ -21,6 +21,7 @@ inline constexpr std::int64_t kFewestPoints = 4000;
 struct ShapeFitOptions {
   int spheres = 200;  // at most, 1 .. 10000
   Kernel kernel = Kernel::kGaussian;
+  double subtract = 0.5;    // share of the spheres that may take away, 0 .. 0.9; Gaussians alone
   std::int64_t points = 0;  // of the target's surface that the refinement sees; 0 = kPointsPerSphere a sphere
   double tolerance = 0.0;   // no more spheres are added below this mean distance, fraction of the diagonal
   OptimizerAlgorithm optimizer = OptimizerAlgorithm::pso;

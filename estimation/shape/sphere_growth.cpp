@@ -19,16 +19,23 @@ constexpr std::size_t kPointsPerCluster = 32;
 // lies so deep that it is hardly told from others, and stays idle.
 constexpr double kStartShare = 0.3;
 
+// A sphere that holds this share of the kernel sum somewhere inside is not idle.
+constexpr double kHoldingShare = 0.02;
+
 // A new Gaussian's bump falls by e at this many patches along the surface, whatever the sharpness: with the
 // patch as the sphere's radius bumps of soft blends were twice as wide as what they were to mend.
 constexpr double kBumpWidth = 0.7;
 
-MetaballSphere<double> kernel_of(const Sphere& s) { return {s.center, 1.0 / (s.radius * s.radius)}; }
+// Means over a patch, s positive inside the model.
+struct PatchError {
+  double square = 0.0;  // of s^2
+  double mean = 0.0;    // of s
+};
 
-// Mean s^2 of the samples within `radius` of sample i.
-std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::vector<double>& distances,
-                                 double radius) {
-  std::vector<double> errors(points.size());
+// Of the samples within `radius` of sample i.  (#points)
+std::vector<PatchError> patch_errors(const std::vector<Vec3d>& points, const std::vector<double>& distances,
+                                     double radius) {
+  std::vector<PatchError> errors(points.size());
   const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
   parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
     const PointCluster& own = clusters[static_cast<std::size_t>(c)];
@@ -38,46 +45,75 @@ std::vector<double> patch_errors(const std::vector<Vec3d>& points, const std::ve
       for (const std::int32_t i : other.points) near.push_back(static_cast<std::size_t>(i));
     }
     for (const std::int32_t i : own.points) {
-      double sum = 0.0;
+      PatchError sum;
       int count = 0;
       for (const std::size_t j : near) {
         if (squared_norm(points[j] - points[static_cast<std::size_t>(i)]) > radius * radius) continue;
-        sum += distances[j] * distances[j];
+        sum.square += distances[j] * distances[j];
+        sum.mean += distances[j];
         ++count;
       }
-      errors[static_cast<std::size_t>(i)] = sum / count;
+      errors[static_cast<std::size_t>(i)] = {sum.square / count, sum.mean / count};
     }
   });
   return errors;
 }
 
-// Squared distance by which the surface would move at every point without one sphere, summed over the points.
-// (#spheres)
-std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec3d>& points) {
-  constexpr double kMostOfIt = 0.999;
-  const MetaballParameters<double> parameters = evaluation_parameters(model);
-  std::vector<std::vector<std::pair<std::int32_t, double>>> moved(points.size());
+// How far the surface near a point would move without a sphere.
+struct Movement {
+  std::int32_t sphere;
+  double distance;
+};
+
+// Without each of those that hold more than next to nothing there, at every point.  (#points)
+std::vector<std::vector<Movement>> movements(const MetaballModel& model, const std::vector<Vec3d>& points) {
+  constexpr double kMostOfIt = 0.999, kNextToNothing = 1e-6;
+  const ModelEvaluation parameters = evaluation_parameters(model);
+  std::vector<std::vector<Movement>> moved(points.size());
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
     std::vector<double> kernels;
-    MetaballSums<double> sums;
-    for (const std::int32_t i : neighbours) {
-      const double before = sums.kernel;
-      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), points[p], sums);
-      kernels.push_back(sums.kernel - before);
-    }
+    const MetaballTotals<double> totals =
+        totals_with_kernels(model, parameters, neighbours, points[p], kernels);
+    const MetaballSums<double> sums = totals.net();
     const Vec3d slope = metaball_distance(parameters, sums).log_gradient;
     const double slope_length = std::sqrt(squared_norm(slope) + parameters.gradient_floor);
     for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      const double share = kernels[j] / (sums.kernel + double{kKernelFloor});
-      const double distance = level_lost(model, sums.kernel, std::min(share, kMostOfIt)) / slope_length;
-      if (share > 1e-6) moved[p].emplace_back(neighbours[j], distance * distance);
+      const bool takes_away = model.spheres[static_cast<std::size_t>(neighbours[j])].takes_away;
+      const double share = share_in(totals, kernels[j], takes_away);
+      if (share <= kNextToNothing) continue;
+      moved[p].push_back(
+          {neighbours[j], level_lost(model, sums.kernel, std::min(share, kMostOfIt)) / slope_length});
     }
   });
+  return moved;
+}
+
+// Squares of these distances, summed over the points.  (#spheres)
+std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec3d>& points) {
   std::vector<double> use(model.spheres.size(), 0.0);
-  for (const auto& list : moved) {
-    for (const auto& [i, square] : list) use[static_cast<std::size_t>(i)] += square;
+  for (const std::vector<Movement>& list : movements(model, points)) {
+    for (const Movement& m : list) use[static_cast<std::size_t>(m.sphere)] += m.distance * m.distance;
   }
   return use;
+}
+
+// Marks the spheres that hold `share` of their kind's sum at one of the points.
+void mark_holding(const MetaballModel& model, const std::vector<Vec3d>& points, double share,
+                  std::vector<bool>& marks) {
+  const ModelEvaluation parameters = evaluation_parameters(model);
+  std::vector<std::vector<std::int32_t>> holding(points.size());  // a list a point, merged afterwards
+  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
+    std::vector<double> kernels;
+    const MetaballTotals<double> totals =
+        totals_with_kernels(model, parameters, neighbours, points[p], kernels);
+    for (std::size_t j = 0; j < neighbours.size(); ++j) {
+      const bool takes_away = model.spheres[static_cast<std::size_t>(neighbours[j])].takes_away;
+      if (share_in(totals, kernels[j], takes_away) >= share) holding[p].push_back(neighbours[j]);
+    }
+  });
+  for (const auto& list : holding) {
+    for (const std::int32_t i : list) marks[static_cast<std::size_t>(i)] = true;
+  }
 }
 
 // Radius of a new sphere. Along the surface a Gaussian falls as exp(-kappa x^2 / r^2).
@@ -96,13 +132,14 @@ double radii_at_kernel(const MetaballModel& model, double value) {
   return std::sqrt(near);
 }
 
-// Returns how many spheres went; none, should all be unwanted.
+// Returns how many spheres went; none, should all that add be unwanted.
 int keep_only(MetaballModel& model, const std::vector<bool>& wanted) {
-  std::vector<Sphere> kept;
+  std::vector<ModelSphere> kept;
   for (std::size_t i = 0; i < model.spheres.size(); ++i) {
     if (wanted[i]) kept.push_back(model.spheres[i]);
   }
-  if (kept.empty()) return 0;
+  const auto adds = [](const ModelSphere& s) { return !s.takes_away; };
+  if (std::none_of(kept.begin(), kept.end(), adds)) return 0;
   const auto removed = static_cast<int>(model.spheres.size() - kept.size());
   model.spheres = std::move(kept);
   return removed;
@@ -112,13 +149,9 @@ int keep_only(MetaballModel& model, const std::vector<bool>& wanted) {
 
 std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points) {
   std::vector<double> levels(points.size());
-  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  const ModelEvaluation parameters = evaluation_parameters(model);
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    MetaballSums<double> sums;
-    for (const std::int32_t i : neighbours) {
-      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), points[p], sums);
-    }
-    levels[p] = level_of(model, sums.kernel);
+    levels[p] = level_of(model, net_sums_at(model, parameters, neighbours, points[p]).kernel);
   });
   return levels;
 }
@@ -126,67 +159,50 @@ std::vector<double> model_levels(const MetaballModel& model, const std::vector<V
 std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points) {
   const std::vector<Vec3d> all(points.begin(), points.end());
   std::vector<double> distances(all.size());
-  const MetaballParameters<double> parameters = evaluation_parameters(model);
+  const ModelEvaluation parameters = evaluation_parameters(model);
   for_each_with_neighbours(model, all, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    MetaballSums<double> sums;
-    for (const std::int32_t i : neighbours) {
-      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), all[p], sums);
-    }
-    distances[p] = metaball_distance(parameters, sums).distance;
+    distances[p] = metaball_distance(parameters, net_sums_at(model, parameters, neighbours, all[p])).distance;
   });
   return distances;
 }
 
-std::vector<Sphere> spheres_for_largest_errors(const MetaballModel& model, const SurfaceSamples& samples,
-                                               double area, int budget, int count) {
-  const double patch =
-      std::sqrt(area / (std::numbers::pi * budget));  // radius of a disk of one sphere's area
-  const std::vector<double> errors =
+std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, const SurfaceSamples& samples,
+                                                    const GrowthOptions& options) {
+  const double patch = std::sqrt(options.area / (std::numbers::pi * options.budget));  // radius of a disk
+  const std::vector<PatchError> errors =
       patch_errors(samples.points, model_distances(model, samples.points), patch);
   std::vector<std::size_t> order(errors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t i, std::size_t j) { return errors[i] > errors[j]; });
+                   [&](std::size_t i, std::size_t j) { return errors[i].square > errors[j].square; });
 
   const double radius = radius_for_patch(model, patch);
   const double depth = radius * radii_at_kernel(model, kStartShare);
-  std::vector<Sphere> grown;
+  std::vector<ModelSphere> grown;
   std::vector<Vec3d> taken;
+  int taking = 0;
   for (const std::size_t i : order) {
-    if (grown.size() >= static_cast<std::size_t>(count)) break;
+    if (grown.size() >= static_cast<std::size_t>(options.count)) break;
     const Vec3d& p = samples.points[i];
     const bool free = std::none_of(taken.begin(), taken.end(),
                                    [&](const Vec3d& q) { return squared_norm(p - q) < 4.0 * patch * patch; });
     if (!free) continue;
     taken.push_back(p);
-    grown.push_back({p - samples.normals[i] * depth, radius});
+    const bool takes_away = errors[i].mean > 0.0 && taking < options.taking;
+    if (takes_away) ++taking;
+    grown.emplace_back(p + samples.normals[i] * (takes_away ? depth : -depth), radius, takes_away);
   }
   return grown;
 }
 
-int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double share) {
-  std::vector<Vec3d> all = points.on_surface;
-  all.insert(all.end(), points.inside.begin(), points.inside.end());
-  const MetaballParameters<double> parameters = evaluation_parameters(model);
-  // Which spheres hold their share at a point: a list a point, merged afterwards.
-  std::vector<std::vector<std::int32_t>> busy_at(all.size());
-  for_each_with_neighbours(model, all, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    std::vector<double> kernels;
-    double total = double{kKernelFloor};
-    for (const std::int32_t i : neighbours) {
-      MetaballSums<double> own;
-      accumulate_metaball(parameters, kernel_of(model.spheres[static_cast<std::size_t>(i)]), all[p], own);
-      kernels.push_back(own.kernel);
-      total += own.kernel;
-    }
-    for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      if (kernels[j] >= share * total) busy_at[p].push_back(neighbours[j]);
-    }
-  });
+int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double distance) {
   std::vector<bool> busy(model.spheres.size(), false);
-  for (const auto& list : busy_at) {
-    for (const std::int32_t i : list) busy[static_cast<std::size_t>(i)] = true;
+  for (const std::vector<Movement>& list : movements(model, points.on_surface)) {
+    for (const Movement& m : list) {
+      if (m.distance >= distance) busy[static_cast<std::size_t>(m.sphere)] = true;
+    }
   }
+  mark_holding(model, points.inside, kHoldingShare, busy);
   return keep_only(model, busy);
 }
 
@@ -203,7 +219,9 @@ void remove_least_useful_spheres(MetaballModel& model, const std::vector<Vec3d>&
 
 int remove_outside_spheres(MetaballModel& model, const SurfaceTree& target, double margin) {
   std::vector<bool> inside;
-  for (const Sphere& s : model.spheres) inside.push_back(target.signed_distance(s.center) >= -margin);
+  for (const ModelSphere& s : model.spheres) {
+    inside.push_back(s.takes_away || target.signed_distance(s.center) >= -margin);
+  }
   return keep_only(model, inside);
 }
 

@@ -15,6 +15,7 @@
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/body_spheres.h"
 
 namespace astrolith {
 namespace {
@@ -157,6 +158,14 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
           box.center(),
           diagonal,
           std::move(remarks)};
+}
+
+MetaballBody in_target_frame(const TargetBody& target, MetaballBody body) {
+  for_each_sphere(body, [&](Sphere& s) {
+    s.center = (s.center - target.center) * (1.0 / target.diagonal);
+    s.radius /= target.diagonal;
+  });
+  return body;
 }
 
 void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,

@@ -31,6 +31,9 @@ struct TargetBody {
 // and faces that look inwards, and says so.
 TargetBody prepare_target(TriangleMesh mesh, const std::string& name);
 
+// A body in the file's frame and unit, moved into the target's.
+MetaballBody in_target_frame(const TargetBody& target, MetaballBody body);
+
 // Points at random places at least `depth` inside and outside of the body, up to `count` of each (fewer in a
 // thin body), within a box of 1.3 times its size. Point i depends on the seed and i alone.
 void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,

@@ -37,10 +37,11 @@ void fit_and_print(const std::string& file, const ShapeFitOptions& options, bool
     }
   }
   const SurfaceDistanceReport& d = fit.check.distance;
-  fmt::print("{:40}{:5}{:8}{:9.4f}{:8.3f}{:8.3f}{:4}/{}{:7}{:8.2f}{:8.1f}{:8.1f}\n",
-             std::filesystem::path(file).stem().string(), options.seed, fit.body.spheres.size(), 100 * d.mean,
-             100 * d.p99, 100 * d.max, fit.check.topology.components, target.components,
-             fit.check.topology.genus, fit.body.blend_exponent * fit.body.a, cpu_seconds, wall.count());
+  fmt::print("{:40}{:5}{:8}{:7}{:9.4f}{:8.3f}{:8.3f}{:4}/{}{:7}{:8.2f}{:8.1f}{:8.1f}\n",
+             std::filesystem::path(file).stem().string(), options.seed, fit.body.spheres.size(),
+             fit.body.subtract.size(), 100 * d.mean, 100 * d.p99, 100 * d.max, fit.check.topology.components,
+             target.components, fit.check.topology.genus, fit.body.blend_exponent * fit.body.a, cpu_seconds,
+             wall.count());
   std::fflush(stdout);
 }
 
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
   app.add_option_function<std::string>("--kernel",
                                        [&](const std::string& word) { options.kernel = kernel_of(word); })
       ->type_name("WORD");
+  app.add_option("--subtract", options.subtract, "share of the spheres that may take away");
   app.add_option("--points", options.points, "0 = as fit_shape");
   app.add_option("--generations", options.generations);
   app.add_option("--seed", options.seed, "of the first fit");
@@ -66,8 +68,8 @@ int main(int argc, char** argv) {
   app.add_flag("--curve", curve, "print the convergence too");
   CLI11_PARSE(app, argc, argv);
   const ThreadLimit limit(threads);
-  fmt::print("{:40}{:>5}{:>8}{:>9}{:>8}{:>8}{:>6}{:>7}{:>8}{:>8}{:>8}\n", "body", "seed", "spheres", "mean %",
-             "p99 %", "max %", "parts", "genus", "kappa", "CPU s", "wall s");
+  fmt::print("{:40}{:>5}{:>8}{:>7}{:>9}{:>8}{:>8}{:>6}{:>7}{:>8}{:>8}{:>8}\n", "body", "seed", "add", "take",
+             "mean %", "p99 %", "max %", "parts", "genus", "kappa", "CPU s", "wall s");
   for (const std::string& file : files) {
     for (int k = 0; k < seeds; ++k) {
       ShapeFitOptions own = options;

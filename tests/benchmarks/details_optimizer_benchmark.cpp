@@ -15,13 +15,6 @@
 namespace astrolith {
 namespace {
 
-MetaballBody in_target_frame(MetaballBody body, const TargetBody& target) {
-  for (Sphere& s : body.spheres) {
-    s = {(s.center - target.center) * (1.0 / target.diagonal), s.radius / target.diagonal};
-  }
-  return body;
-}
-
 void compare_optimizers(const TargetBody& target, const MetaballBody& base, int evaluations, int seeds) {
   print_optimizer_table(evaluations, seeds, [&](OptimizerAlgorithm algorithm, std::uint64_t seed) {
     DetailsFitOptions options;
@@ -44,6 +37,6 @@ int main(int argc, char** argv) {
   const TargetBody target = prepare_target(read_mesh(argv[1]), argv[1]);
   const Recipe recipe = read_recipe(argv[2]);
   if (!recipe.body) return 2;
-  compare_optimizers(target, in_target_frame(*recipe.body, target), argc > 3 ? std::atoi(argv[3]) : 2000,
+  compare_optimizers(target, in_target_frame(target, *recipe.body), argc > 3 ? std::atoi(argv[3]) : 2000,
                      argc > 4 ? std::atoi(argv[4]) : 5);
 }

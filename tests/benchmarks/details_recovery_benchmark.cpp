@@ -40,7 +40,7 @@ double recover(const Truth& truth, int resolution, int generations, std::uint64_
   options.fitness.seed = seed;
   options.fitness.recipe_seed = seed;
   const DetailsFitResult fit =
-      fit_details(target, testing::in_frame_of(target, testing::three_spheres()), options);
+      fit_details(target, in_target_frame(target, testing::three_spheres()), options);
   const auto start =
       layers_in_file_frame(detail_layers(detail_parameters(fit.start, fit.ranges), fit.ranges), target);
   const testing::MeasuredLayers wanted = testing::measured({layer_of(truth)});

@@ -117,7 +117,7 @@ ProbeLayout lay_out_probes(const TargetBody& target, const MetaballBody& base, i
   const double edge = probe_edge(target);
   ProbeLayout layout;
   layout.mesh = mesh_of_base(base, edge);
-  layout.lags = choose_lags(edge, std::sqrt(target.area / static_cast<double>(base.spheres.size())));
+  layout.lags = choose_lags(edge, std::sqrt(target.area / static_cast<double>(base.num_metaballs())));
   add_lines(sample_surface(layout.mesh, lines, seed, SampleNormals::interpolated), seed, layout);
   return layout;
 }

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "numerics/hash_random.h"
+#include "synthesis/metaball_body.h"
 
 namespace astrolith {
 namespace {
@@ -15,6 +16,12 @@ MetaballModel random_model(std::uint64_t seed, int count, double sharpness,
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
     model.spheres.push_back({{x, y, z}, random.uniform(0.3, 0.9)});
   }
+  return model;
+}
+
+// Every third sphere takes away.
+MetaballModel dented(MetaballModel model) {
+  for (std::size_t i = 2; i < model.spheres.size(); i += 3) model.spheres[i].takes_away = true;
   return model;
 }
 
@@ -83,6 +90,38 @@ TEST_P(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
       check_derivatives(level_with_derivatives, model, {x, y, z});
       check_derivatives(distance_with_derivatives, model, {x, y, z});
     }
+  }
+}
+
+TEST(FieldDerivativesOfDents, DistanceAndLevelAgreeWithDifferences) {
+  for (const double sharpness : {0.7, 2.0, 9.0}) {
+    const MetaballModel model = dented(random_model(3, 9, sharpness));
+    CounterRandom random(11);
+    for (int k = 0; k < 20; ++k) {
+      const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
+                   z = random.uniform(-1.2, 1.2);
+      const double level =
+          level_with_derivatives(model, evaluation_parameters(model), all_of(model), {x, y, z}, {}, nullptr);
+      if (sharpness * level < -8.0) continue;  // next to nothing is left: the floor hides the rest
+      check_derivatives(level_with_derivatives, model, {x, y, z});
+      check_derivatives(distance_with_derivatives, model, {x, y, z});
+    }
+  }
+}
+
+TEST(FieldDerivativesOfDents, TheModelIsTheBodyThatSynthesisMakes) {
+  const MetaballModel model = dented(random_model(3, 9, 2.0));
+  const PreparedMetaballs body = prepare_metaballs(metaball_body(model));
+  const ModelEvaluation parameters = evaluation_parameters(model);
+  const auto neighbours = all_of(model);
+  CounterRandom random(7);
+  for (int k = 0; k < 100; ++k) {
+    const auto x = static_cast<float>(random.uniform(-1, 1)), y = static_cast<float>(random.uniform(-1, 1)),
+               z = static_cast<float>(random.uniform(-1, 1));
+    float s = 0, gx = 0, gy = 0, gz = 0;
+    evaluate_metaballs(body, 1, &x, &y, &z, &s, &gx, &gy, &gz);
+    const double fitted = distance_with_derivatives(model, parameters, neighbours, {x, y, z}, {}, nullptr);
+    EXPECT_NEAR(fitted, s, 1e-4 * (1.0 + std::abs(fitted)));
   }
 }
 

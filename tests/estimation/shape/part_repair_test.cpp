@@ -33,6 +33,20 @@ TEST(PartRepair, CavitiesAreFilledAndTheCountStays) {
   EXPECT_TRUE(parts_of(target, model).strays.empty());
 }
 
+TEST(PartRepair, WhatTakesTooMuchAwayGoes) {
+  const TargetBody target = ball();
+  MetaballModel model{3.0, {{{0, 0, 0}, 0.29}, {{0.1, 0, 0}, 0.1, true}}};
+  model.spheres.emplace_back(Vec3d{-0.1, 0, 0}, 0.1);
+  model.spheres[1].radius = 0.15;
+  const PartsComparison before = parts_of(target, model);
+  ASSERT_EQ(before.strays.size(), 1u);
+  EXPECT_TRUE(before.strays[0].cavity);
+  fill_cavities(model, before.strays, sample_surface(target.mesh, 500, 1).points);
+  EXPECT_TRUE(std::none_of(model.spheres.begin(), model.spheres.end(),
+                           [](const ModelSphere& s) { return s.takes_away; }));
+  EXPECT_TRUE(parts_of(target, model).strays.empty());
+}
+
 TEST(PartRepair, IslandsGo) {
   const TargetBody target = ball();
   MetaballModel model{3.0, {{{0, 0, 0}, 0.28}, {{0.6, 0, 0}, 0.05}}};

@@ -17,10 +17,33 @@ TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {
   }
   const MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
   const SurfaceSamples samples = sample_surface(mesh, 2000, 1, SampleNormals::interpolated);
-  const std::vector<Sphere> grown = spheres_for_largest_errors(model, samples, surface_area(mesh), 20, 1);
+  const std::vector<ModelSphere> grown =
+      spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1, 1});
   ASSERT_EQ(grown.size(), 1u);
   EXPECT_GT(normalized(grown[0].center).x, 0.9);
   EXPECT_LT(norm(grown[0].center), 1.0);
+  EXPECT_FALSE(grown[0].takes_away);
+}
+
+TEST(SphereGrowth, WhereTheModelSticksOutNewSpheresTakeAway) {
+  TriangleMesh mesh = testing::icosphere(4);
+  for (Vec3d& p : mesh.vertices) {
+    if (p.x > 0.9) p = p * 0.85;
+  }
+  MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
+  const SurfaceSamples samples = sample_surface(mesh, 2000, 1, SampleNormals::interpolated);
+  const auto grown = [&](int taking) {
+    return spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1, taking}).at(0);
+  };
+  const ModelSphere dent = grown(1);
+  EXPECT_TRUE(dent.takes_away);
+  EXPECT_GT(normalized(dent.center).x, 0.9);
+  EXPECT_GT(norm(dent.center), 0.85);
+  EXPECT_FALSE(grown(0).takes_away);
+  const std::vector<Vec3d> dented{{0.85, 0, 0}};
+  const double before = model_distances(model, dented)[0];
+  model.spheres.push_back(dent);
+  EXPECT_LT(model_distances(model, dented)[0], before);
 }
 
 TEST(SphereGrowth, BumpsAreAsWideAtEverySharpness) {
@@ -28,7 +51,7 @@ TEST(SphereGrowth, BumpsAreAsWideAtEverySharpness) {
   const SurfaceSamples samples = sample_surface(mesh, 500, 1, SampleNormals::interpolated);
   const auto width = [&](double sharpness) {
     const MetaballModel model{sharpness, {{{0, 0, 0}, 1.1}}};
-    const Sphere grown = spheres_for_largest_errors(model, samples, surface_area(mesh), 20, 1).at(0);
+    const Sphere grown = spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1}).at(0);
     return grown.radius / std::sqrt(sharpness);
   };
   EXPECT_NEAR(width(0.4), width(4.0), 1e-12);
@@ -40,7 +63,7 @@ TEST(SphereGrowth, IdleAndOutsideSpheresGo) {
   points.on_surface = sample_surface(mesh, 500, 1).points;
   MetaballModel model{6.0, {{{0, 0, 0}, 1.0}, {{0.1, 0, 0}, 0.05}, {{3, 0, 0}, 0.2}}};
   EXPECT_EQ(remove_outside_spheres(model, SurfaceTree(mesh), 0.01), 1);
-  EXPECT_EQ(remove_idle_spheres(model, points, 0.02), 1);
+  EXPECT_EQ(remove_idle_spheres(model, points, 1e-3), 1);
   ASSERT_EQ(model.spheres.size(), 1u);
   EXPECT_EQ(model.spheres[0].radius, 1.0);
   EXPECT_EQ(remove_outside_spheres(model, SurfaceTree(testing::icosphere(3, 1.0, {9, 9, 9})), 0.01), 0)
@@ -55,6 +78,15 @@ TEST(SphereGrowth, TheLeastUsefulSphereGoesFirst) {
   ASSERT_EQ(model.spheres.size(), 2u);
   EXPECT_EQ(model.spheres[0].radius, 1.0);
   EXPECT_EQ(model.spheres[1].radius, 0.3);
+}
+
+TEST(SphereGrowth, OneThatAddsStays) {
+  FitPoints points;
+  points.on_surface = sample_surface(testing::icosphere(3), 500, 1).points;
+  MetaballModel model{6.0, {{{0, 0, 0}, 0.01}, {{1.2, 0, 0}, 0.4, true}}};
+  remove_least_useful_spheres(model, points.on_surface, 1);
+  EXPECT_EQ(model.spheres.size(), 2u) << "the one that adds is the less useful";
+  EXPECT_EQ(remove_idle_spheres(model, points, 0.02), 0);
 }
 
 TEST(IsosurfaceProjection, ArrivesOnASphereWithItsNormals) {

@@ -8,7 +8,6 @@
 namespace astrolith {
 namespace {
 
-using testing::in_frame_of;
 using testing::three_spheres;
 using testing::with_details;
 
@@ -38,7 +37,7 @@ void expect_the_scores_of_the_cpu(SwarmMachine& machine) {
   FitnessOptions options;
   options.samples = 500;
   options.lines = 300;
-  const DetailFitness fitness(target, in_frame_of(target, three_spheres()), options);
+  const DetailFitness fitness(target, in_target_frame(target, three_spheres()), options);
   const auto candidates = swarm();
   const std::vector<DetailScore> scores = fitness.scores(candidates, machine);
   ASSERT_EQ(scores.size(), candidates.size());

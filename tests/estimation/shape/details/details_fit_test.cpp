@@ -11,7 +11,6 @@
 namespace astrolith {
 namespace {
 
-using testing::in_frame_of;
 using testing::measured;
 using testing::MeasuredLayers;
 using testing::three_spheres;
@@ -42,7 +41,7 @@ TEST(DetailsFit, FindsAmplitudeAndFrequencyAgain) {
     const TargetBody target = with_details({truth}, 90);
     DetailsFitOptions options = quick(2);
     options.fitness.samples = 2000;
-    const DetailsFitResult fit = fit_details(target, in_frame_of(target, three_spheres()), options);
+    const DetailsFitResult fit = fit_details(target, in_target_frame(target, three_spheres()), options);
     const MeasuredLayers wanted = measured({truth}),
                          found = measured(layers_in_file_frame(fit.layers, target));
     EXPECT_NEAR(found.height / wanted.height, 1.0, 0.1);
@@ -53,7 +52,7 @@ TEST(DetailsFit, FindsAmplitudeAndFrequencyAgain) {
 
 TEST(DetailsFit, ASmoothBodyGetsNoDetailsThatShow) {
   const TargetBody target = with_details({}, 60);
-  const DetailsFitResult fit = fit_details(target, in_frame_of(target, three_spheres()), quick(3));
+  const DetailsFitResult fit = fit_details(target, in_target_frame(target, three_spheres()), quick(3));
   double amplitude = 0.0;
   for (const FractalLayer& layer : fit.layers) amplitude += std::fabs(layer.amplitude * layer.weight);
   EXPECT_LT(amplitude, 1e-3);
@@ -61,7 +60,7 @@ TEST(DetailsFit, ASmoothBodyGetsNoDetailsThatShow) {
 
 TEST(DetailsFit, SameLayersByAnotherMachine) {
   const TargetBody target = with_details({hills(Noise::kSimplex, 0.03, 4.0)}, 40);
-  const MetaballBody base = in_frame_of(target, three_spheres());
+  const MetaballBody base = in_target_frame(target, three_spheres());
   for (const auto optimizer : {OptimizerAlgorithm::pso, OptimizerAlgorithm::cmaes}) {
     DetailsFitOptions options = quick(2);
     options.optimizer = optimizer;
@@ -77,7 +76,7 @@ TEST(DetailsFit, SameLayersByAnotherMachine) {
 
 TEST(DetailsFit, SameLayersForOneAndTwoThreads) {
   const TargetBody target = with_details({hills(Noise::kSimplex, 0.03, 4.0)}, 60);
-  const MetaballBody base = in_frame_of(target, three_spheres());
+  const MetaballBody base = in_target_frame(target, three_spheres());
   for (const auto optimizer : {OptimizerAlgorithm::pso, OptimizerAlgorithm::crs2}) {
     std::vector<DetailsFitResult> fits;
     for (const int threads : {1, 2}) {
@@ -93,7 +92,7 @@ TEST(DetailsFit, SameLayersForOneAndTwoThreads) {
 
 TEST(DetailsFit, ALogLetsARunGoOnWhereItStopped) {
   const TargetBody target = with_details({hills(Noise::kSimplex, 0.03, 4.0)}, 60);
-  const MetaballBody base = in_frame_of(target, three_spheres());
+  const MetaballBody base = in_target_frame(target, three_spheres());
   const DetailsFitResult whole = fit_details(target, base, quick(6));
   EvaluationLog log;
   DetailsFitOptions options = quick(6);
@@ -116,7 +115,7 @@ TEST(DetailsFit, LayersMeanTheSameInTheFilesFrame) {
   layer.bias = {0.3, -0.2, 0.5};
   const std::vector<FractalLayer> in_file = layers_in_file_frame({layer}, target);
   Recipe a, b;
-  a.body = in_frame_of(target, three_spheres());
+  a.body = in_target_frame(target, three_spheres());
   b.body = three_spheres();
   a.layers.push_back(layer);
   b.layers.push_back(in_file[0]);
@@ -130,7 +129,7 @@ TEST(DetailsFit, LayersMeanTheSameInTheFilesFrame) {
 
 TEST(DetailsFit, RefusesOptionsOutOfRange) {
   const TargetBody target = with_details({}, 40);
-  EXPECT_THROW(fit_details(target, in_frame_of(target, three_spheres()), quick(0)), InputError);
+  EXPECT_THROW(fit_details(target, in_target_frame(target, three_spheres()), quick(0)), InputError);
 }
 
 }  // namespace

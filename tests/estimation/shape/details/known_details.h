@@ -33,13 +33,6 @@ inline TargetBody with_details(const std::vector<FractalLayer>& layers, int reso
   return prepare_target(std::move(collector.mesh), "body with details");
 }
 
-inline MetaballBody in_frame_of(const TargetBody& target, MetaballBody body) {
-  for (Sphere& s : body.spheres) {
-    s = {(s.center - target.center) * (1.0 / target.diagonal), s.radius / target.diagonal};
-  }
-  return body;
-}
-
 // What of layers is unique (sums of different noises and octaves can be the same to the eye): the root mean
 // square height, and the root mean square slope over that, by 2 pi.
 struct MeasuredLayers {

@@ -8,7 +8,6 @@
 namespace astrolith {
 namespace {
 
-using testing::in_frame_of;
 using testing::three_spheres;
 using testing::with_details;
 
@@ -34,7 +33,7 @@ TEST(ResidualTexture, HasTheHeightAndTheScaleOfTheDetails) {
   MeshCollector collector;
   mesh_field(field, field.bounds(), 110, collector);
   const TargetBody target = prepare_target(std::move(collector.mesh), "ripples");
-  const ResidualTexture texture = fit_residual_texture(target, in_frame_of(target, three_spheres()), {});
+  const ResidualTexture texture = fit_residual_texture(target, in_target_frame(target, three_spheres()), {});
   EXPECT_GE(texture.patches, 10);
   EXPECT_NEAR(texture.layer.height_rms * target.diagonal / 0.006, 1.0, 0.15);
   const double found = mean_frequency(texture.layer) / (texture.layer.pixel_size * target.diagonal);
@@ -43,7 +42,7 @@ TEST(ResidualTexture, HasTheHeightAndTheScaleOfTheDetails) {
 
 TEST(ResidualTexture, NothingLeftIsAnInputError) {
   const TargetBody target = with_details({}, 24);
-  MetaballBody base = in_frame_of(target, three_spheres());
+  MetaballBody base = in_target_frame(target, three_spheres());
   ResidualTextureOptions options;
   options.side = 100;  // wider than the body
   options.patches = 20;
