@@ -14,6 +14,7 @@
 namespace astrolith {
 
 inline constexpr double kMaxKernelExponent = 80.0;  // e^80 times a million spheres is still a float
+inline constexpr double kMaxNetExponent = 60.0;     // of a kernel over the iso-value where spheres take away
 inline constexpr double kMaxTension = 10.0;         // of kernels other than the Gaussian
 
 struct Sphere {
@@ -93,14 +94,16 @@ inline constexpr int kMaxOperations = 256;    // in a whole recipe
 // tunnels and arches.
 struct MetaballBody {
   Kernel kernel = Kernel::kGaussian;
-  double a = 1.0;                   // tension, > 0; at most kMaxTension for kernels other than the Gaussian
-  double b = 1.0;                   // tension, > 0
-  double blend_exponent = 1.0;      // the thesis's m, > 0 or >= 1; blend_exponent * a <= kMaxKernelExponent
-  double iso_value = 1.0;           // the thesis's T, > 0
-  double cutoff_radii = 5.0;        // support of each kernel in its own radii, > 1
-  std::vector<Sphere> spheres;      // at least one
-  std::vector<Sphere> subtract;     // spheres that take away; not in groups
-  std::vector<SphereGroup> groups;  // sorted by name, each name once
+  double a = 1.0;               // tension, > 0; at most kMaxTension for kernels other than the Gaussian
+  double b = 1.0;               // tension, > 0
+  double blend_exponent = 1.0;  // the thesis's m, > 0 or >= 1; blend_exponent * a <= kMaxKernelExponent
+  double iso_value = 1.0;       // the thesis's T, > 0
+  double cutoff_radii = 5.0;    // support of each kernel in its own radii, > 1
+  std::vector<Sphere> spheres;  // at least one
+  // Spheres that take away; not in groups. They ask for blend_exponent (a - log iso_value) <=
+  // kMaxNetExponent.
+  std::vector<Sphere> subtract;
+  std::vector<SphereGroup> groups;        // sorted by name, each name once
   std::vector<BodyOperation> operations;  // done to these metaballs, in order
   std::optional<Warp> warp;
 

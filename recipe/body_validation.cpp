@@ -117,6 +117,13 @@ void check(const MetaballBody& body, const Place& place) {
   if (body.spheres.empty()) spheres.fail("must hold at least one [x, y, z, radius]");
   for (std::size_t i = 0; i < body.spheres.size(); ++i) check(body.spheres[i], spheres.element(i));
   const Place subtract = place.field("subtract");
+  const double exponent = body.blend_exponent * (body.a - std::log(body.iso_value));
+  if (!body.subtract.empty() && exponent > kMaxNetExponent) {
+    subtract.fail(
+        fmt::format("asks for blend_exponent * (a - log(iso_value)) of at most {}, is {}; lower one "
+                    "of them, or raise iso_value",
+                    kMaxNetExponent, exponent));
+  }
   for (std::size_t i = 0; i < body.subtract.size(); ++i) check(body.subtract[i], subtract.element(i));
   check_groups(body, place.field("groups"));
   if (body.warp) check(*body.warp, place.field("warp"));

@@ -17,6 +17,7 @@ void for_each_sphere(Body& body, const Visit& visit) {
   }
 }
 
+// Without those that take away; operands of differences are not told apart.
 inline std::vector<Sphere> adding_spheres(const MetaballBody& body) {
   std::vector<Sphere> spheres = body.spheres;
   for (const BodyOperation& operation : body.operations) {

@@ -31,7 +31,7 @@ ASTROLITH_HD inline SurfaceDistance<float> flat_leaf(const FlatField& f, const F
     accumulate_metaball(body, block.spheres[j], p, totals.added);
   }
   if (j == end) return metaball_distance(body, totals.added);
-  for (; j < end; ++j) accumulate_metaball(body, block.spheres[j].adding(), p, totals.taken);
+  for (; j < end; ++j) accumulate_metaball(body, block.spheres[j].as_adding(), p, totals.taken);
   return metaball_distance(body, totals.net());
 }
 

@@ -104,8 +104,8 @@ struct FlatLayer {
 struct FlatLeaf {
   MetaballParameters<float> body;
   bool warped = false;
-  FlatWarp warp;  // of the leaf's coordinates
-  FlatRange spheres;
+  FlatWarp warp;      // of the leaf's coordinates
+  FlatRange spheres;  // those that take away last, as in every list of a leaf's spheres
 };
 struct FlatStep {
   bool is_leaf = true;

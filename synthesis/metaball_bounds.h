@@ -12,7 +12,8 @@
 
 namespace astrolith {
 
-// Some of an array's metaballs, by their numbers; all of them where there are no numbers.
+// Some of an array's metaballs, by their numbers; all of them where there are no numbers. Those that take
+// away come last.
 struct MetaballList {
   const MetaballSphere<float>* spheres;
   const std::uint32_t* numbers;
@@ -52,6 +53,7 @@ struct BodyIntervals {
   // Of A + floor.
   ASTROLITH_HD double net_min() const { return added.sum_min / taken.sum_max; }
   ASTROLITH_HD double net_max() const {
+    if (!takes_away()) return added.sum_max;
     return (added.sum_max - double{kKernelFloor}) / taken.sum_min + double{kKernelFloor};
   }
   ASTROLITH_HD bool takes_away() const { return taken.count != 0; }
@@ -212,7 +214,8 @@ ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<f
   const KernelIntervals& added = bounds.added;
   // Weights are f_i / (P + floor (1 + N)).
   const double floor_max = double{kKernelFloor} * bounds.taken.sum_max;
-  const double sum_max = added.sum_max - double{kKernelFloor} + floor_max;
+  const double sum_max =
+      bounds.takes_away() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
   // The component along one direction, of each grad log f_i / m and of their weighted mean.
   const Vec3d center = center_of(box), u = gaussians_outward(body, spheres, center);
   const double spread = spread_along(box, u);
@@ -228,6 +231,9 @@ ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<f
     sharpest = std::max(sharpest, inverse);
   }
   if (added.count == 0) least = 0.0;
+  for (std::uint32_t i = 0; i < bounds.taken.count; ++i) {
+    sharpest = std::max(sharpest, inverse_square(*bounds.taken.kernels[i].sphere));
+  }
   const double floor_weight = std::min(1.0, floor_max / added.sum_min);  // of what has no gradient
   const double coordinate = norm(center) + 0.5 * norm(extent_of(box));
   const double rounding = 1e-6 * coordinate * 2.0 * b * sharpest;  // how fast a gradient changes with that

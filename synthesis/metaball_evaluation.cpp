@@ -88,7 +88,7 @@ ASTROLITH_FINISH_LOOP(finish_profiles, profile_distance)
 
 std::vector<MetaballSphere<float>> as_adding(std::span<const MetaballSphere<float>> taking) {
   std::vector<MetaballSphere<float>> spheres;
-  for (const MetaballSphere<float>& s : taking) spheres.push_back(s.adding());
+  for (const MetaballSphere<float>& s : taking) spheres.push_back(s.as_adding());
   return spheres;
 }
 

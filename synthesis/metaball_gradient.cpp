@@ -39,7 +39,7 @@ struct SumDerivatives {
 SumDerivatives sum_over(std::span<const MetaballSphere<float>> spheres,
                         const MetaballParameters<double>& body, const Vec3d& p) {
   SumDerivatives sum;
-  for (const MetaballSphere<float>& s : spheres) sum.add(body, s.takes_away() ? s.adding() : s, p);
+  for (const MetaballSphere<float>& s : spheres) sum.add(body, s.as_adding(), p);
   return sum;
 }
 

@@ -15,9 +15,12 @@
 //
 // Spheres may also take away. With P the sum over those that add and N over those that take away,
 //   A = P / (1 + N),    grad A = (grad P - A grad N) / (1 + N)
-// stands for the sum in all of the above. A = 1 is the surface P - N = 1 of the difference, but A is positive
-// and smooth everywhere, so that its logarithm and its roots exist. Without such spheres A = P, bit for bit.
+// stands for the sum in all of the above. A = 1 is the surface P - N = 1 of the difference, but A is nowhere
+// negative and as smooth as P, so that its logarithm and its roots exist. Without such spheres A = P, bit for
+// bit. Validation keeps P and N below where exponents saturate: A would be 1 where both do.
 #pragma once
+
+#include <algorithm>
 
 #include "numerics/host_device.h"
 #include "numerics/scalar_math.h"
@@ -68,7 +71,9 @@ struct MetaballSphere {
 
   ASTROLITH_HD bool takes_away() const { return inverse_radius_squared < T(0); }
   // The same sphere, adding.
-  ASTROLITH_HD MetaballSphere adding() const { return {center, -inverse_radius_squared}; }
+  ASTROLITH_HD MetaballSphere as_adding() const {
+    return {center, takes_away() ? -inverse_radius_squared : inverse_radius_squared};
+  }
 };
 
 // Running sums over spheres at one point.
@@ -159,7 +164,7 @@ template <typename T>
 ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                           const Vec3<T>& p, MetaballTotals<T>& totals) {
   if (sphere.takes_away()) {
-    accumulate_metaball(body, sphere.adding(), p, totals.taken);
+    accumulate_metaball(body, sphere.as_adding(), p, totals.taken);
   } else {
     accumulate_metaball(body, sphere, p, totals.added);
   }
@@ -202,11 +207,11 @@ ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T
 }
 
 // f(q) = K(q)^m of one sphere for derivatives by its centre, its radius and the point: f, -df/dq and
-// d^2f/dq^2 in double precision, the saturation of very large exponents left out.
+// d^2f/dq^2 in double precision. Where the Gaussian's value saturates they go on in proportion to it.
 inline ProfileValue<double> kernel_power(const MetaballParameters<double>& body, double q) {
   if (!(q < body.cutoff_squared)) return {0.0, 0.0, 0.0};
   if (body.profile.kernel == Kernel::kGaussian) {
-    const double f = std::exp(body.m_a - body.m_b * q);
+    const double f = std::exp(std::min(body.m_a - body.m_b * q, double{kLargestExponent}));
     return {f, body.m_b * f, body.m_b * body.m_b * f};
   }
   const ProfileValue<double> k = kernel_value(body.profile, q);

@@ -142,7 +142,8 @@ ASTROLITH_HD inline double smallest_profile_gradient(const MetaballParameters<fl
                                                      const MetaballList& spheres, const Box& box,
                                                      KernelInterval* scratch) {
   const double m = double{body.m}, saturation = portable::exp(double{kLargestExponent});
-  const BodyIntervals bounds = bound_profile_kernels(body, spheres, box, scratch);
+  const Box rounded = box_around(box, coordinate_rounding(box));
+  const BodyIntervals bounds = bound_profile_kernels(body, spheres, rounded, scratch);
   const KernelIntervals& added = bounds.added;
   // The component along one direction, of each grad K_i and so of their weighted sum.
   const Vec3d center = center_of(box), u = profiles_outward(body, spheres, center);

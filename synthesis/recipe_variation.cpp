@@ -28,11 +28,11 @@ enum Stream : std::uint64_t { kSeedStream, kAxesStream, kBendStream, kLayerStrea
 
 Box sphere_bounds(const MetaballBody& body) {
   Box box;
-  for_each_sphere(body, [&](const Sphere& s) {
+  for (const Sphere& s : adding_spheres(body)) {
     const Vec3d r{s.radius, s.radius, s.radius};
     box.extend(s.center - r);
     box.extend(s.center + r);
-  });
+  }
   return box;
 }
 

@@ -70,7 +70,7 @@ class AdaptiveFit {
 
   void grow_to_budget() {
     for (int round = 0; round < options_.rounds && !done(); ++round) {
-      grow(options_.spheres, options_.rounds - round);
+      grow(options_.spheres, options_.rounds - round, mean_distance());
       step(options_.round_iterations);
     }
     if (!done()) step(options_.grown_iterations);
@@ -83,7 +83,7 @@ class AdaptiveFit {
       summary_.model = best_;
       const double before = best_distance_;
       remove_least_useful_spheres(summary_.model, points_.on_surface, count);
-      grow(options_.spheres, 1);
+      grow(options_.spheres, 1, best_distance_);
       watch_.add_dips(summary_.model, points_.inside);
       step(options_.relocation_iterations);
       if (best_distance_ >= before) count = 2 * count / 3;
@@ -123,11 +123,11 @@ class AdaptiveFit {
     words_ = words;
   }
 
-  // Adds this round's share of what is missing up to `wanted` spheres.
-  void grow(int wanted, int rounds_left) {
+  // Adds this round's share of what is missing up to `wanted` spheres, to a model so far from the target.
+  void grow(int wanted, int rounds_left, double mean) {
     std::vector<ModelSphere>& spheres = summary_.model.spheres;
     remove_outside_spheres(summary_.model, target_.tree, kOutsideMargin);
-    remove_idle_spheres(summary_.model, points_, mean_distance());
+    remove_idle_spheres(summary_.model, points_, mean);
     const int missing = wanted - static_cast<int>(spheres.size());
     const int count = (missing + rounds_left - 1) / rounds_left;
     const std::vector<ModelSphere> grown = spheres_for_largest_errors(
@@ -167,7 +167,7 @@ class AdaptiveFit {
   void mend(const PartsComparison& parts, int wanted) {
     remove_islands(summary_.model, parts.strays);
     fill_cavities(summary_.model, parts.strays, points_.on_surface);
-    grow(wanted, 1);
+    grow(wanted, 1, best_distance_);
     watch_.add_dips(summary_.model, points_.inside);
     spent_ -= options_.relocation_iterations;
     step(options_.relocation_iterations);

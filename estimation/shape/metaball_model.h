@@ -37,11 +37,6 @@ inline MetaballSphere<double> kernel_of(const ModelSphere& s) {
   return {s.center, s.takes_away ? -inverse_square : inverse_square};
 }
 
-// The part that a kernel has in its sum: k / P of a sphere that adds, k / (1 + N) of one that takes away.
-inline double share_in(const MetaballTotals<double>& totals, double kernel, bool takes_away) {
-  return kernel / (takes_away ? 1.0 + totals.taken.kernel : totals.added.kernel + double{kKernelFloor});
-}
-
 // Derivatives of K's scale, of the logarithm of its height, and of its end by the tension.
 struct ProfileTension {
   double log_scale = 0.0, log_height = 0.0, low = 0.0;

@@ -44,24 +44,29 @@ inline void add_sums(const MetaballSums<double>& more, MetaballSums<double>& sum
   sums.weighted += more.weighted;
 }
 
-// The sums at a point over some of the model's spheres, each one's kernel kept in `kernels`.
-inline MetaballTotals<double> totals_with_kernels(const MetaballModel& model,
-                                                  const ModelEvaluation& evaluation,
-                                                  std::span<const std::int32_t> spheres, const Vec3d& p,
-                                                  std::vector<double>& kernels) {
+// The sums at a point over some of the model's spheres, and in `shares` the part that each has in its sum:
+// k / P of a sphere that adds, k / (1 + N) of one that takes away.
+inline MetaballTotals<double> totals_with_shares(const MetaballModel& model,
+                                                 const ModelEvaluation& evaluation,
+                                                 std::span<const std::int32_t> spheres, const Vec3d& p,
+                                                 std::vector<double>& shares) {
   MetaballTotals<double> totals;
-  kernels.resize(spheres.size());
+  shares.resize(spheres.size());
   for (std::size_t j = 0; j < spheres.size(); ++j) {
     MetaballTotals<double> own;
     accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(spheres[j])]), p, own);
-    kernels[j] = own.added.kernel + own.taken.kernel;
+    shares[j] = own.added.kernel + own.taken.kernel;
     add_sums(own.added, totals.added);
     add_sums(own.taken, totals.taken);
+  }
+  const double added = totals.added.kernel + double{kKernelFloor}, taken = 1.0 + totals.taken.kernel;
+  for (std::size_t j = 0; j < spheres.size(); ++j) {
+    shares[j] /= model.spheres[static_cast<std::size_t>(spheres[j])].takes_away ? taken : added;
   }
   return totals;
 }
 
-// And over those spheres alone.
+// The net sums alone.
 inline MetaballSums<double> net_sums_at(const MetaballModel& model, const ModelEvaluation& evaluation,
                                         std::span<const std::int32_t> spheres, const Vec3d& p) {
   MetaballTotals<double> totals;

@@ -28,20 +28,20 @@ std::size_t count_cavities(const std::vector<StrayPart>& strays) {
 }
 
 // Which spheres, in which strays.
-struct Makers {
+struct Culprits {
   bool cavities, taking;
 };
 
 // Those whose centre is in such a stray. At least one that adds stays.
-void remove_within(MetaballModel& model, const std::vector<StrayPart>& strays, const Makers& makers) {
-  const auto is_maker = [&](const ModelSphere& s) {
-    return s.takes_away == makers.taking &&
+void remove_within(MetaballModel& model, const std::vector<StrayPart>& strays, const Culprits& culprits) {
+  const auto is_culprit = [&](const ModelSphere& s) {
+    return s.takes_away == culprits.taking &&
            std::any_of(strays.begin(), strays.end(), [&](const StrayPart& stray) {
-             return stray.cavity == makers.cavities && norm(s.center - stray.center) < stray.radius;
+             return stray.cavity == culprits.cavities && norm(s.center - stray.center) < stray.radius;
            });
   };
   std::vector<ModelSphere> kept;
-  std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), is_maker);
+  std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), is_culprit);
   const auto adds = [](const ModelSphere& s) { return !s.takes_away; };
   if (std::any_of(kept.begin(), kept.end(), adds)) model.spheres = std::move(kept);
 }
@@ -67,8 +67,10 @@ void InsideWatch::add_dips(const MetaballModel& model, std::vector<Vec3d>& insid
 void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
                    const std::vector<Vec3d>& on_surface) {
   remove_within(model, strays, {.cavities = true, .taking = true});
-  const std::size_t cavities = std::min(count_cavities(strays), model.spheres.size() - 1);
-  remove_least_useful_spheres(model, on_surface, static_cast<int>(cavities));
+  const std::size_t before = model.spheres.size();
+  const std::size_t wanted = std::min(count_cavities(strays), before - 1);
+  remove_least_useful_spheres(model, on_surface, static_cast<int>(wanted));
+  const std::size_t cavities = before - model.spheres.size();
   std::size_t filled = 0;
   for (const StrayPart& stray : strays) {
     if (!stray.cavity || filled == cavities) continue;

@@ -24,13 +24,13 @@ class InsideWatch {
   std::vector<Vec3d> places_;
 };
 
-// Takes away the spheres that take away and have their centre in a cavity, and puts one that adds in place of
-// each cavity: no more spheres than before, for the least useful of them go, as seen
-// from points on the surface. A filled cavity is gone whatever the other spheres do there.
+// Removes the spheres that take away and have their centre in a cavity, and puts one that adds in place of
+// each cavity: no more spheres than before, for the least useful of them go, as seen from points on the
+// surface. A filled cavity is gone whatever other spheres that add do there.
 void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
                    const std::vector<Vec3d>& on_surface);
 
-// Takes away the spheres that make the islands among the strays. At least one that adds stays.
+// Removes the spheres that make the islands among the strays. At least one that adds stays.
 void remove_islands(MetaballModel& model, const std::vector<StrayPart>& strays);
 
 }  // namespace astrolith

@@ -6,7 +6,7 @@
 //   little inside, outside  weight * max(0, margin - L(p)),  weight * max(0, margin + L(p))
 //   of every centre that adds      center_weight * max(0, r_i / 20 - d(c_i)),  d the target's signed distance
 // The second and third kind keep cavities and islands away: a surface that no sample lies on costs nothing
-// otherwise. Every centre is inside the model, so one outside the target is an island or a spike.
+// otherwise. Every centre that adds is inside the model, so one outside the target is an island or a spike.
 // The solver is our own and not Ceres: at these sizes Ceres spent most of its time multiplying small blocks,
 // and it cannot shorten the steps of single spheres, without which a few in a neck stop the whole fit. What
 // is left to a library is the sparse factorisation (CHOLMOD).

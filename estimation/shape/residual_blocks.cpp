@@ -13,8 +13,8 @@ namespace {
 // that reach only some of the points.
 constexpr std::size_t kPointsPerBlock = 24;
 
-// Derivatives are taken by the spheres that hold this share of the kernel sum at a point of the block when a
-// round starts; the residuals themselves see every sphere in reach. Smooth bodies are made of many wide
+// Derivatives are taken by the spheres that hold this share of their kind's sum at a point of the block when
+// a round starts; the residuals themselves see every sphere in reach. Smooth bodies are made of many wide
 // spheres with small shares each: with 1e-3 the steps there miss a good part of the slope.
 constexpr double kSmallestShare = 1e-4;
 
@@ -36,13 +36,10 @@ ScaledResidual pseudo_huber(double s, double c) {
 std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const ModelEvaluation& evaluation,
                                              const std::vector<Vec3d>& points,
                                              const std::vector<std::int32_t>& spheres) {
-  std::vector<double> kernels(spheres.size()), largest(spheres.size());
+  std::vector<double> shares, largest(spheres.size());
   for (const Vec3d& p : points) {
-    const MetaballTotals<double> totals = totals_with_kernels(model, evaluation, spheres, p, kernels);
-    for (std::size_t j = 0; j < spheres.size(); ++j) {
-      const bool takes_away = model.spheres[static_cast<std::size_t>(spheres[j])].takes_away;
-      largest[j] = std::max(largest[j], share_in(totals, kernels[j], takes_away));
-    }
+    totals_with_shares(model, evaluation, spheres, p, shares);
+    for (std::size_t j = 0; j < spheres.size(); ++j) largest[j] = std::max(largest[j], shares[j]);
   }
   std::vector<std::int32_t> kept;
   for (std::size_t j = 0; j < spheres.size(); ++j) {

@@ -14,12 +14,13 @@ namespace {
 
 constexpr std::size_t kPointsPerCluster = 32;
 
-// Kernel sum at the surface is 1; a new sphere adds this much there. That makes a bump far larger than the
-// error it is to mend, which the first steps of the refinement take back; with a smaller share the sphere
-// lies so deep that it is hardly told from others, and stays idle.
+// Kernel sum at the surface is 1; a new sphere adds this much there, or to what that is divided by. That
+// makes a bump, or a dent, far larger than the error it is to mend, which the first steps of the refinement
+// take back; with a smaller share the sphere lies so deep that it is hardly told from others, and stays idle.
 constexpr double kStartShare = 0.3;
 
-// A sphere that holds this share of the kernel sum somewhere inside is not idle.
+// A sphere that holds this share of its kind's sum somewhere inside, or outside where it takes away, is not
+// idle.
 constexpr double kHoldingShare = 0.02;
 
 // A new Gaussian's bump falls by e at this many patches along the surface, whatever the sharpness: with the
@@ -71,18 +72,15 @@ std::vector<std::vector<Movement>> movements(const MetaballModel& model, const s
   const ModelEvaluation parameters = evaluation_parameters(model);
   std::vector<std::vector<Movement>> moved(points.size());
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    std::vector<double> kernels;
-    const MetaballTotals<double> totals =
-        totals_with_kernels(model, parameters, neighbours, points[p], kernels);
-    const MetaballSums<double> sums = totals.net();
+    std::vector<double> shares;
+    const MetaballSums<double> sums =
+        totals_with_shares(model, parameters, neighbours, points[p], shares).net();
     const Vec3d slope = metaball_distance(parameters, sums).log_gradient;
     const double slope_length = std::sqrt(squared_norm(slope) + parameters.gradient_floor);
     for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      const bool takes_away = model.spheres[static_cast<std::size_t>(neighbours[j])].takes_away;
-      const double share = share_in(totals, kernels[j], takes_away);
-      if (share <= kNextToNothing) continue;
+      if (shares[j] <= kNextToNothing) continue;
       moved[p].push_back(
-          {neighbours[j], level_lost(model, sums.kernel, std::min(share, kMostOfIt)) / slope_length});
+          {neighbours[j], level_lost(model, sums.kernel, std::min(shares[j], kMostOfIt)) / slope_length});
     }
   });
   return moved;
@@ -97,18 +95,17 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
   return use;
 }
 
-// Marks the spheres that hold `share` of their kind's sum at one of the points.
-void mark_holding(const MetaballModel& model, const std::vector<Vec3d>& points, double share,
+// Marks the spheres of one kind that hold `share` of its sum at one of the points.
+void mark_holding(const MetaballModel& model, bool takes_away, const std::vector<Vec3d>& points, double share,
                   std::vector<bool>& marks) {
   const ModelEvaluation parameters = evaluation_parameters(model);
   std::vector<std::vector<std::int32_t>> holding(points.size());  // a list a point, merged afterwards
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    std::vector<double> kernels;
-    const MetaballTotals<double> totals =
-        totals_with_kernels(model, parameters, neighbours, points[p], kernels);
+    std::vector<double> shares;
+    totals_with_shares(model, parameters, neighbours, points[p], shares);
     for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      const bool takes_away = model.spheres[static_cast<std::size_t>(neighbours[j])].takes_away;
-      if (share_in(totals, kernels[j], takes_away) >= share) holding[p].push_back(neighbours[j]);
+      const bool of_kind = model.spheres[static_cast<std::size_t>(neighbours[j])].takes_away == takes_away;
+      if (of_kind && shares[j] >= share) holding[p].push_back(neighbours[j]);
     }
   });
   for (const auto& list : holding) {
@@ -179,15 +176,15 @@ std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, 
   const double radius = radius_for_patch(model, patch);
   const double depth = radius * radii_at_kernel(model, kStartShare);
   std::vector<ModelSphere> grown;
-  std::vector<Vec3d> taken;
+  std::vector<Vec3d> occupied;
   int taking = 0;
   for (const std::size_t i : order) {
     if (grown.size() >= static_cast<std::size_t>(options.count)) break;
     const Vec3d& p = samples.points[i];
-    const bool free = std::none_of(taken.begin(), taken.end(),
+    const bool free = std::none_of(occupied.begin(), occupied.end(),
                                    [&](const Vec3d& q) { return squared_norm(p - q) < 4.0 * patch * patch; });
     if (!free) continue;
-    taken.push_back(p);
+    occupied.push_back(p);
     const bool takes_away = errors[i].mean > 0.0 && taking < options.taking;
     if (takes_away) ++taking;
     grown.emplace_back(p + samples.normals[i] * (takes_away ? depth : -depth), radius, takes_away);
@@ -202,7 +199,8 @@ int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double di
       if (m.distance >= distance) busy[static_cast<std::size_t>(m.sphere)] = true;
     }
   }
-  mark_holding(model, points.inside, kHoldingShare, busy);
+  mark_holding(model, false, points.inside, kHoldingShare, busy);
+  mark_holding(model, true, points.outside, kHoldingShare, busy);
   return keep_only(model, busy);
 }
 

@@ -28,8 +28,8 @@ std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, 
                                                     const GrowthOptions& options);
 
 // Removes the spheres without which the surface moves less than `distance` at all of its points, and that
-// hold little of the kernel sum at the points inside; returns how many. At least one sphere that adds stays,
-// here and below.
+// hold little of their kind's sum at the points inside, or outside where they take away; returns how many. At
+// least one sphere that adds stays, here and below.
 int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double distance);
 
 // Removes the `count` spheres whose absence moves the surface least, summed over the points of it.

@@ -56,6 +56,12 @@ TEST_F(FitShape, WritesARecipeWithABody) {
   EXPECT_EQ(recipe.provenance.input_sha256, sha256_of_file(folder_ / "egg.obj"));
 }
 
+TEST_F(FitShape, NoSphereTakesAwayWhereNoneMay) {
+  fit("egg.json", {"--base-only", "--subtract", "0"});
+  const Recipe recipe = read_recipe(folder_ / "egg.json");
+  EXPECT_TRUE(recipe.body->subtract.empty());
+}
+
 TEST_F(FitShape, ARealBodyIsFittedClosely) {
   const auto gaspra = testing::package_file("gaspra.bmf");
   ASTROLITH_SKIP_WITHOUT(gaspra);
@@ -71,6 +77,9 @@ TEST_F(FitShape, ARealBodyIsFittedClosely) {
   EXPECT_EQ(summary["components"].get<int>(), 1);
   EXPECT_LT(summary["base"]["mean_distance"].get<double>(), 0.002);
   EXPECT_NEAR(summary["volume_ratio"].get<double>(), 1.0, 0.01);
+  EXPECT_EQ(read_recipe(folder_ / "gaspra.json").body->subtract.size(),
+            summary["subtracting_spheres"].get<std::size_t>());
+  EXPECT_GT(summary["subtracting_spheres"].get<int>(), 0);
   EXPECT_EQ(summary["details"]["evaluations"].get<int>(), 32);
   EXPECT_LT(summary["details"]["best"]["roughness_misfit"].get<double>(),
             summary["details"]["base"]["roughness_misfit"].get<double>());

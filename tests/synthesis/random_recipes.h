@@ -120,6 +120,7 @@ inline void add_operations(MetaballBody& body, CounterRandom& random) {
     operation.width = 0.05;
     operation.bulge = -0.02;
     operation.operand = {operand(0.3 * i - 0.3)};
+    if (i == 0) operation.operand[0].subtract = {{{-0.3, 0.25, 0.0}, 0.1}};
     if (i == 1) operation.operand[0].warp = Warp{.amplitude = 0.02, .frequency = 3.0, .octaves = 1};
     if (i == 2) {
       operation.operand[0].operations.push_back({});

@@ -40,6 +40,7 @@ TEST(RecipeVariation, IsValidAndDeterministic) {
 // A body made of two by an operation is deformed as a whole: the same as when one body holds all spheres.
 TEST(RecipeVariation, OperandsMoveWithTheBody) {
   Recipe whole = worm(), combined = worm();
+  whole.body->subtract = {whole.body->spheres[5]};
   BodyOperation operation;
   operation.operand.push_back(*combined.body);
   operation.operand[0].spheres.assign(whole.body->spheres.begin() + 20, whole.body->spheres.end());
@@ -52,6 +53,8 @@ TEST(RecipeVariation, OperandsMoveWithTheBody) {
     EXPECT_EQ(s.center, t.center);
     EXPECT_EQ(s.radius, t.radius);
   }
+  EXPECT_EQ(a.body->subtract[0].center, a.body->spheres[5].center) << "and so does what takes away";
+  EXPECT_EQ(a.body->subtract[0].radius, a.body->spheres[5].radius);
 }
 
 TEST(RecipeVariation, WithoutStrengthOnlyTheNoiseIsNew) {
