@@ -113,13 +113,13 @@ void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
 void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
                 bool with_details) {
   const SurfaceDistanceReport& d = fit.check.distance;
-  char line[200];
-  std::snprintf(
-      line, sizeof line,
-      "%zu metaballs%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the diagonal; similarity %.2f %% "
-      "(two samplings of the target: %.2f %%)",
-      fit.body.num_metaballs(), with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max,
-      100 * fit.similarity, 100 * fit.similarity_floor);
+  char line[240];
+  std::snprintf(line, sizeof line,
+                "%zu metaballs (%zu take away)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
+                "diagonal; similarity %.2f %% "
+                "(two samplings of the target: %.2f %%)",
+                fit.body.num_metaballs(), fit.body.subtract.size(), with_details ? " and details" : "",
+                100 * d.mean, 100 * d.p99, 100 * d.max, 100 * fit.similarity, 100 * fit.similarity_floor);
   program.say(line);
   if (fit.check.topology.components != target.components) {
     program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "apps/option_checks.h"
+#include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
@@ -79,6 +80,10 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
 void settle_fit_options(const Program& program, FitArguments& arguments) {
   arguments.fit.seed = program.seed;
   arguments.fit.kernel = kernel_named(arguments.kernel);
+  if (arguments.fit.kernel != Kernel::kGaussian && program.app.get_option("--subtract")->count() > 0 &&
+      arguments.fit.subtract > 0.0) {
+    throw InputError("--subtract: Gaussians alone may take away; leave it out, or --kernel");
+  }
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
 }
 

@@ -125,6 +125,7 @@ PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
            {"handles", "", std::to_string(fit.check.topology.genus)},
            {"triangles or metaballs", std::to_string(target.mesh.triangles.size()),
             std::to_string(fit.body.num_metaballs())},
+           {"of them take away", "", std::to_string(fit.body.subtract.size())},
            {"sharpness m a of the blend", "", number(fit.body.blend_exponent * fit.body.a, "%.4g")}}};
 }
 

@@ -288,6 +288,9 @@ TEST_F(FitShape, BadFilesAreRefused) {
                  "--spheres");
   expect_refusal(folder_, kFitShape, {mesh, "-o", (folder_ / "o.json").string(), "--optimizer", "magic"},
                  "--optimizer");
+  expect_refusal(folder_, kFitShape,
+                 {mesh, "-o", (folder_ / "o.json").string(), "--kernel", "wyvill", "--subtract", "0.2"},
+                 "--subtract");
 }
 
 }  // namespace
