@@ -16,7 +16,7 @@ constexpr double kBaseShare = 0.5;
 constexpr int kFewSpheres = 16;  // may all be the packing's
 
 // So many spheres settle slowly: their steps are given twice as many iterations, and for the sake of time
-// there are half as many relocations.
+// there are a third as many relocations.
 constexpr int kManySpheres = 500;
 
 constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
@@ -100,7 +100,7 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
   adaptive.taking = options.subtract;
   adaptive.repair_resolution = options.check_resolution;
   if (options.spheres >= kManySpheres) {
-    adaptive.relocations /= 2;
+    adaptive.relocations /= 3;
     adaptive.grown_iterations *= 2;
     adaptive.relocation_iterations *= 2;
     adaptive.last_iterations *= 2;
