@@ -12,7 +12,7 @@
 #include "descriptor/classification/cross_validation.h"
 #include "descriptor/classification/feature_table.h"
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 
 namespace astrolith {
 namespace {

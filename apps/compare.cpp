@@ -5,9 +5,9 @@
 #include "apps/program.h"
 #include "apps/shape_options.h"
 #include "descriptor/histogram_distance.h"
-#include "geometry/mesh_io.h"
-#include "geometry/surface_distance.h"
-#include "numerics/output_file.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/surface/surface_distance.h"
+#include "numerics/files/output_file.h"
 
 namespace astrolith {
 namespace {

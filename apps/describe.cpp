@@ -5,8 +5,8 @@
 #include "apps/program.h"
 #include "apps/shape_options.h"
 #include "cuda/pair_count.h"
-#include "geometry/mesh_io.h"
-#include "numerics/npy_file.h"
+#include "geometry/io/mesh_io.h"
+#include "numerics/files/npy_file.h"
 
 namespace astrolith {
 namespace {

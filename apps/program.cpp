@@ -15,7 +15,7 @@
 #include "apps/help_formatter.h"
 #include "apps/version.h"
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {

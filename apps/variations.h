@@ -23,7 +23,7 @@ VariationReference reference_of(const TriangleMesh& mesh, std::int64_t component
 
 struct Variation {
   Recipe recipe;            // provenance says its similarity
-  double strength = 0.0;    // of synthesis/recipe_variation.h
+  double strength = 0.0;    // of synthesis/finish/recipe_variation.h
   double similarity = 0.0;  // with the reference, measured on a mesh
 };
 

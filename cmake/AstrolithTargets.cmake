@@ -32,12 +32,13 @@ target_compile_options(astrolith_warnings INTERFACE
   $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wno-psabi;${vectorised}>
   $<$<AND:$<BOOL:${ASTROLITH_WERROR}>,$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>>:-Werror>)
 
-# astrolith_library(NAME SOURCES a.cpp ... PUBLIC link ... PRIVATE link ...)
-# Makes target astrolith_NAME with alias astrolith::NAME; without SOURCES it is header-only.
+# astrolith_library(NAME [ROOMS] [SOURCES a.cpp ...] PUBLIC link ... PRIVATE link ...)
+# Makes target astrolith_NAME with alias astrolith::NAME. ROOMS says that folders inside add sources by
+# astrolith_room. A library with neither is header-only.
 function(astrolith_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "ROOMS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target astrolith_${name})
-  if(ARG_SOURCES)
+  if(ARG_SOURCES OR ARG_ROOMS)
     add_library(${target} STATIC ${ARG_SOURCES})
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:astrolith_warnings>)
@@ -57,7 +58,16 @@ function(astrolith_library name)
   set_property(GLOBAL APPEND PROPERTY ASTROLITH_LIBRARIES ${target})
 endfunction()
 
-# astrolith_program(NAME [SOURCES x.cpp ...] LINK link ...)  builds apps/NAME.cpp, with further sources
+# astrolith_room(NAME SOURCES a.cpp ...)  adds a folder's sources to library NAME or to test NAME_tests
+function(astrolith_room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
+  if(TARGET astrolith_${name})
+    set(name astrolith_${name})
+  endif()
+  target_sources(${name} PRIVATE ${ARG_SOURCES})
+endfunction()
+
+# astrolith_program(NAME [SOURCES x.cpp ...] LINK link ...)  builds NAME.cpp of this folder, with further sources
 function(astrolith_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${name}.cpp ${ARG_SOURCES})
@@ -66,9 +76,9 @@ function(astrolith_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# astrolith_test(NAME SOURCES x_test.cpp ... LINK link ...)  one executable of GoogleTest cases
+# astrolith_test(NAME [ROOMS] SOURCES x_test.cpp ... LINK link ...)  one executable of GoogleTest cases
 function(astrolith_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "ROOMS" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name}_tests ${ARG_SOURCES})
   target_link_libraries(${name}_tests PRIVATE ${ARG_LINK} astrolith_test_data astrolith_warnings GTest::gtest_main)
   target_precompile_headers(${name}_tests PRIVATE <gtest/gtest.h>)

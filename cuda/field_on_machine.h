@@ -1,8 +1,8 @@
-// The plain arrays of a field (synthesis/flat_field.h) in a machine's memory.
+// The plain arrays of a field (synthesis/field/flat_field.h) in a machine's memory.
 #pragma once
 
 #include "cuda/machine.h"
-#include "synthesis/flat_blocks_data.h"
+#include "synthesis/field/flat_blocks_data.h"
 
 namespace astrolith {
 

@@ -1,7 +1,6 @@
 // What this folder offers in a build that found no CUDA compiler: the probe says so, and all else is an error
 // of whoever did not ask it.
 #include "cuda/device.h"
-#include "cuda/mesh_field.h"
 #include "cuda/pair_count.h"
 #include "cuda/swarm.h"
 #include "cuda/swarm_on_gpu.h"
@@ -22,11 +21,6 @@ DeviceStatus probe_device() {
 
 std::vector<std::uint64_t> count_pairs_on_gpu(std::span<const Vec3d>, std::span<const Vec3d>,
                                               std::span<const std::int32_t>, int, int, const Progress&) {
-  refuse();
-}
-
-MeshStatistics mesh_field_on_gpu(const ImplicitField&, const Box&, int, MeshSink&, const Progress&,
-                                 MeshTile) {
   refuse();
 }
 

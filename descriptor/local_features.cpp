@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace astrolith {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Among equal bins of [0, 1].
 std::int32_t bin_of(double fraction, int bins) {
@@ -17,7 +16,7 @@ std::int32_t bin_of(double fraction, int bins) {
 
 double normal_perturbation(const Vec3d& point, const Vec3d& unit_normal, const Vec3d& center) {
   const Vec3d position = point - center;
-  if (squared_norm(position) == 0) return kPi / 2;
+  if (squared_norm(position) == 0) return std::numbers::pi / 2;
   return std::atan2(norm(cross(position, unit_normal)), dot(position, unit_normal));
 }
 
@@ -43,7 +42,7 @@ std::vector<std::int32_t> local_codes(std::span<const Vec3d> points, std::span<c
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double eta = normal_perturbation(points[i], normals[i], spread.center);
     const double kappa = bounded_curvature(curvatures[i] * spread.mean_square);
-    codes[i] = bin_of(eta / kPi, bins) * bins + bin_of((kappa + 1) / 2, bins);
+    codes[i] = bin_of(eta / std::numbers::pi, bins) * bins + bin_of((kappa + 1) / 2, bins);
   }
   return codes;
 }

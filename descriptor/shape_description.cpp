@@ -7,8 +7,8 @@
 
 #include "descriptor/local_features.h"
 #include "descriptor/surflet_histogram.h"
-#include "geometry/mesh_sampling.h"
-#include "geometry/sample_curvature.h"
+#include "geometry/surface/mesh_sampling.h"
+#include "geometry/surface/sample_curvature.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 

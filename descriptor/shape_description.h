@@ -42,8 +42,8 @@ ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptio
 
 // From (n) points and (n) normals of any positive length alone. Points that repeat another are left out; of
 // more points than asked for a random choice is taken, fewer are all taken; a remark says so. kappa by
-// quadric fits (geometry/sample_curvature.h). Throws InputError for fewer than two points, different sizes,
-// and numbers that are not finite.
+// quadric fits (geometry/surface/sample_curvature.h). Throws InputError for fewer than two points, different
+// sizes, and numbers that are not finite.
 ShapeDescription describe_shape(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                                 const DescriptionOptions& options, const Progress& progress = {});
 

@@ -41,10 +41,6 @@ std::vector<std::uint32_t> order_of(std::span<const Vec3d> points, std::span<con
   return order;
 }
 
-Vec3f single(const Vec3d& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 }  // namespace
 
 SurfletArrays::SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
@@ -53,7 +49,7 @@ SurfletArrays::SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3
   first_of_code.assign(static_cast<std::size_t>(num_local) + 1, 0);
   std::size_t k = 0;
   for (const std::uint32_t i : order_of(points, normals, local)) {
-    set(k++, surflet(single(points[i]), single(normals[i])));
+    set(k++, surflet(to_float(points[i]), to_float(normals[i])));
     ++first_of_code[static_cast<std::size_t>(local[i]) + 1];
   }
   std::partial_sum(first_of_code.begin(), first_of_code.end(), first_of_code.begin());

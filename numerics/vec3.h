@@ -60,6 +60,9 @@ ASTROLITH_HD T norm(const Vec3<T>& a) {
   using std::sqrt;
   return sqrt(dot(a, a));
 }
+inline ASTROLITH_HD Vec3f to_float(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
 // The zero vector stays zero.
 template <typename T>
 ASTROLITH_HD Vec3<T> normalized(const Vec3<T>& a) {
@@ -77,16 +80,22 @@ struct Box {
     max = {std::fmax(max.x, p.x), std::fmax(max.y, p.y), std::fmax(max.z, p.z)};
   }
   bool empty() const { return !(min.x <= max.x); }
-  Vec3d extent() const { return max - min; }
-  Vec3d center() const { return 0.5 * (min + max); }
+  ASTROLITH_HD Vec3d extent() const { return max - min; }
+  ASTROLITH_HD Vec3d center() const { return 0.5 * (min + max); }
   // The length that errors are stated in: "fraction of the bounding-box diagonal".
   double diagonal() const { return norm(extent()); }
 };
 
-// By `margin` on every side.
-inline Box widened(const Box& box, double margin) {
+// The box enlarged by `margin` on every side.
+ASTROLITH_HD inline Box widened(const Box& box, double margin) {
   const Vec3d m{margin, margin, margin};
   return {box.min - m, box.max + m};
+}
+
+// Whether two boxes share a point.
+ASTROLITH_HD inline bool boxes_touch(const Box& a, const Box& b) {
+  return a.min.x <= b.max.x && a.max.x >= b.min.x && a.min.y <= b.max.y && a.max.y >= b.min.y &&
+         a.min.z <= b.max.z && a.max.z >= b.min.z;
 }
 
 }  // namespace astrolith

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "numerics/errors.h"
-#include "numerics/input_file.h"
+#include "numerics/files/input_file.h"
 #include "recipe/json_complaint_internal.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/place_internal.h"

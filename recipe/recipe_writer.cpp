@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 #include "recipe/body_internal.h"
 #include "recipe/noise_layers_internal.h"
 #include "recipe/recipe_json.h"

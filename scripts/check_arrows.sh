@@ -1,27 +1,70 @@
 #!/usr/bin/env bash
-# The arrows between folders: a file may include only from its own folder and those its row names.
+# The arrows between folders, and between the rooms inside them: a file may include files of its own room and of the
+# rooms that its row names. A name stands for the folder and all its rooms; "geometry/." is the folder without its rooms.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-allowed=(
-  "numerics:"
-  "recipe:numerics"
-  "geometry:numerics"
-  "descriptor:numerics|geometry"
-  "synthesis:numerics|recipe|geometry"
-  "cuda:numerics|recipe|geometry|descriptor|synthesis"
-  "estimation:numerics|recipe|geometry|descriptor|synthesis|cuda"
-)
-folders='numerics|recipe|geometry|descriptor|synthesis|cuda|estimation|apps|tests'
-status=0
-for row in "${allowed[@]}"; do
-  folder=${row%%:*}
-  wrong=$(git grep -nE "#include \"($folders)/" -- "$folder/*.h" "$folder/*.cpp" "$folder/*.cu" |
-    grep -vE "#include \"(${row##*:}|$folder)/" || true)
-  if [[ -n $wrong ]]; then
-    echo "Includes against the arrows in $folder/:"
-    echo "$wrong"
-    status=1
-  fi
-done
-exit $status
+git grep -noE '#include "[a-z_]+/[^"]*"' -- '*.h' '*.cpp' '*.cu' ':!tests' | awk -F: -v rows='
+numerics                   -> numerics/.
+numerics/files             -> numerics
+recipe                     -> numerics
+geometry                   -> numerics geometry/.
+geometry/io                -> numerics geometry/.
+geometry/points            -> numerics
+geometry/surface           -> numerics geometry/. geometry/points
+descriptor                 -> numerics geometry
+descriptor/spectrum        -> numerics geometry
+descriptor/classification  -> numerics geometry descriptor
+synthesis/noise            -> numerics recipe
+synthesis/mesh             -> numerics geometry
+synthesis/picture          -> numerics geometry
+synthesis/body             -> numerics recipe synthesis/noise synthesis/mesh
+synthesis/spots            -> numerics recipe synthesis/noise synthesis/body
+synthesis/gabor            -> numerics recipe synthesis/noise synthesis/body
+synthesis/landforms        -> numerics recipe geometry synthesis/noise synthesis/mesh synthesis/body
+synthesis/field            -> numerics recipe geometry synthesis/noise synthesis/mesh synthesis/body synthesis/spots synthesis/gabor synthesis/landforms
+synthesis/finish           -> numerics recipe geometry synthesis
+cuda                       -> numerics descriptor synthesis cuda/.
+cuda/mesher                -> numerics synthesis cuda/.
+estimation/optimize        -> numerics
+estimation/gabor           -> numerics recipe synthesis/picture estimation/gabor
+estimation/gabor/image     -> numerics
+estimation/gabor/spectrum  -> numerics estimation/gabor/image
+estimation/gabor/pursuit   -> numerics recipe estimation/gabor/spectrum
+estimation/gabor/lobes     -> numerics recipe estimation/gabor/spectrum estimation/gabor/pursuit
+estimation/shape/target    -> numerics recipe geometry synthesis
+estimation/shape/packing   -> numerics recipe geometry
+estimation/shape/model     -> numerics recipe geometry synthesis
+estimation/shape/refinement -> numerics recipe geometry estimation/shape/target estimation/shape/model
+estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
+estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
+estimation/shape/report    -> numerics geometry synthesis/picture estimation/shape/target estimation/shape/fit
+apps                       -> numerics recipe geometry descriptor synthesis cuda estimation apps
+' '
+  function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
+  function row_of(folder) {
+    while (!(folder in allowed) && sub(/\/[^\/]*$/, "", folder)) {}
+    return folder
+  }
+  BEGIN {
+    n = split(rows, lines, "\n")
+    for (i = 1; i <= n; ++i)
+      if (split(lines[i], sides, " *-> *") == 2) allowed[sides[1]] = " " sides[2] " "
+  }
+  function may(room, to,    i, names, count) {
+    if (to == room) return 1
+    count = split(allowed[room], names, " ")
+    for (i = 1; i <= count; ++i)
+      if (to == names[i] || to "/." == names[i] || (names[i] !~ /\.$/ && index(to "/", names[i] "/") == 1)) return 1
+    return 0
+  }
+  {
+    room = row_of(folder_of($1))
+    to = $3
+    gsub(/#include "|"/, "", to)
+    if (room in allowed && !may(room, folder_of(to))) {
+      print "Against the arrows: " $1 ":" $2 " in " room "/ includes " to
+      status = 1
+    }
+  }
+  END { exit status }'

@@ -17,7 +17,7 @@
 #include "apps/program.h"
 #include "descriptor/classification/shape_classifier.h"
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {

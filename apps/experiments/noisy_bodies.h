@@ -10,7 +10,7 @@
 #include "descriptor/classification/noisy_resampling.h"
 #include "descriptor/classification/principal_components.h"
 #include "descriptor/classification/shape_features.h"
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "numerics/progress.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 
 namespace astrolith {
 

@@ -15,11 +15,11 @@
 #include "apps/program.h"
 #include "descriptor/classification/cross_validation.h"
 #include "descriptor/classification/feature_table.h"
-#include "geometry/mesh_io.h"
-#include "geometry/mesh_sampling.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
+#include "numerics/files/output_file.h"
 #include "numerics/hash_random.h"
-#include "numerics/output_file.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {

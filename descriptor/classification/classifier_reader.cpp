@@ -10,7 +10,7 @@
 
 #include "descriptor/classification/classifier_format_internal.h"
 #include "numerics/errors.h"
-#include "numerics/input_file.h"
+#include "numerics/files/input_file.h"
 
 namespace astrolith {
 namespace {

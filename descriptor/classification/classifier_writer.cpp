@@ -6,7 +6,7 @@
 #include "descriptor/classification/classifier_file.h"
 #include "descriptor/classification/classifier_format_internal.h"
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 
 namespace astrolith {
 namespace {

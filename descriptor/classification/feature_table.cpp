@@ -4,7 +4,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/mesh_sampling.h"
-#include "geometry/point_normals.h"
+#include "geometry/points/point_normals.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 

@@ -2,17 +2,16 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 #include "descriptor/shape_description.h"
 #include "descriptor/shape_distribution.h"
 #include "descriptor/spectrum/laplacian_spectrum.h"
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
 
 constexpr struct {
   const char* name;
@@ -33,7 +32,8 @@ std::vector<float> scaled(const std::vector<double>& frequencies) {
 std::vector<float> weyl_normalised(const std::vector<double>& eigenvalues) {
   std::vector<float> features;
   for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
-    features.push_back(static_cast<float>(eigenvalues[i] / (4 * kPi * static_cast<double>(i + 1))));
+    features.push_back(
+        static_cast<float>(eigenvalues[i] / (4 * std::numbers::pi * static_cast<double>(i + 1))));
   }
   return features;
 }

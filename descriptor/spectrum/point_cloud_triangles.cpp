@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "geometry/nearest_neighbours.h"
+#include "geometry/points/nearest_neighbours.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 

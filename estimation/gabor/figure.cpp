@@ -6,7 +6,7 @@
 
 #include "estimation/gabor/figure_internal.h"
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 
 namespace astrolith {
 namespace {

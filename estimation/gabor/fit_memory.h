@@ -1,7 +1,7 @@
 // How much memory a fit takes, said before it.
 #pragma once
 
-#include "estimation/gabor/image_reader.h"
+#include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/photo_fit.h"
 
 namespace astrolith {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "estimation/gabor/lobe_refinement.h"
-#include "estimation/gabor/lobe_selection.h"
-#include "estimation/gabor/spectrum_distance.h"
+#include "estimation/gabor/lobes/lobe_refinement.h"
+#include "estimation/gabor/lobes/lobe_selection.h"
+#include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "estimation/gabor/basis_pursuit.h"
-#include "estimation/gabor/grey_image.h"
-#include "estimation/gabor/power_spectrum.h"
-#include "estimation/gabor/spectrum_estimate.h"
+#include "estimation/gabor/image/grey_image.h"
+#include "estimation/gabor/pursuit/basis_pursuit.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
+#include "estimation/gabor/spectrum/spectrum_estimate.h"
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
 

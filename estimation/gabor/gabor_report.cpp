@@ -7,10 +7,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "estimation/gabor/figure_internal.h"
-#include "estimation/gabor/fourier_transform.h"
-#include "numerics/output_file.h"
-#include "synthesis/colormap.h"
-#include "synthesis/image_file.h"
+#include "estimation/gabor/spectrum/fourier_transform.h"
+#include "numerics/files/output_file.h"
+#include "synthesis/picture/colormap.h"
+#include "synthesis/picture/image_file.h"
 
 namespace astrolith {
 namespace {

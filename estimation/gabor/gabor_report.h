@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimation/gabor/gabor_fit.h"
-#include "estimation/gabor/grey_image.h"
+#include "estimation/gabor/image/grey_image.h"
 
 namespace astrolith {
 

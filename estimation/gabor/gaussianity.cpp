@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "estimation/gabor/fourier_transform.h"
-#include "estimation/gabor/periodic_component.h"
+#include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "estimation/gabor/grey_image.h"
+#include "estimation/gabor/image/grey_image.h"
 
 namespace astrolith {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/gabor/image_channels.h"
-#include "estimation/gabor/image_reader.h"
+#include "estimation/gabor/image/image_channels.h"
+#include "estimation/gabor/image/image_reader.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {

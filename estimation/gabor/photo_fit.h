@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "estimation/gabor/detrend.h"
 #include "estimation/gabor/gabor_fit.h"
 #include "estimation/gabor/gaussianity.h"
+#include "estimation/gabor/image/detrend.h"
 
 namespace astrolith {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,11 @@ inline const std::string kTetrahedron =
 // An ellipsoid of half axes a, b, c as rings of quadrilaterals between two poles: closed, 2 x rings x sides
 // triangles.
 inline std::string ellipsoid_obj(double a, double b, double c, int rings, int sides) {
-  constexpr double kPi = 3.141592653589793;
   std::string text = "v 0 0 " + std::to_string(c) + "\n";
   for (int i = 1; i <= rings; ++i) {
-    const double theta = kPi * i / (rings + 1);
+    const double theta = std::numbers::pi * i / (rings + 1);
     for (int j = 0; j < sides; ++j) {
-      const double phi = 2 * kPi * j / sides;
+      const double phi = 2 * std::numbers::pi * j / sides;
       text += "v " + std::to_string(a * std::sin(theta) * std::cos(phi)) + " " +
               std::to_string(b * std::sin(theta) * std::sin(phi)) + " " +
               std::to_string(c * std::cos(theta)) + "\n";

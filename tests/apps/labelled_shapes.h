@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/hash_random.h"
 #include "tests/apps/program_runner.h"
 #include "tests/support/meshes.h"

@@ -10,7 +10,7 @@
 
 #include "apps/option_checks.h"
 #include "numerics/errors.h"
-#include "numerics/output_file.h"
+#include "numerics/files/output_file.h"
 
 namespace astrolith {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/mesh_topology.h"
 #include "recipe/sha256.h"
 #include "tests/apps/program_runner.h"

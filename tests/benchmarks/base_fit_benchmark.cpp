@@ -9,8 +9,8 @@
 #include <ctime>
 #include <filesystem>
 
-#include "estimation/shape/shape_fit.h"
-#include "geometry/mesh_io.h"
+#include "estimation/shape/fit/shape_fit.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/parallel_for.h"
 
 namespace {

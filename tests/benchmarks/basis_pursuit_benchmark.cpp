@@ -16,10 +16,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "estimation/gabor/basis_pursuit.h"
-#include "estimation/gabor/image_reader.h"
-#include "estimation/gabor/power_spectrum.h"
-#include "estimation/gabor/spectrum_estimate.h"
+#include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/pursuit/basis_pursuit.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
+#include "estimation/gabor/spectrum/spectrum_estimate.h"
 
 namespace astrolith {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <cstdlib>
 
-#include "estimation/shape/blend_search.h"
-#include "estimation/shape/sphere_packing.h"
-#include "estimation/shape/target_body.h"
-#include "geometry/mesh_io.h"
+#include "estimation/shape/fit/blend_search.h"
+#include "estimation/shape/packing/sphere_packing.h"
+#include "estimation/shape/target/target_body.h"
+#include "geometry/io/mesh_io.h"
 #include "tests/benchmarks/optimizer_table.h"
 
 namespace astrolith {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "estimation/shape/details/details_fit.h"
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "recipe/recipe_json.h"
 #include "tests/benchmarks/optimizer_table.h"
 

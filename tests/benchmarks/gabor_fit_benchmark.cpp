@@ -8,11 +8,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "estimation/gabor/gabor_dictionary.h"
 #include "estimation/gabor/gabor_fit.h"
-#include "estimation/gabor/image_reader.h"
-#include "estimation/gabor/spectrum_distance.h"
-#include "numerics/output_file.h"
+#include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/pursuit/gabor_dictionary.h"
+#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "numerics/files/output_file.h"
 #include "tests/benchmarks/held_out_square.h"
 #include "tests/estimation/gabor/known_spectrum.h"
 

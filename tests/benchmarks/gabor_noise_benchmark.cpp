@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "numerics/parallel_for.h"
-#include "synthesis/gabor_surface_noise.h"
-#include "synthesis/gabor_texture.h"
+#include "synthesis/gabor/gabor_surface_noise.h"
+#include "synthesis/gabor/gabor_texture.h"
 #include "tests/benchmarks/lagae_gabor_noise.h"
 #include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"

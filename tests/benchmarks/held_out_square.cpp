@@ -6,13 +6,13 @@
 #include <complex>
 #include <numbers>
 
-#include "estimation/gabor/fourier_transform.h"
-#include "estimation/gabor/periodic_component.h"
-#include "estimation/gabor/spectrum_distance.h"
+#include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/gabor/spectrum/periodic_component.h"
+#include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "recipe/recipe_json.h"
-#include "synthesis/gabor_texture.h"
+#include "synthesis/gabor/gabor_texture.h"
 
 namespace astrolith::testing {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "numerics/parallel_for.h"
-#include "synthesis/manifold_check.h"
-#include "synthesis/volume_mesher.h"
+#include "synthesis/mesh/manifold_check.h"
+#include "synthesis/mesh/volume_mesher.h"
 #include "tests/benchmarks/processor_seconds.h"
 
 namespace astrolith {

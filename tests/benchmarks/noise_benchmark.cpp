@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "synthesis/fractal_noise.h"
+#include "synthesis/noise/fractal_noise.h"
 #include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"
 

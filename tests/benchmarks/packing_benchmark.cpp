@@ -5,9 +5,9 @@
 
 #include <chrono>
 
-#include "estimation/shape/sphere_packing.h"
-#include "estimation/shape/target_body.h"
-#include "geometry/mesh_io.h"
+#include "estimation/shape/packing/sphere_packing.h"
+#include "estimation/shape/target/target_body.h"
+#include "geometry/io/mesh_io.h"
 
 int main(int argc, char** argv) {
   using namespace astrolith;

@@ -12,11 +12,11 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "estimation/shape/shape_fit.h"
-#include "geometry/mesh_io.h"
+#include "estimation/shape/fit/shape_fit.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
-#include "geometry/mesh_sampling.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "recipe/recipe_json.h"
 #include "tests/benchmarks/decimated_mesh.h"
 #include "tests/benchmarks/processor_seconds.h"

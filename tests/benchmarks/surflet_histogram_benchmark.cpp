@@ -5,7 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include "descriptor/surflet_pair.h"
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/hash_random.h"
 #include "numerics/host_device.h"
 #include "numerics/parallel_for.h"

@@ -3,10 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include "numerics/parallel_for.h"
-#include "synthesis/fractal_noise.h"
-#include "synthesis/gabor_texture.h"
-#include "synthesis/implicit_field.h"
-#include "synthesis/spot_noise.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/gabor/gabor_texture.h"
+#include "synthesis/noise/fractal_noise.h"
+#include "synthesis/spots/spot_noise.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

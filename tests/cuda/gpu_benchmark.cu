@@ -13,7 +13,7 @@
 #include "cuda/device.h"
 #include "cuda/device_machine.h"
 #include "cuda/field_on_machine.h"
-#include "cuda/mesh_field.h"
+#include "cuda/mesher/mesh_field.h"
 #include "cuda/pair_count.h"
 #include "cuda/pair_tiles.h"
 #include "cuda/swarm.h"

@@ -9,11 +9,11 @@ using namespace testing;
 
 TEST(LocalFeatures, NormalPerturbation) {
   const Vec3d center{1, 2, 3};
-  for (const double angle : {0.0, 1e-9, 0.3, kPi / 2, 3.0, kPi}) {
+  for (const double angle : {0.0, 1e-9, 0.3, std::numbers::pi / 2, 3.0, std::numbers::pi}) {
     const Vec3d normal{std::sin(angle), 0, std::cos(angle)};
     EXPECT_NEAR(normal_perturbation(center + Vec3d{0, 0, 7}, normal, center), angle, 1e-15);
   }
-  EXPECT_DOUBLE_EQ(normal_perturbation(center, {0, 0, 1}, center), kPi / 2);
+  EXPECT_DOUBLE_EQ(normal_perturbation(center, {0, 0, 1}, center), std::numbers::pi / 2);
 }
 
 TEST(LocalFeatures, CurvatureIsBoundedAndOdd) {

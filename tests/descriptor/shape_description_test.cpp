@@ -1,12 +1,13 @@
 #include "descriptor/shape_description.h"
 
+#include <numbers>
 #include <numeric>
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/local_features.h"
 #include "descriptor/surflet_histogram.h"
 #include "descriptor/surflet_pair.h"
-#include "geometry/sample_curvature.h"
+#include "geometry/surface/sample_curvature.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/descriptor/surflets.h"
@@ -44,7 +45,8 @@ TEST(AhdHistogram, EqualsTheDefinition) {
       const Vec3d d = normalized(s.points[two] - s.points[one]), u = s.normals[one],
                   v = normalized(cross(d, u)), w = cross(u, v), m = s.normals[two];
       const int surflet =
-          ((fifth(std::atan2(dot(w, m), dot(u, m)) / kPi) * 5 + fifth(dot(v, m))) * 5 + fifth(dot(u, d))) *
+          ((fifth(std::atan2(dot(w, m), dot(u, m)) / std::numbers::pi) * 5 + fifth(dot(v, m))) * 5 +
+           fifth(dot(u, d))) *
               5 +
           fifth(2 * norm(r) / h.max_distance - 1);
       ++expected[static_cast<std::size_t>(surflet * 25 + local[one])];

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/support/meshes.h"

@@ -1,6 +1,7 @@
 #include "descriptor/surflet_histogram.h"
 
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "descriptor/histogram_distance.h"
@@ -120,7 +121,8 @@ TEST(SurfletHistogram, SphereAgainstQuadrature) {
   SurfaceSamples s;
   const int half = 1500;
   for (int k = 0; k < half; ++k) {  // a golden spiral, and each point's antipode, so that the diameter is 2
-    const double z = 1 - (k + 0.5) / half, phi = k * kPi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    const double z = 1 - (k + 0.5) / half, phi = k * std::numbers::pi * (3 - std::sqrt(5.0)),
+                 r = std::sqrt(1 - z * z);
     s.points.push_back({r * std::cos(phi), r * std::sin(phi), z});
     s.points.push_back(-s.points.back());
   }
@@ -130,7 +132,8 @@ TEST(SurfletHistogram, SphereAgainstQuadrature) {
   const int steps = 200000;
   for (int k = 0; k < steps; ++k) {
     const double delta = std::sqrt((k + 0.5) / steps), theta = 2 * std::asin(delta);
-    const int a = static_cast<int>((theta / kPi + 1) / 2 * 5), g = static_cast<int>((1 - delta) / 2 * 5);
+    const int a = static_cast<int>((theta / std::numbers::pi + 1) / 2 * 5),
+              g = static_cast<int>((1 - delta) / 2 * 5);
     expected[static_cast<std::size_t>(((a * 5 + 2) * 5 + g) * 5 + static_cast<int>(delta * 5))] +=
         1.0 / steps;
   }

@@ -1,6 +1,7 @@
 #include "descriptor/surflet_pair.h"
 
 #include <array>
+#include <numbers>
 #include <optional>
 
 #include "tests/descriptor/surflets.h"
@@ -46,8 +47,8 @@ std::optional<Expected> bin_by_definition(const Oriented& i, const Oriented& j, 
   const Vec3d u = one.normal, d_u = cross(d, u), v = normalized(d_u), w = cross(u, v);
   const double alpha = std::atan2(dot(w, two.normal), dot(u, two.normal));
   const double wide = margin / norm(r) / norm(d_u);
-  if (std::fabs(std::fabs(alpha) - kPi) < wide) return {};
-  const auto a = part(alpha / kPi, bins, wide), b = part(dot(v, two.normal), bins, wide),
+  if (std::fabs(std::fabs(alpha) - std::numbers::pi) < wide) return {};
+  const auto a = part(alpha / std::numbers::pi, bins, wide), b = part(dot(v, two.normal), bins, wide),
              c = part(dot(u, d), bins, wide), e = part(2 * norm(r) - 1, bins, margin);
   if (!a || !b || !c || !e) return {};
   return Expected{((*a * bins + *b) * bins + *c) * bins + *e, a_i > a_j};
@@ -126,7 +127,7 @@ TEST(SurfletPair, DegeneratePairs) {
 TEST(SurfletPair, AngleBinsFollowTheArcTangent) {
   for (int k = -1799; k < 1800; ++k) {
     if ((k + 1800) % 720 == 0) continue;  // a border
-    const double alpha = kPi * k / 1800;
+    const double alpha = std::numbers::pi * k / 1800;
     const Oriented i{{0, 0, 0}, {0, 0, 1}}, j{{0.9, 0, 0}, {std::sin(alpha), 0, std::cos(alpha)}};
     ASSERT_EQ(bin(i, j), code_of((k + 1800) / 720, 2, 2, 4)) << k;
   }
@@ -136,13 +137,13 @@ TEST(SurfletPair, BordersAreWhereTheyBelong) {
   constexpr PairBorders<5> odd;
   EXPECT_FLOAT_EQ(odd.unit[0], 0.04f);
   EXPECT_FLOAT_EQ(odd.unit[1], 0.36f);
-  EXPECT_FLOAT_EQ(odd.tangent[0], static_cast<float>(std::pow(std::tan(kPi / 5), 2)));
-  EXPECT_FLOAT_EQ(odd.tangent[1], static_cast<float>(std::pow(std::tan(3 * kPi / 5), 2)));
+  EXPECT_FLOAT_EQ(odd.tangent[0], static_cast<float>(std::pow(std::tan(std::numbers::pi / 5), 2)));
+  EXPECT_FLOAT_EQ(odd.tangent[1], static_cast<float>(std::pow(std::tan(3 * std::numbers::pi / 5), 2)));
   constexpr PairBorders<4> even;
   EXPECT_FLOAT_EQ(even.unit[0], 0.25f);
   EXPECT_TRUE(even.right[0]);
   constexpr PairBorders<10> fine;
-  EXPECT_FLOAT_EQ(fine.tangent[3], static_cast<float>(std::pow(std::tan(4 * kPi / 5), 2)));
+  EXPECT_FLOAT_EQ(fine.tangent[3], static_cast<float>(std::pow(std::tan(4 * std::numbers::pi / 5), 2)));
   EXPECT_TRUE(fine.obtuse[3]);
 }
 

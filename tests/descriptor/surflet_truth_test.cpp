@@ -2,6 +2,7 @@
 // says how large their deviations may be.
 #include <array>
 #include <functional>
+#include <numbers>
 
 #include "descriptor/surflet_pair.h"
 #include "tests/descriptor/surflets.h"
@@ -73,9 +74,11 @@ int fifth(double unit) { return std::clamp(static_cast<int>(std::floor((unit + 1
 TEST(SurfletTruth, Sphere) {
   std::vector<double> expected(625, 0.0);
   add_shares(
-      1, {0, 0.2, 0.4, 0.6, 0.8, std::sin(kPi / 10), std::sin(3 * kPi / 10), 1},
+      1, {0, 0.2, 0.4, 0.6, 0.8, std::sin(std::numbers::pi / 10), std::sin(3 * std::numbers::pi / 10), 1},
       [](double d) { return d * d; },
-      [](double d) { return code_of(fifth(2 * std::asin(d) / kPi), 2, fifth(-d), fifth(2 * d - 1)); },
+      [](double d) {
+        return code_of(fifth(2 * std::asin(d) / std::numbers::pi), 2, fifth(-d), fifth(2 * d - 1));
+      },
       expected);
   expect_frequencies(expected, [](CounterRandom& random) {
     const Vec3d n = random_direction(random);
@@ -86,7 +89,7 @@ TEST(SurfletTruth, Sphere) {
 // Of the distance of two random points of the unit square.
 double square_distribution(double d) {
   const double d2 = d * d;
-  if (d <= 1) return d2 * (kPi + d2 / 2) - 8 * d * d2 / 3;
+  if (d <= 1) return d2 * (std::numbers::pi + d2 / 2) - 8 * d * d2 / 3;
   if (d >= std::sqrt(2.0)) return 1;
   return 1.0 / 3 - 2 * d2 - d2 * d2 / 2 + 4.0 / 3 * std::sqrt(d2 - 1) * (2 * d2 + 1) +
          2 * d2 * (std::asin(1 / d) - std::acos(1 / d));

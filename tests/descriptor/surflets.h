@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/hash_random.h"
 #include "tests/support/meshes.h"
 

@@ -20,7 +20,7 @@ TEST(MeshMeasure, CubeFarFromTheOrigin) {
 
 // Inscribed polyhedra: the error falls fourfold with each subdivision.
 TEST(MeshMeasure, SphereConvergesToSecondOrder) {
-  const double r = 3, v = 4.0 / 3 * kPi * r * r * r, a = 4 * kPi * r * r;
+  const double r = 3, v = 4.0 / 3 * std::numbers::pi * r * r * r, a = 4 * std::numbers::pi * r * r;
   const TriangleMesh coarse = icosphere(3, r), fine = icosphere(4, r);
   EXPECT_NEAR((v - volume(coarse)) / (v - volume(fine)), 4, 0.05);
   EXPECT_NEAR((a - surface_area(coarse)) / (a - surface_area(fine)), 4, 0.05);
@@ -29,8 +29,8 @@ TEST(MeshMeasure, SphereConvergesToSecondOrder) {
 
 TEST(MeshMeasure, TorusAgainstPappus) {
   const TriangleMesh mesh = torus(2, 0.5, 400, 200);
-  EXPECT_NEAR(volume(mesh) / (2 * kPi * kPi * 2 * 0.25), 1, 5e-4);
-  EXPECT_NEAR(surface_area(mesh) / (4 * kPi * kPi * 2 * 0.5), 1, 5e-4);
+  EXPECT_NEAR(volume(mesh) / (2 * std::numbers::pi * std::numbers::pi * 2 * 0.25), 1, 5e-4);
+  EXPECT_NEAR(surface_area(mesh) / (4 * std::numbers::pi * std::numbers::pi * 2 * 0.5), 1, 5e-4);
 }
 
 TEST(MeshMeasure, CentroidOfTwoSpheresOfDifferentSize) {

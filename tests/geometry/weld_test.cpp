@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "geometry/mesh_io.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/hash_random.h"

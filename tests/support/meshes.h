@@ -6,13 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "geometry/triangle_mesh.h"
 
 namespace astrolith::testing {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 inline TriangleMesh tetrahedron(double radius = 1.0) {
   const double s = radius / std::sqrt(3.0);
@@ -86,7 +85,7 @@ inline TriangleMesh torus(double big_radius, double small_radius, int columns = 
   TriangleMesh mesh;
   for (int i = 0; i < columns; ++i) {
     for (int j = 0; j < rows; ++j) {
-      const double u = 2 * kPi * i / columns, v = 2 * kPi * j / rows;
+      const double u = 2 * std::numbers::pi * i / columns, v = 2 * std::numbers::pi * j / rows;
       const double rho = big_radius + small_radius * std::cos(v);
       mesh.vertices.push_back({rho * std::cos(u), rho * std::sin(u), small_radius * std::sin(v)});
     }

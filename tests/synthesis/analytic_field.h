@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "synthesis/block_field.h"
+#include "synthesis/mesh/block_field.h"
 
 namespace astrolith::testing {
 

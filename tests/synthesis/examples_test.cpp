@@ -6,9 +6,9 @@
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
-#include "synthesis/bare_surface.h"
-#include "synthesis/implicit_field.h"
-#include "synthesis/mesher.h"
+#include "synthesis/field/bare_body.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesher.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 
@@ -96,7 +96,7 @@ SparseLayer random_sparse(CounterRandom& random) {
 
 // What stands on the surface. After all else, so that the other layers of a seed stay as they are.
 void add_features(CounterRandom& random, Recipe& recipe) {
-  const BareSurface surface(recipe);
+  const BareSurface surface(bare_body(recipe));
   if (surface.empty()) return;
   const double body = surface.longest_side();
   if (random.uniform() < 0.25) recipe.layers.emplace_back(random_craters(random, body));

@@ -1,7 +1,7 @@
 // Metaballs at a single point.
 #pragma once
 
-#include "synthesis/metaball_body.h"
+#include "synthesis/body/metaball_body.h"
 
 namespace astrolith::testing {
 

@@ -7,7 +7,7 @@
 #include "descriptor/histogram_distance.h"
 #include "descriptor/local_features.h"
 #include "descriptor/surflet_histogram.h"
-#include "geometry/sample_curvature.h"
+#include "geometry/surface/sample_curvature.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {

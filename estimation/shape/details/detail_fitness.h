@@ -18,7 +18,7 @@
 #include "estimation/shape/details/detail_parameters.h"
 #include "estimation/shape/details/moved_mesh.h"
 #include "estimation/shape/details/probe_layout.h"
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 
 namespace astrolith {
 

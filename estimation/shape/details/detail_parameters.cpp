@@ -20,7 +20,7 @@ int resolved_octaves(double frequency, double wanted, double highest) {
   return std::clamp(static_cast<int>(std::lround(wanted)), 1, static_cast<int>(most + 1e-9));
 }
 
-// The greatest slopes of synthesis/noise_octaves.h.
+// The greatest slopes of synthesis/noise/noise_octaves.h.
 double greatest_slope(Noise noise) {
   return noise == Noise::kSimplex ? 7.0 : noise == Noise::kPerlin ? 3.65 : 1.0;
 }

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "descriptor/shape_histogram.h"
-#include "estimation/shape/fit_check.h"
+#include "estimation/shape/fit/fit_check.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {

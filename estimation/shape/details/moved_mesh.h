@@ -14,8 +14,8 @@ namespace astrolith {
 class MovedMesh {
  public:
   // `mesh` is closed and manifold, as it is before anything moves. kappa is the mean of the vertices'
-  // curvature within `radius`, weighted as in geometry/sample_curvature.h; which vertices those are, and
-  // their weights, stay as they are now.
+  // curvature within `radius`, weighted as in geometry/surface/sample_curvature.h; which vertices those are,
+  // and their weights, stay as they are now.
   MovedMesh(const TriangleMesh& mesh, const std::vector<MeshPlace>& samples, double radius);
 
   // Of the samples once the vertices are here, and what its pairs are counted of.  (#V)

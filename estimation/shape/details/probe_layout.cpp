@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/hash_random.h"
-#include "synthesis/implicit_field.h"
-#include "synthesis/mesher.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "estimation/shape/details/roughness.h"
 #include "estimation/shape/details/surface_probe.h"
-#include "estimation/shape/target_body.h"
+#include "estimation/shape/target/target_body.h"
 
 namespace astrolith {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "estimation/gabor/detrend.h"
 #include "estimation/gabor/gabor_fit.h"
+#include "estimation/gabor/image/detrend.h"
 #include "estimation/shape/details/probe_layout.h"
 #include "estimation/shape/details/surface_probe.h"
-#include "estimation/shape/isosurface_projection.h"
-#include "estimation/shape/metaball_model.h"
+#include "estimation/shape/model/isosurface_projection.h"
+#include "estimation/shape/model/metaball_model.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 
@@ -28,7 +28,7 @@ struct Patch {
   bool flat = false;
 };
 
-// First east, about +z, then south, as synthesis/gabor_surface_noise.h lays a texture.
+// First east, about +z, then south, as synthesis/gabor/gabor_surface_noise.h lays a texture.
 void east_and_south(const Vec3d& n, Vec3d& east, Vec3d& south) {
   const Vec3d about = cross(Vec3d{0, 0, 1}, n);
   east = squared_norm(about) > 1e-12 ? normalized(about) : Vec3d{1, 0, 0};

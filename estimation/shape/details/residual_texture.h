@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "estimation/shape/target_body.h"
+#include "estimation/shape/target/target_body.h"
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "numerics/hash_random.h"
-#include "synthesis/noise_octaves.h"
+#include "synthesis/noise/noise_octaves.h"
 
 namespace astrolith {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "estimation/shape/point_clusters.h"
+#include "estimation/shape/model/point_clusters.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/fractal_noise.h"
+#include "synthesis/noise/fractal_noise.h"
 
 namespace astrolith {
 namespace {

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "cuda/swarm.h"
-#include "geometry/surface_tree.h"
+#include "geometry/surface/surface_tree.h"
 #include "recipe/recipe.h"
-#include "synthesis/metaball_body.h"
+#include "synthesis/body/metaball_body.h"
 
 namespace astrolith {
 

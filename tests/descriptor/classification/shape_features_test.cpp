@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "geometry/mesh_sampling.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "tests/support/meshes.h"
 

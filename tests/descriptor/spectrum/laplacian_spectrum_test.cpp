@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
-#include "geometry/mesh_sampling.h"
-#include "geometry/point_normals.h"
+#include "geometry/points/point_normals.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -15,14 +16,15 @@
 namespace astrolith {
 namespace {
 
-using testing::kPi;
+using testing::std::numbers::pi;
 
 // l (l + 1) / R^2, 2 l + 1 times each, times the area 4 pi R^2.
 void expect_sphere(const std::vector<double>& eigenvalues, double tolerance) {
   std::size_t i = 0;
   for (int l = 1; i < eigenvalues.size(); ++l) {
     for (int m = 0; m < 2 * l + 1 && i < eigenvalues.size(); ++m, ++i) {
-      EXPECT_NEAR(eigenvalues[i] / (4 * kPi * l * (l + 1)), 1, tolerance) << "l = " << l << ", m = " << m;
+      EXPECT_NEAR(eigenvalues[i] / (4 * std::numbers::pi * l * (l + 1)), 1, tolerance)
+          << "l = " << l << ", m = " << m;
     }
   }
 }
@@ -30,7 +32,7 @@ void expect_sphere(const std::vector<double>& eigenvalues, double tolerance) {
 TEST(LaplacianSpectrum, OfASphereIsThatOfTheSphericalHarmonics) {
   const LaplacianSpectrum s = laplacian_spectrum(testing::icosphere(5, 3.0), 35);
   ASSERT_EQ(s.eigenvalues.size(), 35u);
-  EXPECT_NEAR(s.area, 36 * kPi, 0.1);
+  EXPECT_NEAR(s.area, 36 * std::numbers::pi, 0.1);
   EXPECT_EQ(s.left_out_triangles, 0);
   expect_sphere(s.eigenvalues, 0.004);
 }
@@ -38,7 +40,8 @@ TEST(LaplacianSpectrum, OfASphereIsThatOfTheSphericalHarmonics) {
 // The error of linear elements falls with the squared edge length.
 TEST(LaplacianSpectrum, ConvergesWithTheSquaredEdgeLength) {
   const auto error = [](int subdivisions) {
-    return std::fabs(laplacian_spectrum(testing::icosphere(subdivisions), 8).eigenvalues[7] / (24 * kPi) - 1);
+    return std::fabs(
+        laplacian_spectrum(testing::icosphere(subdivisions), 8).eigenvalues[7] / (24 * std::numbers::pi) - 1);
   };
   EXPECT_NEAR(error(3) / error(4), 4, 0.5);
 }
@@ -60,7 +63,8 @@ TEST(LaplacianSpectrum, OfARectangleHasFreeEdges) {
   }
   std::vector<double> exact;
   for (int m = 0; m < 9; ++m) {
-    for (int n = 0; n < 5; ++n) exact.push_back(a * b * kPi * kPi * (m * m / (a * a) + n * n / (b * b)));
+    for (int n = 0; n < 5; ++n)
+      exact.push_back(a * b * std::numbers::pi * std::numbers::pi * (m * m / (a * a) + n * n / (b * b)));
   }
   std::sort(exact.begin(), exact.end());
   const std::vector<double> found = laplacian_spectrum(mesh, 12).eigenvalues;
@@ -84,13 +88,13 @@ TEST(LaplacianSpectrum, KnowsNoPlaceScaleOrOrder) {
 TEST(LaplacianSpectrum, EveryComponentAddsAZero) {
   const std::vector<double> pair = laplacian_spectrum(testing::two_spheres(3, 1.0, 5.0), 7).eigenvalues;
   EXPECT_NEAR(pair[0], 0, 1e-8);
-  for (std::size_t i = 1; i < 7; ++i) EXPECT_NEAR(pair[i] / (16 * kPi), 1, 0.02) << i;
+  for (std::size_t i = 1; i < 7; ++i) EXPECT_NEAR(pair[i] / (16 * std::numbers::pi), 1, 0.02) << i;
 }
 
 TEST(LaplacianSpectrum, OfPointsIsThatOfTheirSurface) {
   const SurfaceSamples s = sample_poisson_disk(testing::icosphere(5, 0.1), 2000, 1);
   const LaplacianSpectrum spectrum = laplacian_spectrum(s.points, s.normals, 24);
-  EXPECT_NEAR(spectrum.area / (0.04 * kPi), 1, 0.02);
+  EXPECT_NEAR(spectrum.area / (0.04 * std::numbers::pi), 1, 0.02);
   expect_sphere(spectrum.eigenvalues, 0.03);
   const SurfaceSamples t = sample_poisson_disk(testing::torus(1, 0.4, 96, 48), 2000, 1);
   const std::vector<double> of_points = laplacian_spectrum(t.points, t.normals, 20).eigenvalues;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "estimation/gabor/image_reader.h"
-#include "estimation/gabor/spectrum_distance.h"
+#include "estimation/gabor/image/image_reader.h"
+#include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/estimation/gabor/known_spectrum.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "estimation/gabor/image_reader.h"
+#include "estimation/gabor/image/image_reader.h"
 
 #include "tests/estimation/gabor/known_spectrum.h"
 #include "tests/support/data.h"

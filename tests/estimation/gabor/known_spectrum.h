@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "estimation/gabor/fourier_transform.h"
-#include "estimation/gabor/grey_image.h"
-#include "estimation/gabor/lobe_selection.h"
-#include "estimation/gabor/power_spectrum.h"
+#include "estimation/gabor/image/grey_image.h"
+#include "estimation/gabor/lobes/lobe_selection.h"
+#include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "numerics/hash_random.h"
 
 namespace astrolith::testing {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "numerics/errors.h"
-#include "synthesis/color_texture.h"
-#include "synthesis/image_file.h"
+#include "synthesis/gabor/color_texture.h"
+#include "synthesis/picture/image_file.h"
 
 namespace astrolith {
 namespace {

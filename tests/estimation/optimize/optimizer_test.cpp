@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <thread>
 
@@ -12,8 +13,6 @@ namespace astrolith {
 namespace {
 
 using Algorithm = OptimizerAlgorithm;
-
-constexpr double kPi = 3.14159265358979323846;
 // Off the box's centre and different in each variable, so that no symmetry helps.
 const std::vector<double> kOptimum = {0.7, -1.3, 2.1, -0.4};
 const Bounds kBox = {{-5, -5, -5, -5}, {5, 5, 5, 5}};
@@ -38,7 +37,7 @@ double rastrigin(std::span<const double> x) {
   double sum = 0;
   for (std::size_t d = 0; d < x.size(); ++d) {
     const double u = x[d] - kOptimum[d];
-    sum += u * u + 10 * (1 - std::cos(2 * kPi * u));
+    sum += u * u + 10 * (1 - std::cos(2 * std::numbers::pi * u));
   }
   return sum;
 }

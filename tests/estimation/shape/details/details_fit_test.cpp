@@ -5,7 +5,7 @@
 #include "cuda/host_machine.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/implicit_field.h"
+#include "synthesis/field/implicit_field.h"
 #include "tests/estimation/shape/details/known_details.h"
 
 namespace astrolith {

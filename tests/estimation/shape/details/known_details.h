@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "estimation/shape/target_body.h"
+#include "estimation/shape/target/target_body.h"
 #include "numerics/hash_random.h"
-#include "synthesis/fractal_noise.h"
-#include "synthesis/implicit_field.h"
-#include "synthesis/mesher.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesher.h"
+#include "synthesis/noise/fractal_noise.h"
 
 namespace astrolith::testing {
 

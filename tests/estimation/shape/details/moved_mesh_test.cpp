@@ -4,7 +4,7 @@
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/surflet_histogram.h"
-#include "geometry/sample_curvature.h"
+#include "geometry/surface/sample_curvature.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {

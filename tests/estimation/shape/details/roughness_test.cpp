@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
-#include "synthesis/fractal_noise.h"
+#include "synthesis/noise/fractal_noise.h"
 
 namespace astrolith {
 namespace {

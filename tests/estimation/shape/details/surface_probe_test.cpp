@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "estimation/shape/details/probe_layout.h"
-#include "synthesis/implicit_field.h"
+#include "synthesis/field/implicit_field.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {

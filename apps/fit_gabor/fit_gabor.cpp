@@ -1,0 +1,254 @@
+// fit_gabor IMAGE -o RECIPE: a photo of rock becomes a layer of Gabor noise with the photo's spectrum.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "apps/fit_gabor/fit_gabor_outputs.h"
+#include "apps/memory_use.h"
+#include "apps/option_checks.h"
+#include "apps/program.h"
+#include "estimation/gabor/fit_memory.h"
+#include "estimation/gabor/photo_fit.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+
+namespace astrolith {
+namespace {
+
+// Relative distance between fitted and estimated spectrum from which the fit is called poor: a photo of rock
+// ends near 0.03, a raw periodogram of the true spectrum is 0.48 from it.
+constexpr double kPoorDistance = 0.6;
+
+struct Options {
+  std::string image;
+  std::string output;
+  std::string report_folder;
+  std::string spectrum_file;
+  std::string target = "smoothed";
+  std::string solver = "working-set";
+  std::string unit = "m";
+  std::string channels = "luminance";
+  std::string detrend_by = "subtraction";
+  double mm_per_px = 0.0;      // 0 = no physical scale
+  double height_rms = -1.0;    // negative = the exemplar's own
+  double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
+  PhotoFitOptions photo;
+};
+
+void add_options(Program& program, Options& o) {
+  CLI::App& app = program.app;
+  app.add_option(
+         "image", o.image,
+         "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
+         "alpha is ignored, of several pages or frames the first is taken")
+      ->required();
+  app.add_option("-o,--output", o.output,
+                 "recipe to write, with one Gabor layer (up to three with --channels pca)")
+      ->required();
+  app.add_option(
+         "--channels", o.channels,
+         "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
+         "the values as stored, gamma-encoded) or pca (a layer for each principal axis of the "
+         "colours; synth --texture then paints in colour)")
+      ->check(CLI::IsMember({"luminance", "pca"}));
+  CLI::Option* detrend =
+      app.add_option(
+             "--detrend", o.photo.detrend_degree,
+             "first take out slow changes of brightness, such as light from one side: a polynomial of "
+             "this degree in x and y, fitted to all pixels; 0 = none")
+          ->check(CLI::Range(0, kLargestTrendDegree));
+  app.add_option("--detrend-by", o.detrend_by,
+                 "how: subtraction (v - t + mean, for height maps) or division (v mean / t, for photos whose "
+                 "contrast falls off with the light)")
+      ->check(CLI::IsMember({"subtraction", "division"}))
+      ->needs(detrend);
+  app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
+      ->check(CLI::Range(1, 1000));
+  app.add_option(
+         "--mm-per-px", o.mm_per_px,
+         "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
+      ->check(above_zero())
+      ->default_str("");
+  app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
+      ->check(CLI::IsMember({"m", "km"}));
+  app.add_option(
+         "--height-rms", o.height_rms,
+         "standard deviation of the layer's height in the recipe's length unit. Brightness is not height: "
+         "without this the layer has the image's own contrast (full scale = 1), which is a height only if "
+         "the image is a height map in that unit")
+      ->check(zero_or_more())
+      ->default_str("");
+  app.add_option("--spectrum-estimate", o.target,
+                 "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
+                 "nearest to the true one) or periodogram (raw, of the periodic component, as in Galerne et "
+                 "al. 2012)")
+      ->check(CLI::IsMember({"smoothed", "periodogram"}));
+  app.add_option("--solver", o.solver, "of the basis pursuit; both end with the same certified optimum")
+      ->check(CLI::IsMember({"working-set", "fista"}));
+  app.add_option("--penalty", o.photo.fit.penalty_ratio,
+                 "sparsity penalty over the largest useful one; smaller finds more lobes")
+      ->check(CLI::Range(1e-4, 0.99));
+  app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
+      ->check(CLI::Range(1e-8, 0.5));
+  app.add_option("--max-memory", o.max_memory_gb,
+                 "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
+                 "of the machine's")
+      ->check(above_zero())
+      ->default_str("");
+  app.add_option("--report", o.report_folder,
+                 "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "
+                 "spectra, lobes, "
+                 "gap; and its pictures pixel by pixel")
+      ->option_text("DIR");
+  app.add_option(
+         "--spectrum", o.spectrum_file,
+         "write the fitted power spectrum on the image's DFT grid (.npy, float64, frequency 0 first, "
+         "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024; with several "
+         "layers an array (layers, height, width)")
+      ->option_text("FILE.npy");
+}
+
+// Said, and refused if need be, before the image is decoded.
+void predict_memory(Program& program, const Options& o, const PhotoFitOptions& photo) {
+  const ImageSize size = read_image_size(o.image);
+  const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty());
+  program.summary["predicted"] = {{"peak_bytes", predicted}};
+  if (predicted > memory_limit(o.max_memory_gb)) {
+    throw InputError(
+        fmt::format("{}: fitting {} x {} pixels needs {:.2f} GB of memory, more than {:.2f} GB; "
+                    "cut out a part, scale it down or raise --max-memory",
+                    o.image, size.width, size.height, predicted / 1e9, memory_limit(o.max_memory_gb) / 1e9));
+  }
+  constexpr double kWorthSaying = 1e9;
+  if (predicted > kWorthSaying) {
+    program.say(fmt::format("{}: {} x {} pixels, about {:.1f} GB of memory", o.image, size.width, size.height,
+                            predicted / 1e9));
+  }
+}
+
+GaborLayer make_layer(const Options& o, const FittedChannel& channel, bool first) {
+  GaborLayer layer = layer_of(channel, first);
+  layer.name = std::filesystem::path(o.image).stem().string();
+  const double per_unit = o.unit == "km" ? 1e6 : 1e3;  // millimetres
+  layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / per_unit : 1.0;
+  if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
+  return layer;
+}
+
+Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& photo) {
+  Recipe recipe;
+  recipe.length_unit = o.mm_per_px > 0.0 ? o.unit : "px";
+  recipe.seed = program.seed;
+  recipe.provenance.tool = program.tool();
+  recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
+  recipe.provenance.input_sha256 = sha256_of_file(o.image);
+  recipe.provenance.options = program.given_options();
+  recipe.provenance.achieved = {{"relative_duality_gap", photo.relative_gap()},
+                                {"spectrum_distance", photo.spectrum_distance()},
+                                {"variance_ratio", photo.variance_ratio()}};
+  for (const FittedChannel& channel : photo.channels)
+    recipe.layers.push_back(make_layer(o, channel, recipe.layers.empty()));
+  return recipe;
+}
+
+nlohmann::ordered_json details(const Gaussianity& g) {
+  return {{"plausible", g.plausible()},           {"skewness", g.skewness},
+          {"excess_kurtosis", g.excess_kurtosis}, {"edge_kurtosis", g.edge_kurtosis},
+          {"variance_spread", g.variance_spread}, {"sentence", g.sentence}};
+}
+
+void summarize(const PhotoFit& photo, Program& program) {
+  auto& s = program.summary;
+  const Gaussianity gaussianity = photo.gaussianity();
+  s["lobes"] = photo.lobes();
+  s["relative_duality_gap"] = photo.relative_gap();
+  s["spectrum_distance"] = photo.spectrum_distance();
+  s["variance_ratio"] = photo.variance_ratio();
+  s["gaussianity"] = gaussianity.p_value;
+  s["gaussianity_details"] = details(gaussianity);
+  int iterations = 0;
+  double before_scaling = 0.0, variance = 0.0;
+  for (const FittedChannel& channel : photo.channels) {
+    iterations += channel.fit.pursuit.iterations;
+    before_scaling += channel.fit.variance_before_scaling * channel.variance();
+    variance += channel.variance();
+    s["channels"].push_back({{"lobes", channel.fit.lobes.size()},
+                             {"pursuit_lobes", channel.fit.pursuit_lobes},
+                             {"relative_duality_gap", channel.fit.pursuit.relative_gap},
+                             {"spectrum_distance", channel.fit.spectrum_distance},
+                             {"variance", channel.variance()},
+                             {"variance_ratio_before_scaling", channel.fit.variance_before_scaling},
+                             {"gaussianity", channel.gaussianity.p_value}});
+  }
+  s["variance_ratio_before_scaling"] = before_scaling / variance;
+  s["iterations"] = iterations;
+}
+
+PhotoFitOptions photo_options(const Program& program, const Options& o) {
+  PhotoFitOptions photo = o.photo;
+  photo.colors = o.channels == "pca";
+  photo.trend = o.detrend_by == "division" ? TrendModel::kMultiplied : TrendModel::kAdded;
+  photo.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
+  photo.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
+  photo.seed = program.seed;
+  return photo;
+}
+
+void require_outputs(const Options& o) {
+  require_writable(o.output);
+  if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
+  if (o.report_folder.empty()) return;
+  make_output_folder(o.report_folder);
+  for (const auto& entry : std::filesystem::directory_iterator(o.report_folder)) {
+    require_other_file(entry.path(), o.image);
+  }
+}
+
+void say_result(const PhotoFit& photo, const Program& program) {
+  const std::size_t layers = photo.channels.size();
+  program.say(fmt::format(
+      "{} lobes{}, certified relative duality gap {:.1e}, distance {:.3f} from the estimated spectrum",
+      photo.lobes(), layers > 1 ? fmt::format(" in {} layers", layers) : "", photo.relative_gap(),
+      photo.spectrum_distance()));
+  if (photo.spectrum_distance() > kPoorDistance) {
+    program.say("note: the lobes miss much of the spectrum; allow more --lobes or a smaller --penalty");
+  }
+  program.say(photo.gaussianity().sentence);
+}
+
+void work(Program& program, const Options& o) {
+  require_outputs(o);
+  const PhotoFitOptions options = photo_options(program, o);
+  predict_memory(program, o, options);
+  const PhotoFit photo = fit_photo(o.image, options, program.progress("pursuit"));
+  for (const std::string& remark : photo.remarks) program.say(o.image + ": " + remark);
+  const Recipe recipe = make_recipe(program, o, photo);
+  write_recipe(recipe, o.output);
+  summarize(photo, program);
+  if (Program::interrupted()) {
+    program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
+    return;
+  }
+  const std::vector<std::vector<float>> syntheses = synthesize_channels(photo, recipe, program);
+  program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
+  if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
+  if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
+  program.summary["peak_bytes"] = peak_bytes();
+  say_result(photo, program);
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  using namespace astrolith;
+  Program program(
+      "fit_gabor",
+      "Fits a layer of Gabor noise to a photo of rock: a sparse sum of Gaussians in its power spectrum, by "
+      "non-negative basis pursuit with a certified duality gap.");
+  Options options;
+  add_options(program, options);
+  return program.run(argc, argv, [&] { work(program, options); });
+}

@@ -1,0 +1,50 @@
+// fit_shape's checkpoint: what a run that stopped need not do again. A JSON file with the base once it is
+// finished, and the value of every candidate for the details so far; the search itself is a function of these
+// (estimation/optimize/evaluation_log.h), so a resumed run ends as an uninterrupted one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimation/optimize/evaluation_log.h"
+#include "estimation/shape/fit/shape_fit.h"
+
+namespace astrolith {
+
+// What a checkpoint belongs to: another input or other options are refused.
+struct CheckpointKey {
+  std::string tool, input_sha256;
+  std::vector<std::pair<std::string, std::string>> options;
+};
+
+class FitCheckpoint {
+ public:
+  // With an empty name nothing is ever read or written. Reads the file where it exists. Throws InputError for
+  // one that is damaged, or that belongs to something else.
+  FitCheckpoint(std::filesystem::path file, CheckpointKey key);
+
+  bool resumed() const { return resumed_; }
+  // A finished base from the file; body, history and figures are set, the check is not.
+  const ShapeFitResult* base() const { return has_base_ ? &base_ : nullptr; }
+  EvaluationLog& log() { return log_; }
+
+  // Writes the file at once.
+  void keep_base(const ShapeFitResult& base);
+  // Passes on to `progress`; writes the file when enough is new, and when the work is asked to stop.
+  Progress guard(Progress progress);
+  void save();
+
+ private:
+  void read();
+
+  std::filesystem::path file_;
+  CheckpointKey key_;
+  bool resumed_ = false, has_base_ = false;
+  ShapeFitResult base_;
+  EvaluationLog log_;
+  std::size_t saved_evaluations_ = 0;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,189 @@
+// fit_shape: a closed mesh becomes a recipe of metaballs.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "apps/fit_shape/fit_checkpoint.h"
+#include "apps/fit_shape/fit_shape_details.h"
+#include "apps/fit_shape/fit_shape_options.h"
+#include "apps/fit_shape/fit_shape_packing.h"
+#include "apps/fit_shape/fit_time_limit.h"
+#include "apps/fit_shape/known_bodies.h"
+#include "apps/program.h"
+#include "estimation/shape/fit/shape_fit.h"
+#include "estimation/shape/report/fit_report.h"
+#include "geometry/io/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "numerics/files/output_folder.h"
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+
+namespace astrolith {
+namespace {
+
+// Fractions of the bounding-box diagonal, except counts and ratios.
+std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  return {{"max_distance", d.max},
+          {"mean_distance", d.mean},
+          {"p99_distance", d.p99},
+          {"similarity", fit.similarity},
+          {"similarity_floor", fit.similarity_floor},
+          {"volume_ratio", fit.check.volume_ratio}};
+}
+
+// Without layers, and without what it achieved.
+Recipe recipe_of(const Program& program, const FitArguments& arguments, const ShapeFitResult& fit) {
+  Recipe recipe;
+  recipe.length_unit = arguments.unit;
+  recipe.seed = program.seed;
+  recipe.provenance.tool = program.tool();
+  recipe.provenance.input_name = std::filesystem::path(arguments.mesh).filename().string();
+  recipe.provenance.input_sha256 = sha256_of_file(arguments.mesh);
+  recipe.provenance.options = program.given_options();
+  recipe.body = fit.body;
+  return recipe;
+}
+
+void note_achieved(const ShapeFitResult& fit, Recipe& recipe) {
+  recipe.provenance.achieved.clear();
+  for (auto [name, value] : achieved(fit)) {
+    recipe.provenance.achieved.emplace_back(name, round_to_seven_digits(value));
+  }
+}
+
+// The finished base from the checkpoint, or a new one.
+ShapeFitResult fit_base(const Program& program, const FitArguments& arguments, const TargetBody& target,
+                        TimeLimit& limit, FitCheckpoint& checkpoint) {
+  if (checkpoint.base() != nullptr) {
+    ShapeFitResult base = *checkpoint.base();
+    measure_fit(target, arguments.fit, base);
+    return base;
+  }
+  const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
+    return limit.guard(program.progress(stage), stage);
+  });
+  if (!Program::interrupted() && !limit.reached()) checkpoint.keep_base(fit);
+  return fit;
+}
+
+// Adds details to the recipe, and to the summary; the fit's figures become those of both together.
+void add_details(Program& program, const FitArguments& arguments, const TargetBody& target, TimeLimit& limit,
+                 FitCheckpoint& checkpoint, ShapeFitResult& fit, Recipe& recipe) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  program.summary["base"] = {{"mean_distance", d.mean}, {"p99_distance", d.p99}, {"max_distance", d.max}};
+  const DetailArguments& wanted = arguments.details;
+  if (wanted.micro == "auto") {
+    program.say("micro: " +
+                add_residual_texture(target, arguments.fit.seed, program.progress("micro"), recipe));
+  } else if (!wanted.transfer.empty()) {
+    transfer_details(program, wanted.transfer, recipe);
+  } else if (!wanted.base_only) {
+    const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
+    const DetailsFitResult details =
+        search_details(program, target, arguments.fit, wanted, checkpoint.log(), progress, recipe);
+    checkpoint.save();
+    program.summary["details"] = details_json(details);
+  }
+  if (!wanted.micro.empty() && wanted.micro != "auto") add_micro_layers(wanted, recipe);
+  fit.check = check_recipe(target, recipe, arguments.fit);
+  measure_similarity(target, arguments.fit, fit);
+}
+
+void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
+  nlohmann::ordered_json& summary = program.summary;
+  summary["spheres"] = fit.body.num_metaballs();
+  summary["subtracting_spheres"] = fit.body.subtract.size();
+  for (const auto& [name, value] : achieved(fit)) summary[name] = value;
+  summary["closed"] = fit.check.topology.closed;
+  summary["manifold"] = fit.check.topology.manifold;
+  summary["components"] = fit.check.topology.components;
+  summary["genus"] = fit.check.topology.genus;
+  summary["similarity_features"] = "ahd";
+  summary["filling_rate"] = fit.filling_rate;
+  summary["base_spheres"] = fit.base_spheres;
+  summary["base_similarity"] = fit.base_similarity;
+  summary["sharpness"] = fit.body.blend_exponent * fit.body.a;
+  summary["evaluations"] = fit.evaluations;
+  summary["stopped_early"] = stopped;
+}
+
+void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
+                bool with_details) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  char line[240];
+  std::snprintf(line, sizeof line,
+                "%zu metaballs (%zu take away)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
+                "diagonal; similarity %.2f %% "
+                "(two samplings of the target: %.2f %%)",
+                fit.body.num_metaballs(), fit.body.subtract.size(), with_details ? " and details" : "",
+                100 * d.mean, 100 * d.p99, 100 * d.max, 100 * fit.similarity, 100 * fit.similarity_floor);
+  program.say(line);
+  if (fit.check.topology.components != target.components) {
+    program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +
+                std::to_string(target.components) + "; give it more --spheres");
+  }
+}
+
+void say_wrong_unit(const Program& program, const FitArguments& arguments, const TargetBody& target) {
+  const std::string name = std::filesystem::path(arguments.mesh).filename().string();
+  const std::string remark =
+      unit_remark(name, target.volume * std::pow(target.diagonal, 3), arguments.unit == "km" ? 1000.0 : 1.0);
+  if (!remark.empty()) program.say("note: " + arguments.mesh + ": " + remark);
+}
+
+void run(Program& program, FitArguments& arguments) {
+  // Before minutes of work: can the results be written at all?
+  require_writable(arguments.output);
+  if (!arguments.checkpoint.empty()) {
+    require_writable(arguments.checkpoint);
+    require_two_files(arguments.checkpoint, arguments.output);
+    require_other_file(arguments.checkpoint, arguments.mesh);
+  }
+  const auto variations = variation_files(arguments.output, arguments.details.variations);
+  check_detail_inputs(arguments.details);
+  if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
+  TimeLimit limit(arguments.time_limit);
+  settle_fit_options(program, arguments);
+  const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
+  for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
+  say_wrong_unit(program, arguments, target);
+  if (arguments.packing_only) return write_packing(program, arguments, target);
+
+  FitCheckpoint checkpoint(arguments.checkpoint,
+                           {program.tool(), sha256_of_file(arguments.mesh), program.given_options()});
+  if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
+  ShapeFitResult fit = fit_base(program, arguments, target, limit, checkpoint);
+  Recipe recipe = recipe_of(program, arguments, fit);
+  const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
+  if (with_details && !Program::interrupted() && !limit.reached()) {
+    add_details(program, arguments, target, limit, checkpoint, fit, recipe);
+  }
+  if (Program::interrupted()) program.say("stopped by Ctrl-C: this is the best so far");
+  if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
+  note_achieved(fit, recipe);
+  write_recipe(recipe, arguments.output);
+  if (!arguments.report.empty()) {
+    write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),
+                     arguments.report);
+  }
+  summarize(program, fit, Program::interrupted() || limit.reached());
+  program.summary["diagonal"] = target.diagonal;  // what the distances are fractions of
+  program.summary["length_unit"] = arguments.unit;
+  if (!variations.empty() && !Program::interrupted()) {
+    program.summary["variations"] = write_variations(program, target, recipe, arguments.details, variations);
+  }
+  say_result(program, target, fit, !recipe.layers.empty());
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program("fit_shape", "Fits metaballs to a closed mesh and writes them as a recipe.");
+  astrolith::FitArguments arguments;
+  astrolith::declare_fit_options(program, arguments);
+  return program.run(argc, argv, [&] { astrolith::run(program, arguments); });
+}

@@ -1,0 +1,30 @@
+// The command line of fit_shape.
+#pragma once
+
+#include <string>
+
+#include "apps/fit_shape/fit_shape_details.h"
+#include "apps/program.h"
+#include "estimation/shape/fit/shape_fit.h"
+
+namespace astrolith {
+
+struct FitArguments {
+  std::string mesh, output, report, checkpoint;
+  std::string optimizer = "pso";
+  std::string kernel = "gaussian";
+  std::string unit = "km";
+  double time_limit = 0.0;  // seconds; 0 = none
+  bool packing_only = false;
+  double density = 0.0;  // kg / m^3; 0 = no masses
+  ShapeFitOptions fit;
+  DetailArguments details;
+};
+
+// Declares the options that fill these in.
+void declare_fit_options(Program& program, FitArguments& arguments);
+
+// Takes over what the options name by words, and the seed.
+void settle_fit_options(const Program& program, FitArguments& arguments);
+
+}  // namespace astrolith

@@ -1,0 +1,63 @@
+// Mean radii of bodies whose names file names often hold: enough to tell metres from kilometres.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace astrolith {
+
+struct KnownBody {
+  std::string_view name;  // lower case
+  double radius;          // km, of a sphere of the same volume, to 10 %
+};
+
+inline constexpr std::array kKnownBodies{
+    KnownBody{"amalthea", 83.5},   KnownBody{"apophis", 0.17},   KnownBody{"arrokoth", 9.1},
+    KnownBody{"bacchus", 0.32},    KnownBody{"bennu", 0.245},    KnownBody{"castalia", 0.54},
+    KnownBody{"ceres", 470},       KnownBody{"deimos", 6.2},     KnownBody{"didymos", 0.38},
+    KnownBody{"dimorphos", 0.075}, KnownBody{"epimetheus", 58},  KnownBody{"eros", 8.4},
+    KnownBody{"gaspra", 6.1},      KnownBody{"geographos", 1.3}, KnownBody{"halley", 5},
+    KnownBody{"hygiea", 216},      KnownBody{"hyperion", 135},   KnownBody{"ida", 15.7},
+    KnownBody{"interamnia", 166},  KnownBody{"itokawa", 0.165},  KnownBody{"juno", 127},
+    KnownBody{"kleopatra", 60},    KnownBody{"lutetia", 49},     KnownBody{"mathilde", 26.5},
+    KnownBody{"moshup", 0.66},     KnownBody{"pandora", 40.5},   KnownBody{"phobos", 11.1},
+    KnownBody{"psyche", 111},      KnownBody{"ryugu", 0.448},    KnownBody{"steins", 2.65},
+    KnownBody{"tempel1", 2.8},     KnownBody{"toutatis", 1.3},   KnownBody{"vesta", 262}};
+
+// The body that the file's name begins with ("Eros_gaskell.ply"; not "erosion.ply").
+inline std::optional<KnownBody> known_body(std::string_view file_name) {
+  std::string lower(file_name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const KnownBody& body : kKnownBodies) {
+    if (lower.rfind(body.name, 0) != 0) continue;
+    const char next = lower.size() > body.name.size() ? lower[body.name.size()] : '.';
+    if (std::isalpha(static_cast<unsigned char>(next)) == 0) return body;
+  }
+  return std::nullopt;
+}
+
+// A remark when the file's name says which body it is and its volume, in cubic units, says that the unit is
+// another; else empty. `metres_per_unit` is 1 or 1000.
+inline std::string unit_remark(std::string_view file_name, double volume, double metres_per_unit) {
+  constexpr double kClearlyWrong = 30.0;
+  const std::optional<KnownBody> body = known_body(file_name);
+  if (!body) return {};
+  const double radius = std::cbrt(volume * 3.0 / (4.0 * std::numbers::pi)) * metres_per_unit / 1000.0;
+  if (radius < kClearlyWrong * body->radius && body->radius < kClearlyWrong * radius) return {};
+  char text[240];
+  std::snprintf(
+      text, sizeof text,
+      "a mean radius of %.4g km is not that of %.*s (%.4g km); is --unit right, or the mesh scaled?", radius,
+      static_cast<int>(body->name.size()), body->name.data(), body->radius);
+  return text;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,111 @@
+// synth: a recipe becomes a closed mesh, a picture of it, or the texture of its Gabor layers.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+
+#include "apps/output_names.h"
+#include "apps/program.h"
+#include "apps/synth/synth_mesh.h"
+#include "apps/synth/synth_texture.h"
+#include "apps/variations.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/finish/lay_on_base.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  fs::path recipe;
+  fs::path base;
+  fs::path output;
+  TextureRequest texture;
+  MeshRequest mesh;
+  double vary = 0.0;  // 0 = the recipe itself
+};
+
+void declare_options(Program& program, Options& options) {
+  program.app.add_option("recipe", options.recipe, "the recipe, a JSON file")->required();
+  program.app
+      .add_option("-o,--output", options.output,
+                  "the mesh: .ply (binary, streamed), .obj, .stl or .glb, in the recipe's length unit; with "
+                  "--texture .png or .tif")
+      ->required();
+  declare_mesh_options(program, options.mesh);
+  program.app
+      .add_option("--base", options.base,
+                  "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
+                  "convert")
+      ->option_text("BODY.json");
+  program.app
+      .add_option(
+          "--vary", options.vary,
+          "another body of the same kind: the strongest variation that --seed draws whose similarity "
+          "with the recipe's own body, as `compare` measures it, is at least 1 less this; with new noise, "
+          "unless that alone is too different")
+      ->check(CLI::Range(1e-3, 1.0))
+      ->default_str("");
+  declare_texture_options(program, options.texture);
+  for (const char* of_mesh :
+       {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
+        "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view", "--sun"}) {
+    program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
+  }
+  program.app.get_option("--seed")
+      ->description("replaces the recipe's seed when given; with --vary the number of the variation")
+      ->default_str("");
+}
+
+void make_texture(Program& program, const Options& options, const Recipe& recipe) {
+  require_extension(options.output, {".png", ".tif", ".tiff"});
+  require_writable(options.output);
+  write_texture(program, options.texture, recipe, options.recipe, options.output);
+  summarize_output(program, options.output);
+}
+
+Recipe read_input(const Program& program, const Options& options) {
+  Recipe recipe = read_recipe(options.recipe);
+  if (!options.base.empty()) {
+    recipe = lay_on_base(recipe, options.recipe.string(), read_recipe(options.base), options.base.string());
+  }
+  if (program.app.get_option("--seed")->count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
+  return recipe;
+}
+
+Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
+  Variation variation =
+      find_variation(recipe, reference_of(recipe), options.vary, program.seed, program.progress("vary"));
+  program.summary["similarity"] = variation.similarity;
+  program.summary["variation_strength"] = variation.strength;
+  program.say("variation " + std::to_string(program.seed) + ": similarity " +
+              fmt::format("{:.4f}", variation.similarity));
+  return std::move(variation.recipe);
+}
+
+void synthesize(Program& program, const Options& options) {
+  const Recipe recipe = read_input(program, options);
+  if (!options.texture.size.empty()) return make_texture(program, options, recipe);
+  if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
+  if (!recipe.body) {
+    throw InputError(options.recipe.string() +
+                     ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
+                     "with --texture WxH");
+  }
+  make_mesh(program, options.mesh, options.vary > 0.0 ? varied(program, options, recipe) : recipe,
+            options.base.empty() ? options.recipe : options.base, options.output);
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program(
+      "synth", "Turns a recipe into a closed 2-manifold mesh, or its Gabor layers into a texture.");
+  astrolith::Options options;
+  astrolith::declare_options(program, options);
+  return program.run(argc, argv, [&] { astrolith::synthesize(program, options); });
+}

@@ -1,0 +1,31 @@
+#include "apps/synth/synth_erosion.h"
+
+#include <fmt/format.h>
+
+#include "synthesis/body/body_spheres.h"
+#include "synthesis/finish/erosion.h"
+#include "synthesis/finish/mascons.h"
+
+namespace astrolith {
+
+void erode_mesh(Program& program, const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh) {
+  const Erosion& erosion = *recipe.erosion;
+  const std::vector<Mascon> mascons = mascons_of(field, adding_spheres(*recipe.body));
+  const std::vector<Vec3d> up =
+      vertical_directions(mascons, {erosion.density, erosion.rotation_period}, mesh.vertices);
+  const ErosionStatistics done =
+      erode(mesh, up, erosion.talus_angle, erosion.iterations, program.progress("erosion"));
+  program.summary["erosion"] = {{"settled", done.settled},
+                                {"sweeps", done.sweeps},
+                                {"steepest_before", done.steepest_before},
+                                {"steepest_after", done.steepest_after},
+                                {"moved_vertices", done.moved_vertices},
+                                {"rock_vertices", done.rock_vertices},
+                                {"volume_moved", done.volume_moved}};
+  program.say(fmt::format("erosion: {} of {} vertices moved, steepest slope {:.1f} degrees, before {:.1f}{}",
+                          done.moved_vertices, mesh.vertices.size(), done.steepest_after,
+                          done.steepest_before,
+                          done.settled ? "" : "; not settled yet, raise its iterations"));
+}
+
+}  // namespace astrolith

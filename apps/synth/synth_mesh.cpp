@@ -1,0 +1,248 @@
+#include "apps/synth/synth_mesh.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "apps/memory_use.h"
+#include "apps/output_names.h"
+#include "apps/synth/synth_erosion.h"
+#include "apps/synth/synth_region.h"
+#include "apps/synth/synth_sinks.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/ply_stream_writer.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "recipe/sha256.h"
+#include "synthesis/field/feature_list.h"
+#include "synthesis/field/surface_labels.h"
+#include "synthesis/mesh/manifold_check.h"
+#include "synthesis/mesh/mesh_components.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The mesh as a promise: closed (a tile or patch: open where it was cut, and only there) and manifold, or no
+// file.
+void require_closed_manifold(const ManifoldReport& report, const MeshStatistics& statistics) {
+  if (report.open_vertices != statistics.cut_vertices || report.late_triangles > 0 ||
+      report.non_manifold_vertices > 0) {
+    throw WorkError("the mesh is not a closed manifold (" + std::to_string(report.open_vertices) +
+                    " open and " + std::to_string(report.non_manifold_vertices) +
+                    " non-manifold vertices); nothing was written");
+  }
+}
+
+void check_request(const MeshRequest& request, const Region& region, const Recipe& recipe,
+                   const fs::path& file) {
+  if (recipe.erosion && (region.is_cut() || request.points)) {
+    throw InputError(file.string() + ": erosion: is of the whole mesh; leave out " +
+                     (region.is_patch   ? "--patch"
+                      : region.is_cut() ? "--tile"
+                                        : "--points") +
+                     ", or take erosion out of the recipe");
+  }
+  if (recipe.erosion && request.labels) {
+    throw InputError(file.string() +
+                     ": erosion: moves what layers made; leave out --labels, or take erosion out of the "
+                     "recipe");
+  }
+  if (request.least_component > 0.0 && region.is_cut()) {
+    throw InputError(
+        "--min-component: the size of a piece that is cut is not known; leave out --tile and "
+        "--patch");
+  }
+}
+
+void check_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
+  check_mesh_extension(output);
+  if (request.points || request.labels) require_extension(output, {".ply"});
+  require_writable(output);
+  check_preview(program, request.preview);
+  if (request.features.empty()) return;
+  require_extension(request.features, {".csv", ".json"});
+  require_writable(request.features);
+}
+
+void summarize_mesh(Program& program, const Region& region, const MeshStatistics& statistics,
+                    const ManifoldReport& report) {
+  program.summary["vertices"] = report.vertices;
+  program.summary["triangles"] = report.triangles;
+  program.summary["closed"] = report.closed();
+  program.summary["manifold"] = report.manifold();
+  program.summary["genus"] = report.genus;
+  program.summary["components"] = report.components;
+  program.summary["evaluations"] = statistics.evaluations;
+  program.summary["cell"] = statistics.step;
+  program.summary["active_blocks"] = statistics.active_blocks;
+  program.summary["total_blocks"] = statistics.total_blocks;
+  if (region.is_patch) program.summary["origin"] = {region.center.x, region.center.y, region.center.z};
+}
+
+std::string describe_mesh(const ManifoldReport& report, const MeshRequest& request) {
+  const std::string triangles = request.points
+                                    ? std::to_string(report.vertices) + " points of a mesh that is "
+                                    : std::to_string(report.triangles) + " triangles, ";
+  if (!report.closed()) {
+    return triangles + (request.patch.empty() ? "tile " + request.tile : "a patch") +
+           ", open where cut, manifold";
+  }
+  // Rough noise leaves crumbs in the air, which few people want.
+  const bool crumbs = report.components > 1 && !(request.least_component > 0.0);
+  return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
+         std::to_string(report.components) + (report.components == 1 ? " component" : " components") +
+         (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
+}
+
+bool is_gabor(const Layer& layer) { return std::holds_alternative<GaborLayer>(layer); }
+
+bool has_gabor(const Recipe& recipe) {
+  return std::any_of(recipe.layers.begin(), recipe.layers.end(), is_gabor);
+}
+
+// For a prediction by coarse meshes, whose cells are far larger than the kernels of Gabor noise: there the
+// noise costs more than in the mesh itself, and adds little to the surface.
+Recipe without_gabor(Recipe recipe) {
+  std::erase_if(recipe.layers, is_gabor);
+  return recipe;
+}
+
+// Meshes the region into a sink, without the pieces that are too small.
+MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field, const Region& region,
+                                   int resolution, double least_component, MeshingDevice device,
+                                   MeshSink& sink) {
+  if (!(least_component > 0.0)) {
+    return mesh_region(field, region, resolution, sink, program.progress("mesh"), device);
+  }
+  ComponentSizes sizes;
+  mesh_region(field, region, resolution, sizes, program.progress("pieces"), device);
+  ComponentChoice choice = sizes.larger_than(least_component);
+  program.summary["dropped_components"] = choice.dropped_pieces;
+  ComponentFilter filter(std::move(choice), sink);
+  const MeshStatistics statistics =
+      mesh_region(field, region, resolution, filter, program.progress("mesh"), device);
+  filter.finish();
+  return statistics;
+}
+
+// Where they are asked for; notes in the file's header what they mean.
+std::optional<SurfaceLabels> labels_of(const MeshRequest& request, const Recipe& recipe, const fs::path& file,
+                                       MeshFileInfo& info) {
+  if (!request.labels) return std::nullopt;
+  std::optional<SurfaceLabels> labels(std::in_place, recipe, file.string());
+  info.notes = labels->legend();
+  return labels;
+}
+
+}  // namespace
+
+void declare_mesh_options(Program& program, MeshRequest& request) {
+  declare_size_options(program, request.size);
+  CLI::Option* tile =
+      program.app
+          .add_option(
+              "--tile", request.tile,
+              "only tile I of N, slabs along z that many machines can make: open where cut, with the same "
+              "vertices there as the next tile, so that all join without cracks")
+          ->option_text("I/N");
+  program.app
+      .add_option(
+          "--patch", request.patch,
+          "only what a cube holds of the surface, given by its centre and its side; --resolution then "
+          "counts cells along that side. Its vertices are relative to the centre, which the file states "
+          "as its origin")
+      ->expected(4)
+      ->excludes(tile)
+      ->option_text("X Y Z SIDE");
+  program.app
+      .add_option(
+          "--min-component", request.least_component,
+          "leave out pieces and cavities of less volume than this share of the largest piece's; the mesh is "
+          "then made twice")
+      ->check(CLI::Range(0.0, 1.0))
+      ->default_str("0, all stay");
+  program.app.add_flag("--points", request.points,
+                       "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
+                       "(.ply without faces)");
+  program.app.add_flag(
+      "--labels", request.labels,
+      "with each vertex the layer that changed the surface most there (0 = the bare body, 1 = "
+      "the recipe's first layer; the file's header says which is which) and the height of "
+      "all layers (.ply)");
+  request.device.add_to(program.app);
+  declare_preview_options(program, request.preview);
+  program.app
+      .add_option("--feature-list", request.features,
+                  "also a list of the craters and boulders, those of the recipe and those drawn: places, "
+                  "sizes, ages and angles (degrees), in the recipe's unit")
+      ->option_text("FILE.csv|FILE.json");
+}
+
+void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
+               const fs::path& output) {
+  check_outputs(program, request, output);
+  const Region region = parse_region(request.tile, request.patch);
+  check_request(request, region, recipe, file);
+  const ImplicitField field(recipe, file.string());
+  if (field.bounds().empty()) {
+    throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
+  }
+  const ImplicitField coarse_field(without_gabor(recipe), file.string());
+  const auto discarded = [&](int resolution) {
+    MeshDiscard sink;
+    const Region uncut = region.is_patch ? region : Region{};
+    return mesh_region(coarse_field, uncut, resolution, sink, program.progress("prediction"));
+  };
+  const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), has_gabor(recipe)};
+  const int resolution = choose_resolution(program, request.size, discarded, output, use, region.tile.count);
+
+  if (request.size.only_predict) return;
+  const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));
+
+  MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool(), {}};
+  if (region.is_patch) info.origin = region.center;
+  ManifoldCheck check;
+  MeshCollector collector;
+  SinkList sinks;
+  sinks.add(check);
+  const bool streamed = output.extension() == ".ply" && !recipe.erosion;
+  if (!streamed || use.preview) sinks.add(collector);
+  std::unique_ptr<PlyStreamWriter> writer;
+  std::unique_ptr<PointsOnly> points;
+  const std::optional<SurfaceLabels> labels = labels_of(request, recipe, file, info);
+  if (streamed) {
+    VertexLabeller labeller;
+    if (labels) labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
+    writer = std::make_unique<PlyStreamWriter>(output, info, std::move(labeller));
+    points = std::make_unique<PointsOnly>(*writer);
+    sinks.add(request.points ? static_cast<MeshSink&>(*points) : *writer);
+  }
+  const MeshStatistics statistics =
+      mesh_without_crumbs(program, field, region, resolution, request.least_component,
+                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, sinks);
+  const ManifoldReport report = check.finish();
+  if (report.triangles == 0) fail_empty(field, region, file);
+  require_closed_manifold(report, statistics);
+  if (recipe.erosion) erode_mesh(program, field, recipe, collector.mesh);
+
+  if (streamed) {
+    writer->finish();
+  } else {
+    write_mesh(collector.mesh, output, info);
+  }
+  if (use.preview) write_preview(program, request.preview, collector.mesh);
+  if (!request.features.empty()) write_feature_list(field, recipe.length_unit, request.features);
+  summarize_mesh(program, region, statistics, report);
+  summarize_output(program, output);
+  program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);
+}
+
+void summarize_output(Program& program, const fs::path& output) {
+  program.summary["peak_bytes"] = peak_bytes();
+  program.summary["sha256"] = sha256_of_file(output);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,38 @@
+// The part of synth that makes meshes: whole, a tile or a patch of one, to a file and a picture.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/device_option.h"
+#include "apps/program.h"
+#include "apps/synth/synth_preview.h"
+#include "apps/synth/synth_size.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+struct MeshRequest {
+  MeshSizeRequest size;
+  PreviewRequest preview;
+  std::filesystem::path features;  // list of craters and boulders; empty = none
+  std::string tile;                // "3/16"; empty = the whole
+  std::vector<double> patch;       // centre and side; empty = the whole
+  double least_component = 0.0;    // share of the largest one's volume; 0 = all stay
+  bool points = false;
+  bool labels = false;
+  DeviceOption device;
+};
+
+void declare_mesh_options(Program& program, MeshRequest& request);
+
+// Writes the mesh of a recipe with a body, which was read from `file`, and its summary. Throws InputError
+// where the request makes no sense, WorkError for a mesh that does not keep its promise.
+void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe,
+               const std::filesystem::path& file, const std::filesystem::path& output);
+
+// The peak of memory and the hash of the output.
+void summarize_output(Program& program, const std::filesystem::path& output);
+
+}  // namespace astrolith

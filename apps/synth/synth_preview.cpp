@@ -1,0 +1,71 @@
+#include "apps/synth/synth_preview.h"
+
+#include <cmath>
+
+#include "apps/output_names.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "synthesis/picture/image_file.h"
+#include "synthesis/picture/preview.h"
+
+namespace astrolith {
+namespace {
+
+Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
+
+// North is up, or +y where the view is along the pole.
+PreviewView view_from(const Direction& direction) {
+  const Vec3d from = normalized(vector_of(direction));
+  const bool polar = std::hypot(from.x, from.y) < 1e-3;
+  return {from, polar ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}};
+}
+
+}  // namespace
+
+void declare_preview_options(Program& program, PreviewRequest& request) {
+  program.app
+      .add_option("--preview", request.file,
+                  "also a picture of the mesh under sunlight, with shadows, from +x, +y, +z and obliquely")
+      ->option_text("FILE.png");
+  program.app
+      .add_option("--view", request.views,
+                  "look from this direction in the picture instead; may be given several times")
+      ->option_text("X Y Z")
+      ->default_str("");
+  program.app
+      .add_option("--sun", request.sun, "towards the sun, in the axes of each view: right, up, to the viewer")
+      ->option_text("X Y Z (default -0.75 0.45 0.55)")
+      ->default_str("");
+}
+
+void check_preview(const Program& program, const PreviewRequest& request) {
+  if (request.file.empty()) {
+    for (const char* name : {"--view", "--sun"}) {
+      if (program.app.get_option(name)->count() > 0) {
+        throw InputError(std::string(name) + ": is about a picture; add --preview FILE.png");
+      }
+    }
+    return;
+  }
+  require_extension(request.file, {".png"});
+  require_writable(request.file);
+  for (const Direction& view : request.views) {
+    if (!(squared_norm(vector_of(view)) > 0.0))
+      throw InputError("--view: 0 0 0 is no direction; give another");
+  }
+  if (!(squared_norm(vector_of(request.sun)) > 0.0))
+    throw InputError("--sun: 0 0 0 is no direction; give another");
+}
+
+void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
+  PreviewOptions options;
+  options.seed = program.seed;
+  options.sun = vector_of(request.sun);
+  if (!request.views.empty()) {
+    options.views.clear();
+    for (const Direction& view : request.views) options.views.push_back(view_from(view));
+  }
+  write_png8_rgb(render_preview(mesh, options, program.progress("preview")), request.file);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,98 @@
+#include "apps/synth/synth_region.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "cuda/mesher/machine_mesher.h"
+#include "cuda/mesher/mesh_field.h"
+#include "numerics/errors.h"
+#include "numerics/interval.h"
+#include "recipe/recipe.h"
+#include "synthesis/field/flat_field_data.h"
+#include "synthesis/field/patch_field.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kFinestCell = 0x1p-15;  // of a combined body, in its largest coordinate
+
+MeshTile parse_tile(const std::string& text) {
+  if (text.empty()) return {};
+  MeshTile tile;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%c", &tile.index, &tile.count, &rest) != 2 || tile.index < 1 ||
+      tile.index > tile.count) {
+    throw InputError("--tile: \"" + text + "\" is no tile; write I/N with I from 1 to N, such as 3/16");
+  }
+  --tile.index;
+  return tile;
+}
+
+// A point of the surface near p, by Newton's steps along the gradient; p itself where they lead nowhere.
+Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
+  Vec3d q = p;
+  for (int step = 0; step < 64; ++step) {
+    const Vec3d gradient = field.gradient(q);
+    const double slope = squared_norm(gradient);
+    if (!(slope > 0.0)) return p;
+    q -= field.value(q) / slope * gradient;
+    if (!std::isfinite(squared_norm(q))) return p;
+  }
+  return q;
+}
+
+// A combined body is known to the float coordinates of its frame: finer cells would show their rounding.
+void check_cells(const ImplicitField& field, const Region& region, int resolution) {
+  const double finest = kFinestCell * largest_coordinate(field.bounds());
+  const double cell = region.size / resolution;
+  if (cell >= finest) return;
+  throw InputError(
+      fmt::format("--patch: body.operations: a combined body has cells of {:.3g} at least, these would be "
+                  "{:.3g}; lower --resolution or take a larger cube",
+                  finest, cell));
+}
+
+}  // namespace
+
+Region parse_region(const std::string& tile, const std::vector<double>& patch) {
+  Region region{parse_tile(tile), !patch.empty(), {}, 0.0};
+  if (!region.is_patch) return region;
+  region.center = {patch[0], patch[1], patch[2]};
+  region.size = patch[3];
+  if (!(region.size >= kMinPositive) || !(region.size <= kMaxNumber) ||
+      !(squared_norm(region.center) <= kMaxNumber * kMaxNumber)) {
+    throw InputError(
+        "--patch: has no centre or no side above 0; write X Y Z SIDE in the recipe's length unit");
+  }
+  return region;
+}
+
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
+  if (region.is_patch) return "patches";
+  return obstacle_to_flattening(field, block_side(field.bounds(), resolution));
+}
+
+MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
+                           const Progress& progress, MeshingDevice device) {
+  if (region.is_patch && !field.has_near_form()) check_cells(field, region, resolution);
+  if (region.is_patch) {
+    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
+  }
+  return device == MeshingDevice::kGpu
+             ? mesh_field_on_gpu(field, field.bounds(), resolution, sink, progress, region.tile)
+             : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
+}
+
+void fail_empty(const ImplicitField& field, const Region& region, const std::filesystem::path& file) {
+  if (!region.is_patch) {
+    throw WorkError(file.string() + ": the recipe's surface is empty at this resolution" +
+                    (region.is_cut() ? " in this tile" : "; raise it"));
+  }
+  const Vec3d p = nearby_surface_point(field, region.center);
+  throw InputError(fmt::format(
+      "--patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
+}
+
+}  // namespace astrolith

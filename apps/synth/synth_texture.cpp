@@ -1,0 +1,163 @@
+#include "apps/synth/synth_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <vector>
+
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "synthesis/gabor/color_texture.h"
+#include "synthesis/gabor/gabor_texture.h"
+#include "synthesis/picture/image_file.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+// PNG heights map this many standard deviations either way to the full range.
+constexpr double kTextureRange = 4.0;
+constexpr int kMaxTextureSide = 16384;
+
+struct TextureSize {
+  int width, height;
+};
+
+TextureSize parse_size(const std::string& text) {
+  TextureSize size{};
+  char cross = 0, rest = 0;
+  const int fields = std::sscanf(text.c_str(), "%6d%c%6d%c", &size.width, &cross, &size.height, &rest);
+  const auto fits = [](int side) { return side >= 1 && side <= kMaxTextureSide; };
+  if (fields != 3 || (cross != 'x' && cross != 'X') || !fits(size.width) || !fits(size.height)) {
+    throw InputError("--texture: \"" + text + "\" is not a size; write WxH with sides of 1 to " +
+                     std::to_string(kMaxTextureSide) + ", such as 1024x1024");
+  }
+  return size;
+}
+
+GaborLayer first_gabor_layer(const Recipe& recipe, const fs::path& file) {
+  for (const Layer& layer : recipe.layers) {
+    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) return *gabor;
+  }
+  throw InputError(file.string() +
+                   ": layers: hold no Gabor layer, which --texture draws; fit one with fit_gabor");
+}
+
+// Values in [0, 1], others cut, as whole numbers from 0 to `top`.
+template <typename Integer>
+std::vector<Integer> quantised(std::span<const float> values, double offset, double scale, double top) {
+  std::vector<Integer> whole;
+  whole.reserve(values.size());
+  for (const float value : values) {
+    const double t = std::clamp(offset + scale * static_cast<double>(value), 0.0, 1.0);
+    whole.push_back(static_cast<Integer>(std::lround(top * t)));
+  }
+  return whole;
+}
+
+struct Picture {
+  TextureSize size;
+  int channels;  // 1 or 3
+  const std::vector<float>& values;
+  double offset, scale;  // what turns a value into [0, 1] for a PNG
+};
+
+void write_picture(const Picture& p, int bits, const fs::path& output) {
+  const auto [width, height] = p.size;
+  if (output.extension() != ".png") return write_tiff_float(p.values, width, height, output, p.channels);
+  if (bits == 8) {
+    std::vector<std::uint8_t> bytes = quantised<std::uint8_t>(p.values, p.offset, p.scale, 255.0);
+    if (p.channels == 3) return write_png8_rgb({width, height, std::move(bytes)}, output);
+    return write_png8_grey(bytes, width, height, output);
+  }
+  const std::vector<std::uint16_t> words = quantised<std::uint16_t>(p.values, p.offset, p.scale, 65535.0);
+  if (p.channels == 3) return write_png16_rgb(words, width, height, output);
+  write_png16_grey(words, width, height, output);
+}
+
+TextureOptions texture_options(const Recipe& recipe, const TextureRequest& request, const TextureSize& size) {
+  TextureOptions options{recipe.seed};
+  if (request.tileable) {
+    options.period_width = size.width;
+    options.period_height = size.height;
+  }
+  return options;
+}
+
+void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe, GaborLayer layer,
+                   const fs::path& output) {
+  const TextureSize size = parse_size(request.size);
+  // A recipe that does not say how high its rock is still has a texture: in units of its own deviation.
+  const bool has_height = layer.height_rms > 0.0;
+  if (!has_height) layer.height_rms = 1.0;
+  const std::vector<float> heights = synthesize_texture(
+      layer, size.width, size.height, texture_options(recipe, request, size), program.progress("texture"));
+  if (Program::interrupted()) throw WorkError("stopped before the texture was complete");
+  write_picture({size, 1, heights, 0.5, 0.5 / (kTextureRange * layer.height_rms)}, request.bits, output);
+  program.summary["content"] = "height";
+  program.summary["height_unit"] = has_height ? recipe.length_unit : "standard deviations";
+  program.summary["height_rms"] = layer.height_rms;
+  if (output.extension() == ".png") {
+    program.summary["height_at_0"] = -kTextureRange * layer.height_rms;
+    program.summary[request.bits == 8 ? "height_at_255" : "height_at_65535"] =
+        kTextureRange * layer.height_rms;
+  }
+  program.say(output.string() + ": height of a Gabor layer, " + request.size + " pixels");
+}
+
+void write_colors(Program& program, const TextureRequest& request, const Recipe& recipe,
+                  const std::vector<GaborLayer>& layers, const fs::path& output) {
+  const TextureSize size = parse_size(request.size);
+  const std::vector<float> rgb = synthesize_color_texture(
+      layers, size.width, size.height, texture_options(recipe, request, size), program.progress("texture"));
+  if (Program::interrupted()) throw WorkError("stopped before the texture was complete");
+  write_picture({size, 3, rgb, 0.0, 1.0}, request.bits, output);
+  const auto outside = std::count_if(rgb.begin(), rgb.end(), [](float v) { return v < 0.0f || v > 1.0f; });
+  program.summary["content"] = "color";
+  program.summary["layers"] = layers.size();
+  program.summary["share_outside_full_scale"] =
+      static_cast<double>(outside) / static_cast<double>(rgb.size());
+  program.say(output.string() + ": colours of " + std::to_string(layers.size()) + " Gabor layers, " +
+              request.size + " pixels");
+}
+
+}  // namespace
+
+void declare_texture_options(Program& program, TextureRequest& request) {
+  CLI::App& app = program.app;
+  app.add_option("--texture", request.size,
+                 "a plane of WxH pixels instead of a mesh: the colours of the recipe's layers where they "
+                 "have some (0 to 1 in a .tif of 32-bit floats, full scale in a .png; see fit_gabor "
+                 "--channels), otherwise the height of its first Gabor layer (a .tif holds heights, a .png "
+                 "maps -4 to +4 standard deviations to its full scale)")
+      ->option_text("WxH");
+  app.add_option("--texture-of", request.content, "what --texture draws: height or color")
+      ->check(CLI::IsMember({"height", "color"}))
+      ->default_str("");
+  app.add_flag("--tileable", request.tileable, "the texture repeats without a seam in both directions");
+  app.add_option("--bits", request.bits, "of a texture's .png, a channel")
+      ->check(CLI::IsMember({8, 16}))
+      ->needs(app.get_option("--texture"));
+}
+
+void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,
+                   const fs::path& file, const fs::path& output) {
+  const TextureSize size = parse_size(request.size);
+  const std::vector<GaborLayer> layers = colored_layers(recipe);
+  if (request.content == "color" && layers.empty()) {
+    throw InputError(file.string() +
+                     ": layers: none has a color; fit a photo with fit_gabor --channels pca, or ask for "
+                     "--texture-of height");
+  }
+  program.summary["width"] = size.width;
+  program.summary["height"] = size.height;
+  program.summary["tileable"] = request.tileable;
+  if (!layers.empty() && request.content != "height") {
+    return write_colors(program, request, recipe, layers, output);
+  }
+  write_heights(program, request, recipe, first_gabor_layer(recipe, file), output);
+}
+
+}  // namespace astrolith

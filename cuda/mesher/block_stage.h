@@ -1,0 +1,90 @@
+// What of the field reaches a block, copied into the memory that a group of threads shares: all its points
+// read the same metaballs and impulses. Lists that do not fit stay where they are.
+#pragma once
+
+#include "cuda/machine.h"
+#include "synthesis/field/flat_field.h"
+
+namespace astrolith {
+
+// Lists of one kind of a block, and where they go in the shared memory.
+template <typename T>
+class StagedLists {
+ public:
+  static_assert(alignof(T) <= alignof(std::uint32_t));
+
+  // Takes what it needs from `left`, bytes that end at `end`.
+  ASTROLITH_HD StagedLists(const T* items, const std::uint32_t* first, std::uint32_t lists, std::size_t end,
+                           std::size_t& left)
+      : items_(items), first_(first), lists_(lists), count_(lists == 0 ? 0 : first[lists] - first[0]) {
+    const std::size_t bytes = (lists_ + 1) * sizeof(std::uint32_t) + count_ * sizeof(T);
+    is_staged_ = lists_ != 0 && bytes <= left;
+    begin_ = end - left;
+    if (is_staged_) left -= bytes;
+  }
+
+  // A thread's share.
+  ASTROLITH_HD void copy(char* shared, unsigned thread, unsigned threads) const {
+    if (!is_staged_) return;
+    for (std::uint32_t k = thread; k <= lists_; k += threads) offsets(shared)[k] = first_[k] - first_[0];
+    for (std::uint32_t k = thread; k < count_; k += threads) copies(shared)[k] = items_[first_[0] + k];
+  }
+  ASTROLITH_HD void point_to(char* shared, const T*& items, const std::uint32_t*& first) const {
+    if (!is_staged_) return;
+    items = copies(shared);
+    first = offsets(shared);
+  }
+
+ private:
+  ASTROLITH_HD std::uint32_t* offsets(char* shared) const {
+    return reinterpret_cast<std::uint32_t*>(shared + begin_);
+  }
+  ASTROLITH_HD T* copies(char* shared) const { return reinterpret_cast<T*>(offsets(shared) + lists_ + 1); }
+
+  const T* items_;
+  const std::uint32_t* first_;
+  std::uint32_t lists_, count_;
+  std::size_t begin_;
+  bool is_staged_;
+};
+
+class BlockStage {
+ public:
+  // A third of what a group may have: more groups at a time on a multiprocessor.
+  static constexpr std::size_t kBytes = 24 * 1024;
+
+  ASTROLITH_HD BlockStage(const FlatBlocks& blocks, std::size_t block)
+      : from_(blocks.block(block)),
+        left_(kBytes),
+        spheres_(from_.spheres, from_.first_sphere, blocks.leaves, kBytes, left_),
+        impulses_(from_.impulses, from_.first_impulse, blocks.sizes, kBytes, left_),
+        features_(from_.features, from_.first_feature, blocks.lists, kBytes, left_),
+        gabor_(from_.gabor, from_.first_gabor, blocks.bands, kBytes, left_) {}
+
+  // Every thread of the group copies its share; `shared` is aligned to four bytes.
+  ASTROLITH_HD void copy(char* shared, unsigned thread, unsigned threads) const {
+    spheres_.copy(shared, thread, threads);
+    impulses_.copy(shared, thread, threads);
+    features_.copy(shared, thread, threads);
+    gabor_.copy(shared, thread, threads);
+  }
+  // The block, once all have copied.
+  ASTROLITH_HD FlatBlock block(char* shared) const {
+    FlatBlock staged = from_;
+    spheres_.point_to(shared, staged.spheres, staged.first_sphere);
+    impulses_.point_to(shared, staged.impulses, staged.first_impulse);
+    features_.point_to(shared, staged.features, staged.first_feature);
+    gabor_.point_to(shared, staged.gabor, staged.first_gabor);
+    return staged;
+  }
+
+ private:
+  FlatBlock from_;
+  std::size_t left_;
+  StagedLists<MetaballSphere<float>> spheres_;
+  StagedLists<SpotImpulse> impulses_;
+  StagedLists<std::uint32_t> features_;
+  StagedLists<GaborImpulse> gabor_;
+};
+
+}  // namespace astrolith

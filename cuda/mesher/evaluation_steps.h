@@ -1,0 +1,102 @@
+// The two steps of meshing a batch that evaluate the field: a group of threads a block, whose points read
+// what reaches the block from the memory that the group shares.
+#pragma once
+
+#include "cuda/mesher/block_stage.h"
+#include "cuda/mesher/mesh_steps.h"
+
+namespace astrolith {
+
+// A group of threads a block, each some of its samples.
+struct EvaluateSamples {
+  static constexpr unsigned kThreads = 256;
+  static constexpr std::size_t kGroupBytes = BlockStage::kBytes;
+  MeshBatch batch;
+  float band;
+
+  template <class Group>
+  ASTROLITH_HD void operator()(const Group& group) const {
+    const BlockStage stage(batch.parts, group.index());
+    char* shared = static_cast<char*>(group.shared());
+    group.each_thread([&](unsigned thread) { stage.copy(shared, thread, kThreads); });
+    const FlatBlock near = stage.block(shared);
+    group.each_thread([&](unsigned thread) {
+      for (std::size_t i = thread; i < MeshBlock::kSamples; i += kThreads) {
+        evaluate(SampleThread(group.index() * MeshBlock::kSamples + i), near);
+      }
+    });
+  }
+
+ private:
+  ASTROLITH_HD void evaluate(const SampleThread& t, const FlatBlock& near) const {
+    MeshBlock& block = batch.blocks[t.block];
+    const int layer_z = batch.places[t.block].z;
+    const SampleRow row = row_to_evaluate(batch.grid, layer_z, batch.owners(t.block), block, t.y, t.z);
+    float value = kOutsideGrid;
+    if (t.x >= row.first && t.x <= row.last) {
+      const SampleGrid& samples = batch.grid.samples;
+      const int gx = block.x * kBlockCells + t.x, gy = block.y * kBlockCells + t.y,
+                gz = layer_z * kBlockCells + t.z;
+      const Vec3f p{samples.x(gx), samples.y(gy), samples.z(gz)};
+      value = flat_value(batch.field, near, p, band);
+      if (batch.grid.closed && value > 0.0f && on_border(batch.grid, gx, gy, gz)) {
+        batch.fail(MeshFailure::kBorder);
+      }
+    }
+    block.values[MeshBlock::sample(t.x, t.y, t.z)] = value;
+  }
+};
+
+// A group of threads a block, each some of its vertices.
+struct TakeNormals {
+  static constexpr unsigned kThreads = 128;
+  static constexpr std::uint32_t kRows = MeshBatch::kRows;
+  static constexpr std::size_t kGroupBytes = BlockStage::kBytes + (2 * kRows + 1) * sizeof(std::uint32_t) + 4;
+  MeshBatch batch;
+  float h;
+  const std::uint32_t* first;  // by row of the batch, and where the last ends
+  MeshVertex* vertices;
+
+  template <class Group>
+  ASTROLITH_HD void operator()(const Group& group) const {
+    const BlockStage stage(batch.parts, group.index());
+    char* shared = static_cast<char*>(group.shared());
+    // Of each row: where its vertices begin in the batch, and how many the block has before it.
+    auto* begin = reinterpret_cast<std::uint32_t*>(shared + BlockStage::kBytes);
+    std::uint32_t* before = begin + kRows;
+    group.each_thread([&](unsigned thread) {
+      stage.copy(shared, thread, kThreads);
+      for (std::uint32_t r = thread; r < kRows; r += kThreads) {
+        const RowThread row(group.index() * kRows + r);
+        const std::uint32_t number =
+            batch.places[row.block].row(static_cast<std::uint32_t>(row.block), row.y, row.z);
+        begin[r] = first[number];
+        before[r + 1] = first[number + 1] - first[number];
+      }
+    });
+    group.each_thread([&](unsigned thread) {
+      if (thread != 0) return;
+      before[0] = 0;
+      for (std::uint32_t r = 0; r < kRows; ++r) before[r + 1] += before[r];
+    });
+    const FlatBlock near = stage.block(shared);
+    group.each_thread([&](unsigned thread) {
+      std::uint32_t r = 0;
+      for (std::uint32_t k = thread; k < before[kRows]; k += kThreads) {
+        while (before[r + 1] <= k) ++r;
+        take(near, vertices[begin[r] + (k - before[r])]);
+      }
+    });
+  }
+
+ private:
+  ASTROLITH_HD void take(const FlatBlock& near, MeshVertex& vertex) const {
+    Vec3f corners[4];
+    for (int k = 0; k < 4; ++k) corners[k] = normal_probe(vertex.position, h, k);
+    float values[4];
+    flat_tetrahedron(batch.field, near, corners, values);
+    take_normal(values, vertex);
+  }
+};
+
+}  // namespace astrolith

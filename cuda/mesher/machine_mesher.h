@@ -1,0 +1,159 @@
+// LayeredMesher (synthesis/mesh/mesher.h) on a machine: the same vertices and triangles in the same order.
+// Some layers of blocks at a time are culled, gathered, sampled, numbered and polygonised together, and
+// handed to the sink, so that a mesh may be larger than the machine's memory.
+#pragma once
+
+#include <utility>
+
+#include "cuda/mesher/batch_mesher.h"
+
+namespace astrolith {
+
+template <class Machine>
+class MachineMesher {
+ public:
+  // Expects a field without obstacle_to_flattening().
+  MachineMesher(Machine& machine, const ImplicitField& field, const MeshGrid& grid, MeshSink& sink)
+      : machine_(machine),
+        grid_(grid),
+        data_(field),
+        field_(machine, data_),
+        culler_(machine, data_, field_.view(), grid, gabor_margin(data_)),
+        cells_(machine.upload(std::span<const CellTriangles>(marching_cubes_table()))),
+        sink_(sink) {
+    statistics_.step = grid.samples.step;
+    statistics_.total_blocks = std::int64_t{grid.blocks(0)} * grid.blocks(1) * grid.blocks(2);
+  }
+
+  MeshStatistics run(const Progress& progress) {
+    const LayerRange range = layers_of_window(grid_);
+    for (int done = range.first; done < range.end;) {
+      done += next_batch(done, range.end);
+      if (!report(progress, double(done - range.first) / (range.end - range.first),
+                  std::to_string(statistics_.triangles) + " triangles")) {
+        throw WorkError("mesher: stopped before the mesh was complete");
+      }
+    }
+    return statistics_;
+  }
+
+ private:
+  template <typename T>
+  using Array = typename Machine::template Array<T>;
+  static constexpr std::size_t kMostBlocks = 32768;  // in a batch: 400 MB
+
+  // Meshes the layers from `first` on that go together; returns how many. Where memory ends, half as many.
+  int next_batch(int first, int end) {
+    for (;;) {
+      const int wanted = std::min({layers_at_once_, most_layers(), end - first});
+      try {
+        const int layers = mesh_layers(first, wanted);
+        layers_at_once_ = layers == wanted ? 2 * wanted : layers;
+        return layers;
+      } catch (const OutOfDeviceMemory&) {
+        if (wanted == 1) {
+          throw WorkError(
+              "GPU: too little memory for one layer of blocks; lower the resolution or use the CPU");
+        }
+        layers_at_once_ = wanted / 2;
+        most_blocks_ = std::max<std::size_t>(most_blocks_ / 2, 1);
+      }
+    }
+  }
+
+  // Culling marks every block of its layers: 256 MB at most.
+  int most_layers() const {
+    const std::int64_t blocks = std::int64_t{grid_.blocks(0)} * grid_.blocks(1);
+    return static_cast<int>(std::max<std::int64_t>(1, (std::int64_t{1} << 26) / blocks));
+  }
+
+  // As many of `wanted` layers as hold most_blocks_, at least one. Nothing has happened where it throws
+  // OutOfDeviceMemory.
+  int mesh_layers(int first_z, int wanted) {
+    auto failure = zeros_on<std::uint32_t>(machine_, 1);
+    const CulledBlocks<Machine> culled = culler_.cull(first_z, wanted, failure);
+    if (machine_.read(failure, 0) != 0) fail_at_border();
+    const std::vector<std::vector<BlockColumn>> columns = columns_of(culled.on_host, first_z, wanted);
+    KeptLayer<Machine> last{{}, 0, columns.back(), {}, first_z + static_cast<int>(columns.size()) - 1};
+    const std::vector<BlockPlace> places = place_blocks(grid_, first_z, columns, kept_.index, last.index);
+    last.first = places.size() - columns.back().size();
+    const BlockParts<Machine> parts(machine_, data_, {field_.view(), grid_, culler_.lists(), culled.view()},
+                                    places.size());
+    const auto place_array = machine_.upload(std::span<const BlockPlace>(places));
+    last.blocks = machine_.template allocate<MeshBlock>(places.size());
+    const MeshBatch batch{grid_,        field_.view(), parts.view(),  place_array.data(), last.blocks.data(),
+                          kept_.data(), cells_.data(), failure.data()};
+    std::vector<std::size_t> sizes;
+    for (const auto& layer : columns) sizes.push_back(layer.size());
+    BatchMesher<Machine>(machine_, batch, places, kept_, failure)
+        .mesh(sizes, static_cast<std::uint32_t>(statistics_.vertices), made_);
+    pour();
+    add_up(places.size());
+    kept_ = std::move(last);
+    return static_cast<int>(columns.size());
+  }
+
+  // By layer, as many as hold most_blocks_.
+  std::vector<std::vector<BlockColumn>> columns_of(const std::vector<CullNode>& blocks, int first_z,
+                                                   int layers) const {
+    std::vector<std::vector<BlockColumn>> columns(static_cast<std::size_t>(layers));
+    for (const CullNode& b : blocks) columns[static_cast<std::size_t>(b.z - first_z)].push_back({b.x, b.y});
+    std::size_t kept = 1, sum = columns.front().size();
+    while (kept < columns.size() && sum + columns[kept].size() <= most_blocks_) sum += columns[kept++].size();
+    columns.resize(kept);
+    return columns;
+  }
+
+  // Layer by layer, as sinks expect.
+  void pour() {
+    for (std::size_t l = 0; l + 1 < made_.first_vertex.size(); ++l) {
+      const std::uint32_t v = made_.first_vertex[l], t = made_.first_triangle[l];
+      sink_.add_vertices(
+          std::span<const MeshVertex>(made_.vertices).subspan(v, made_.first_vertex[l + 1] - v));
+      sink_.add_triangles(
+          std::span<const Triangle>(made_.triangles).subspan(t, made_.first_triangle[l + 1] - t));
+    }
+  }
+
+  void add_up(std::size_t blocks) {
+    statistics_.active_blocks += static_cast<std::int64_t>(blocks);
+    statistics_.vertices += made_.first_vertex.back();
+    statistics_.triangles += made_.first_triangle.back();
+    statistics_.evaluations += static_cast<std::int64_t>(made_.evaluations);
+    statistics_.cut_vertices += static_cast<std::int64_t>(made_.cut_vertices);
+    const std::size_t bytes = (blocks + kept_.blocks.size()) * sizeof(MeshBlock) +
+                              made_.vertices.size() * sizeof(MeshVertex) +
+                              made_.triangles.size() * sizeof(Triangle);
+    statistics_.working_bytes = std::max(statistics_.working_bytes, static_cast<std::int64_t>(bytes));
+  }
+
+  Machine& machine_;
+  MeshGrid grid_;
+  FlatFieldData data_;
+  FieldOnMachine<Machine> field_;
+  BlockCuller<Machine> culler_;
+  Array<CellTriangles> cells_;
+  MeshSink& sink_;
+  MeshStatistics statistics_;
+  int layers_at_once_ = 8;
+  std::size_t most_blocks_ = kMostBlocks;
+  KeptLayer<Machine> kept_;
+  MeshedLayers made_;  // kept for its memory
+};
+
+// mesh_field (synthesis/mesh/mesher.h) on a machine: the same bytes. Expects a field without
+// obstacle_to_flattening().
+template <class Machine>
+MeshStatistics mesh_field_on(Machine& machine, const ImplicitField& field, const Box& bounds, int resolution,
+                             MeshSink& sink, const Progress& progress, MeshTile tile) {
+  const SampleGrid grid = make_sample_grid(bounds, resolution);
+  return MachineMesher<Machine>(machine, field, {grid, window_of_tile<kBlockCells>(grid, tile), true}, sink)
+      .run(progress);
+}
+
+// The side of a block of that grid, as obstacle_to_flattening() asks for it.
+inline double block_side(const Box& bounds, int resolution) {
+  return (kBlockCells + 1) * make_sample_grid(bounds, resolution).step;
+}
+
+}  // namespace astrolith

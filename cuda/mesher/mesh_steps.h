@@ -1,0 +1,198 @@
+// The steps in which a GPU meshes a batch of blocks, each over many threads: what a step does to one sample,
+// row or vertex is the function that LayeredMesher (synthesis/mesh/mesher.h) calls in its loops.
+#pragma once
+
+#include "cuda/machine.h"
+#include "cuda/mesher/mesh_batch.h"
+#include "synthesis/field/flat_value.h"
+
+namespace astrolith {
+
+// A batch in a machine's memory.
+struct MeshBatch {
+  static constexpr std::size_t kRows = std::size_t{kBlockCells} * kBlockCells;
+
+  MeshGrid grid;
+  FlatField field;
+  FlatBlocks parts;  // of the field, that reach each block
+  const BlockPlace* places;
+  MeshBlock* blocks;
+  const MeshBlock* below;  // the last layer of the batch before
+  const CellTriangles* cells;
+  std::uint32_t* failure;  // a MeshFailure
+
+  ASTROLITH_HD Owners<kBlockCells> owners(std::size_t block) const {
+    Owners<kBlockCells> found;
+    for (unsigned i = 0; i < 8; ++i) {
+      const std::int32_t number = places[block].owner[i];
+      found[i] = number == BlockPlace::kNone ? nullptr
+                 : number >= 0               ? blocks + number
+                                             : below + (-1 - number);
+    }
+    return found;
+  }
+  ASTROLITH_HD BlockWindow<kBlockCells> window(std::size_t block) const {
+    return grid.window_of(places[block].x, places[block].y, places[block].z);
+  }
+  ASTROLITH_HD void fail(MeshFailure why) const { *failure = static_cast<std::uint32_t>(why); }
+};
+
+// Number of a thread among those of a block: a sample's local coordinates, or those of an owned row.
+struct SampleThread {
+  std::size_t block;
+  int x, y, z;
+
+  ASTROLITH_HD explicit SampleThread(std::size_t thread) : block(thread / MeshBlock::kSamples) {
+    const int sample = static_cast<int>(thread % MeshBlock::kSamples);
+    x = sample % MeshBlock::kSide;
+    y = sample / MeshBlock::kSide % MeshBlock::kSide;
+    z = sample / (MeshBlock::kSide * MeshBlock::kSide);
+  }
+};
+struct RowThread {
+  std::size_t block;
+  int y, z;
+
+  ASTROLITH_HD explicit RowThread(std::size_t thread)
+      : block(thread / MeshBatch::kRows),
+        y(static_cast<int>(thread % MeshBatch::kRows) % kBlockCells + 1),
+        z(static_cast<int>(thread % MeshBatch::kRows) / kBlockCells + 1) {}
+};
+
+// A thread a block. Adds up how many samples blocks will evaluate.
+struct StartBlocks {
+  MeshBatch batch;
+  std::uint64_t* evaluations;
+
+  ASTROLITH_HD void operator()(std::size_t i) const {
+    MeshBlock& block = batch.blocks[i];
+    block.x = batch.places[i].x;
+    block.y = batch.places[i].y;
+    const Owners<kBlockCells> owners = batch.owners(i);
+    std::uint64_t count = 0;
+    for (int z = 0; z <= kBlockCells; ++z) {
+      for (int y = 0; y <= kBlockCells; ++y) {
+        const SampleRow row = row_to_evaluate(batch.grid, batch.places[i].z, owners, block, y, z);
+        count += row.last >= row.first ? static_cast<std::uint64_t>(row.last - row.first + 1) : 0;
+      }
+    }
+    add_atomically(evaluations, count);
+  }
+};
+
+// A thread a sample.
+struct BorrowSamples {
+  MeshBatch batch;
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    const SampleThread t(thread);
+    if (owner_of(t.x, t.y, t.z) == 0) return;
+    borrow_sample(batch.owners(t.block), t.x, t.y, t.z, batch.blocks[t.block]);
+  }
+};
+
+// A thread a row of samples, borrowed ones included.
+struct TakeSigns {
+  static constexpr std::size_t kRows = std::size_t{MeshBlock::kSide} * MeshBlock::kSide;
+  MeshBatch batch;
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    MeshBlock& block = batch.blocks[thread / kRows];
+    block.signs[thread % kRows] = signs_of_row(block, thread % kRows);
+  }
+};
+
+// A thread a side of a block: six a block. `lacking` replaces what the places say where it is not null.
+struct CheckSides {
+  MeshBatch batch;
+  const MeshBlock* blocks;
+  const std::uint32_t* lacking;
+  int layer_z;  // with lacking
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    const std::size_t i = thread / 6;
+    const int side = static_cast<int>(thread % 6);
+    const std::uint32_t sides = lacking != nullptr ? lacking[i] : batch.places[i].lacking;
+    if ((sides >> side & 1u) == 0) return;
+    const int z = lacking != nullptr ? layer_z : batch.places[i].z;
+    if (is_side_crossed(blocks[i], side, last_samples(batch.grid, blocks[i], z))) {
+      batch.fail(MeshFailure::kOpenSide);
+    }
+  }
+};
+
+// A thread a row of owned samples.
+struct CountRows {
+  MeshBatch batch;
+  std::uint32_t *vertices, *triangles;  // by row of the batch
+  std::uint64_t* cut_vertices;
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    const RowThread t(thread);
+    const RowCounts counts = count_row(batch.cells, batch.window(t.block), batch.blocks[t.block], t.y, t.z);
+    const std::uint32_t row = batch.places[t.block].row(static_cast<std::uint32_t>(t.block), t.y, t.z);
+    vertices[row] = counts.vertices;
+    triangles[row] = counts.triangles;
+    if (counts.cut_vertices != 0) add_atomically(cut_vertices, std::uint64_t{counts.cut_vertices});
+  }
+};
+
+// A thread a row of owned samples: its vertices, with the normals of their edges.
+struct PlaceVertices {
+  MeshBatch batch;
+  const std::uint32_t* first;  // by row of the batch
+  std::uint32_t first_number;  // of the batch's vertices in the mesh
+  MeshVertex* vertices;
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    const RowThread t(thread);
+    MeshBlock& block = batch.blocks[t.block];
+    const BlockPlace& place = batch.places[t.block];
+    std::uint32_t next = first[place.row(static_cast<std::uint32_t>(t.block), t.y, t.z)];
+    for_each_meshed_edge_of_row(block, batch.window(t.block), t.y, t.z, [&](int x, int y, int z, int axis) {
+      block.vertices[3 * MeshBlock::sample(x, y, z) + static_cast<unsigned>(axis)] = first_number + next;
+      vertices[next++] = place_vertex(batch.grid, place.z, block, x, y, z, axis);
+    });
+  }
+};
+
+// A thread a sample.
+struct BorrowVertices {
+  MeshBatch batch;
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    const SampleThread t(thread);
+    if (owner_of(t.x, t.y, t.z) == 0) return;
+    const bool found = borrow_vertices_at(batch.owners(t.block), batch.window(t.block), t.x, t.y, t.z,
+                                          batch.blocks[t.block]);
+    if (!found) batch.fail(MeshFailure::kMissingBlock);
+  }
+};
+
+// A thread a row of owned samples.
+struct MakeTriangles {
+  MeshBatch batch;
+  const std::uint32_t* first;  // by row of the batch
+  Triangle* triangles;
+  std::array<std::ptrdiff_t, 12> offsets = edge_offsets<kBlockCells>();
+
+  ASTROLITH_HD void operator()(std::size_t thread) const {
+    const RowThread t(thread);
+    const std::uint32_t row = batch.places[t.block].row(static_cast<std::uint32_t>(t.block), t.y, t.z);
+    make_row_triangles(batch.cells, offsets, batch.blocks[t.block], batch.window(t.block), t.y, t.z,
+                       triangles + first[row]);
+  }
+};
+
+// A thread a layer: where its rows begin, from running sums by row.
+struct PickStarts {
+  const std::uint32_t *vertices, *triangles, *rows;
+  std::uint32_t *first_vertex, *first_triangle;
+
+  ASTROLITH_HD void operator()(std::size_t i) const {
+    first_vertex[i] = vertices[rows[i]];
+    first_triangle[i] = triangles[rows[i]];
+  }
+};
+
+}  // namespace astrolith

@@ -1,0 +1,106 @@
+#include "estimation/gabor/image/image_decoder_internal.h"
+
+#include <fcntl.h>
+#include <tiffio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+// Image libraries print about damaged files on their own, past every logger; while this lives, what is
+// printed on stderr goes nowhere. Our error says it once.
+class SilentStderr {
+ public:
+  SilentStderr() : kept_(::dup(STDERR_FILENO)) {
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+  }
+  SilentStderr(const SilentStderr&) = delete;
+  SilentStderr& operator=(const SilentStderr&) = delete;
+  ~SilentStderr() {
+    if (kept_ < 0) return;
+    ::dup2(kept_, STDERR_FILENO);
+    ::close(kept_);
+  }
+
+ private:
+  int kept_;
+};
+
+struct CloseTiff {
+  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
+};
+
+[[noreturn]] void fail(const std::string& name, const std::string& what) {
+  throw InputError(name + ": " + what);
+}
+
+// OpenCV has no 16-bit floats. Rows of the first page, grey or RGB, alpha left out.
+cv::Mat decode_half_floats(const std::string& name) {
+  const std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(name.c_str(), "r"));
+  std::uint32_t width = 0, height = 0;
+  std::uint16_t samples = 1, planar = PLANARCONFIG_CONTIG, orientation = ORIENTATION_TOPLEFT;
+  if (tiff == nullptr) fail(name, "cannot be opened; save it again");
+  TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
+  TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
+  TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_PLANARCONFIG, &planar);
+  TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_ORIENTATION, &orientation);
+  const bool plain = TIFFIsTiled(tiff.get()) == 0 && planar == PLANARCONFIG_CONTIG &&
+                     orientation == ORIENTATION_TOPLEFT && samples >= 1 && samples <= 4 &&
+                     TIFFScanlineSize64(tiff.get()) == std::uint64_t{width} * samples * 2;
+  if (!plain) fail(name, "16-bit floats in tiles, planes or turned; save it with 32-bit floats");
+  const int channels = samples >= 3 ? 3 : 1;
+  cv::Mat mat(static_cast<int>(height), static_cast<int>(width), CV_MAKETYPE(CV_32F, channels));
+  cv::Mat stored(1, static_cast<int>(width), CV_MAKETYPE(CV_16F, samples)), row;
+  for (std::uint32_t y = 0; y < height; ++y) {
+    if (TIFFReadScanline(tiff.get(), stored.data, y) != 1) fail(name, "ends too early; save it again");
+    stored.convertTo(row, CV_32F);
+    const int red_last[] = {0, channels - 1, 1, 1, channels - 1, 0};  // from, to
+    const cv::Mat target = mat.row(static_cast<int>(y));
+    cv::mixChannels(&row, 1, const_cast<cv::Mat*>(&target), 1, red_last, static_cast<std::size_t>(channels));
+  }
+  return mat;
+}
+
+cv::Mat read_with_opencv(const std::string& name, int flags) {
+  const SilentStderr silent;
+  try {
+    return cv::imread(name, flags);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+cv::Mat decode_image(const std::filesystem::path& file, const ImageHeader& header) {
+  if (header.half_floats) return decode_half_floats(file.string());
+  // These flags, unlike IMREAD_UNCHANGED, turn the image as its orientation says.
+  const cv::Mat mat = read_with_opencv(file.string(), cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
+  if (mat.empty()) {
+    fail(file.string(), "the image cannot be decoded; it is damaged or of a rare kind, save it again as PNG");
+  }
+  return mat;
+}
+
+double share_not_opaque(const std::filesystem::path& file, const ImageHeader& header) {
+  if (!header.has_alpha || header.half_floats) return 0.0;
+  const cv::Mat mat = read_with_opencv(file.string(), cv::IMREAD_UNCHANGED);
+  if (mat.channels() != 4 || (mat.depth() != CV_8U && mat.depth() != CV_16U)) return 0.0;
+  cv::Mat alpha;
+  cv::extractChannel(mat, alpha, 3);
+  const double opaque = mat.depth() == CV_8U ? 255.0 : 65535.0;
+  const cv::Mat clear = alpha < opaque;
+  return static_cast<double>(cv::countNonZero(clear)) / static_cast<double>(clear.total());
+}
+
+}  // namespace astrolith

@@ -1,0 +1,65 @@
+#include "estimation/gabor/lobes/lobe_refinement.h"
+
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include <cmath>
+#include <memory>
+
+#include "estimation/gabor/lobes/lobe_misfit.h"
+
+namespace astrolith {
+namespace {
+
+class MisfitFunction : public ceres::FirstOrderFunction {
+ public:
+  explicit MisfitFunction(const LobeMisfit& misfit) : misfit_(misfit) {}
+  int NumParameters() const override { return misfit_.parameters(); }
+  bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
+    const auto n = static_cast<std::size_t>(misfit_.parameters());
+    *cost = misfit_({parameters, n}, gradient != nullptr ? std::span(gradient, n) : std::span<double>{});
+    return std::isfinite(*cost);
+  }
+
+ private:
+  const LobeMisfit& misfit_;
+};
+
+// The root of the misfit is the distance, but for the tiny offset in its roots.
+double distance_of(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
+  const LobeMisfit misfit(lobes, target);
+  const std::vector<double> start(static_cast<std::size_t>(misfit.parameters()), 0.0);
+  return std::sqrt(misfit(start, {}));
+}
+
+}  // namespace
+
+std::vector<SpectralLobe> refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
+  if (lobes.empty()) return lobes;
+  const LobeMisfit misfit(lobes, target);
+  std::vector<double> parameters(static_cast<std::size_t>(misfit.parameters()), 0.0);
+  const ceres::GradientProblem problem(new MisfitFunction(misfit));
+  ceres::GradientProblemSolver::Options options;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = 40;
+  options.function_tolerance = 1e-3;  // stop when a step lowers the misfit by a smaller part
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, problem, parameters.data(), &summary);
+  return misfit.lobes_at(parameters);
+}
+
+std::vector<SpectralLobe> fewest_lobes(std::vector<SpectralLobe> lobes, const SpectrumEstimate& estimate,
+                                       const std::vector<double>& weight) {
+  const double allowed = estimate.standard_error / 3.0;
+  lobes = refine_lobes(lobes, estimate.spectrum);
+  while (lobes.size() > 1) {
+    const auto fewer = static_cast<int>(0.75 * static_cast<double>(lobes.size()));
+    std::vector<SpectralLobe> candidate =
+        refine_lobes(select_lobes(lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum);
+    if (candidate.empty() || distance_of(candidate, estimate.spectrum) > allowed) break;
+    lobes = std::move(candidate);
+  }
+  return lobes;
+}
+
+}  // namespace astrolith

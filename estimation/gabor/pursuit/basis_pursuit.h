@@ -1,0 +1,56 @@
+// Non-negative basis pursuit denoising with a certified duality gap:
+//
+//   minimise  P(x) = 1/2 |A x - s|^2 + penalty * sum x,   x >= 0        (Galerne et al. 2012, eq. 14)
+//
+// over the Gabor dictionary A. Solvers share the problem, the certificate and the result.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "estimation/gabor/pursuit/gabor_dictionary.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+struct BasisPursuitProblem {
+  const GaborDictionary& dictionary;
+  std::vector<double> target;  // s: dictionary.rows() values
+  double penalty = 0.0;        // > 0
+};
+
+struct BasisPursuitOptions {
+  double relative_gap = 1e-3;  // stop when (P - best dual) / P is at most this, > 0
+  int max_iterations = 20000;
+};
+
+// One check of the certificate.
+struct GapSample {
+  int iteration = 0;
+  double primal = 0.0;        // P(x)
+  double relative_gap = 0.0;  // >= 0
+};
+
+struct BasisPursuitResult {
+  std::vector<double> x;  // dictionary.size() values, >= 0
+  double primal = 0.0;
+  double relative_gap = 0.0;  // certified: (P(x) - minimum of P) / P(x) is at most this
+  int iterations = 0;
+  bool reached = false;  // relative_gap is at most what was asked for
+  std::vector<GapSample> history;
+};
+
+// The smallest penalty whose solution is x = 0: max_j (a_j's)+.
+double largest_penalty(const GaborDictionary& dictionary, std::span<const double> target);
+
+// Accelerated proximal gradient (Beck and Teboulle 2009) with the gradient restart of O'Donoghue and Candes
+// 2015 and a step from a certified bound on |A'A|. Slow on this dictionary, and simple: the reference.
+BasisPursuitResult solve_fista(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
+                               const Progress& progress = {});
+
+// Working set: solves the problem exactly on a few atoms, lets the certificate name the atoms that violate
+// optimality most, adds them, drops those at zero, repeats. `start`, if not empty, is a first guess of x.
+BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
+                                     const Progress& progress = {}, std::span<const double> start = {});
+
+}  // namespace astrolith

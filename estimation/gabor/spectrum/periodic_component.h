@@ -1,0 +1,18 @@
+// Moisan's periodic plus smooth decomposition: an image's borders do not match, and the jump between them
+// draws a cross over its spectrum; the periodic component has the same details and no cross.
+#pragma once
+
+#include "estimation/gabor/image/grey_image.h"
+
+namespace astrolith {
+
+struct PeriodicDecomposition {
+  GreyImage periodic;  // same mean as the image
+  GreyImage smooth;    // zero mean; periodic + smooth = image
+};
+
+// Solves (periodic Laplacian of smooth) = v, where v holds the jumps between opposite borders and is zero
+// inside (Moisan, Periodic plus smooth image decomposition, JMIV 2011, eq. 11). Both sides >= 2.
+PeriodicDecomposition decompose_periodic(const GreyImage& image);
+
+}  // namespace astrolith

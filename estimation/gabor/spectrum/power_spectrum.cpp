@@ -1,0 +1,92 @@
+#include "estimation/gabor/spectrum/power_spectrum.h"
+
+#include <algorithm>
+#include <complex>
+
+#include "estimation/gabor/spectrum/border_taper.h"
+#include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/gabor/spectrum/periodic_component.h"
+
+namespace astrolith {
+namespace {
+
+// First pixels of half-overlapping tiles that cover 0 .. extent-1, evenly spread.
+std::vector<int> tile_starts(int extent, int tile) {
+  const int steps = tile >= extent ? 0 : (2 * (extent - tile) + tile - 1) / tile;
+  std::vector<int> starts{0};
+  for (int i = 1; i <= steps; ++i) {
+    starts.push_back(static_cast<int>(static_cast<std::int64_t>(extent - tile) * i / steps));
+  }
+  return starts;
+}
+
+GreyImage cut(const GreyImage& image, int x0, int y0, int width, int height) {
+  GreyImage tile{width, height, {}};
+  tile.values.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = y0; y < y0 + height; ++y) {
+    for (int x = x0; x < x0 + width; ++x) tile.values.push_back(image.at(x, y));
+  }
+  return tile;
+}
+
+PowerSpectrum periodogram_of(const GreyImage& image, Borders borders) {
+  if (borders == Borders::kPeriodicComponent) return power_spectrum(decompose_periodic(image).periodic);
+  const TaperedImage tapered = taper_borders(image);
+  PowerSpectrum spectrum = power_spectrum(tapered.image);
+  spectrum.averages = tapered.looks;
+  return spectrum;
+}
+
+}  // namespace
+
+double PowerSpectrum::variance() const {
+  double sum = 0.0;
+  for (const double p : power) sum += p;
+  return sum / static_cast<double>(power.size());
+}
+
+PowerSpectrum power_spectrum(const GreyImage& image) {
+  const FourierTransform fourier(image.width, image.height);
+  std::vector<std::complex<double>> half(fourier.half_size());
+  fourier.forward(image.values, half);
+  half[0] = 0.0;
+  PowerSpectrum spectrum{image.width, image.height, std::vector<double>(image.values.size())};
+  const double scale = 1.0 / static_cast<double>(image.values.size());
+  std::size_t i = 0;
+  for (int ky = 0; ky < image.height; ++ky) {
+    for (int kx = 0; kx < image.width; ++kx, ++i) {
+      const bool kept = kx < fourier.half_width();
+      const int hx = kept ? kx : image.width - kx;
+      const int hy = kept ? ky : (image.height - ky) % image.height;
+      spectrum.power[i] =
+          scale *
+          std::norm(half[static_cast<std::size_t>(hy) * static_cast<std::size_t>(fourier.half_width()) +
+                         static_cast<std::size_t>(hx)]);
+    }
+  }
+  return spectrum;
+}
+
+PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Borders borders) {
+  const int tile_width = std::min(image.width, largest_side);
+  const int tile_height = std::min(image.height, largest_side);
+  const std::vector<int> xs = tile_starts(image.width, tile_width);
+  const std::vector<int> ys = tile_starts(image.height, tile_height);
+  if (xs.size() * ys.size() == 1) return periodogram_of(image, borders);
+
+  PowerSpectrum mean{tile_width, tile_height, {}};
+  mean.power.assign(static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height), 0.0);
+  for (const int y : ys) {
+    for (const int x : xs) {
+      const PowerSpectrum one = periodogram_of(cut(image, x, y, tile_width, tile_height), borders);
+      for (std::size_t i = 0; i < mean.power.size(); ++i) mean.power[i] += one.power[i];
+    }
+  }
+  const double tiles = static_cast<double>(xs.size() * ys.size());
+  for (double& p : mean.power) p /= tiles;
+  // Tiles that overlap share pixels: as many independent looks as tiles fit side by side.
+  mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());
+  return mean;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,67 @@
+#include "estimation/shape/fit/blend_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "descriptor/histogram_distance.h"
+#include "descriptor/surflet_histogram.h"
+#include "estimation/shape/model/isosurface_projection.h"
+
+namespace astrolith {
+namespace {
+
+// Variables of the search: number of spheres, then logarithms of a, b and m. a/b in [1/4, 4] scales radii by
+// half to twice; the sharpness m a stays within [0.25, 16], from a soft blend to nearly a union.
+constexpr double kTension = 2.0;
+constexpr double kSmallestExponent = 0.5, kLargestExponent = 8.0;
+
+Bounds search_bounds(int packed, int max_spheres) {
+  const double most = std::min(packed, max_spheres);
+  const double t = std::log(kTension);
+  return {{std::max(1.0, std::floor(0.25 * most)), -t, -t, std::log(kSmallestExponent)},
+          {most, t, t, std::log(kLargestExponent)}};
+}
+
+// Kernels other than the Gaussian are summed with exponent 1 and have the tensions m a and m b, which are the
+// same thing for Gaussians.
+MetaballBody body_at(const std::vector<Sphere>& packing, Kernel kernel, std::span<const double> x) {
+  MetaballBody body;
+  body.kernel = kernel;
+  const auto count = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(x[0])), 1, packing.size());
+  body.a = std::exp(x[1]);
+  body.b = std::exp(x[2]);
+  body.blend_exponent = std::exp(x[3]);
+  if (kernel != Kernel::kGaussian) {
+    const double m = std::min(std::exp(x[3]), kMaxTension / body.a);
+    body.a *= m;
+    body.b *= m;
+    body.blend_exponent = 1.0;
+  }
+  body.spheres.assign(packing.begin(), packing.begin() + static_cast<std::ptrdiff_t>(count));
+  return body;
+}
+
+}  // namespace
+
+BlendSearchSummary search_blend(const std::vector<Sphere>& packing, const SurfaceSamples& samples,
+                                const BlendSearchOptions& options, const Progress& progress) {
+  const ShapeHistogram wanted = surflet_histogram(samples.points, samples.normals);
+  const Objective dissimilarity = [&](std::span<const double> x) {
+    const SurfaceSamples projected =
+        project_onto_isosurface(model_of(body_at(packing, options.kernel, x)), samples.points);
+    return 1.0 - similarity(wanted, surflet_histogram(projected.points, projected.normals));
+  };
+  BlendSearchSummary summary;
+  summary.optimization =
+      minimize(dissimilarity, search_bounds(static_cast<int>(packing.size()), options.max_spheres),
+               options.optimize, progress);
+  const MetaballBody body = body_at(packing, options.kernel, summary.optimization.x);
+  summary.model = model_of(body);
+  summary.a = body.a;
+  summary.b = body.b;
+  summary.blend_exponent = body.blend_exponent;
+  summary.similarity = 1.0 - summary.optimization.value;
+  return summary;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,35 @@
+// The global parameters of thesis section 4.3.4 (number of spheres, tensions a and b, blend exponent m) by a
+// derivative-free optimiser on the surflet histogram.
+//
+// A candidate is not meshed: fixed points of the target's surface are projected onto the candidate's surface,
+// and the histogram of those is compared with the histogram of the target's points,
+//   fitness = 1 - similarity(target, candidate).
+#pragma once
+
+#include <vector>
+
+#include "estimation/optimize/optimizer.h"
+#include "estimation/shape/model/metaball_model.h"
+#include "geometry/surface/mesh_sampling.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+struct BlendSearchOptions {
+  int max_spheres = 100;  // upper bound of the number of spheres, > 0
+  Kernel kernel = Kernel::kGaussian;
+  OptimizeOptions optimize;  // algorithm, population, evaluations, seed
+};
+
+struct BlendSearchSummary {
+  MetaballModel model;  // the winner; its radii include sqrt(a/b)
+  double a = 1.0, b = 1.0, blend_exponent = 1.0;
+  double similarity = 0.0;  // of the winner
+  OptimizeResult optimization;
+};
+
+// `packing` is ordered largest first and not empty; `samples` are points and normals of the target's surface.
+BlendSearchSummary search_blend(const std::vector<Sphere>& packing, const SurfaceSamples& samples,
+                                const BlendSearchOptions& options, const Progress& progress = {});
+
+}  // namespace astrolith

@@ -1,0 +1,159 @@
+#include "estimation/shape/fit/shape_fit.h"
+
+#include <algorithm>
+
+#include "descriptor/histogram_distance.h"
+#include "descriptor/shape_description.h"
+#include "estimation/shape/fit/blend_search.h"
+#include "estimation/shape/packing/sphere_packing.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+// Share of the budget that the packing's spheres may take; the rest grows where the error is.
+constexpr double kBaseShare = 0.5;
+constexpr int kFewSpheres = 16;  // may all be the packing's
+
+// So many spheres settle slowly: their steps are given twice as many iterations, and for the sake of time
+// there are a third as many relocations.
+constexpr int kManySpheres = 500;
+
+constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
+constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
+
+// Points inside and outside: this many, this deep (fraction of the diagonal).
+constexpr int kContainmentPoints = 2000;
+constexpr double kContainmentDepth = 0.015;
+
+// Shells of points near the surface, at these distances from it (fractions of the diagonal): near enough to
+// one another that no island of a few hundredths fits between.
+constexpr double kShells[] = {0.008, 0.016, 0.032};
+constexpr double kShellShare = 0.25;  // of the number of surface samples, each
+
+// Independent random streams of one seed.
+enum Stream : std::uint64_t {
+  kSurface = 1,
+  kContainment,
+  kSearch,
+  kFreshTarget,
+  kFreshFit,
+  kFreshAgain,
+  kDistances,
+  kShellsAround
+};
+
+std::uint64_t stream_seed(std::uint64_t seed, Stream stream) { return 1000003u * seed + stream; }
+
+void check_options(const ShapeFitOptions& options) {
+  if (options.spheres < 1 || options.spheres > 10000) throw InputError("--spheres: give 1 to 10000");
+  if (options.points != 0 && (options.points < 100 || options.points > 10000000)) {
+    throw InputError("--points: give 100 to 10000000, or 0");
+  }
+  if (options.population < 1 || options.generations < 1) {
+    throw InputError("--population and --generations: give at least 1");
+  }
+  if (!(options.subtract >= 0.0 && options.subtract <= 0.9)) throw InputError("--subtract: give 0 to 0.9");
+  if (!(options.tolerance >= 0.0))
+    throw InputError("--tolerance: give a fraction of the diagonal, at least 0");
+}
+
+Packing pack(const TargetBody& target, const ShapeFitOptions& options, const Progress& progress) {
+  PackingOptions packing;
+  packing.max_spheres =
+      std::max(std::min(options.spheres, kFewSpheres), static_cast<int>(kBaseShare * options.spheres));
+  Packing result = pack_spheres(target.mesh, target.tree, packing, progress);
+  if (result.spheres.empty()) throw InputError("no sphere fits inside the body; give a solid body");
+  return result;
+}
+
+BlendSearchSummary search(const TargetBody& target, const Packing& packing, const ShapeFitOptions& options,
+                          const Progress& progress) {
+  BlendSearchOptions search_options;
+  search_options.max_spheres = static_cast<int>(packing.spheres.size());
+  search_options.kernel = options.kernel;
+  search_options.optimize.algorithm = options.optimizer;
+  search_options.optimize.population = options.population;
+  search_options.optimize.max_evaluations = std::int64_t{options.population} * options.generations;
+  search_options.optimize.seed = options.seed;
+  const SurfaceSamples samples =
+      sample_poisson_disk(target.surface, kSearchSamples, stream_seed(options.seed, kSearch));
+  return search_blend(packing.spheres, samples, search_options, progress);
+}
+
+AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& start,
+                                const ShapeFitOptions& options, const Progress& progress) {
+  const std::int64_t count =
+      options.points > 0 ? options.points : std::max(kFewestPoints, kPointsPerSphere * options.spheres);
+  const SurfaceSamples samples = sample_poisson_disk(
+      target.surface, count, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
+  FitPoints containment;
+  add_containment_points(target, kContainmentDepth, kContainmentPoints,
+                         stream_seed(options.seed, kContainment), containment);
+  for (const double distance : kShells) {
+    add_shell_points(target, distance, static_cast<int>(kShellShare * static_cast<double>(count)),
+                     stream_seed(options.seed, kShellsAround), containment);
+  }
+  AdaptiveFitOptions adaptive;
+  adaptive.spheres = options.spheres;
+  adaptive.tolerance = options.tolerance;
+  adaptive.taking = options.subtract;
+  adaptive.repair_resolution = options.check_resolution;
+  if (options.spheres >= kManySpheres) {
+    adaptive.relocations /= 3;
+    adaptive.grown_iterations *= 2;
+    adaptive.relocation_iterations *= 2;
+    adaptive.last_iterations *= 2;
+  }
+  return fit_adaptively(target, start, samples, containment, adaptive, progress);
+}
+
+MetaballBody body_in_file_frame(const MetaballModel& model, const TargetBody& target) {
+  MetaballModel moved = model;
+  for (ModelSphere& s : moved.spheres) {
+    s.center = target.center + target.diagonal * s.center;
+    s.radius *= target.diagonal;
+  }
+  return metaball_body(moved);
+}
+
+// With the features that `compare` takes unless told otherwise.
+ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
+  DescriptionOptions options;
+  options.points = kSimilaritySamples;
+  options.seed = seed;
+  return describe_shape(mesh, options).histogram;
+}
+
+}  // namespace
+
+void measure_fit(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& result) {
+  const std::uint64_t seed = options.seed;
+  result.check = check_fit(target, in_target_frame(target, result.body), options.check_resolution,
+                           options.check_samples, stream_seed(seed, kDistances));
+  const ShapeHistogram wanted = fresh_histogram(target.surface, stream_seed(seed, kFreshTarget));
+  result.similarity = similarity(wanted, fresh_histogram(result.check.mesh, stream_seed(seed, kFreshFit)));
+  result.similarity_floor =
+      similarity(wanted, fresh_histogram(target.surface, stream_seed(seed, kFreshAgain)));
+}
+
+ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& options,
+                         const StageProgress& progress) {
+  check_options(options);
+  ShapeFitResult result;
+  const Packing packing = pack(target, options, progress("pack"));
+  const BlendSearchSummary base = search(target, packing, options, progress("search"));
+  AdaptiveFitSummary fit = refine_model(target, base.model, options, progress("refine"));
+  result.body = body_in_file_frame(fit.model, target);
+  result.filling_rate = packing.filling_rate;
+  result.base_similarity = base.similarity;
+  result.base_spheres = static_cast<int>(base.model.spheres.size());
+  result.evaluations = base.optimization.evaluations;
+  result.search_history = base.optimization.history;
+  result.convergence = std::move(fit.convergence);
+  result.interrupted = packing.interrupted || fit.interrupted;
+  measure_fit(target, options, result);
+  return result;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,117 @@
+#include "estimation/shape/model/metaball_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "numerics/errors.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+// Beyond its support a Gaussian is e^-16 or less: less than a float of the sum can hold.
+double gaussian_support(double sharpness) { return std::sqrt(1.0 + 16.0 / sharpness); }
+
+// Where kernels without an end of their own are cut off.
+constexpr double kCutoffRadii = 5.0;
+
+// The least slope that a level is divided by, times the largest radius. Kernels that end have none beyond
+// their support, and s would be without bound there; with this it is about a radius, and on the surface,
+// where slopes are steeper, all but what it was.
+double slope_floor(Kernel kernel) { return kernel == Kernel::kGaussian ? 1e-3 : 0.5; }
+
+KernelProfile<double> profile_of(Kernel kernel, double tension, double& cutoff_squared) {
+  cutoff_squared = kCutoffRadii * kCutoffRadii;
+  return scaled_kernel(kernel, tension, 1.0, cutoff_squared);
+}
+
+// By differences: a profile's scale is found by bisection, and this is done once for all points.
+ProfileTension tension_derivatives(Kernel kernel, double tension) {
+  const double h = 1e-4;
+  double cutoff_squared = 0.0;
+  const KernelProfile<double> more = profile_of(kernel, tension + h, cutoff_squared);
+  const KernelProfile<double> less = profile_of(kernel, tension - h, cutoff_squared);
+  return {std::log(more.scale / less.scale) / (2.0 * h), std::log(more.height / less.height) / (2.0 * h),
+          (more.low - less.low) / (2.0 * h)};
+}
+
+}  // namespace
+
+double largest_radius(const MetaballModel& model) {
+  double largest = 0.0;
+  for (const ModelSphere& s : model.spheres) {
+    if (!s.takes_away) largest = std::max(largest, s.radius);
+  }
+  return largest;
+}
+
+ModelEvaluation evaluation_parameters(const MetaballModel& model) {
+  ModelEvaluation evaluation;
+  const double floor = slope_floor(model.kernel) / largest_radius(model);
+  evaluation.gradient_floor = floor * floor;
+  if (model.kernel == Kernel::kGaussian) {
+    const double support = gaussian_support(model.sharpness);
+    evaluation.m_a = evaluation.m_b = model.sharpness;
+    evaluation.inverse_m = 1.0 / model.sharpness;
+    evaluation.cutoff_squared = support * support;
+    return evaluation;
+  }
+  evaluation.m = evaluation.inverse_m = 1.0;
+  evaluation.profile = profile_of(model.kernel, model.sharpness, evaluation.cutoff_squared);
+  evaluation.tension = tension_derivatives(model.kernel, model.sharpness);
+  return evaluation;
+}
+
+double support_radii(const MetaballModel& model) {
+  if (model.kernel == Kernel::kGaussian) return gaussian_support(model.sharpness);
+  double cutoff_squared = 0.0;
+  profile_of(model.kernel, model.sharpness, cutoff_squared);
+  return std::sqrt(cutoff_squared);
+}
+
+double level_of(const MetaballModel& model, double sum) {
+  const double total = sum + double{kKernelFloor};
+  return model.kernel == Kernel::kGaussian ? std::log(total) / model.sharpness : total - 1.0;
+}
+
+double level_lost(const MetaballModel& model, double sum, double share) {
+  return model.kernel == Kernel::kGaussian ? -std::log1p(-share) / model.sharpness : share * sum;
+}
+
+MetaballBody metaball_body(const MetaballModel& model) {
+  const auto rounded = round_to_seven_digits;
+  MetaballBody body;
+  body.kernel = model.kernel;
+  if (model.kernel == Kernel::kGaussian) {
+    body.blend_exponent = rounded(model.sharpness);
+    body.cutoff_radii = rounded(gaussian_support(model.sharpness));
+  } else {
+    body.a = body.b = rounded(model.sharpness);
+    body.cutoff_radii = kCutoffRadii;
+  }
+  for (const ModelSphere& s : model.spheres) {
+    (s.takes_away ? body.subtract : body.spheres)
+        .push_back({{rounded(s.center.x), rounded(s.center.y), rounded(s.center.z)}, rounded(s.radius)});
+  }
+  return body;
+}
+
+MetaballModel model_of(const MetaballBody& body) {
+  if (!body.operations.empty()) throw InputError("body: operations: the fit knows metaballs alone");
+  const bool gaussian = body.kernel == Kernel::kGaussian;
+  if (!gaussian && body.blend_exponent != 1.0) {
+    throw InputError("body: blend_exponent: the fit knows kernel " + std::string(kernel_word(body.kernel)) +
+                     " with exponent 1 alone");
+  }
+  if (!gaussian && !body.subtract.empty()) {
+    throw InputError("body: subtract: the fit knows Gaussians alone that take away");
+  }
+  MetaballModel model{body.blend_exponent * body.a, {body.spheres.begin(), body.spheres.end()}, body.kernel};
+  for (const Sphere& s : body.subtract) model.spheres.emplace_back(s, true);
+  const double scale = std::sqrt(body.a / body.b);
+  for (ModelSphere& s : model.spheres) s.radius *= scale;
+  return model;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,82 @@
+// A metaball model evaluated at many points, near ones together so that they share their list of spheres.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "estimation/shape/model/metaball_model.h"
+#include "estimation/shape/model/point_clusters.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+
+// Indices, ascending, of the spheres within `reach` of their own radii of the cluster.
+inline std::vector<std::int32_t> spheres_within(const MetaballModel& model, const PointCluster& cluster,
+                                                double reach) {
+  std::vector<std::int32_t> found;
+  for (std::size_t i = 0; i < model.spheres.size(); ++i) {
+    const Sphere& s = model.spheres[i];
+    const double distance = cluster.radius + reach * s.radius;
+    if (squared_norm(s.center - cluster.center) < distance * distance) {
+      found.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  return found;
+}
+
+// Calls visit(point index, indices of the spheres whose support may reach it) for all points, in parallel.
+template <typename Visit>
+void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3d>& points,
+                              const Visit& visit) {
+  constexpr std::size_t kPointsPerCluster = 32;
+  const double cutoff = support_radii(model);
+  const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
+  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
+    const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];
+    const std::vector<std::int32_t> neighbours = spheres_within(model, cluster, cutoff);
+    for (const std::int32_t i : cluster.points) visit(static_cast<std::size_t>(i), neighbours);
+  });
+}
+
+inline void add_sums(const MetaballSums<double>& more, MetaballSums<double>& sums) {
+  sums.kernel += more.kernel;
+  sums.weighted += more.weighted;
+}
+
+// The sums at a point over some of the model's spheres, and in `shares` the part that each has in its sum:
+// k / P of a sphere that adds, k / (1 + N) of one that takes away.
+inline MetaballTotals<double> totals_with_shares(const MetaballModel& model,
+                                                 const ModelEvaluation& evaluation,
+                                                 std::span<const std::int32_t> spheres, const Vec3d& p,
+                                                 std::vector<double>& shares) {
+  MetaballTotals<double> totals;
+  shares.resize(spheres.size());
+  for (std::size_t j = 0; j < spheres.size(); ++j) {
+    MetaballTotals<double> own;
+    accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(spheres[j])]), p, own);
+    shares[j] = own.added.kernel + own.taken.kernel;
+    add_sums(own.added, totals.added);
+    add_sums(own.taken, totals.taken);
+  }
+  const double added = totals.added.kernel + double{kKernelFloor}, taken = 1.0 + totals.taken.kernel;
+  for (std::size_t j = 0; j < spheres.size(); ++j) {
+    shares[j] /= model.spheres[static_cast<std::size_t>(spheres[j])].takes_away ? taken : added;
+  }
+  return totals;
+}
+
+// The net sums alone.
+inline MetaballSums<double> net_sums_at(const MetaballModel& model, const ModelEvaluation& evaluation,
+                                        std::span<const std::int32_t> spheres, const Vec3d& p) {
+  MetaballTotals<double> totals;
+  for (const std::int32_t i : spheres) {
+    accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(i)]), p, totals);
+  }
+  return totals.net();
+}
+
+// L(p), the level of every point: 0 on the surface, positive inside.  (#points)
+std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points);
+
+}  // namespace astrolith

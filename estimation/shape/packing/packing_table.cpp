@@ -1,0 +1,37 @@
+#include "estimation/shape/packing/packing_table.h"
+
+#include <fmt/format.h>
+
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+namespace {
+
+double cube(double x) { return x * x * x; }
+
+double kilograms(const PackingTable& table) {
+  const double metres = table.length_unit == "km" ? 1000.0 : 1.0;
+  return table.density * table.body_volume * cube(metres);
+}
+
+}  // namespace
+
+void write_packing_table(const std::vector<Sphere>& spheres, const PackingTable& table,
+                         const std::filesystem::path& file) {
+  const bool with_mass = table.density > 0.0;
+  double cubes = 0.0;
+  for (const Sphere& s : spheres) cubes += cube(s.radius);
+  std::string text = fmt::format(
+      "# {}\n# lengths in {}{}\n", table.title, table.length_unit,
+      with_mass ? fmt::format(", masses in kg that add up to the body's at {} kg/m^3", table.density) : "");
+  text += with_mass ? "x,y,z,radius,mass\n" : "x,y,z,radius\n";
+  for (const Sphere& s : spheres) {
+    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", s.center.x, s.center.y, s.center.z, s.radius);
+    text += with_mass ? fmt::format(",{:.9g}\n", kilograms(table) * cube(s.radius) / cubes) : "\n";
+  }
+  OutputFile out(file);
+  out.write(text.data(), text.size());
+  out.commit();
+}
+
+}  // namespace astrolith

@@ -1,0 +1,57 @@
+// A model's parameters while it is refined.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "estimation/shape/model/field_derivatives.h"
+#include "estimation/shape/model/metaball_model.h"
+
+namespace astrolith {
+
+// The model as parameters: centre and log radius a sphere, and t for the sharpness, which
+//   log kappa = middle + half tanh(t / half)
+// keeps between limits: a lone sphere has the same surface at every kappa, and nothing else would hold it.
+struct RefinementParameters {
+  explicit RefinementParameters(const MetaballModel& model)
+      : kernel(model.kernel),
+        middle(0.5 * std::log(kSoftest * sharpest(model.kernel))),
+        half(0.5 * std::log(sharpest(model.kernel) / kSoftest)) {
+    const double part = (std::log(model.sharpness) - middle) / half;
+    sharpness = half * std::atanh(std::clamp(part, -0.99, 0.99));
+    for (const ModelSphere& s : model.spheres) {
+      spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
+      takes_away.push_back(s.takes_away);
+    }
+  }
+  MetaballModel model() const {
+    MetaballModel m{std::exp(middle + half * std::tanh(sharpness / half)), {}, kernel};
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      const SphereDerivatives& s = spheres[i];
+      m.spheres.emplace_back(Vec3d{s[0], s[1], s[2]}, std::exp(s[3]), takes_away[i]);
+    }
+    return m;
+  }
+  // Adds a step: four numbers a sphere, then one for the sharpness.
+  void add(const double* step) {
+    for (SphereDerivatives& s : spheres) {
+      for (double& value : s) value += *step++;
+    }
+    sharpness += *step;
+  }
+  // d log kappa / dt
+  double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / half), 2); }
+
+  // Limits of the sharpness.
+  static constexpr double kSoftest = 0.3;
+  static double sharpest(Kernel kernel) { return kernel == Kernel::kGaussian ? 30.0 : 9.9; }
+
+  Kernel kernel;
+  double middle, half;
+  std::vector<SphereDerivatives> spheres;
+  std::vector<bool> takes_away;  // by sphere; fixed
+  double sharpness = 0.0;        // t
+};
+
+}  // namespace astrolith

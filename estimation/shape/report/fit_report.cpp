@@ -1,0 +1,157 @@
+#include "estimation/shape/report/fit_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "estimation/shape/report/convergence_plot.h"
+#include "estimation/shape/report/error_histogram.h"
+#include "estimation/shape/report/picture_label.h"
+#include "estimation/shape/report/report_page.h"
+#include "geometry/surface/mesh_sampling.h"
+#include "numerics/files/output_file.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/picture/colormap.h"
+#include "synthesis/picture/image_file.h"
+#include "synthesis/picture/preview.h"
+
+namespace astrolith {
+namespace {
+
+PreviewOptions small_preview() {
+  PreviewOptions options;
+  options.width = 800;
+  options.height = 600;
+  return options;
+}
+
+RgbImage side_by_side(const RgbImage& left, const RgbImage& right) {
+  RgbImage both{left.width + right.width, left.height, {}};
+  both.pixels.reserve(left.pixels.size() + right.pixels.size());
+  const auto append_row = [&](const RgbImage& image, int y) {
+    const auto row = image.pixels.begin() + std::ptrdiff_t{3} * image.width * y;
+    both.pixels.insert(both.pixels.end(), row, row + std::ptrdiff_t{3} * image.width);
+  };
+  for (int y = 0; y < both.height; ++y) {
+    append_row(left, y);
+    append_row(right, y);
+  }
+  return both;
+}
+
+// Distance of every vertex of the fit to the target, fractions of the diagonal.
+std::vector<double> vertex_distances(const TargetBody& target, const TriangleMesh& mesh) {
+  std::vector<double> distances(mesh.vertices.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(distances.size()),
+      [&](std::int64_t i) {
+        const auto v = static_cast<std::size_t>(i);
+        distances[v] = target.tree.closest(mesh.vertices[v]).distance;
+      },
+      64);
+  return distances;
+}
+
+std::string percent(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f %%", 100.0 * fraction);
+  return text;
+}
+
+RgbImage target_and_fit(const TargetBody& target, const ShapeFitResult& fit) {
+  RgbImage left = render_preview(target.mesh, small_preview());
+  RgbImage right = render_preview(fit.check.mesh, small_preview());
+  draw_label(left, "target", 14, 24);
+  draw_label(right,
+             std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
+                 percent(fit.check.distance.mean) + " of the diagonal",
+             14, 24);
+  return side_by_side(left, right);
+}
+
+RgbImage distance_map(const TargetBody& target, const ShapeFitResult& fit) {
+  PreviewOptions options = small_preview();
+  options.vertex_colors = sequential_colors(vertex_distances(target, fit.check.mesh), 0.0,
+                                            std::max(fit.check.distance.p99, 1e-9));
+  options.fill_light = 0.5;  // colours are to be read in the shadows too
+  RgbImage map = render_preview(fit.check.mesh, options);
+  draw_label(map, "distance from the fit to the target, of the diagonal", 14, 24);
+  draw_color_scale(map, "0", percent(fit.check.distance.p99));
+  return map;
+}
+
+// Signed, at points spread evenly over the fit.
+std::vector<double> sampled_distances(const TargetBody& target, const TriangleMesh& mesh) {
+  constexpr std::int64_t kSamples = 50000;
+  const std::vector<Vec3d> points = sample_surface(mesh, kSamples, 1).points;
+  std::vector<double> distances(points.size());
+  parallel_for(
+      0, kSamples,
+      [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        distances[k] = target.tree.signed_distance(points[k]);
+      },
+      64);
+  return distances;
+}
+
+std::string number(double value, const char* format) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+PageTable distance_table(const SurfaceDistanceReport& d) {
+  const auto row = [](const char* name, double mean, double p99, double max) {
+    return std::vector<std::string>{name, percent(mean), percent(p99), percent(max)};
+  };
+  return {{"distance, of the bounding-box diagonal", "mean", "99 of 100 within", "largest"},
+          {row("from the target to the fit", d.from_a_to_b.mean, d.from_a_to_b.p99, d.from_a_to_b.max),
+           row("from the fit to the target", d.from_b_to_a.mean, d.from_b_to_a.p99, d.from_b_to_a.max),
+           row("both", d.mean, d.p99, d.max)}};
+}
+
+PageTable likeness_table(const ShapeFitResult& fit) {
+  return {{"likeness", ""},
+          {{"similarity of the shape histograms (ahd)", percent(fit.similarity)},
+           {"the same of two samplings of the target", percent(fit.similarity_floor)},
+           {"volume of the fit over the target's", number(fit.check.volume_ratio, "%.5f")}}};
+}
+
+PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
+  return {{"body", "target", "fit"},
+          {{"parts", std::to_string(target.components), std::to_string(fit.check.topology.components)},
+           {"handles", "", std::to_string(fit.check.topology.genus)},
+           {"triangles or metaballs", std::to_string(target.mesh.triangles.size()),
+            std::to_string(fit.body.num_metaballs())},
+           {"of them take away", "", std::to_string(fit.body.subtract.size())},
+           {"sharpness m a of the blend", "", number(fit.body.blend_exponent * fit.body.a, "%.4g")}}};
+}
+
+}  // namespace
+
+void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
+                      const std::filesystem::path& folder) {
+  make_output_folder(folder);
+  write_png8_rgb(target_and_fit(target, fit), folder / "target_and_fit.png");
+  write_png8_rgb(distance_map(target, fit), folder / "distance_map.png");
+  write_png8_rgb(plot_error_histogram(sampled_distances(target, fit.check.mesh),
+                                      std::max(1.2 * fit.check.distance.p99, 1e-9)),
+                 folder / "error_histogram.png");
+  ReportPage page{title,
+                  std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
+                      percent(fit.check.distance.mean) + " of the bounding-box diagonal.",
+                  {distance_table(fit.check.distance), likeness_table(fit), body_table(target, fit)},
+                  {{"target_and_fit.png", "Target and fit, from four sides, under the same sun."},
+                   {"distance_map.png", "Distance from the fit to the target, on the fit."},
+                   {"error_histogram.png", "How the distances are spread over the fit."}}};
+  if (!fit.convergence.empty()) {
+    write_png8_rgb(plot_convergence(fit.convergence), folder / "convergence.png");
+    page.pictures.push_back(
+        {"convergence.png", "Mean distance over the samples of the refinement, after each of its stages."});
+  }
+  write_report_page(page, folder / "index.html");
+}
+
+}  // namespace astrolith

@@ -1,0 +1,22 @@
+// Pictures and a page of a fit: target and fit side by side, how far they lie apart, and how the fit got
+// there.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "estimation/shape/fit/shape_fit.h"
+#include "estimation/shape/target/target_body.h"
+
+namespace astrolith {
+
+// Writes into the folder, which is made if need be:
+//   target_and_fit.png   the two bodies in the same light, from four sides each
+//   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
+//   error_histogram.png  signed distances of the fit from the target
+//   convergence.png      mean distance (logarithmic) against iterations of the refinement
+//   index.html           a page with these and the figures as tables
+void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
+                      const std::filesystem::path& folder);
+
+}  // namespace astrolith

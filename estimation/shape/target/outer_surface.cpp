@@ -1,0 +1,98 @@
+#include "estimation/shape/target/outer_surface.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// As many as SurfaceTree takes the union of.
+constexpr std::size_t kMaxParts = 64;
+
+struct Part {
+  TriangleMesh mesh;  // all vertices of the whole, its own triangles
+  std::vector<Vec3d> vertices;
+};
+
+// Empty where there are too many.
+std::vector<Part> separate(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
+  const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
+  if (count > kMaxParts) return {};
+  std::vector<Part> parts(count);
+  for (Part& part : parts) part.mesh.vertices = mesh.vertices;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    Part& part = parts[component[t]];
+    part.mesh.triangles.push_back(mesh.triangles[t]);
+    for (const std::uint32_t v : mesh.triangles[t]) part.vertices.push_back(mesh.vertices[v]);
+  }
+  return parts;
+}
+
+bool reaches_into(const Part& part, const SurfaceTree& other) {
+  return std::any_of(part.vertices.begin(), part.vertices.end(),
+                     [&](const Vec3d& p) { return other.signed_distance(p) > 0.0; });
+}
+
+// (#parts) which part of the union each belongs to, numbered from 0.
+std::vector<std::uint32_t> groups_of_union(const std::vector<Part>& parts) {
+  std::vector<std::uint32_t> group(parts.size());
+  std::iota(group.begin(), group.end(), 0u);
+  for (std::size_t b = 0; b < parts.size(); ++b) {
+    const SurfaceTree tree(parts[b].mesh);
+    for (std::size_t a = 0; a < parts.size(); ++a) {
+      // Copies: std::replace would see the group change under its references.
+      const std::uint32_t from = group[a], to = group[b];
+      if (from != to && reaches_into(parts[a], tree)) std::replace(group.begin(), group.end(), from, to);
+    }
+  }
+  std::vector<std::uint32_t> names = group;
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  for (std::uint32_t& g : group) {
+    g = static_cast<std::uint32_t>(std::lower_bound(names.begin(), names.end(), g) - names.begin());
+  }
+  return group;
+}
+
+std::int64_t count_of(const std::vector<std::uint32_t>& numbers) {
+  return std::int64_t{1} + *std::max_element(numbers.begin(), numbers.end());
+}
+
+TriangleMesh without_buried(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
+  std::vector<char> buried(mesh.triangles.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(buried.size()),
+      [&](std::int64_t t) {
+        const Triangle& v = mesh.triangles[static_cast<std::size_t>(t)];
+        const Vec3d centroid =
+            (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) * (1.0 / 3.0);
+        buried[static_cast<std::size_t>(t)] = tree.signed_distance(centroid) > depth ? 1 : 0;
+      },
+      64);
+  TriangleMesh outer{mesh.vertices, {}, {}};
+  for (std::size_t t = 0; t < buried.size(); ++t) {
+    if (buried[t] == 0) outer.triangles.push_back(mesh.triangles[t]);
+  }
+  return outer;
+}
+
+}  // namespace
+
+OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
+  std::vector<std::uint32_t> part_of_triangle = triangle_components(mesh);
+  const std::vector<Part> parts = separate(mesh, part_of_triangle);
+  const bool solid =
+      std::all_of(parts.begin(), parts.end(), [](const Part& part) { return volume(part.mesh) > 0.0; });
+  if (parts.size() < 2 || !solid) return {mesh, count_of(part_of_triangle), std::move(part_of_triangle)};
+  const std::vector<std::uint32_t> group = groups_of_union(parts);
+  for (std::uint32_t& part : part_of_triangle) part = group[part];
+  return {without_buried(mesh, tree, depth), count_of(group), std::move(part_of_triangle)};
+}
+
+}  // namespace astrolith

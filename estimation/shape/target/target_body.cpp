@@ -1,0 +1,226 @@
+#include "estimation/shape/target/target_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "estimation/shape/target/outer_surface.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/orient_faces.h"
+#include "geometry/surface/mesh_sampling.h"
+#include "geometry/surface/winding_number.h"
+#include "geometry/weld.h"
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/body/body_spheres.h"
+
+namespace astrolith {
+namespace {
+
+// A body with less than this share of its diagonal's cube is a sheet or a thread: no sphere fits inside.
+constexpr double kSmallestVolume = 1e-6;
+
+// Faces deeper than this part of the diagonal inside another part of the body are no surface of it.
+constexpr double kBuriedDepth = 1e-5;
+
+// Places just under the surface that are asked whether it goes around them once: as many as this number of
+// triangles summed over allows, within these limits.
+constexpr std::int64_t kWindingTriangles = 20000000, kMostWindings = 200, kFewestWindings = 20;
+constexpr double kJustUnder = 1e-5;      // fraction of the diagonal
+constexpr double kWrongWindings = 0.02;  // share of the places that may lie beyond an edge or in a thin wall
+
+TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> new_of_old(mesh.vertices.size(), kUnused);
+  TriangleMesh compact;
+  for (const Triangle& triangle : mesh.triangles) {
+    Triangle renumbered{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& index = new_of_old[triangle[k]];
+      if (index == kUnused) {
+        index = static_cast<std::uint32_t>(compact.vertices.size());
+        compact.vertices.push_back(mesh.vertices[triangle[k]]);
+      }
+      renumbered[k] = index;
+    }
+    compact.triangles.push_back(renumbered);
+  }
+  return compact;
+}
+
+TriangleMesh welded(TriangleMesh mesh, std::vector<std::string>& remarks) {
+  const std::size_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
+  mesh = drop_degenerate_and_repeated_faces(weld_vertices(std::move(mesh), 0.0));
+  mesh = without_unused_vertices(mesh);
+  if (mesh.vertices.size() < vertices) {
+    remarks.push_back(std::to_string(vertices - mesh.vertices.size()) +
+                      " repeated or unused vertices merged");
+  }
+  if (mesh.triangles.size() < triangles) {
+    remarks.push_back(std::to_string(triangles - mesh.triangles.size()) + " empty or repeated faces dropped");
+  }
+  return mesh;
+}
+
+void turn_inside_out(TriangleMesh& mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+// Checks what cannot be mended, and orients the faces.
+void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vector<std::string>& remarks) {
+  MeshTopology topology = analyze_topology(mesh);
+  if (!topology.closed) {
+    throw InputError(name + ": mesh is open (" + std::to_string(topology.boundary_edges) +
+                     " edges with one face); close the holes first");
+  }
+  if (topology.non_manifold_edges > 0) {
+    throw InputError(name + ": mesh is not manifold (" + std::to_string(topology.non_manifold_edges) +
+                     " edges with more than two faces); remove inner walls first");
+  }
+  if (!topology.oriented) {
+    mesh = orient_faces(std::move(mesh));
+    topology = analyze_topology(mesh);
+    if (!topology.oriented)
+      throw InputError(name + ": mesh is one-sided; a body has an inside and an outside");
+    remarks.push_back("faces looked both ways; turned outwards");
+  }
+  if (volume(mesh) < 0.0) {
+    turn_inside_out(mesh);
+    remarks.push_back("mesh was inside out; faces turned outwards");
+  }
+}
+
+// Share of the surface just under which the body is not, or is twice.
+double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& surface) {
+  const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
+  const std::int64_t count = std::clamp(kWindingTriangles / triangles, kFewestWindings, kMostWindings);
+  const SurfaceSamples samples = sample_surface(surface, count, 1);
+  std::vector<char> wrong(samples.points.size());
+  parallel_for(0, count, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double winding = winding_number(mesh, samples.points[k] - kJustUnder * samples.normals[k]);
+    wrong[k] = std::abs(winding - 1.0) > 0.5 ? 1 : 0;
+  });
+  return static_cast<double>(std::count(wrong.begin(), wrong.end(), 1)) / static_cast<double>(count);
+}
+
+void require_no_crossing(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& name) {
+  const double share = share_of_wrong_windings(mesh, surface);
+  if (share <= kWrongWindings) return;
+  throw InputError(name + ": mesh passes through itself or has parts inside out (about " +
+                   std::to_string(static_cast<int>(std::lround(100.0 * share))) +
+                   " % of its surface does not bound the body); repair it first");
+}
+
+void move_to_body_frame(TriangleMesh& mesh, const Vec3d& center, double diagonal) {
+  for (Vec3d& p : mesh.vertices) p = (p - center) * (1.0 / diagonal);
+}
+
+}  // namespace
+
+TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
+  std::vector<std::string> remarks;
+  mesh.normals.clear();
+  mesh = welded(std::move(mesh), remarks);
+  if (mesh.triangles.empty()) throw InputError(name + ": no face with an area; give a closed mesh");
+  const Box box = mesh.bounds();
+  const double diagonal = box.diagonal();
+  if (!(diagonal > 1e-9 && diagonal < 1e9)) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", diagonal);
+    throw InputError(name + ": bounding-box diagonal " + text +
+                     " is out of range; scale the mesh to metres or kilometres");
+  }
+  require_closed_body(mesh, name, remarks);
+  move_to_body_frame(mesh, box.center(), diagonal);
+  const double body_volume = volume(mesh);
+  if (body_volume < kSmallestVolume) {
+    throw InputError(name + ": mesh encloses no volume to speak of; give a solid body, not a sheet");
+  }
+  SurfaceTree tree(mesh);
+  OuterSurface outer = outer_surface(mesh, tree, kBuriedDepth);
+  if (outer.mesh.triangles.size() < mesh.triangles.size()) {
+    remarks.push_back("parts overlap; their union is fitted, walls inside it are left out (" +
+                      std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
+  }
+  require_no_crossing(mesh, outer.mesh, name);
+  const double area = surface_area(outer.mesh);
+  return {std::move(mesh),
+          std::move(tree),
+          std::move(outer.mesh),
+          area,
+          body_volume,
+          outer.parts,
+          std::move(outer.part_of_triangle),
+          box.center(),
+          diagonal,
+          std::move(remarks)};
+}
+
+MetaballBody in_target_frame(const TargetBody& target, MetaballBody body) {
+  for_each_sphere(body, [&](Sphere& s) {
+    s.center = (s.center - target.center) * (1.0 / target.diagonal);
+    s.radius /= target.diagonal;
+  });
+  return body;
+}
+
+void add_containment_points(const TargetBody& target, double depth, int count, std::uint64_t seed,
+                            FitPoints& points) {
+  constexpr int kAttempts = 200;
+  constexpr double kBoxScale = 1.3;
+  const Box box = target.mesh.bounds();
+  const auto search = [&](std::int64_t i, double sign, Vec3d& found) {
+    CounterRandom random(seed, static_cast<std::uint64_t>(2 * i + (sign > 0.0 ? 1 : 0)));
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const double x = random.uniform() - 0.5, y = random.uniform() - 0.5, z = random.uniform() - 0.5;
+      const Vec3d e = box.extent() * kBoxScale;
+      found = box.center() + Vec3d{x * e.x, y * e.y, z * e.z};
+      if (sign * target.tree.signed_distance(found) > depth) return true;
+    }
+    return false;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<Vec3d> candidates(static_cast<std::size_t>(count));
+    std::vector<char> ok(candidates.size());
+    parallel_for(
+        0, count,
+        [&](std::int64_t i) {
+          const auto k = static_cast<std::size_t>(i);
+          ok[k] = search(i, sign, candidates[k]) ? 1 : 0;
+        },
+        16);
+    std::vector<Vec3d>& list = sign > 0.0 ? points.inside : points.outside;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      if (ok[k] != 0) list.push_back(candidates[k]);
+    }
+  }
+}
+
+void add_shell_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
+                      FitPoints& points) {
+  // Where the surface bends back the offset point lies nearer than this part of the distance, or across.
+  constexpr double kSurelyAway = 0.7;
+  const SurfaceSamples samples = sample_surface(target.surface, count, seed, SampleNormals::interpolated);
+  std::vector<Vec3d> inner(samples.points.size()), outer(samples.points.size());
+  std::vector<char> inner_ok(inner.size()), outer_ok(outer.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(inner.size()),
+      [&](std::int64_t k) {
+        const auto i = static_cast<std::size_t>(k);
+        inner[i] = samples.points[i] - samples.normals[i] * distance;
+        outer[i] = samples.points[i] + samples.normals[i] * distance;
+        inner_ok[i] = target.tree.signed_distance(inner[i]) > kSurelyAway * distance ? 1 : 0;
+        outer_ok[i] = target.tree.signed_distance(outer[i]) < -kSurelyAway * distance ? 1 : 0;
+      },
+      16);
+  for (std::size_t i = 0; i < inner.size(); ++i) {
+    if (inner_ok[i] != 0) points.inside.push_back(inner[i]);
+    if (outer_ok[i] != 0) points.outside.push_back(outer[i]);
+  }
+}
+
+}  // namespace astrolith

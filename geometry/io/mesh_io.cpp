@@ -1,0 +1,140 @@
+#include "geometry/io/mesh_io.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/mesh_format_internal.h"
+#include "geometry/io/mesh_writers_internal.h"
+
+namespace astrolith {
+namespace {
+
+// Squares of coordinates must stay finite in float32, which renderers and distance trees compute in.
+constexpr double kLargestCoordinate = 1e18;
+
+// The shortest decimals that read back as the same doubles.
+std::string point_text(const Vec3d& p) {
+  std::string text;
+  for (const double coordinate : {p.x, p.y, p.z}) {
+    char digits[32];
+    char* const end = std::to_chars(digits, digits + sizeof digits, coordinate).ptr;
+    if (!text.empty()) text += ' ';
+    text.append(digits, end);
+  }
+  return text;
+}
+
+bool usable(const Vec3d& p) {
+  const auto small = [](double c) { return std::fabs(c) <= kLargestCoordinate; };
+  return small(p.x) && small(p.y) && small(p.z);  // false for NaN too
+}
+
+std::size_t find_bad_face(const TriangleMesh& mesh) {
+  const auto in_range = [&](const Triangle& t) {
+    return std::max({t[0], t[1], t[2]}) < mesh.vertices.size();
+  };
+  return static_cast<std::size_t>(std::find_if_not(mesh.triangles.begin(), mesh.triangles.end(), in_range) -
+                                  mesh.triangles.begin());
+}
+
+std::size_t find_bad_vertex(const TriangleMesh& mesh) {
+  return static_cast<std::size_t>(std::find_if_not(mesh.vertices.begin(), mesh.vertices.end(), usable) -
+                                  mesh.vertices.begin());
+}
+
+std::string face_complaint(const TriangleMesh& mesh, std::size_t face) {
+  const Triangle& t = mesh.triangles[face];
+  return "names vertex " + std::to_string(std::uint64_t{std::max({t[0], t[1], t[2]})} + 1) + " of " +
+         std::to_string(mesh.vertices.size());
+}
+
+void require_valid(const MeshFile& file, const TriangleMesh& mesh) {
+  const std::size_t vertex = find_bad_vertex(mesh);
+  if (vertex < mesh.vertices.size()) {
+    file.fail("vertex " + std::to_string(vertex + 1), "a coordinate is not finite or beyond 1e18",
+              "repair it, or state lengths in a larger unit");
+  }
+  const std::size_t face = find_bad_face(mesh);
+  if (face < mesh.triangles.size()) {
+    file.fail("triangle " + std::to_string(face + 1), face_complaint(mesh, face),
+              "repair the index, or fetch the file again");
+  }
+}
+
+void require_writable(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (mesh.triangles.empty()) throw WorkError(name + ": the mesh has no triangles, nothing is written");
+  const std::size_t face = find_bad_face(mesh);
+  if (face < mesh.triangles.size()) {
+    throw WorkError(name + ": triangle " + std::to_string(face + 1) + " " + face_complaint(mesh, face));
+  }
+  const std::size_t vertex = find_bad_vertex(mesh);
+  if (vertex < mesh.vertices.size()) {
+    throw WorkError(name + ": vertex " + std::to_string(vertex + 1) + " is not finite or beyond 1e18");
+  }
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
+    throw WorkError(name + ": the mesh has another number of normals than of vertices");
+  }
+}
+
+using MeshWriter = void (*)(const TriangleMesh&, const std::filesystem::path&, const MeshFileInfo&);
+
+MeshWriter writer_for(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  if (extension == ".ply") return write_ply;
+  if (extension == ".obj") return write_obj;
+  if (extension == ".stl") return write_stl;
+  if (extension == ".glb") return write_glb;
+  throw InputError(file.string() + ": meshes are written as .ply, .obj, .stl or .glb; choose one of these");
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& file) {
+  const MeshFile content = load_mesh_file(file);
+  TriangleMesh mesh = reader_for(content)(content);
+  if (mesh.triangles.empty()) content.fail("", "holds no faces", "give a mesh of triangles or polygons");
+  require_valid(content, mesh);
+  return mesh;
+}
+
+TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
+  const MeshFile content = load_mesh_file(file);
+  TriangleMesh mesh = reader_for(content)(content);
+  if (mesh.triangles.empty() && mesh.normals.empty()) {
+    content.fail("", "holds neither faces nor points with unit normals",
+                 "give a mesh, or a .ply with x y z nx ny nz");
+  }
+  require_valid(content, mesh);
+  return mesh;
+}
+
+void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
+  const MeshWriter write = writer_for(file);
+  require_writable(mesh, file);
+  write(mesh, file, info);
+}
+
+void check_mesh_extension(const std::filesystem::path& file) { writer_for(file); }
+
+std::vector<std::string> info_lines(const MeshFileInfo& info) {
+  std::vector<std::string> lines;
+  const auto add = [&](const char* label, std::string text) {
+    if (text.empty()) return;
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    lines.push_back(label + text);
+  };
+  add("length unit: ", info.length_unit);
+  if (info.origin) add("origin, to be added to all coordinates: ", point_text(*info.origin));
+  add("frame: ", info.frame);
+  add("", info.comment);
+  for (const std::string& note : info.notes) add("", note);
+  lines.push_back("written by Astrolith");
+  return lines;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,47 @@
+// One writer a format, and what they share.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/io/mesh_io.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+
+// They rely on what write_mesh has checked: at least one triangle, indices in range, coordinates that float32
+// can hold.
+void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+
+// "length unit: km", "frame: ...", the comment and the program: each one line, empty ones left out.
+std::vector<std::string> info_lines(const MeshFileInfo& info);
+
+// Gathers small pieces into large writes.
+class BufferedOutput {
+ public:
+  explicit BufferedOutput(OutputFile& file) : file_(file) {}
+  void append(std::string_view bytes) {
+    buffer_.append(bytes);
+    if (buffer_.size() >= kFlushBytes) flush();
+  }
+  template <typename T>
+  void append_value(T value) {
+    append({reinterpret_cast<const char*>(&value), sizeof value});
+  }
+  void flush() {
+    file_.write(buffer_.data(), buffer_.size());
+    buffer_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kFlushBytes = std::size_t{1} << 16;
+  OutputFile& file_;
+  std::string buffer_;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,21 @@
+// The bytes of the PLY files that we write.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "geometry/io/mesh_io.h"
+
+namespace astrolith {
+
+inline constexpr std::size_t kPlyTriangleBytes = 13;
+
+// The header, of the same length for all counts: a comment takes up what the digits leave.
+std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
+                       bool with_normals, bool with_labels);
+
+// One uchar 3 and three little-endian uint32.
+std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle);
+
+}  // namespace astrolith

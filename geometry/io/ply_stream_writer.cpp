@@ -1,0 +1,141 @@
+#include "geometry/io/ply_stream_writer.h"
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "geometry/io/mesh_writers_internal.h"
+#include "geometry/io/ply_layout_internal.h"
+#include "geometry/io/polygon_fan_internal.h"
+
+namespace astrolith {
+
+static_assert(std::endian::native == std::endian::little, "vertices are written as they lie in memory");
+static_assert(sizeof(MeshVertex) == 6 * sizeof(float), "a vertex is six floats without gaps");
+
+static_assert(sizeof(VertexLabel) == 8, "a label is an int32 and a float without gaps");
+
+std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
+                       bool with_normals, bool with_labels) {
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& line : info_lines(info)) header += "comment " + line + "\n";
+  const std::string vertices = std::to_string(num_vertices);
+  const std::string triangles = std::to_string(num_triangles);
+  constexpr std::size_t kLongestCounts = 40;  // two 64-bit numbers
+  // With the other comments: OpenMesh loses its place over one behind the last property.
+  header += "comment " + std::string(kLongestCounts - vertices.size() - triangles.size(), '.') + "\n";
+  header += "element vertex " + vertices + "\n";
+  for (const char* name : {"x", "y", "z"}) header += std::string("property float ") + name + "\n";
+  if (with_normals) {
+    for (const char* name : {"nx", "ny", "nz"}) header += std::string("property float ") + name + "\n";
+  }
+  if (with_labels) header += "property int label\nproperty float elevation\n";
+  header += "element face " + triangles + "\nproperty list uchar uint vertex_indices\n";
+  return header + "end_header\n";
+}
+
+std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle) {
+  std::array<char, kPlyTriangleBytes> bytes;
+  bytes[0] = 3;
+  std::memcpy(bytes.data() + 1, triangle.data(), sizeof triangle);
+  return bytes;
+}
+
+PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info,
+                                 VertexLabeller labeller)
+    : target_(file), info_(info), labeller_(std::move(labeller)), out_(file) {
+  const std::string spill_name = out_.temporary_name() + ".faces";
+  spill_.reset(std::fopen(spill_name.c_str(), "w+b"));
+  if (!spill_) fail_spill();
+  // Without a name it is gone when the process ends, however that happens.
+  std::remove(spill_name.c_str());
+  const std::string text = header();
+  out_.write(text.data(), text.size());
+}
+
+std::string PlyStreamWriter::header() const {
+  return ply_header(info_, num_vertices_, num_triangles_, true, labeller_ != nullptr);
+}
+
+void PlyStreamWriter::add_vertices(std::span<const MeshVertex> vertices) {
+  num_vertices_ += vertices.size();
+  if (num_vertices_ > static_cast<std::uint64_t>(kMaxVertices)) {
+    throw WorkError(target_.string() + ": more than 2^32 - 1 vertices; choose a smaller resolution");
+  }
+  if (labeller_) {
+    write_labelled(vertices);
+  } else {
+    out_.write(vertices.data(), vertices.size_bytes());
+  }
+}
+
+void PlyStreamWriter::write_labelled(std::span<const MeshVertex> vertices) {
+  std::vector<VertexLabel> labels(vertices.size());
+  labeller_(vertices, labels);
+  BufferedOutput buffer(out_);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    buffer.append_value(vertices[i]);
+    buffer.append_value(labels[i]);
+  }
+  buffer.flush();
+}
+
+void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index >= num_vertices_) {
+        throw WorkError(target_.string() + ": triangle " + std::to_string(num_triangles_) + " names vertex " +
+                        std::to_string(index) + " of " + std::to_string(num_vertices_));
+      }
+    }
+    const auto bytes = ply_triangle(triangle);
+    if (std::fwrite(bytes.data(), 1, bytes.size(), spill_.get()) != bytes.size()) fail_spill();
+    ++num_triangles_;
+  }
+}
+
+void PlyStreamWriter::finish() {
+  append_spill();
+  const std::string text = header();
+  out_.seek(0);
+  out_.write(text.data(), text.size());
+  out_.commit();
+}
+
+void PlyStreamWriter::append_spill() {
+  if (std::fflush(spill_.get()) != 0 || fseeko(spill_.get(), 0, SEEK_SET) != 0) fail_spill();
+  std::vector<char> block(std::size_t{1} << 20);
+  std::uint64_t left = num_triangles_ * kPlyTriangleBytes;
+  while (left > 0) {
+    const std::size_t bytes = std::fread(block.data(), 1, block.size(), spill_.get());
+    if (bytes == 0) fail_spill();
+    out_.write(block.data(), bytes);
+    left -= bytes;
+  }
+  spill_.reset();
+}
+
+void PlyStreamWriter::fail_spill() const {
+  throw WorkError(target_.string() + ": the temporary file of triangles beside it failed (" +
+                  std::strerror(errno) + "); is the disk full?");
+}
+
+void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  const bool with_normals = !mesh.normals.empty();
+  buffer.append(ply_header(info, mesh.vertices.size(), mesh.triangles.size(), with_normals, false));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    buffer.append_value(to_float(mesh.vertices[i]));
+    if (with_normals) buffer.append_value(to_float(mesh.normals[i]));
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto bytes = ply_triangle(triangle);
+    buffer.append({bytes.data(), bytes.size()});
+  }
+  buffer.flush();
+  out.commit();
+}
+
+}  // namespace astrolith

@@ -1,0 +1,69 @@
+// Writes a binary PLY while a mesher makes it, in memory that does not grow with the mesh.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh_sink.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+
+// Where a vertex came from.
+struct VertexLabel {
+  std::int32_t label = 0;
+  float elevation = 0.0f;  // length units
+};
+
+// Labels of as many vertices.
+using VertexLabeller = std::function<void(std::span<const MeshVertex>, std::span<VertexLabel>)>;
+
+//   PlyStreamWriter writer("bennu.ply", {.length_unit = "km"});
+//   mesh_field(field, bounds, 512, writer);
+//   writer.finish();                    // without this no file appears
+//
+// Binary little endian; float32 x y z nx ny nz a vertex, one uchar and three uint32 a triangle. Vertices go
+// to the file as they come, triangles to a nameless file beside it that is appended at the end. The bytes
+// depend on the vertices and triangles alone, not on how the calls group them.
+class PlyStreamWriter : public MeshSink {
+ public:
+  // Throws InputError when the folder cannot be written.
+  // With a labeller, int32 label and float32 elevation stand behind the normal of each vertex.
+  PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info, VertexLabeller labeller = {});
+
+  // Both throw WorkError when the disk is full; the one for more than 2^32 - 1 vertices, the other for a
+  // triangle that names a vertex not yet given.
+  void add_vertices(std::span<const MeshVertex> vertices) override;
+  void add_triangles(std::span<const Triangle> triangles) override;
+
+  // Appends the triangles, states the counts and gives the file its name. Called once.
+  void finish();
+
+  std::uint64_t num_vertices() const { return num_vertices_; }
+  std::uint64_t num_triangles() const { return num_triangles_; }
+
+ private:
+  struct FileCloser {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  [[noreturn]] void fail_spill() const;
+  void append_spill();
+  std::string header() const;
+  void write_labelled(std::span<const MeshVertex> vertices);
+
+  std::filesystem::path target_;
+  MeshFileInfo info_;
+  VertexLabeller labeller_;  // null: no labels
+  OutputFile out_;
+  std::unique_ptr<std::FILE, FileCloser> spill_;
+  std::uint64_t num_vertices_ = 0;
+  std::uint64_t num_triangles_ = 0;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,48 @@
+// Wavefront OBJ, of which a body's shape needs "v" and "f" lines; everything else is passed over. The "v x y
+// z", "f a b c" style of PDS plate models is the same language.
+#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+
+namespace astrolith {
+namespace {
+
+// "7", "7/1", "7//3" or "7/1/3"; 1-based, or negative and counted from the last vertex so far.
+std::uint32_t corner_index(const TextScanner& scan, std::string_view corner, std::size_t vertices_so_far) {
+  const std::int64_t index = scan.to_integer(corner.substr(0, corner.find('/')), "vertex number");
+  const std::int64_t count = static_cast<std::int64_t>(vertices_so_far);
+  const std::int64_t zero_based = index < 0 ? count + index : index - 1;
+  if (index == 0 || zero_based < 0 || zero_based >= kMaxVertices) {
+    scan.fail("vertex number " + std::to_string(index) + " does not exist (" + std::to_string(count) +
+                  " vertices so far)",
+              "vertices are numbered from 1, or from -1 backwards");
+  }
+  return static_cast<std::uint32_t>(zero_based);
+}
+
+}  // namespace
+
+TriangleMesh read_obj(const MeshFile& file) {
+  TriangleMesh mesh;
+  TextScanner scan(file);
+  std::vector<std::uint32_t> polygon;
+  while (scan.next_filled_line()) {
+    const std::string_view keyword = scan.word();
+    if (keyword == "v") {
+      mesh.vertices.push_back(scan.point());
+    } else if (keyword == "f") {
+      polygon.clear();
+      while (!scan.line_done()) {
+        const std::string_view corner = scan.word();
+        if (corner.front() == '#') break;
+        if (corner == "\\" && scan.line_done() && scan.next_line()) continue;  // goes on in the next line
+        polygon.push_back(corner_index(scan, corner, mesh.vertices.size()));
+      }
+      if (polygon.size() < 3) scan.fail("the face has fewer than three vertices", "remove or complete it");
+      append_fan(polygon, mesh.triangles);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace astrolith

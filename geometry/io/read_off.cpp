@@ -1,0 +1,65 @@
+// OFF (Geomview): counts of vertices, faces and edges, then a line each. Normals, colours and texture
+// coordinates behind the numbers that matter are passed over.
+#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+
+namespace astrolith {
+namespace {
+
+// Leaves scan at the counts: on the keyword's line, glued to it ("OFF8 6 12" occurs), or on the next.
+std::string_view first_count(TextScanner& scan) {
+  if (!scan.next_filled_line()) scan.fail_truncated("'OFF'");
+  std::string_view word = scan.word();
+  const std::size_t keyword = word.find("OFF");
+  if (keyword == word.npos) return word;  // the keyword is optional
+  word.remove_prefix(keyword + 3);
+  if (!word.empty()) return word;
+  while (scan.line_done() || scan.at_comment()) {
+    if (!scan.next_filled_line()) scan.fail_truncated("the counts");
+  }
+  return scan.word();
+}
+
+std::size_t checked_count(const TextScanner& scan, std::int64_t count, std::size_t line_bytes,
+                          const char* what) {
+  if (count < 0 || static_cast<std::uint64_t>(count) > (scan.bytes_left() + 1) / line_bytes) {
+    scan.fail(std::to_string(count) + " " + what + " are declared, more than the file can hold",
+              "it may be truncated: fetch it again");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+std::uint32_t index(TextScanner& scan) {
+  const std::int64_t value = scan.integer("vertex index");
+  if (value < 0 || value >= kMaxVertices) scan.fail("the vertex index is out of range", "correct the line");
+  return static_cast<std::uint32_t>(value);
+}
+
+}  // namespace
+
+TriangleMesh read_off(const MeshFile& file) {
+  TriangleMesh mesh;
+  TextScanner scan(file);
+  const std::string_view first = first_count(scan);
+  const std::size_t num_vertices =
+      checked_count(scan, scan.to_integer(first, "number of vertices"), 6, "vertices");
+  const std::size_t num_faces = checked_count(scan, scan.integer("number of faces"), 2, "faces");
+  mesh.vertices.reserve(num_vertices);
+  for (std::size_t i = 0; i < num_vertices; ++i) {
+    if (!scan.next_filled_line()) scan.fail_truncated("a vertex");
+    mesh.vertices.push_back(scan.point());
+  }
+  std::vector<std::uint32_t> polygon;
+  for (std::size_t i = 0; i < num_faces; ++i) {
+    if (!scan.next_filled_line()) scan.fail_truncated("a face");
+    polygon.clear();
+    for (std::int64_t corners = scan.integer("number of corners"); corners > 0; --corners) {
+      polygon.push_back(index(scan));
+    }
+    append_fan(polygon, mesh.triangles);
+  }
+  return mesh;
+}
+
+}  // namespace astrolith

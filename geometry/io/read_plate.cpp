@@ -1,0 +1,68 @@
+// The plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", 1-based.
+// The first line may state both counts. (Models with rows "v x y z" and "f a b c" are read as OBJ.)
+#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::size_t kLeastRowBytes = 8;  // "1 0 0 0\n"
+
+std::size_t checked_count(const TextScanner& scan, std::int64_t count, const char* what) {
+  if (count < 1 || static_cast<std::uint64_t>(count) > (scan.bytes_left() + 1) / kLeastRowBytes) {
+    scan.fail(std::to_string(count) + " " + what + " are declared, which the file does not hold",
+              "it may be truncated, or not a plate model");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+// Goes to row number i (1-based) of a table, past its own number.
+void start_row(TextScanner& scan, std::size_t i, const char* what) {
+  if (!scan.next_filled_line()) scan.fail_truncated(std::string(what) + " " + std::to_string(i));
+  const std::int64_t stated = scan.integer("row number");
+  if (stated != static_cast<std::int64_t>(i)) {
+    scan.fail(
+        std::string(what) + " " + std::to_string(stated) + " stands where " + std::to_string(i) + " is due",
+        "rows are numbered from 1 without gaps");
+  }
+}
+
+std::uint32_t vertex_index(TextScanner& scan, std::size_t num_vertices) {
+  const std::int64_t number = scan.integer("vertex number");
+  if (number < 1 || static_cast<std::uint64_t>(number) > num_vertices) {
+    scan.fail("vertex number " + std::to_string(number) + " does not exist (there are " +
+                  std::to_string(num_vertices) + ")",
+              "vertices are numbered from 1");
+  }
+  return static_cast<std::uint32_t>(number - 1);
+}
+
+}  // namespace
+
+TriangleMesh read_plate(const MeshFile& file) {
+  TriangleMesh mesh;
+  TextScanner scan(file);
+  if (!scan.next_filled_line()) scan.fail_truncated("the number of vertices");
+  const std::size_t num_vertices = checked_count(scan, scan.integer("number of vertices"), "vertices");
+  std::int64_t num_plates = scan.line_done() ? 0 : scan.integer("number of plates");
+  mesh.vertices.reserve(num_vertices);
+  for (std::size_t i = 1; i <= num_vertices; ++i) {
+    start_row(scan, i, "vertex");
+    mesh.vertices.push_back(scan.point());
+  }
+  if (num_plates == 0) {
+    if (!scan.next_filled_line()) scan.fail_truncated("the number of plates");
+    num_plates = scan.integer("number of plates");
+  }
+  const std::size_t plates = checked_count(scan, num_plates, "plates");
+  mesh.triangles.reserve(plates);
+  for (std::size_t i = 1; i <= plates; ++i) {
+    start_row(scan, i, "plate");
+    Triangle& t = mesh.triangles.emplace_back();
+    for (std::uint32_t& corner : t) corner = vertex_index(scan, num_vertices);
+  }
+  return mesh;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,196 @@
+// PLY, ascii and binary: properties in any order and of any type; unknown properties and elements are
+// skipped.
+#include <cmath>
+
+#include "geometry/io/byte_reader_internal.h"
+#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/ply_header_internal.h"
+#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+
+namespace astrolith {
+namespace {
+
+// Numbers of a binary body.
+class BinarySource {
+ public:
+  BinarySource(const MeshFile& file, std::size_t offset, std::endian order) : bytes_(file, offset, order) {}
+
+  double number(PlyType type, std::string_view what) {
+    switch (type) {
+      case PlyType::int8:
+        return bytes_.read<std::int8_t>(what);
+      case PlyType::uint8:
+        return bytes_.read<std::uint8_t>(what);
+      case PlyType::int16:
+        return bytes_.read<std::int16_t>(what);
+      case PlyType::uint16:
+        return bytes_.read<std::uint16_t>(what);
+      case PlyType::int32:
+        return bytes_.read<std::int32_t>(what);
+      case PlyType::uint32:
+        return bytes_.read<std::uint32_t>(what);
+      case PlyType::float32:
+        return bytes_.read<float>(what);
+      case PlyType::float64:
+        return bytes_.read<double>(what);
+    }
+    return 0.0;
+  }
+  void skip(PlyType type) { bytes_.skip(size_of(type), "a property"); }
+  void need_rows(const PlyElement& e) const {
+    bytes_.need_rows(e.count, e.least_row_bytes(), e.name + " rows");
+  }
+  void need_entries(std::uint64_t count, PlyType type) const {
+    bytes_.need_rows(count, size_of(type), "list entries");
+  }
+  [[noreturn]] void fail(std::string_view what, std::string_view remedy) const { bytes_.fail(what, remedy); }
+
+ private:
+  ByteReader bytes_;
+};
+
+// Numbers of an ascii body.
+class TextSource {
+ public:
+  explicit TextSource(TextScanner& scan) : scan_(scan) {}
+
+  double number(PlyType, std::string_view what) {
+    const std::string_view word = scan_.word_anywhere();
+    if (word.empty()) scan_.fail_truncated(what);
+    return scan_.to_number(word, what);
+  }
+  void skip(PlyType) {
+    if (scan_.word_anywhere().empty()) scan_.fail_truncated("a property");
+  }
+  // A number takes a digit and a blank; the last blank of the file may be missing.
+  void need_rows(const PlyElement& e) const { need(e.count, 2 * e.properties.size(), e.name + " rows"); }
+  void need_entries(std::uint64_t count, PlyType) const { need(count, 2, "list entries"); }
+  [[noreturn]] void fail(std::string_view what, std::string_view remedy) const { scan_.fail(what, remedy); }
+
+ private:
+  void need(std::uint64_t count, std::size_t bytes, const std::string& rows) const {
+    // The current line may hold entries too: it is part of the file, so the file's size bounds them all.
+    if (bytes != 0 && count > (scan_.bytes_in_file() + 1) / bytes) {
+      scan_.fail(std::to_string(count) + " " + rows + " are declared, more than the file can hold",
+                 "it may be truncated: fetch it again");
+    }
+  }
+
+  TextScanner& scan_;
+};
+
+template <typename Source>
+std::uint64_t list_length(Source& source, const PlyProperty& property) {
+  const double length = source.number(property.count_type, "a list's length");
+  if (length < 0.0 || length != std::floor(length))
+    source.fail("a list's length is no count", "repair the file");
+  const auto count = static_cast<std::uint64_t>(std::min(length, 9e15));
+  source.need_entries(count, property.type);
+  return count;
+}
+
+template <typename Source>
+void skip_property(Source& source, const PlyProperty& property) {
+  const std::uint64_t count = property.is_list ? list_length(source, property) : 1;
+  for (std::uint64_t i = 0; i < count; ++i) source.skip(property.type);
+}
+
+template <typename Source>
+void read_vertices(Source& source, const PlyElement& element, TriangleMesh& mesh) {
+  static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+  constexpr int kSkipped = 6;
+  std::vector<int> slots;
+  int known = 0;
+  for (const PlyProperty& property : element.properties) {
+    int slot = 0;
+    while (slot < kSkipped && (property.is_list || kNames[slot] != property.name)) ++slot;
+    slots.push_back(slot);
+    if (slot < kSkipped) known |= 1 << slot;
+  }
+  if ((known & 7) != 7) source.fail("the vertices have no x, y and z", "add the properties");
+  const bool with_normals = known == 63;
+  mesh.vertices.reserve(element.count);
+  if (with_normals) mesh.normals.reserve(element.count);
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    double values[6] = {};
+    for (std::size_t p = 0; p < slots.size(); ++p) {
+      if (slots[p] == kSkipped) {
+        skip_property(source, element.properties[p]);
+      } else {
+        values[slots[p]] = source.number(element.properties[p].type, kNames[slots[p]]);
+      }
+    }
+    mesh.vertices.push_back({values[0], values[1], values[2]});
+    if (with_normals) mesh.normals.push_back({values[3], values[4], values[5]});
+  }
+}
+
+template <typename Source>
+void read_polygon(Source& source, const PlyProperty& list, std::vector<std::uint32_t>& polygon) {
+  polygon.clear();
+  for (std::uint64_t n = list_length(source, list); n > 0; --n) {
+    const double index = source.number(list.type, "a vertex index");
+    if (index < 0.0 || index >= static_cast<double>(kMaxVertices) || index != std::floor(index)) {
+      source.fail("a vertex index is negative or no whole number", "repair the file");
+    }
+    polygon.push_back(static_cast<std::uint32_t>(index));
+  }
+}
+
+template <typename Source>
+void read_faces(Source& source, const PlyElement& element, TriangleMesh& mesh) {
+  mesh.triangles.reserve(element.count);
+  std::vector<std::uint32_t> polygon;
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    for (const PlyProperty& property : element.properties) {
+      if (property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+        read_polygon(source, property, polygon);
+        append_fan(polygon, mesh.triangles);
+      } else {
+        skip_property(source, property);
+      }
+    }
+  }
+}
+
+template <typename Source>
+TriangleMesh read_body(Source&& source, const PlyHeader& header) {
+  TriangleMesh mesh;
+  for (const PlyElement& element : header.elements) {
+    if (element.properties.empty()) continue;  // rows of nothing, however many
+    source.need_rows(element);
+    if (element.name == "vertex" && mesh.vertices.empty()) {
+      read_vertices(source, element, mesh);
+    } else if (element.name == "face" && mesh.triangles.empty()) {
+      read_faces(source, element, mesh);
+    } else {
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        for (const PlyProperty& property : element.properties) skip_property(source, property);
+      }
+    }
+  }
+  return mesh;
+}
+
+// Some programs write zeros for normals they do not have.
+bool all_unit(const std::vector<Vec3d>& normals) {
+  for (const Vec3d& n : normals) {
+    if (!(std::fabs(squared_norm(n) - 1.0) < 1e-3)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TriangleMesh read_ply(const MeshFile& file) {
+  TextScanner scan(file);
+  const PlyHeader header = read_ply_header(scan);
+  const std::size_t offset = file.bytes.size() - scan.bytes_left();
+  TriangleMesh mesh = header.ascii ? read_body(TextSource(scan), header)
+                                   : read_body(BinarySource(file, offset, header.order), header);
+  if (mesh.normals.size() != mesh.vertices.size() || !all_unit(mesh.normals)) mesh.normals.clear();
+  return mesh;
+}
+
+}  // namespace astrolith

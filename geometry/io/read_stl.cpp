@@ -1,0 +1,69 @@
+// STL, ascii and binary. It has no shared vertices: corners at equal coordinates become one vertex, and
+// facets that collapse so are dropped.
+#include "geometry/io/byte_reader_internal.h"
+#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+#include "geometry/weld.h"
+
+namespace astrolith {
+namespace {
+
+void add_corner_triangle(TriangleMesh& mesh) {
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.triangles.push_back({n - 3, n - 2, n - 1});
+}
+
+TriangleMesh share_vertices(TriangleMesh mesh) {
+  mesh = weld_vertices(std::move(mesh), 0.0);
+  std::erase_if(mesh.triangles,
+                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  return mesh;
+}
+
+}  // namespace
+
+TriangleMesh read_stl_ascii(const MeshFile& file) {
+  TriangleMesh mesh;
+  TextScanner scan(file);
+  std::size_t corners = 0;
+  bool complete = false;
+  while (scan.next_line()) {
+    const std::string_view word = scan.word();
+    if (word == "vertex") {
+      mesh.vertices.push_back(scan.point());
+      ++corners;
+    } else if (word == "endloop") {
+      if (corners != 3) scan.fail("the facet has " + std::to_string(corners) + " vertices", "give it three");
+      add_corner_triangle(mesh);
+      corners = 0;
+    }
+    if (!word.empty()) complete = word == "endsolid";
+  }
+  if (!complete) scan.fail_truncated("'endsolid'");
+  return share_vertices(std::move(mesh));
+}
+
+TriangleMesh read_stl_binary(const MeshFile& file) {
+  TriangleMesh mesh;
+  ByteReader bytes(file);
+  bytes.skip(80, "the header");
+  const auto count = bytes.read<std::uint32_t>("the number of triangles");
+  bytes.need_rows(count, 50, "triangles");
+  if (count > 0xffffffffu / 3) bytes.fail("more corners than 2^32", "write it as .ply");
+  mesh.vertices.reserve(std::size_t{3} * count);
+  mesh.triangles.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    bytes.skip(12, "a normal");
+    for (int corner = 0; corner < 3; ++corner) {
+      const float x = bytes.read<float>("x");
+      const float y = bytes.read<float>("y");
+      const float z = bytes.read<float>("z");
+      mesh.vertices.push_back({x, y, z});
+    }
+    bytes.skip(2, "an attribute");
+    add_corner_triangle(mesh);
+  }
+  return share_vertices(std::move(mesh));
+}
+
+}  // namespace astrolith

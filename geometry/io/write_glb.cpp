@@ -1,0 +1,129 @@
+// glTF 2.0 in its binary container (Khronos, sections 3 and 4.4): one JSON chunk, one chunk of numbers.
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "geometry/io/mesh_writers_internal.h"
+
+namespace astrolith {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFloat = 5126, kUnsignedInt = 5125;                 // component types
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;  // targets of buffer views
+
+// Metres in one unit of length; 1 for units that glTF's readers will have to be told about.
+double metres_per(const std::string& length_unit) {
+  if (length_unit == "km") return 1000.0;
+  if (length_unit == "cm") return 0.01;
+  if (length_unit == "mm") return 0.001;
+  return 1.0;
+}
+
+Json vector_json(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
+
+// The smallest and largest coordinates as stored, which the format asks for.
+std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh) {
+  const Box box = mesh.bounds();
+  return {to_float(box.min), to_float(box.max)};
+}
+
+class GlbDocument {
+ public:
+  GlbDocument(const TriangleMesh& mesh, const MeshFileInfo& info) : mesh_(mesh) {
+    document_["asset"] = {{"version", "2.0"}, {"generator", "Astrolith"}, {"extras", extras(info)}};
+    document_["scene"] = 0;
+    document_["scenes"] = Json::array({{{"nodes", {0}}}});
+    document_["nodes"] = Json::array({node(info)});
+    document_["materials"] = Json::array({material()});
+    add_arrays();
+    document_["buffers"] = Json::array({{{"byteLength", num_bytes_}}});
+  }
+
+  std::string json() const { return document_.dump(-1, ' ', false, Json::error_handler_t::replace); }
+  std::uint64_t num_bytes() const { return num_bytes_; }
+
+ private:
+  static Json extras(const MeshFileInfo& info) {
+    Json extras = {{"length_unit", info.length_unit}, {"frame", info.frame}, {"comment", info.comment}};
+    if (info.origin) extras["origin"] = {info.origin->x, info.origin->y, info.origin->z};
+    return extras;
+  }
+
+  // A quarter turn about x takes +z up into +y up: quaternion (x y z w).
+  static Json node(const MeshFileInfo& info) {
+    constexpr double kHalf = 0.70710678118654757;
+    const double scale = metres_per(info.length_unit);
+    Json result = {{"mesh", 0}, {"name", "body"}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
+    result["scale"] = {scale, scale, scale};
+    return result;
+  }
+
+  // The default would be a mirror of metal.
+  static Json material() {
+    return {{"name", "regolith"},
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor", {0.5, 0.5, 0.5, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
+  }
+
+  void add_arrays() {
+    const auto [low, high] = float_bounds(mesh_);
+    Json attributes;
+    attributes["POSITION"] = add_array(mesh_.vertices.size(), kArrayBuffer, kFloat, "VEC3", 12);
+    document_["accessors"].back()["min"] = vector_json(low);
+    document_["accessors"].back()["max"] = vector_json(high);
+    if (!mesh_.normals.empty()) {
+      attributes["NORMAL"] = add_array(mesh_.normals.size(), kArrayBuffer, kFloat, "VEC3", 12);
+    }
+    const int indices = add_array(3 * mesh_.triangles.size(), kElementArrayBuffer, kUnsignedInt, "SCALAR", 4);
+    const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
+    document_["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
+  }
+
+  // One buffer view with one accessor; returns the accessor's number.
+  int add_array(std::uint64_t count, int target, int component, const char* type, std::uint64_t bytes_each) {
+    const int number = static_cast<int>(document_["accessors"].size());
+    document_["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", num_bytes_}, {"byteLength", count * bytes_each}, {"target", target}});
+    document_["accessors"].push_back(
+        {{"bufferView", number}, {"componentType", component}, {"count", count}, {"type", type}});
+    num_bytes_ += count * bytes_each;
+    return number;
+  }
+
+  const TriangleMesh& mesh_;
+  Json document_;
+  std::uint64_t num_bytes_ = 0;  // a multiple of four: every array holds 4-byte numbers
+};
+
+void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::string_view type) {
+  buffer.append_value(static_cast<std::uint32_t>(bytes));
+  buffer.append(type);
+}
+
+}  // namespace
+
+void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
+  const GlbDocument document(mesh, info);
+  std::string json = document.json();
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::uint64_t total = 12 + 8 + json.size() + 8 + document.num_bytes();
+  if (total > std::numeric_limits<std::uint32_t>::max()) {
+    throw WorkError(file.string() + ": a GLB holds at most 4 GB; write a .ply");
+  }
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  buffer.append("glTF");
+  buffer.append_value(std::uint32_t{2});
+  buffer.append_value(static_cast<std::uint32_t>(total));
+  append_chunk_header(buffer, json.size(), "JSON");
+  buffer.append(json);
+  append_chunk_header(buffer, document.num_bytes(), {"BIN\0", 4});
+  for (const Vec3d& v : mesh.vertices) buffer.append_value(to_float(v));
+  for (const Vec3d& n : mesh.normals) buffer.append_value(to_float(n));
+  for (const Triangle& t : mesh.triangles) buffer.append_value(t);
+  buffer.flush();
+  out.commit();
+}
+
+}  // namespace astrolith

@@ -1,0 +1,49 @@
+#include "geometry/mesh_edges_internal.h"
+#include "geometry/surface/half_edge_mesh_internal.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+// Over the 3 #F corners: the fan each corner belongs to.
+DisjointSets fans_of(const TriangleMesh& mesh) {
+  DisjointSets fans(3 * mesh.triangles.size());
+  for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
+    if (edge.size() != 2 || edge[0].forward == edge[1].forward) return;
+    fans.unite(edge[0].corner_of_low(), edge[1].corner_of_low());
+    fans.unite(edge[0].corner_of_high(), edge[1].corner_of_high());
+  });
+  return fans;
+}
+
+}  // namespace
+
+HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh) {
+  check_indices(mesh);
+  HalfEdgeMesh result;
+  result.copies.assign(mesh.vertices.size(), 0);
+  DisjointSets fans = fans_of(mesh);
+  std::vector<OpenMesh::VertexHandle> vertex_of_fan(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    if (is_degenerate(triangle)) continue;
+    std::array<OpenMesh::VertexHandle, 3> corners;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      OpenMesh::VertexHandle& vertex = vertex_of_fan[fans.find(3 * t + k)];
+      if (!vertex.is_valid()) {
+        const Vec3d& p = mesh.vertices[triangle[k]];
+        vertex = result.half_edges.add_vertex({p.x, p.y, p.z});
+        result.original.push_back(triangle[k]);
+        ++result.copies[triangle[k]];
+      }
+      corners[k] = vertex;
+    }
+    // Cannot fail on a mesh that has been cut; OpenMesh would have printed why.
+    if (!result.half_edges.add_face(corners[0], corners[1], corners[2]).is_valid()) {
+      throw WorkError("mesh: half-edges cannot hold triangle " + std::to_string(t));
+    }
+  }
+  return result;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,147 @@
+#include "geometry/surface/mesh_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <string>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_normals.h"
+#include "geometry/points/point_grid_internal.h"
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::int64_t kCandidatesPerSample = 5;
+// Keeps indices in 32 bits.
+constexpr std::int64_t kMaxSamples = std::numeric_limits<std::int32_t>::max() / kCandidatesPerSample;
+
+std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
+  std::vector<double> sums;
+  sums.reserve(mesh.triangles.size());
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) sums.push_back(sum += triangle_area(mesh, t));
+  if (!(sum > 0) || !std::isfinite(sum)) {
+    throw InputError("mesh: its surface has no area or is not finite; points cannot be placed on it");
+  }
+  return sums;
+}
+
+void check_count(std::int64_t n) {
+  if (n < 0 || n > kMaxSamples) {
+    throw InputError("number of surface samples: " + std::to_string(n) + " is outside 0 to " +
+                     std::to_string(kMaxSamples) + "; choose fewer");
+  }
+}
+
+// How crowded each candidate is, eq. 2 and 3 of Yuksel 2015.
+class Crowding {
+ public:
+  Crowding(double max_radius, double min_radius) : reach_(2 * max_radius), floor_(2 * min_radius) {}
+  double reach() const { return reach_; }
+  double weight(double squared_distance) const {
+    const double x = 1 - std::max(std::sqrt(squared_distance), floor_) / reach_;
+    const double x2 = x * x, x4 = x2 * x2;
+    return x4 * x4;  // alpha = 8
+  }
+
+ private:
+  double reach_, floor_;
+};
+
+// Removes the most crowded point until n are left; which[i] tells whether point i stays.
+std::vector<bool> eliminate(const std::vector<Vec3d>& points, std::int64_t n, const Crowding& crowding) {
+  const PointGrid grid(points, crowding.reach());
+  std::vector<double> weights(points.size(), 0.0);
+  parallel_for(
+      0, static_cast<std::int64_t>(points.size()),
+      [&](std::int64_t i) {
+        double sum = 0;
+        grid.for_each_neighbour(static_cast<std::uint32_t>(i),
+                                [&](std::uint32_t, double d2) { sum += crowding.weight(d2); });
+        weights[static_cast<std::size_t>(i)] = sum;
+      },
+      256);
+  // Weights only fall, so an entry of the queue is never too low: one that is out of date goes back with its
+  // present weight. Among equals the highest index is removed.
+  std::priority_queue<std::pair<double, std::uint32_t>> queue;
+  for (std::uint32_t i = 0; i < points.size(); ++i) queue.emplace(weights[i], i);
+  std::vector<bool> stays(points.size(), true);
+  while (static_cast<std::int64_t>(queue.size()) > n) {
+    const auto [weight, i] = queue.top();
+    queue.pop();
+    if (weight != weights[i]) {
+      queue.emplace(weights[i], i);
+      continue;
+    }
+    stays[i] = false;
+    grid.for_each_neighbour(i, [&](std::uint32_t j, double d2) { weights[j] -= crowding.weight(d2); });
+  }
+  return stays;
+}
+
+SurfaceSamples only(const SurfaceSamples& all, const std::vector<bool>& stays) {
+  SurfaceSamples kept;
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    if (!stays[i]) continue;
+    kept.points.push_back(all.points[i]);
+    kept.normals.push_back(all.normals[i]);
+    kept.triangles.push_back(all.triangles[i]);
+  }
+  return kept;
+}
+
+}  // namespace
+
+double poisson_disk_radius(double area, std::int64_t n) {
+  return std::sqrt(area / (2 * std::sqrt(3.0) * static_cast<double>(n)));
+}
+
+SurfaceSamples sample_surface(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
+                              SampleNormals kind) {
+  check_count(n);
+  const std::vector<double> areas = cumulative_areas(mesh);
+  const auto size = static_cast<std::size_t>(n);
+  const bool interpolate = kind == SampleNormals::interpolated;
+  const std::vector<Vec3d> smooth = interpolate ? vertex_normals(mesh) : std::vector<Vec3d>();
+  SurfaceSamples samples{std::vector<Vec3d>(size), std::vector<Vec3d>(size),
+                         std::vector<std::uint32_t>(size)};
+  parallel_for(
+      0, n,
+      [&](std::int64_t index) {
+        const auto i = static_cast<std::size_t>(index);
+        CounterRandom random(seed, i);
+        const auto found = std::upper_bound(areas.begin(), areas.end(), areas.back() * random.uniform());
+        // Rounding may push the drawn area onto the total; the last triangle with area then takes it.
+        const auto t = static_cast<std::size_t>(
+            (found == areas.end() ? std::lower_bound(areas.begin(), areas.end(), areas.back()) : found) -
+            areas.begin());
+        const auto [a, b, c] = mesh.triangles[t];
+        // Uniform over a triangle: the square root undoes the corner's crowding.
+        const double root = std::sqrt(random.uniform()), split = random.uniform();
+        const double wa = 1 - root, wb = root * (1 - split), wc = root * split;
+        samples.points[i] = wa * mesh.vertices[a] + wb * mesh.vertices[b] + wc * mesh.vertices[c];
+        samples.normals[i] = interpolate ? normalized(wa * smooth[a] + wb * smooth[b] + wc * smooth[c])
+                                         : triangle_normal(mesh, mesh.triangles[t]);
+        samples.triangles[i] = static_cast<std::uint32_t>(t);
+      },
+      1024);
+  return samples;
+}
+
+SurfaceSamples sample_poisson_disk(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
+                                   SampleNormals kind) {
+  check_count(n);
+  if (n == 0) return {};
+  const SurfaceSamples candidates = sample_surface(mesh, kCandidatesPerSample * n, seed, kind);
+  const double max_radius = poisson_disk_radius(surface_area(mesh), n);
+  const double min_radius =
+      max_radius * 0.65 * (1 - std::pow(1.0 / static_cast<double>(kCandidatesPerSample), 1.5));
+  return only(candidates, eliminate(candidates.points, n, Crowding(max_radius, min_radius)));
+}
+
+}  // namespace astrolith

@@ -1,0 +1,32 @@
+// How far two surfaces lie apart, measured at random points of both.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/surface/surface_tree.h"
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+// Of the distances from points of one surface to the other surface, in the meshes' unit.
+struct DistanceFigures {
+  double mean = 0;
+  double p99 = 0;  // 99 of 100 samples are at most this far
+  double max = 0;
+};
+
+struct SurfaceDistanceReport {
+  double mean = 0, p99 = 0, max = 0;  // over the samples of both directions together
+  DistanceFigures from_a_to_b, from_b_to_a;
+};
+
+// samples > 0 area-weighted points on each mesh. max is a lower bound of the Hausdorff distance.
+SurfaceDistanceReport surface_distance(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples,
+                                       std::uint64_t seed);
+
+// As above where the tree of a fixed mesh is at hand.
+SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_of_a,
+                                       const TriangleMesh& b, const SurfaceTree& tree_of_b,
+                                       std::int64_t samples, std::uint64_t seed);
+
+}  // namespace astrolith

@@ -1,0 +1,233 @@
+#include "geometry/surface/surface_tree.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_normals.h"
+#include "geometry/mesh_topology.h"
+#include "geometry/surface/closest_on_triangle.h"
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+struct ReleaseEmbree {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, ReleaseEmbree>;
+using Scene = std::unique_ptr<RTCSceneTy, ReleaseEmbree>;
+
+void check(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) throw InputError("mesh: has no triangles; a surface needs at least one");
+  for (const Vec3d& p : mesh.vertices) {
+    if (!std::isfinite(squared_norm(p))) throw InputError("mesh: a vertex is not finite; repair the file");
+  }
+  check_indices(mesh);
+}
+
+void check_embree(RTCDevice device) {
+  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
+    throw WorkError("building the tree of the surface failed; is there enough memory?");
+  }
+}
+
+// (3 #F) pseudo-normals of the sides that start at each corner: the sum of the unit normals of all triangles
+// at the edge.
+std::vector<Vec3d> side_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& faces) {
+  std::vector<Vec3d> normals(3 * mesh.triangles.size());
+  for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
+    Vec3d sum;
+    for (const TriangleSide& side : edge) sum += faces[side.triangle];
+    for (const TriangleSide& side : edge) normals[3 * side.triangle + side.corner] = normalized(sum);
+  });
+  return normals;
+}
+
+}  // namespace
+
+// A component that may overlap another.
+struct SurfaceTree::Body {
+  Box box;
+  SurfaceTree tree;
+};
+
+struct SurfaceTree::State {
+  TriangleMesh mesh;
+  std::vector<Vec3d> faces, sides, corners;  // unit pseudo-normals, (#F), (3 #F), (#V)
+  Vec3d center;                              // Embree sees (p - center) * scale, inside the unit ball
+  double scale = 1;
+  Device device;
+  Scene scene;
+  std::vector<Body> bodies;  // of the components whose boxes meet another's
+
+  Vec3d scaled(const Vec3d& p) const { return scale * (p - center); }
+  ClosestOnTriangle on_triangle(const Vec3d& p, std::uint32_t t) const {
+    const Triangle& v = mesh.triangles[t];
+    return closest_on_triangle(p, mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]);
+  }
+  Vec3d normal(std::uint32_t t, TriangleFeature feature) const {
+    const auto index = static_cast<std::size_t>(feature);
+    if (feature == TriangleFeature::face) return faces[t];
+    return index < 3 ? corners[mesh.triangles[t][index]] : sides[3 * std::size_t{t} + index - 3];
+  }
+  void build_scene();
+};
+
+namespace {
+
+// Overlaps are looked for among at most so many components: each pair is compared, each gets a tree.
+constexpr std::size_t kMaxBodies = 64;
+
+// The components as meshes of their own when their number is 2 to kMaxBodies and all are wound outwards;
+// none otherwise.
+std::vector<TriangleMesh> separate_bodies(const TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> component = triangle_components(mesh);
+  const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
+  if (count < 2 || count > kMaxBodies) return {};
+  std::vector<TriangleMesh> bodies(count);
+  std::vector<std::uint32_t> renumbered(mesh.vertices.size(), std::numeric_limits<std::uint32_t>::max());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    TriangleMesh& body = bodies[component[t]];
+    Triangle triangle = mesh.triangles[t];
+    for (std::uint32_t& v : triangle) {
+      std::uint32_t& own = renumbered[v];
+      if (own == std::numeric_limits<std::uint32_t>::max()) {
+        own = static_cast<std::uint32_t>(body.vertices.size());
+        body.vertices.push_back(mesh.vertices[v]);
+      }
+      v = own;
+    }
+    body.triangles.push_back(triangle);
+  }
+  const bool outwards =
+      std::all_of(bodies.begin(), bodies.end(), [](const TriangleMesh& body) { return volume(body) > 0; });
+  return outwards ? bodies : std::vector<TriangleMesh>();
+}
+
+// Beyond this many radii from the mesh single precision could not tell its boxes apart.
+constexpr double kFarInRadii = 1e5;
+
+// The best candidate of one query.
+struct Search {
+  const Vec3d& p;
+  double scaled_norm;  // distance of p from the mesh's centre, in radii
+  std::uint32_t triangle = 0;
+  ClosestOnTriangle best{{}, std::numeric_limits<double>::infinity(), TriangleFeature::face};
+
+  // True when the triangle is nearer, or as near and of a lower index.
+  bool offer(const ClosestOnTriangle& candidate, std::uint32_t t) {
+    const double d2 = candidate.squared_distance;
+    if (d2 > best.squared_distance || (d2 == best.squared_distance && t >= triangle)) return false;
+    best = candidate;
+    triangle = t;
+    return true;
+  }
+  // A radius in single precision that surely reaches the best candidate: positions and distances carry
+  // rounding errors of a few 2^-24 of the numbers involved; 16 times 2^-24 is left for them.
+  float safe_radius(double scale) const {
+    return static_cast<float>(std::sqrt(best.squared_distance) * scale * (1 + 1e-6) +
+                              1e-6 * (1 + scaled_norm));
+  }
+};
+
+}  // namespace
+
+void SurfaceTree::State::build_scene() {
+  device.reset(rtcNewDevice(nullptr));
+  if (!device) throw WorkError("the ray-tracing library Embree does not start on this machine");
+  scene.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
+                              mesh.triangles.size()));
+  check_embree(device.get());
+  for (const Vec3d& vertex : mesh.vertices) {
+    const Vec3d q = scaled(vertex);
+    for (const double x : {q.x, q.y, q.z}) *positions++ = static_cast<float>(x);
+  }
+  for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
+  rtcSetGeometryPointQueryFunction(geometry, nullptr);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene.get());
+  check_embree(device.get());
+}
+
+SurfaceTree::SurfaceTree(const TriangleMesh& mesh) : state_(std::make_unique<State>()) {
+  check(mesh);
+  state_->mesh = {mesh.vertices, mesh.triangles, {}};
+  state_->faces = triangle_normals(mesh);
+  state_->sides = side_normals(mesh, state_->faces);
+  state_->corners = vertex_normals(mesh);
+  const Box box = mesh.bounds();
+  state_->center = box.center();
+  state_->scale = box.diagonal() > 0 ? 2 / box.diagonal() : 1;
+  state_->build_scene();
+  const std::vector<TriangleMesh> bodies = separate_bodies(mesh);
+  for (const TriangleMesh& body : bodies) {
+    const auto meets = [&](const TriangleMesh& other) {
+      return &other != &body && boxes_touch(body.bounds(), other.bounds());
+    };
+    if (std::any_of(bodies.begin(), bodies.end(), meets)) {
+      state_->bodies.push_back({body.bounds(), SurfaceTree(body)});
+    }
+  }
+}
+
+SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
+SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
+SurfaceTree::~SurfaceTree() = default;
+
+ClosestPoint SurfaceTree::closest(const Vec3d& p) const {
+  const Vec3d q = state_->scaled(p);
+  Search search{p, norm(q)};
+  if (search.scaled_norm > kFarInRadii) {
+    for (std::uint32_t t = 0; t < state_->mesh.triangles.size(); ++t)
+      search.offer(state_->on_triangle(p, t), t);
+  } else {
+    struct Call {
+      const State& state;
+      Search& search;
+    } call{*state_, search};
+    const auto visit = [](RTCPointQueryFunctionArguments* arguments) {
+      auto& [state, current] = *static_cast<Call*>(arguments->userPtr);
+      const std::uint32_t t = arguments->primID;
+      if (!current.offer(state.on_triangle(current.p, t), t)) return false;
+      arguments->query->radius = current.safe_radius(state.scale);
+      return true;
+    };
+    RTCPointQuery query{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), 0,
+                        std::numeric_limits<float>::infinity()};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(state_->scene.get(), &query, &context, visit, &call);
+  }
+  const ClosestOnTriangle& best = search.best;
+  return {best.point, search.triangle, std::sqrt(best.squared_distance),
+          state_->normal(search.triangle, best.feature)};
+}
+
+double SurfaceTree::signed_distance(const Vec3d& p) const {
+  const ClosestPoint nearest = closest(p);
+  double distance = dot(p - nearest.point, nearest.normal) > 0 ? -nearest.distance : nearest.distance;
+  // Inside the union is inside any of them; a body that p is outside of can only offer less.
+  for (const Body& body : state_->bodies) {
+    if (boxes_touch(body.box, {p, p})) distance = std::max(distance, body.tree.signed_distance(p));
+  }
+  return distance;
+}
+
+}  // namespace astrolith

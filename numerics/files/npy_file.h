@@ -1,0 +1,42 @@
+// Arrays for NumPy.
+#pragma once
+
+#include <bit>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+
+// Writes doubles, the last index of `shape` running fastest, as a .npy file of format 1.0 (little-endian
+// float64), whole or not at all. Throws InputError where the target cannot be written, WorkError when the
+// shape has another number of values.
+inline void write_npy(std::span<const double> values, std::span<const int> shape,
+                      const std::filesystem::path& file) {
+  static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+  std::size_t size = 1;
+  std::string lengths;  // "5, 5, ": NumPy takes a comma behind the last, and needs it behind a single one
+  for (const int length : shape) {
+    size *= static_cast<std::size_t>(length);
+    lengths += std::to_string(length) + ", ";
+  }
+  if (values.size() != size) throw WorkError(file.string() + ": the array does not have the stated shape");
+  if (shape.size() > 1) lengths.erase(lengths.size() - 2);
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + lengths + "), }";
+  // Magic, version and length take 10 bytes; the data start at a multiple of 64.
+  header.append((64 - (10 + header.size() + 1) % 64) % 64, ' ');
+  header += '\n';
+  std::string start("\x93NUMPY\x01\x00", 8);
+  start += static_cast<char>(header.size() & 0xff);
+  start += static_cast<char>(header.size() >> 8);
+  start += header;
+  OutputFile out(file);
+  out.write(start.data(), start.size());
+  out.write(values.data(), values.size_bytes());
+  out.commit();
+}
+
+}  // namespace astrolith

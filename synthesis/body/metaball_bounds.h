@@ -1,0 +1,246 @@
+// What is certain about metaballs over a box: plain code for CPU and GPU, which must agree on it bit by bit.
+// Kernels other than the Gaussian: profile_bounds.h.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "numerics/interval.h"
+#include "numerics/portable_double.h"
+#include "synthesis/body/metaball_body.h"
+#include "synthesis/body/metaball_box.h"
+
+namespace astrolith {
+
+// Some of an array's metaballs, by their numbers; all of them where there are no numbers. Those that take
+// away come last.
+struct MetaballList {
+  const MetaballSphere<float>* spheres;
+  const std::uint32_t* numbers;
+  std::uint32_t count;
+
+  ASTROLITH_HD const MetaballSphere<float>& operator[](std::uint32_t i) const {
+    return spheres[numbers == nullptr ? i : numbers[i]];
+  }
+};
+
+// A kernel over a box, to the power m where it is not the Gaussian.
+struct KernelInterval {
+  const MetaballSphere<float>* sphere;
+  double min, max;
+  double gradient_max;          // of |grad log f_i| / m; not the Gaussian: of |grad K|
+  double slope_min, slope_max;  // of -dK/dq; not the Gaussian
+};
+
+// Of the spheres of one kind that reach a box, and of the sum of their kernels there and of what is added to
+// it: the kernels' floor to those that add, 1 to those that take away.
+struct KernelIntervals {
+  KernelInterval* kernels;
+  std::uint32_t count;
+  double sum_min, sum_max;
+
+  ASTROLITH_HD void add(const KernelInterval& kernel) {
+    kernels[count++] = kernel;
+    sum_min += kernel.min;
+    sum_max += kernel.max;
+  }
+};
+
+// Of a body, with A = P / (1 + N) as in metaballs.h: P + floor <= added.sum_max, 1 + N <= taken.sum_max.
+struct BodyIntervals {
+  KernelIntervals added, taken;
+
+  // Of A + floor.
+  ASTROLITH_HD double net_min() const { return added.sum_min / taken.sum_max; }
+  ASTROLITH_HD double net_max() const {
+    if (!takes_away()) return added.sum_max;
+    return (added.sum_max - double{kKernelFloor}) / taken.sum_min + double{kKernelFloor};
+  }
+  ASTROLITH_HD bool takes_away() const { return taken.count != 0; }
+};
+
+// `interval_of(sphere, kernel)` is false for spheres that do not reach the box. Expects those that take away
+// last; `kernels` takes as many as there are spheres.
+template <typename IntervalOf>
+ASTROLITH_HD BodyIntervals bound_kernels(const MetaballList& spheres, KernelInterval* kernels,
+                                         const IntervalOf& interval_of) {
+  BodyIntervals bounds{{kernels, 0, double{kKernelFloor}, double{kKernelFloor}}, {nullptr, 0, 1.0, 1.0}};
+  std::uint32_t i = 0;
+  KernelInterval kernel;
+  for (; i < spheres.count && !spheres[i].takes_away(); ++i) {
+    if (interval_of(spheres[i], kernel)) bounds.added.add(kernel);
+  }
+  bounds.taken.kernels = kernels + bounds.added.count;
+  for (; i < spheres.count; ++i) {
+    if (interval_of(spheres[i], kernel)) bounds.taken.add(kernel);
+  }
+  return bounds;
+}
+
+// The divisor of s for a |grad L|, rounded up.
+ASTROLITH_HD inline double metaball_divisor(const MetaballParameters<float>& body, double gradient) {
+  return std::sqrt(gradient * gradient + static_cast<double>(body.gradient_floor)) * (1.0 + kDistanceSlack);
+}
+
+// The least and the largest |p - c|^2 / r^2 in a box.
+ASTROLITH_HD inline Interval squared_radii(const MetaballSphere<float>& s, const Box& box) {
+  const double inverse = inverse_square(s);
+  const SquaredDistances d = squared_distances(s, box);
+  return {d.nearest * inverse * (1.0 - kDistanceSlack), d.farthest * inverse * (1.0 + kDistanceSlack)};
+}
+
+ASTROLITH_HD inline double gaussian_at(const MetaballParameters<float>& body, double q) {
+  return portable::exp(
+      std::min(static_cast<double>(body.m_a) - static_cast<double>(body.m_b) * q, double{kLargestExponent}));
+}
+
+ASTROLITH_HD inline BodyIntervals bound_gaussians(const MetaballParameters<float>& body,
+                                                  const MetaballList& spheres, const Box& box,
+                                                  KernelInterval* kernels) {
+  const double m_b = static_cast<double>(body.m_b), m = 1.0 / static_cast<double>(body.inverse_m);
+  const double cutoff = static_cast<double>(body.cutoff_squared);
+  return bound_kernels(spheres, kernels, [&](const MetaballSphere<float>& s, KernelInterval& kernel) {
+    const Interval q = squared_radii(s, box);
+    if (q.low >= cutoff) return false;
+    const double f_max = gaussian_at(body, q.low);
+    const double f_min = q.high < cutoff ? gaussian_at(body, q.high) : 0.0;
+    const double slope = std::sqrt(std::min(q.high, cutoff) * inverse_square(s));
+    kernel = {&s, f_min, f_max, 2.0 * m_b / m * slope, 0.0, 0.0};
+    return true;
+  });
+}
+
+// Of |sum_i w_i grad log f_i| / m over one kind, with w_i <= f_i,max / (f_i,max + the others' minima) and
+// weights that add up to at most one: f_i / P, or f_i / (1 + N). |grad L| is at most the sum of both kinds'.
+// The bounds of meshes, and so their grids, depend on it.
+ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& bounds) {
+  double weighted = 0.0, steepest = 0.0;
+  for (std::uint32_t i = 0; i < bounds.count; ++i) {
+    const KernelInterval& k = bounds.kernels[i];
+    weighted += k.gradient_max * k.max / (bounds.sum_min - k.min + k.max);
+    steepest = std::max(steepest, k.gradient_max);
+  }
+  return std::min(weighted, steepest) * (1.0 + kDistanceSlack);
+}
+
+// The same where the kernels' sum is at least `sum`: the steepest kernels get all the weight they may.
+// Expects those first.
+ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& bounds, double sum) {
+  double gradient = 0.0, left = 1.0;
+  for (std::uint32_t i = 0; i < bounds.count && left > 0.0; ++i) {
+    const KernelInterval& k = bounds.kernels[i];
+    const double weight = std::min(left, k.max / std::max(sum, bounds.sum_min - k.min + k.max));
+    gradient += k.gradient_max * weight;
+    left -= weight;
+  }
+  return gradient * (1.0 + kDistanceSlack);
+}
+
+// By falling slopes; the order of equal ones follows from the spheres'.
+ASTROLITH_HD inline bool is_steeper(const KernelInterval& a, const KernelInterval& b) {
+  return a.gradient_max != b.gradient_max ? a.gradient_max > b.gradient_max : a.sphere < b.sphere;
+}
+// A heap sort: no recursion, no memory, no luck. Children of i are 2i + 1 and 2i + 2.
+ASTROLITH_HD inline void sort_steepest_first(KernelInterval* kernels, std::uint32_t count) {
+  const auto sink = [&](std::uint32_t i, std::uint32_t end) {
+    for (std::uint32_t child = 2 * i + 1; child < end; i = child, child = 2 * i + 1) {
+      if (child + 1 < end && is_steeper(kernels[child], kernels[child + 1])) ++child;
+      if (!is_steeper(kernels[i], kernels[child])) return;
+      const KernelInterval moved = kernels[i];
+      kernels[i] = kernels[child];
+      kernels[child] = moved;
+    }
+  };
+  for (std::uint32_t i = count / 2; i > 0; --i) sink(i - 1, count);
+  for (std::uint32_t end = count; end > 1; --end) {
+    const KernelInterval least = kernels[0];
+    kernels[0] = kernels[end - 1];
+    kernels[end - 1] = least;
+    sink(0, end - 1);
+  }
+}
+
+ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameters<float>& body,
+                                                         const MetaballList& spheres, const Box& box,
+                                                         double height, KernelInterval* scratch) {
+  const double m = 1.0 / static_cast<double>(body.inverse_m);
+  const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
+  const double of_taken = largest_gaussian_gradient(bounds.taken);
+  const double steepest = largest_gaussian_gradient(bounds.added) + of_taken;
+  double gradient = steepest;
+  if (height < std::numeric_limits<double>::infinity()) {
+    sort_steepest_first(bounds.added.kernels, bounds.added.count);
+    // There A is at least e^(-m height |grad L|), and P that times 1 + N.
+    for (int pass = 0; pass < 3; ++pass) {
+      const double net = 0.999 * portable::exp(-m * height * metaball_divisor(body, gradient));
+      const double sum = net * bounds.taken.sum_min;
+      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + of_taken);
+    }
+  }
+  // Float rounding: of the exponents and the logarithm, and of the coordinates.
+  const double kinds = bounds.takes_away() ? 2.0 : 1.0;
+  const double slack = kinds * (3e-5 + 1e-6 * std::fabs(static_cast<double>(body.m_a))) / m +
+                       1e-6 * largest_coordinate(box) * steepest;
+  return {portable::log(bounds.net_min()) / m - slack, portable::log(bounds.net_max()) / m + slack,
+          metaball_divisor(body, gradient)};
+}
+
+// The direction in which the sum of the kernels that add falls fastest at a point.
+ASTROLITH_HD inline Vec3d gaussians_outward(const MetaballParameters<float>& body,
+                                            const MetaballList& spheres, const Vec3d& p) {
+  Vec3d sum;
+  for (std::uint32_t i = 0; i < spheres.count; ++i) {
+    const MetaballSphere<float>& s = spheres[i];
+    if (s.takes_away()) break;
+    const double inverse = static_cast<double>(s.inverse_radius_squared);
+    const Vec3d d = p - Vec3d{s.center.x, s.center.y, s.center.z};
+    const double q = squared_norm(d) * inverse;
+    if (q < static_cast<double>(body.cutoff_squared)) sum += gaussian_at(body, q) * inverse * d;
+  }
+  return normalized(sum);
+}
+
+// How far the points of a box reach from its centre along a direction.
+ASTROLITH_HD inline double spread_along(const Box& box, const Vec3d& u) {
+  const Vec3d half = 0.5 * box.extent();
+  return std::fabs(u.x) * half.x + std::fabs(u.y) * half.y + std::fabs(u.z) * half.z;
+}
+
+ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<float>& body,
+                                                      const MetaballList& spheres, const Box& box,
+                                                      KernelInterval* scratch) {
+  const double b = static_cast<double>(body.m_b) * static_cast<double>(body.inverse_m);
+  const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
+  const KernelIntervals& added = bounds.added;
+  // Weights are f_i / (P + floor (1 + N)).
+  const double floor_max = double{kKernelFloor} * bounds.taken.sum_max;
+  const double sum_max =
+      bounds.takes_away() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
+  // The component along one direction, of each grad log f_i / m and of their weighted mean.
+  const Vec3d center = box.center(), u = gaussians_outward(body, spheres, center);
+  const double spread = spread_along(box, u);
+  double weighted = 0.0, least = std::numeric_limits<double>::infinity(), sharpest = 0.0;
+  for (std::uint32_t i = 0; i < added.count; ++i) {
+    const KernelInterval& k = added.kernels[i];
+    const double inverse = static_cast<double>(k.sphere->inverse_radius_squared);
+    const Vec3d c{k.sphere->center.x, k.sphere->center.y, k.sphere->center.z};
+    const double component = 2.0 * b * inverse * (dot(center - c, u) - spread);
+    weighted += component * (component > 0.0 ? k.min / (sum_max - k.max + k.min)
+                                             : k.max / (added.sum_min - k.min + k.max));
+    least = std::min(least, component);
+    sharpest = std::max(sharpest, inverse);
+  }
+  if (added.count == 0) least = 0.0;
+  for (std::uint32_t i = 0; i < bounds.taken.count; ++i) {
+    sharpest = std::max(sharpest, inverse_square(*bounds.taken.kernels[i].sphere));
+  }
+  const double floor_weight = std::min(1.0, floor_max / added.sum_min);  // of what has no gradient
+  const double coordinate = norm(center) + 0.5 * norm(box.extent());
+  const double rounding = 1e-6 * coordinate * 2.0 * b * sharpest;  // how fast a gradient changes with that
+  const double gradient =
+      std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
+  return std::max(std::sqrt(static_cast<double>(body.gradient_floor)) * (1.0 - kDistanceSlack),
+                  gradient - rounding - largest_gaussian_gradient(bounds.taken));
+}
+
+}  // namespace astrolith

@@ -1,0 +1,49 @@
+// How far the points of a box are from a metaball's centre.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/vec3.h"
+#include "synthesis/body/metaball_body.h"
+
+namespace astrolith {
+
+ASTROLITH_HD inline double nearest_offset(double c, double lo, double hi) {
+  return c < lo ? lo - c : c > hi ? c - hi : 0.0;
+}
+ASTROLITH_HD inline double farthest_offset(double c, double lo, double hi) {
+  return std::max(std::fabs(c - lo), std::fabs(c - hi));
+}
+
+struct SquaredDistances {
+  double nearest;
+  double farthest;
+};
+
+// From a sphere's centre to the box.
+ASTROLITH_HD inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, const Box& box) {
+  const Vec3d c{sphere.center.x, sphere.center.y, sphere.center.z};
+  const Vec3d near{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
+                   nearest_offset(c.z, box.min.z, box.max.z)};
+  const Vec3d far{farthest_offset(c.x, box.min.x, box.max.x), farthest_offset(c.y, box.min.y, box.max.y),
+                  farthest_offset(c.z, box.min.z, box.max.z)};
+  return {squared_norm(near), squared_norm(far)};
+}
+
+// 1 / r^2 of either kind.
+ASTROLITH_HD inline double inverse_square(const MetaballSphere<float>& sphere) {
+  return std::fabs(static_cast<double>(sphere.inverse_radius_squared));
+}
+
+// Relative slack on squared distances: float points and float arithmetic differ from ours by less.
+inline constexpr double kDistanceSlack = 1e-5;
+
+// Whether the sphere's support, of so many squared radii, reaches the box.
+ASTROLITH_HD inline bool reaches_box(const MetaballSphere<float>& sphere, double cutoff_squared,
+                                     const Box& box) {
+  return !(squared_distances(sphere, box).nearest * inverse_square(sphere) >
+           cutoff_squared * (1.0 + kDistanceSlack));
+}
+
+}  // namespace astrolith

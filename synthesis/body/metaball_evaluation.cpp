@@ -1,0 +1,120 @@
+// The metaballs' field over many points at once.
+#include <algorithm>
+#include <array>
+
+#include "synthesis/body/metaball_body.h"
+
+namespace astrolith {
+namespace {
+
+// One loop a kernel: a choice inside it would keep it from vectorising.
+#define ASTROLITH_SPHERES_LOOP(name, accumulate)                                                            \
+  ASTROLITH_SIMD_CLONES void name(                                                                          \
+      const MetaballParameters<float>& body, const MetaballSphere<float>* spheres, std::size_t num_spheres, \
+      int n, const float* __restrict x, const float* __restrict y, const float* __restrict z,               \
+      float* __restrict kernel, float* __restrict wx, float* __restrict wy, float* __restrict wz) {         \
+    const MetaballParameters<float> parameters = body;                                                      \
+    for (std::size_t j = 0; j < num_spheres; ++j) {                                                         \
+      const MetaballSphere<float> sphere = spheres[j];                                                      \
+      _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                     \
+        MetaballSums<float> sums{kernel[i], {wx[i], wy[i], wz[i]}};                                         \
+        accumulate(parameters, sphere, Vec3f{x[i], y[i], z[i]}, sums);                                      \
+        kernel[i] = sums.kernel;                                                                            \
+        wx[i] = sums.weighted.x;                                                                            \
+        wy[i] = sums.weighted.y;                                                                            \
+        wz[i] = sums.weighted.z;                                                                            \
+      }                                                                                                     \
+    }                                                                                                       \
+  }
+ASTROLITH_SPHERES_LOOP(add_gaussians, accumulate_gaussian)
+ASTROLITH_SPHERES_LOOP(add_metaballs, accumulate_profile<Kernel::kMetaball>)
+ASTROLITH_SPHERES_LOOP(add_soft_objects, accumulate_profile<Kernel::kSoftObject>)
+ASTROLITH_SPHERES_LOOP(add_wyvill, accumulate_profile<Kernel::kWyvill>)
+ASTROLITH_SPHERES_LOOP(add_cauchy, accumulate_profile<Kernel::kCauchy>)
+#undef ASTROLITH_SPHERES_LOOP
+
+auto adder_of(Kernel kernel) {
+  switch (kernel) {
+    case Kernel::kMetaball:
+      return add_metaballs;
+    case Kernel::kSoftObject:
+      return add_soft_objects;
+    case Kernel::kWyvill:
+      return add_wyvill;
+    case Kernel::kCauchy:
+      return add_cauchy;
+    default:
+      return add_gaussians;
+  }
+}
+
+// Four sums at up to this many points: they stay in the first cache over all spheres.
+constexpr int kPointsAtOnce = 256;
+struct TakenSums {
+  std::array<float, kPointsAtOnce> kernel{}, wx{}, wy{}, wz{};
+};
+
+// Turns the sums of what is added into the net sums.
+ASTROLITH_SIMD_CLONES void take_away(const TakenSums& taken, int n, float* __restrict kernel,
+                                     float* __restrict wx, float* __restrict wy, float* __restrict wz) {
+  const float *tk = taken.kernel.data(), *tx = taken.wx.data(), *ty = taken.wy.data(), *tz = taken.wz.data();
+  _Pragma("omp simd") for (int i = 0; i < n; ++i) {
+    const MetaballSums<float> net = net_sums(MetaballSums<float>{kernel[i], {wx[i], wy[i], wz[i]}},
+                                             MetaballSums<float>{tk[i], {tx[i], ty[i], tz[i]}});
+    kernel[i] = net.kernel;
+    wx[i] = net.weighted.x;
+    wy[i] = net.weighted.y;
+    wz[i] = net.weighted.z;
+  }
+}
+
+// Turns the sums into s and grad L in place.
+#define ASTROLITH_FINISH_LOOP(name, finish)                                                               \
+  ASTROLITH_SIMD_CLONES void name(const MetaballParameters<float>& body, int n, float* __restrict kernel, \
+                                  float* __restrict wx, float* __restrict wy, float* __restrict wz) {     \
+    const MetaballParameters<float> parameters = body;                                                    \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                     \
+      const SurfaceDistance<float> d =                                                                    \
+          finish(parameters, MetaballSums<float>{kernel[i], {wx[i], wy[i], wz[i]}});                      \
+      kernel[i] = d.distance;                                                                             \
+      wx[i] = d.log_gradient.x;                                                                           \
+      wy[i] = d.log_gradient.y;                                                                           \
+      wz[i] = d.log_gradient.z;                                                                           \
+    }                                                                                                     \
+  }
+ASTROLITH_FINISH_LOOP(finish_gaussians, gaussian_distance)
+ASTROLITH_FINISH_LOOP(finish_profiles, profile_distance)
+#undef ASTROLITH_FINISH_LOOP
+
+std::vector<MetaballSphere<float>> as_adding(std::span<const MetaballSphere<float>> taking) {
+  std::vector<MetaballSphere<float>> spheres;
+  for (const MetaballSphere<float>& s : taking) spheres.push_back(s.as_adding());
+  return spheres;
+}
+
+}  // namespace
+
+void evaluate_metaballs(const PreparedMetaballs& metaballs, int n, const float* x, const float* y,
+                        const float* z, float* distance, float* gradient_x, float* gradient_y,
+                        float* gradient_z) {
+  const MetaballParameters<float>& body = metaballs.parameters;
+  const std::span<const MetaballSphere<float>> adding = metaballs.adding();
+  const std::vector<MetaballSphere<float>> taking = as_adding(metaballs.taking());
+  const auto add = adder_of(body.profile.kernel);
+  const auto finish = body.profile.kernel == Kernel::kGaussian ? finish_gaussians : finish_profiles;
+  for (float* sum : {distance, gradient_x, gradient_y, gradient_z}) std::fill(sum, sum + n, 0.0f);
+  for (int begin = 0; begin < n; begin += kPointsAtOnce) {
+    const int size = std::min(kPointsAtOnce, n - begin);
+    float *s = distance + begin, *gx = gradient_x + begin, *gy = gradient_y + begin, *gz = gradient_z + begin;
+    add(body, adding.data(), adding.size(), size, x + begin, y + begin, z + begin, s, gx, gy, gz);
+    if (!taking.empty()) {
+      TakenSums taken;
+      add(body, taking.data(), taking.size(), size, x + begin, y + begin, z + begin, taken.kernel.data(),
+          taken.wx.data(), taken.wy.data(), taken.wz.data());
+      take_away(taken, size, s, gx, gy, gz);
+    }
+    finish(body, size, s, gx, gy, gz);
+  }
+}
+
+}  // namespace astrolith

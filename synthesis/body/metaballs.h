@@ -1,0 +1,224 @@
+// The metaball body as a smooth signed distance: plain scalar code shared by the float evaluation in blocks,
+// the GPU, and the double-precision fit.
+//
+// With k_i(p) = m (a - b |p - c_i|^2 / r_i^2) the p-norm blend of thesis eq. 4.5 is a log-sum-exp,
+//   log m(p) = L(p) = (1/m) log(sum_i exp k_i(p)),
+// and the body is L >= log T. Near the surface the first-order distance to it is
+//   s(p) = (L(p) - log T) / |grad L(p)|,     grad L = -2 b sum_i w_i (p - c_i) / r_i^2,  w = softmax(k),
+// positive inside, in length units. Layers add heights to s, which is eq. 5.1 with every n_i multiplied by
+// |grad m|: amplitudes are then lengths, the same beside a large sphere and a small one.
+//
+// The other kernels (kernel_profile.h) end where their supports do, so that log m has no slope worth the name
+// there. With them s is taken from the p-norm itself,
+//   M(p) = (sum_i K_i^m)^(1/m) / T,    s(p) = (M(p) - 1) / |grad M(p)|,
+//   grad M = -2 M / (sum_i K_i^m) sum_i K_i^m (-K_i'/K_i) (p - c_i) / r_i^2,     K_i' = dK_i/dq.
+//
+// Spheres may also take away. With P the sum over those that add and N over those that take away,
+//   A = P / (1 + N),    grad A = (grad P - A grad N) / (1 + N)
+// stands for the sum in all of the above. A = 1 is the surface P - N = 1 of the difference, but A is nowhere
+// negative and as smooth as P, so that its logarithm and its roots exist. Without such spheres A = P, bit for
+// bit. Validation keeps P and N below where exponents saturate: A would be 1 where both do.
+#pragma once
+
+#include <algorithm>
+
+#include "numerics/host_device.h"
+#include "numerics/scalar_math.h"
+#include "numerics/vec3.h"
+#include "synthesis/body/kernel_profile.h"
+
+namespace astrolith {
+
+// Added to the sum of kernels so that its logarithm stays finite where no kernel reaches: there s is a large
+// negative number. e^-30 changes nothing where any kernel within its support contributes.
+inline constexpr float kKernelFloor = 9.3576e-14f;
+
+// Largest exponent of a kernel: deep inside sharp bodies the field saturates, so that float sums stay finite.
+inline constexpr float kLargestExponent = 60.0f;
+
+// The least kernel that a logarithm is taken of.
+inline constexpr float kLeastKernel = 1e-30f;
+
+// Parameters of a body, ready for evaluation in scalar type T.
+template <typename T>
+struct MetaballParameters {
+  T m_a{};             // m a, of Gaussians alone
+  T m_b{};             // m b, of Gaussians alone
+  T inverse_m{};       // 1 / m
+  T log_iso{};         // log T, of Gaussians alone
+  T cutoff_squared{};  // squared support in radii
+  T gradient_floor{};  // squared; keeps s finite where its divisor vanishes: (1e-3 / largest radius)^2
+  KernelProfile<T> profile{};  // of the other kernels, 1/T included in its height
+  T m{};                       // of the other kernels
+};
+
+inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) {
+  const KernelProfile<float>& k = b.profile;
+  return {b.m_a,
+          b.m_b,
+          b.inverse_m,
+          b.log_iso,
+          b.cutoff_squared,
+          b.gradient_floor,
+          {k.kernel, k.scale, k.low, k.height},
+          b.m};
+}
+
+template <typename T>
+struct MetaballSphere {
+  Vec3<T> center{};
+  T inverse_radius_squared{};  // with a minus where the sphere takes away
+
+  ASTROLITH_HD bool takes_away() const { return inverse_radius_squared < T(0); }
+  // The same sphere, adding.
+  ASTROLITH_HD MetaballSphere as_adding() const {
+    return {center, takes_away() ? -inverse_radius_squared : inverse_radius_squared};
+  }
+};
+
+// Running sums over spheres at one point.
+template <typename T>
+struct MetaballSums {
+  T kernel{};          // sum_i exp k_i; sum_i K_i^m
+  Vec3<T> weighted{};  // sum_i exp(k_i) (p - c_i) / r_i^2; sum_i K_i^m (-K_i'/K_i) (p - c_i) / r_i^2
+};
+
+template <typename T>
+ASTROLITH_KERNEL void accumulate_gaussian(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+                                          const Vec3<T>& p, MetaballSums<T>& sums) {
+  using math::exp;
+  const T dx = p.x - sphere.center.x;
+  const T dy = p.y - sphere.center.y;
+  const T dz = p.z - sphere.center.z;
+  const T q = math::fma(dx, dx, math::fma(dy, dy, dz * dz)) * sphere.inverse_radius_squared;
+  const T inside_support = q < body.cutoff_squared ? T(1) : T(0);
+  const T exponent = math::fma(-body.m_b, q, body.m_a);
+  const T value = inside_support * exp(exponent < T(kLargestExponent) ? exponent : T(kLargestExponent));
+  const T weight = value * sphere.inverse_radius_squared;
+  sums.kernel += value;
+  sums.weighted.x = math::fma(weight, dx, sums.weighted.x);
+  sums.weighted.y = math::fma(weight, dy, sums.weighted.y);
+  sums.weighted.z = math::fma(weight, dz, sums.weighted.z);
+}
+
+// `kernel` is body.profile.kernel, not the Gaussian.
+template <Kernel kernel, typename T>
+ASTROLITH_KERNEL void accumulate_profile(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+                                         const Vec3<T>& p, MetaballSums<T>& sums) {
+  using math::exp;
+  using math::log;
+  const T dx = p.x - sphere.center.x;
+  const T dy = p.y - sphere.center.y;
+  const T dz = p.z - sphere.center.z;
+  const T q = math::fma(dx, dx, math::fma(dy, dy, dz * dz)) * sphere.inverse_radius_squared;
+  const T inside_support = q < body.cutoff_squared ? T(1) : T(0);
+  const ProfileValue<T> k = kernel_value<kernel>(body.profile, q);
+  const T positive = k.value > T(kLeastKernel) ? k.value : T(kLeastKernel);
+  const T exponent = body.m * log(positive);
+  const T value = inside_support * exp(exponent < T(kLargestExponent) ? exponent : T(kLargestExponent));
+  const T weight = value / positive * k.slope * sphere.inverse_radius_squared;
+  sums.kernel += value;
+  sums.weighted.x = math::fma(weight, dx, sums.weighted.x);
+  sums.weighted.y = math::fma(weight, dy, sums.weighted.y);
+  sums.weighted.z = math::fma(weight, dz, sums.weighted.z);
+}
+
+// Whichever kernel the body has.
+template <typename T>
+ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+                                          const Vec3<T>& p, MetaballSums<T>& sums) {
+  switch (body.profile.kernel) {
+    case Kernel::kGaussian:
+      return accumulate_gaussian(body, sphere, p, sums);
+    case Kernel::kMetaball:
+      return accumulate_profile<Kernel::kMetaball>(body, sphere, p, sums);
+    case Kernel::kSoftObject:
+      return accumulate_profile<Kernel::kSoftObject>(body, sphere, p, sums);
+    case Kernel::kWyvill:
+      return accumulate_profile<Kernel::kWyvill>(body, sphere, p, sums);
+    case Kernel::kCauchy:
+      return accumulate_profile<Kernel::kCauchy>(body, sphere, p, sums);
+  }
+}
+
+// The sum A, and what its gradient is made of, from those of P and of N.
+template <typename T>
+ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const MetaballSums<T>& taken) {
+  const T part = T(1) / (T(1) + taken.kernel);
+  const T kernel = added.kernel * part;
+  const auto net = [&](T of_added, T of_taken) { return of_added * part - of_taken * part * kernel; };
+  return {kernel,
+          {net(added.weighted.x, taken.weighted.x), net(added.weighted.y, taken.weighted.y),
+           net(added.weighted.z, taken.weighted.z)}};
+}
+
+// Running sums over spheres of both kinds.
+template <typename T>
+struct MetaballTotals {
+  MetaballSums<T> added, taken;
+
+  ASTROLITH_HD MetaballSums<T> net() const { return net_sums(added, taken); }
+};
+
+template <typename T>
+ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+                                          const Vec3<T>& p, MetaballTotals<T>& totals) {
+  if (sphere.takes_away()) {
+    accumulate_metaball(body, sphere.as_adding(), p, totals.taken);
+  } else {
+    accumulate_metaball(body, sphere, p, totals.added);
+  }
+}
+
+template <typename T>
+struct SurfaceDistance {
+  T distance{};            // s(p), positive inside
+  Vec3<T> log_gradient{};  // grad L, or grad M: points inwards
+};
+
+template <typename T>
+ASTROLITH_KERNEL SurfaceDistance<T> gaussian_distance(const MetaballParameters<T>& body,
+                                                      const MetaballSums<T>& sums) {
+  const T total = sums.kernel + T(kKernelFloor);
+  const T log_field = math::log(total) * body.inverse_m - body.log_iso;
+  const T factor = T(-2) * body.m_b * body.inverse_m / total;
+  const Vec3<T> g{factor * sums.weighted.x, factor * sums.weighted.y, factor * sums.weighted.z};
+  const T g2 = math::fma(g.x, g.x, math::fma(g.y, g.y, g.z * g.z));
+  return {log_field / math::sqrt(g2 + body.gradient_floor), g};
+}
+
+// Of every kernel but the Gaussian.
+template <typename T>
+ASTROLITH_KERNEL SurfaceDistance<T> profile_distance(const MetaballParameters<T>& body,
+                                                     const MetaballSums<T>& sums) {
+  const T total = sums.kernel + T(kKernelFloor);
+  const T norm = math::exp(math::log(total) * body.inverse_m);
+  const T factor = T(-2) * norm / total;
+  const Vec3<T> g{factor * sums.weighted.x, factor * sums.weighted.y, factor * sums.weighted.z};
+  const T g2 = math::fma(g.x, g.x, math::fma(g.y, g.y, g.z * g.z));
+  return {(norm - T(1)) / math::sqrt(g2 + body.gradient_floor), g};
+}
+
+template <typename T>
+ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T>& body,
+                                                      const MetaballSums<T>& sums) {
+  return body.profile.kernel == Kernel::kGaussian ? gaussian_distance(body, sums)
+                                                  : profile_distance(body, sums);
+}
+
+// f(q) = K(q)^m of one sphere for derivatives by its centre, its radius and the point: f, -df/dq and
+// d^2f/dq^2 in double precision. Where the Gaussian's value saturates they go on in proportion to it.
+inline ProfileValue<double> kernel_power(const MetaballParameters<double>& body, double q) {
+  if (!(q < body.cutoff_squared)) return {0.0, 0.0, 0.0};
+  if (body.profile.kernel == Kernel::kGaussian) {
+    const double f = std::exp(std::min(body.m_a - body.m_b * q, double{kLargestExponent}));
+    return {f, body.m_b * f, body.m_b * body.m_b * f};
+  }
+  const ProfileValue<double> k = kernel_value(body.profile, q);
+  if (!(k.value > double{kLeastKernel})) return {0.0, 0.0, 0.0};
+  const double lower = std::pow(k.value, body.m - 1.0);
+  return {lower * k.value, body.m * lower * k.slope,
+          body.m * lower * ((body.m - 1.0) * k.slope * k.slope / k.value + k.curvature)};
+}
+
+}  // namespace astrolith

@@ -1,0 +1,77 @@
+// What is certain about combined bodies over a box, for CPU and GPU.
+#pragma once
+
+#include "numerics/interval.h"
+#include "numerics/portable_double.h"
+#include "synthesis/body/body_operators.h"
+#include "synthesis/body/metaball_body.h"
+
+namespace astrolith {
+
+// s of metaballs from what is certain about their level and divisor; `near` is what is certain near the
+// surface. Tighter for what is farther than `height` from it.
+ASTROLITH_HD inline Interval bound_leaf_distance(const MetaballParameters<float>& body,
+                                                 const MetaballInterval& all, double height,
+                                                 double gradient_near) {
+  const double least = 0.999 * std::sqrt(double{body.gradient_floor});
+  Interval s{all.level_min / (all.level_min > 0.0 ? all.gradient_max : least),
+             all.level_max / (all.level_max < 0.0 ? all.gradient_max : least)};
+  const double reach = height * gradient_near;
+  if (all.level_max < -reach) s.high = std::min(s.high, -height);
+  if (all.level_min > reach) s.low = std::max(s.low, height);
+  return s;
+}
+// Whether the second bound can tell more.
+ASTROLITH_HD inline bool is_off_surface(const MetaballInterval& all, double height) {
+  return height != 0.0 && (all.level_min > 0.0 || all.level_max < 0.0);
+}
+
+// Of (v / reach)^2 for v in an interval.
+ASTROLITH_HD inline Interval reach_squares(const Interval& v, double inverse_reach) {
+  const double a = v.low * inverse_reach, b = v.high * inverse_reach;
+  const double near = a > 0.0 ? a : b < 0.0 ? b : 0.0, far = std::max(std::fabs(a), std::fabs(b));
+  return {near * near, far * far};
+}
+
+// super_elliptic with the elementary functions that both machines have.
+ASTROLITH_HD inline double blended_distance(double f, double g, double exponent, double width) {
+  const double high = larger(f, g), low = f > g ? g : f;
+  const double a = larger(1.0 + high / width, 0.0), b = larger(1.0 + low / width, 0.0);
+  const double ratio = b / larger(a, 1e-30);
+  const double power = ratio > 0.0 ? portable::exp(exponent * portable::log(larger(ratio, 1e-30))) : 0.0;
+  const double factor = portable::exp(portable::log(1.0 + power) / exponent);
+  return high + width * a * (factor - 1.0);
+}
+
+// Without the bulge, which is the only part that may fall with an operand.
+ASTROLITH_HD inline double monotone_combined(const OperatorParameters<double>& o, double f, double g) {
+  switch (o.kind) {
+    case Operator::kIntersection:
+      return -r_union(-f, -g, o.alpha);
+    case Operator::kDifference:
+      return -r_union(-f, g, o.alpha);
+    case Operator::kBlend:
+      return blended_distance(f, g, o.exponent, o.width);
+    case Operator::kCleanUnion:
+      return r_union(f, g, 0.0);
+    default:
+      return r_union(f, g, o.alpha);
+  }
+}
+
+ASTROLITH_HD inline Interval bound_combined(const OperatorParameters<double>& o, const Interval& f,
+                                            const Interval& g) {
+  const bool difference = o.kind == Operator::kDifference;
+  Interval s{monotone_combined(o, f.low, difference ? g.high : g.low),
+             monotone_combined(o, f.high, difference ? g.low : g.high)};
+  if (o.kind == Operator::kCleanUnion) {
+    const Interval u = reach_squares(f, o.inverse_reach[0]), v = reach_squares(g, o.inverse_reach[1]);
+    const double nearest = o.bulge / (1.0 + u.low + v.low), farthest = o.bulge / (1.0 + u.high + v.high);
+    s.low += std::min(nearest, farthest) - 1e-5 * std::fabs(o.bulge);
+    s.high += std::max(nearest, farthest) + 1e-5 * std::fabs(o.bulge);
+  }
+  const double rounding = o.kind == Operator::kBlend ? 1e-5 * o.width : 0.0;
+  return {s.low - 2e-5 * std::fabs(s.low) - rounding, s.high + 2e-5 * std::fabs(s.high) + rounding};
+}
+
+}  // namespace astrolith

@@ -1,0 +1,181 @@
+// What is certain about metaballs over a box, for kernels other than the Gaussian, on CPU and GPU. A kernel
+// and its slope both fall with the distance from its centre, so that the nearest and the farthest point of a
+// box tell.
+//
+// With w_i = (K_i / M)^(m-1), grad M = sum_i w_i grad K_i; since sum_i (K_i / M)^m = 1 no w_i is above 1.
+// Where spheres take away that holds for P^(1/m) and for (1 + N)^(1/m), whose quotient is M:
+//   |grad M| <= (|grad P^(1/m)| + M |grad (1 + N)^(1/m)|) / (1 + N)^(1/m).
+#pragma once
+
+#include "synthesis/body/metaball_bounds.h"
+
+namespace astrolith {
+
+inline constexpr double kKernelRounding = 4e-6;  // of a kernel in float, over its height at the centre
+
+ASTROLITH_HD inline KernelProfile<double> profile_in_double(const MetaballParameters<float>& body) {
+  const KernelProfile<float>& k = body.profile;
+  return {k.kernel, double{k.scale}, double{k.low}, double{k.height}};
+}
+
+// K with the rounding of a float evaluation, to the power m and saturated.
+ASTROLITH_HD inline double kernel_to_power(double k, double m) {
+  return k > 0.0 ? std::min(portable::pow(k, m), portable::exp(double{kLargestExponent})) : 0.0;
+}
+
+ASTROLITH_HD inline BodyIntervals bound_profile_kernels(const MetaballParameters<float>& body,
+                                                        const MetaballList& spheres, const Box& box,
+                                                        KernelInterval* kernels) {
+  const KernelProfile<double> profile = profile_in_double(body);
+  const double rounding = kKernelRounding * profile.height, m = double{body.m},
+               cutoff = double{body.cutoff_squared};
+  return bound_kernels(spheres, kernels, [&](const MetaballSphere<float>& s, KernelInterval& kernel) {
+    const Interval q = squared_radii(s, box);
+    if (q.low >= cutoff) return false;
+    const bool inside = q.high < cutoff;
+    const ProfileValue<double> near = kernel_value(profile, q.low);
+    const ProfileValue<double> far = kernel_value(profile, inside ? q.high : cutoff);
+    const double power_max = kernel_to_power(std::max(near.value, 0.0) + rounding, m);
+    const double power_min = inside ? kernel_to_power(far.value - rounding, m) : 0.0;
+    const double slope_max = near.slope * (1.0 + kKernelRounding) + rounding * profile.scale;
+    const double radii = std::sqrt(std::min(q.high, cutoff) * inverse_square(s));
+    kernel = {
+        &s,       power_min, power_max, 2.0 * slope_max * radii, inside ? far.slope * (1.0 - 1e-5) : 0.0,
+        slope_max};
+    return true;
+  });
+}
+
+// Of w_i, from K_i^m and the sum of all.
+ASTROLITH_HD inline double profile_weight(double power, double sum, double m) {
+  return portable::pow(std::min(1.0, power / sum), 1.0 - 1.0 / m);
+}
+
+// Of |grad M| of one kind where the sum of K^m is at least `sum`; the second bound is Hoelder's inequality.
+ASTROLITH_HD inline double largest_profile_gradient(const KernelIntervals& bounds, double sum, double m) {
+  double weighted = 0.0, powers = 0.0, steepest = 0.0;
+  for (std::uint32_t i = 0; i < bounds.count; ++i) {
+    steepest = std::max(steepest, bounds.kernels[i].gradient_max);
+  }
+  if (steepest == 0.0) return 0.0;
+  for (std::uint32_t i = 0; i < bounds.count; ++i) {
+    const KernelInterval& k = bounds.kernels[i];
+    weighted += profile_weight(k.max, std::max(sum, bounds.sum_min - k.min + k.max), m) * k.gradient_max;
+    powers += portable::pow(k.gradient_max / steepest, m);
+  }
+  return std::min(weighted, steepest * portable::pow(powers, 1.0 / m)) * (1.0 + 3.0 * kDistanceSlack);
+}
+
+// Of |grad M| where the sum of K^m of the spheres that add is at least `sum` and M at most `largest`.
+ASTROLITH_HD inline double largest_net_gradient(const BodyIntervals& bounds, double sum, double largest,
+                                                double m) {
+  const double of_added = largest_profile_gradient(bounds.added, sum, m);
+  if (!bounds.takes_away()) return of_added;
+  const double of_taken = largest_profile_gradient(bounds.taken, bounds.taken.sum_min, m);
+  return (of_added + largest * of_taken) / portable::pow(bounds.taken.sum_min, 1.0 / m) *
+         (1.0 + kDistanceSlack);
+}
+
+// How far a float coordinate may be from what it stands for.
+ASTROLITH_HD inline double coordinate_rounding(const Box& box) {
+  return 1e-6 * (norm(box.center()) + 0.5 * norm(box.extent()));
+}
+
+// bound_gaussian_body with M(p) - 1 and |grad M| in the place of L and |grad L|.
+ASTROLITH_HD inline MetaballInterval bound_profile_body(const MetaballParameters<float>& body,
+                                                        const MetaballList& spheres, const Box& box,
+                                                        double height, KernelInterval* scratch) {
+  const double m = double{body.m};
+  const BodyIntervals bounds = bound_profile_kernels(body, spheres, box, scratch);
+  const double largest = portable::pow(bounds.net_max(), 1.0 / m);
+  const double steepest = largest_net_gradient(bounds, bounds.added.sum_min, largest, m);
+  double gradient = steepest;
+  if (height < std::numeric_limits<double>::infinity()) {
+    // There M is within height |grad M| of 1.
+    for (int pass = 0; pass < 3; ++pass) {
+      const double change = height * metaball_divisor(body, gradient);
+      const double least = 0.999 * (1.0 - change) - 1e-4, most = 1.001 * (1.0 + change) + 1e-4;
+      if (least <= 0.0) break;
+      const double sum = portable::pow(least, m) * bounds.taken.sum_min;
+      gradient = std::min(gradient, largest_net_gradient(bounds, sum, std::min(largest, most), m));
+    }
+  }
+  // Float rounding: of the sums, the powers and the logarithms, and of the coordinates.
+  const double kinds = bounds.takes_away() ? 2.0 : 1.0;
+  const double slack = 2e-6 + kinds * (1e-5 + 1e-4 / m) * largest + coordinate_rounding(box) * steepest;
+  return {portable::pow(bounds.net_min(), 1.0 / m) - 1.0 - slack, largest - 1.0 + slack,
+          metaball_divisor(body, gradient)};
+}
+
+// The direction in which P falls fastest at a point.
+ASTROLITH_HD inline Vec3d profiles_outward(const MetaballParameters<float>& body, const MetaballList& spheres,
+                                           const Vec3d& p) {
+  const KernelProfile<double> profile = profile_in_double(body);
+  Vec3d sum;
+  for (std::uint32_t i = 0; i < spheres.count; ++i) {
+    const MetaballSphere<float>& s = spheres[i];
+    if (s.takes_away()) break;
+    const double inverse = double{s.inverse_radius_squared};
+    const Vec3d d = p - Vec3d{s.center.x, s.center.y, s.center.z};
+    const double q = squared_norm(d) * inverse;
+    if (!(q < double{body.cutoff_squared})) continue;
+    const ProfileValue<double> k = kernel_value(profile, q);
+    if (!(k.value > double{kLeastKernel})) continue;
+    const double slope = double{body.m} * portable::pow(k.value, double{body.m} - 1.0) * k.slope;
+    sum += slope * inverse * d;
+  }
+  return normalized(sum);
+}
+
+// Of |grad M| where |grad P^(1/m)| is at least `of_added`.
+ASTROLITH_HD inline double least_net_gradient(const BodyIntervals& bounds, double of_added, double m) {
+  const double of_taken = portable::pow(bounds.net_max(), 1.0 / m) *
+                          largest_profile_gradient(bounds.taken, bounds.taken.sum_min, m);
+  // Where next to nothing is left, floor hides the slope of A.
+  const double floor_weight =
+      std::min(1.0, double{kKernelFloor} * bounds.taken.sum_max / bounds.added.sum_min);
+  const double least = of_added * (1.0 - floor_weight) - of_taken * (1.0 + kDistanceSlack);
+  return std::max(0.0, least) / portable::pow(bounds.taken.sum_max, 1.0 / m);
+}
+
+ASTROLITH_HD inline double smallest_profile_gradient(const MetaballParameters<float>& body,
+                                                     const MetaballList& spheres, const Box& box,
+                                                     KernelInterval* scratch) {
+  const double m = double{body.m}, saturation = portable::exp(double{kLargestExponent});
+  const Box rounded = widened(box, coordinate_rounding(box));
+  const BodyIntervals bounds = bound_profile_kernels(body, spheres, rounded, scratch);
+  const KernelIntervals& added = bounds.added;
+  // The component along one direction, of each grad K_i and so of their weighted sum.
+  const Vec3d center = box.center(), u = profiles_outward(body, spheres, center);
+  const double spread = spread_along(box, u) + coordinate_rounding(box);
+  double component = 0.0;
+  for (std::uint32_t i = 0; i < added.count; ++i) {
+    const KernelInterval& k = added.kernels[i];
+    const Vec3d c{k.sphere->center.x, k.sphere->center.y, k.sphere->center.z};
+    const double along = 2.0 * double{k.sphere->inverse_radius_squared} * (dot(center - c, u) - spread);
+    if (along <= 0.0) {
+      component += along * k.slope_max * profile_weight(k.max, added.sum_min - k.min + k.max, m);
+    } else if (k.max < saturation) {
+      component += along * k.slope_min * profile_weight(k.min, added.sum_max - k.max + k.min, m);
+    }
+  }
+  component *= 1.0 - 1e-4;
+  if (bounds.takes_away()) component = least_net_gradient(bounds, component, m);
+  return std::max(std::sqrt(double{body.gradient_floor}), component) * (1.0 - kDistanceSlack);
+}
+
+// Of either kind of kernel.
+ASTROLITH_HD inline MetaballInterval bound_metaballs(const MetaballParameters<float>& body,
+                                                     const MetaballList& spheres, const Box& box,
+                                                     double height, KernelInterval* scratch) {
+  return body.profile.kernel == Kernel::kGaussian ? bound_gaussian_body(body, spheres, box, height, scratch)
+                                                  : bound_profile_body(body, spheres, box, height, scratch);
+}
+ASTROLITH_HD inline double smallest_gradient(const MetaballParameters<float>& body,
+                                             const MetaballList& spheres, const Box& box,
+                                             KernelInterval* scratch) {
+  return body.profile.kernel == Kernel::kGaussian ? smallest_gaussian_gradient(body, spheres, box, scratch)
+                                                  : smallest_profile_gradient(body, spheres, box, scratch);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,12 @@
+// The body of a recipe without its layers, as landforms are placed on it.
+#pragma once
+
+#include "recipe/recipe.h"
+#include "synthesis/landforms/bare_surface.h"
+
+namespace astrolith {
+
+// Expects a recipe with a body. Throws InputError as ImplicitField does.
+BareBody bare_body(const Recipe& recipe);
+
+}  // namespace astrolith

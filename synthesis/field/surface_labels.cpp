@@ -1,0 +1,106 @@
+#include "synthesis/field/surface_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "numerics/interval.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::size_t kChunk = 256;  // points of one gathered block
+constexpr double kRounding = 4e-6;   // of values, in largest coordinates
+
+bool is_boulders(const Layer& layer) { return std::holds_alternative<BoulderLayer>(layer); }
+
+// Layers in the order in which they make the surface.
+std::vector<std::size_t> order_of_layers(const Recipe& recipe) {
+  std::vector<std::size_t> order;
+  for (const bool boulders : {false, true}) {
+    for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+      if (is_boulders(recipe.layers[i]) == boulders) order.push_back(i);
+    }
+  }
+  return order;
+}
+
+// A layer that does nothing and keeps its place, on which the random numbers of others depend.
+Layer idle() { return BoulderLayer{}; }
+
+std::string kind_of(const FractalLayer& layer) {
+  return layer.noise == Noise::kSimplex ? "simplex" : layer.noise == Noise::kPerlin ? "perlin" : "worley";
+}
+std::string kind_of(const GaborLayer&) { return "gabor"; }
+std::string kind_of(const SpotLayer&) { return "spots"; }
+std::string kind_of(const CraterLayer&) { return "craters"; }
+std::string kind_of(const BoulderLayer&) { return "boulders"; }
+std::string kind_of(const SparseLayer&) { return "sparse"; }
+std::string kind_of(const RandomPhaseLayer&) { return "random_phase"; }
+std::string kind_of(const PhasorLayer&) { return "phasor"; }
+
+std::string meaning(std::size_t label, const Layer& layer) {
+  return std::visit(
+      [&](const auto& l) {
+        return "label " + std::to_string(label) + ": " + kind_of(l) +
+               (l.name.empty() ? "" : " \"" + l.name + "\"");
+      },
+      layer);
+}
+
+}  // namespace
+
+SurfaceLabels::SurfaceLabels(const Recipe& recipe, const std::string& name) {
+  Recipe so_far = recipe;
+  std::fill(so_far.layers.begin(), so_far.layers.end(), idle());
+  stages_.push_back({0, ImplicitField(so_far, name)});
+  for (const std::size_t i : order_of_layers(recipe)) {
+    so_far.layers[i] = recipe.layers[i];
+    stages_.push_back({static_cast<int>(i) + 1, ImplicitField(so_far, name)});
+  }
+  legend_.push_back("label 0: the bare body");
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    legend_.push_back(meaning(i + 1, recipe.layers[i]));
+  }
+  rounding_ = static_cast<float>(kRounding * largest_coordinate(stages_.back().field.bounds()));
+}
+
+void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> vertices,
+                          std::span<VertexLabel> labels) const {
+  const std::size_t chunks = (vertices.size() + kChunk - 1) / kChunk;
+  parallel_for(0, static_cast<std::int64_t>(chunks), [&](std::int64_t c) {
+    const std::size_t first = static_cast<std::size_t>(c) * kChunk;
+    const std::size_t count = std::min(kChunk, vertices.size() - first);
+    label_some(origin, vertices.subspan(first, count), labels.subspan(first, count));
+  });
+}
+
+void SurfaceLabels::label_some(const Vec3d& origin, std::span<const MeshVertex> vertices,
+                               std::span<VertexLabel> labels) const {
+  const std::size_t n = vertices.size();
+  std::array<float, kChunk> x, y, z, bare, before, after, largest;
+  Box box;
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = static_cast<float>(origin.x + double{vertices[i].position.x});
+    y[i] = static_cast<float>(origin.y + double{vertices[i].position.y});
+    z[i] = static_cast<float>(origin.z + double{vertices[i].position.z});
+    box.extend({double{x[i]}, double{y[i]}, double{z[i]}});
+  }
+  for (const Stage& stage : stages_) {
+    stage.field.gather(box).evaluate({x.data(), n}, {y.data(), n}, {z.data(), n}, {after.data(), n});
+    const bool is_bare = stage.label == 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const float part = is_bare ? rounding_ : std::fabs(after[i] - before[i]);
+      if (is_bare) bare[i] = after[i];
+      if (is_bare || part > largest[i]) {
+        largest[i] = part;
+        labels[i].label = stage.label;
+      }
+      labels[i].elevation = after[i] - bare[i];
+    }
+    before = after;
+  }
+}
+
+}  // namespace astrolith

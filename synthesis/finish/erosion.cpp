@@ -1,0 +1,226 @@
+#include "synthesis/finish/erosion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_normals.h"
+#include "numerics/errors.h"
+#include "synthesis/finish/active_edges_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kLeastUpward = 0.0872;  // cosine of 85 degrees: a steeper face makes rock of its vertices
+// Slides aim at a slope a little below the talus angle and begin a little above that, so that they end.
+constexpr double kAim = 1.0 - 2e-3;
+constexpr double kSettled = 1e-3;  // of the aim
+// More than one: slides that go beyond their aim settle in fewer sweeps (successive over-relaxation).
+constexpr double kRelaxation = 1.6;
+// Of the mean a_v. Next to vertices of smaller areas a slide would move next to nothing.
+constexpr double kLeastArea = 0.1;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+// Between two vertices that can move; in heights along verticals the edge's drop is drop + h_a - h_b.
+struct Edge {
+  std::uint32_t a, b;
+  double drop;   // of a above b before anything moved
+  double limit;  // of the drop's magnitude, at the aimed slope
+};
+
+struct Vertices {
+  std::vector<double> area;    // a_v; 0: rock
+  std::vector<double> height;  // gone up since the edges were measured
+  std::vector<char> changed;   // whether it ever moved
+};
+
+Vec3d area_vector(const TriangleMesh& mesh, const Triangle& t) {
+  const Vec3d& p = mesh.vertices[t[0]];
+  return 0.5 * cross(mesh.vertices[t[1]] - p, mesh.vertices[t[2]] - p);
+}
+
+// a_v of all vertices, rock or not.
+std::vector<double> seen_areas(const TriangleMesh& mesh, std::span<const Vec3d> up) {
+  std::vector<double> areas(up.size(), 0.0);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d area = area_vector(mesh, t);
+    for (const std::uint32_t v : t) areas[v] += dot(area, up[v]) / 3.0;
+  }
+  return areas;
+}
+
+std::vector<char> find_rock(const TriangleMesh& mesh, std::span<const Vec3d> up) {
+  std::vector<char> rock(up.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d area = area_vector(mesh, t);
+    for (const std::uint32_t v : t) {
+      if (!(dot(area, up[v]) >= kLeastUpward * norm(area))) rock[v] = 1;
+    }
+  }
+  return rock;
+}
+
+// The areas of the mesh as it is; nothing has moved since.
+void measure_areas(const TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock,
+                   Vertices& vertices) {
+  vertices.area = seen_areas(mesh, up);
+  for (std::size_t v = 0; v < rock.size(); ++v) {
+    if (rock[v] != 0 || !(vertices.area[v] > 0.0)) vertices.area[v] = 0.0;
+  }
+  const double sum = std::accumulate(vertices.area.begin(), vertices.area.end(), 0.0);
+  const auto movable = static_cast<double>(
+      std::count_if(vertices.area.begin(), vertices.area.end(), [](double a) { return a > 0.0; }));
+  for (double& area : vertices.area) {
+    if (area > 0.0) area = std::max(area, kLeastArea * sum / movable);
+  }
+  vertices.height.assign(rock.size(), 0.0);
+}
+
+// Drop and horizontal length of an edge.
+struct Incline {
+  double drop, length;
+};
+Incline incline(const TriangleMesh& mesh, std::span<const Vec3d> up, std::uint32_t a, std::uint32_t b) {
+  const Vec3d d = mesh.vertices[a] - mesh.vertices[b];
+  const Vec3d vertical = normalized(up[a] + up[b]);
+  const double drop = dot(d, vertical);
+  return {drop, norm(d - drop * vertical)};
+}
+
+// Each edge of a closed mesh runs once from its lower vertex number to its higher one.
+template <typename Visit>
+void for_each_edge_between_movable(const TriangleMesh& mesh, const Vertices& vertices, const Visit& visit) {
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (a < b && vertices.area[a] > 0.0 && vertices.area[b] > 0.0) visit(a, b);
+    }
+  }
+}
+
+std::vector<Edge> make_edges(const TriangleMesh& mesh, std::span<const Vec3d> up, const Vertices& vertices,
+                             double slope) {
+  std::vector<Edge> edges;
+  for_each_edge_between_movable(mesh, vertices, [&](std::uint32_t a, std::uint32_t b) {
+    const Incline i = incline(mesh, up, a, b);
+    edges.push_back({a, b, i.drop, slope * i.length});
+  });
+  return edges;
+}
+
+double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, const Vertices& vertices) {
+  double slope = 0.0;
+  for_each_edge_between_movable(mesh, vertices, [&](std::uint32_t a, std::uint32_t b) {
+    const Incline i = incline(mesh, up, a, b);
+    slope = std::max(slope, std::atan2(std::fabs(i.drop), i.length));
+  });
+  return slope * kDegrees;
+}
+
+ActiveEdges all_active(const std::vector<Edge>& edges, std::size_t num_vertices) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
+  ends.reserve(edges.size());
+  for (const Edge& edge : edges) ends.emplace_back(edge.a, edge.b);
+  return {num_vertices, ends};
+}
+
+// Lets material slide down one edge; returns its volume, 0 where the edge is not too high.
+double slide(const Edge& edge, Vertices& vertices) {
+  const double drop = edge.drop + (vertices.height[edge.a] - vertices.height[edge.b]);
+  const double excess = std::fabs(drop) - edge.limit;
+  if (!(excess > kSettled * edge.limit)) return 0.0;
+  const double area_a = vertices.area[edge.a], area_b = vertices.area[edge.b];
+  const double volume = kRelaxation * excess / (1.0 / area_a + 1.0 / area_b);
+  const double down = drop > 0.0 ? volume : -volume;
+  vertices.height[edge.a] -= down / area_a;
+  vertices.height[edge.b] += down / area_b;
+  vertices.changed[edge.a] = vertices.changed[edge.b] = 1;
+  return volume;
+}
+
+// One turn of every active edge, forwards and backwards by turns, so that no direction is preferred. Returns
+// the volume that slid.
+double sweep_edges(const std::vector<Edge>& edges, int sweep, ActiveEdges& active, Vertices& vertices) {
+  double moved = 0.0;
+  active.sweep(sweep % 2 == 1, [&](std::size_t e) {
+    const double volume = slide(edges[e], vertices);
+    if (volume == 0.0) return;
+    active.wake(edges[e].a);
+    active.wake(edges[e].b);
+    moved += volume;
+  });
+  return moved;
+}
+
+// Verticals converge and small areas count as larger ones, so that the volume is not quite what the areas
+// promise (a few thousandths of what slid): all heights make up for it.
+void restore_volume(TriangleMesh& mesh, std::span<const Vec3d> up, double wanted) {
+  for (int pass = 0; pass < 3; ++pass) {
+    const std::vector<double> areas = seen_areas(mesh, up);
+    const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+    if (!(area > 0.0)) return;
+    const double lift = (wanted - volume(mesh)) / area;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) mesh.vertices[v] += lift * up[v];
+  }
+}
+
+// Normals around vertices that moved become those of the mesh; the others keep the field's.
+void renew_normals(TriangleMesh& mesh, const Vertices& vertices) {
+  if (mesh.normals.empty()) return;
+  std::vector<char> stale(mesh.vertices.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    const bool moved =
+        std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return vertices.changed[v] != 0; });
+    for (const std::uint32_t v : t) stale[v] |= moved ? 1 : 0;
+  }
+  const std::vector<Vec3d> fresh = vertex_normals(mesh);
+  for (std::size_t v = 0; v < stale.size(); ++v) {
+    if (stale[v] != 0) mesh.normals[v] = fresh[v];
+  }
+}
+
+}  // namespace
+
+ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double talus_degrees, int most_sweeps,
+                        const Progress& progress) {
+  if (!(talus_degrees > 0.0 && talus_degrees <= 89.0)) {
+    throw InputError("erosion: the talus angle must lie above 0 and be at most 89 degrees");
+  }
+  const std::vector<char> rock = find_rock(mesh, up);
+  Vertices vertices{{}, {}, std::vector<char>(up.size(), 0)};
+  measure_areas(mesh, up, rock, vertices);
+  ErosionStatistics statistics;
+  statistics.rock_vertices = std::count(vertices.area.begin(), vertices.area.end(), 0.0);
+  statistics.steepest_before = steepest(mesh, up, vertices);
+  const double slope = kAim * std::tan(talus_degrees / kDegrees), volume_before = volume(mesh);
+  // Verticals converge downwards: what has slid far is measured anew, until all is at rest as it lies.
+  while (statistics.sweeps < most_sweeps && !statistics.settled) {
+    measure_areas(mesh, up, rock, vertices);
+    const std::vector<Edge> edges = make_edges(mesh, up, vertices, slope);
+    ActiveEdges active = all_active(edges, up.size());
+    const int first = statistics.sweeps + 1;
+    for (double moved = 1.0; moved > 0.0 && statistics.sweeps < most_sweeps;) {
+      moved = sweep_edges(edges, ++statistics.sweeps, active, vertices);
+      statistics.volume_moved += moved;
+      statistics.settled = moved == 0.0 && statistics.sweeps == first;
+      if (!report(progress, double(statistics.sweeps) / most_sweeps, "erosion")) {
+        throw WorkError("erosion: stopped before the slopes had settled");
+      }
+    }
+    for (std::size_t v = 0; v < up.size(); ++v) mesh.vertices[v] += vertices.height[v] * up[v];
+  }
+  report(progress, 1.0, "erosion");
+  restore_volume(mesh, up, volume_before);
+  statistics.moved_vertices = std::count(vertices.changed.begin(), vertices.changed.end(), char{1});
+  statistics.steepest_after = steepest(mesh, up, vertices);
+  renew_normals(mesh, vertices);
+  return statistics;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,147 @@
+#include "synthesis/finish/mascons.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "numerics/scalar_math.h"
+
+namespace astrolith {
+namespace {
+
+constexpr int kLatticeCells = 64;           // along the longest side: the volume is right within a percent
+constexpr double kGravitation = 6.674e-11;  // m^3 / (kg s^2)
+constexpr int kBatch = 128;
+
+// Points of one plane of the lattice that are inside, with the sphere that each belongs to.
+struct InnerPoints {
+  std::vector<Vec3d> points;
+  std::vector<std::size_t> owners;
+};
+
+std::size_t nearest_sphere(std::span<const Sphere> spheres, const Vec3d& p) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const double q = squared_norm(p - spheres[i].center) / (spheres[i].radius * spheres[i].radius);
+    if (q < least) least = q, nearest = i;
+  }
+  return nearest;
+}
+
+InnerPoints inner_points(const ImplicitField& field, std::span<const Sphere> spheres, const Box& bounds,
+                         double step, int plane) {
+  InnerPoints inner;
+  const double z = bounds.min.z + (plane + 0.5) * step;
+  std::vector<float> x, y, zs, value;
+  for (double py = bounds.min.y + 0.5 * step; py < bounds.max.y; py += step) {
+    for (double px = bounds.min.x + 0.5 * step; px < bounds.max.x; px += step) {
+      x.push_back(static_cast<float>(px));
+      y.push_back(static_cast<float>(py));
+    }
+  }
+  zs.assign(x.size(), static_cast<float>(z));
+  value.resize(x.size());
+  const Box slab{{bounds.min.x, bounds.min.y, z - step}, {bounds.max.x, bounds.max.y, z + step}};
+  field.gather(slab).evaluate(x, y, zs, value);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!(value[i] > 0.0f)) continue;
+    inner.points.push_back({x[i], y[i], z});
+    inner.owners.push_back(nearest_sphere(spheres, inner.points.back()));
+  }
+  return inner;
+}
+
+// Towards the mascons, over G times the density, at a batch of points.
+ASTROLITH_SIMD_CLONES void add_attraction(const Vec3d& center, double radius, int n,
+                                          const double* __restrict x, const double* __restrict y,
+                                          const double* __restrict z, double* __restrict gx,
+                                          double* __restrict gy, double* __restrict gz) {
+  const double volume = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius,
+               radius_squared = radius * radius;
+  const double cx = center.x, cy = center.y, cz = center.z;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const double dx = cx - x[i], dy = cy - y[i], dz = cz - z[i];
+    const double d2 = dx * dx + (dy * dy + dz * dz);
+    // Within the ball its pull grows in proportion to the distance.
+    const double r2 = d2 > radius_squared ? d2 : radius_squared;
+    const double pull = volume / (r2 * __builtin_sqrt(r2));
+    gx[i] += pull * dx;
+    gy[i] += pull * dy;
+    gz[i] += pull * dz;
+  }
+}
+
+Vec3d center_of_mass(std::span<const Mascon> mascons) {
+  Vec3d sum;
+  double weight = 0.0;
+  for (const Mascon& m : mascons) {
+    const double volume = m.radius * m.radius * m.radius;
+    sum += volume * m.center;
+    weight += volume;
+  }
+  return sum * (1.0 / weight);
+}
+
+}  // namespace
+
+std::vector<Mascon> mascons_of(const ImplicitField& field, std::span<const Sphere> spheres) {
+  const Box bounds = field.bounds();
+  const Vec3d extent = bounds.extent();
+  const double step = std::max({extent.x, extent.y, extent.z}) / kLatticeCells;
+  std::vector<InnerPoints> planes(static_cast<std::size_t>(std::ceil(extent.z / step)));
+  parallel_for(0, static_cast<std::int64_t>(planes.size()), [&](std::int64_t i) {
+    planes[static_cast<std::size_t>(i)] = inner_points(field, spheres, bounds, step, static_cast<int>(i));
+  });
+  std::vector<Vec3d> sums(spheres.size());
+  std::vector<double> counts(spheres.size());
+  for (const InnerPoints& plane : planes) {
+    for (std::size_t i = 0; i < plane.points.size(); ++i) {
+      sums[plane.owners[i]] += plane.points[i];
+      counts[plane.owners[i]] += 1.0;
+    }
+  }
+  std::vector<Mascon> mascons;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    if (counts[i] == 0.0) continue;
+    const double volume = counts[i] * step * step * step;
+    mascons.push_back({sums[i] * (1.0 / counts[i]), std::cbrt(volume * 0.75 / std::numbers::pi)});
+  }
+  if (mascons.empty()) throw InputError("gravity: the body is too thin to find its mass; check its spheres");
+  return mascons;
+}
+
+std::vector<Vec3d> vertical_directions(std::span<const Mascon> mascons, const BodyMotion& motion,
+                                       std::span<const Vec3d> points) {
+  // Centrifugal acceleration over G times the density, per length unit from the axis.
+  const double turn =
+      motion.rotation_hours > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * motion.rotation_hours) : 0.0;
+  const double spin = turn * turn / (kGravitation * motion.density);
+  const Vec3d center = center_of_mass(mascons);
+  std::vector<Vec3d> up(points.size());
+  const auto batches = static_cast<std::int64_t>((points.size() + kBatch - 1) / kBatch);
+  parallel_for(0, batches, [&](std::int64_t batch) {
+    const std::size_t begin = static_cast<std::size_t>(batch) * kBatch;
+    const std::size_t n = std::min<std::size_t>(kBatch, points.size() - begin);
+    std::array<double, kBatch> x{}, y{}, z{}, gx{}, gy{}, gz{};
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3d& p = points[begin + i];
+      x[i] = p.x, y[i] = p.y, z[i] = p.z;
+      gx[i] = spin * (p.x - center.x);
+      gy[i] = spin * (p.y - center.y);
+    }
+    for (const Mascon& m : mascons) {
+      add_attraction(m.center, m.radius, static_cast<int>(n), x.data(), y.data(), z.data(), gx.data(),
+                     gy.data(), gz.data());
+    }
+    for (std::size_t i = 0; i < n; ++i) up[begin + i] = normalized(Vec3d{-gx[i], -gy[i], -gz[i]});
+  });
+  return up;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,146 @@
+#include "synthesis/finish/recipe_variation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "numerics/hash_random.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/body/body_spheres.h"
+#include "synthesis/noise/coordinate_warp.h"
+
+namespace astrolith {
+namespace {
+
+// At strength 1: standard deviation of the axes' log stretch, and the bend's largest displacement as a
+// fraction of the body's half diagonal.
+constexpr double kAxisStretch = 0.3;
+constexpr double kBend = 0.35;
+constexpr double kBendCycles = 0.5;  // a half diagonal
+
+// At strength 1: standard deviations of the logarithms.
+constexpr double kAmplitudeChange = 0.5;
+constexpr double kFrequencyChange = 0.25;
+
+enum Stream : std::uint64_t { kSeedStream, kAxesStream, kBendStream, kLayerStream };
+
+Box sphere_bounds(const MetaballBody& body) {
+  Box box;
+  for (const Sphere& s : adding_spheres(body)) {
+    const Vec3d r{s.radius, s.radius, s.radius};
+    box.extend(s.center - r);
+    box.extend(s.center + r);
+  }
+  return box;
+}
+
+// A smooth map of space: stretched along the axes, then bent.
+class Deformation {
+ public:
+  Deformation(const Box& body, double strength, std::uint64_t seed)
+      : center_(body.center()),
+        step_(0.01 * body.diagonal()),
+        warp_(bend(body, strength), bend_seed(seed), body) {
+    CounterRandom random(seed, kAxesStream);
+    const auto factor = [&] {
+      return std::exp(kAxisStretch * strength * std::clamp(random.normal(), -2.0, 2.0));
+    };
+    stretch_ = {factor(), factor(), factor()};
+  }
+
+  Vec3d operator()(const Vec3d& p) const {
+    const auto x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+    float wx = 0, wy = 0, wz = 0;
+    warp_.evaluate(1, &x, &y, &z, &wx, &wy, &wz);
+    const Vec3d moved = p + Vec3d{double{wx} - double{x}, double{wy} - double{y}, double{wz} - double{z}};
+    const Vec3d d = moved - center_;
+    return center_ + Vec3d{stretch_.x * d.x, stretch_.y * d.y, stretch_.z * d.z};
+  }
+
+  // The cube root of how much a small volume at p grows.
+  double growth(const Vec3d& p) const {
+    const auto slope = [&](const Vec3d& d) { return (0.5 / step_) * ((*this)(p + d) - (*this)(p - d)); };
+    const Vec3d a = slope({step_, 0, 0}), b = slope({0, step_, 0}), c = slope({0, 0, step_});
+    return std::cbrt(std::clamp(dot(a, cross(b, c)), 0.2, 5.0));
+  }
+
+ private:
+  static Warp bend(const Box& body, double strength) {
+    const double half = 0.5 * body.diagonal();
+    Warp warp;
+    warp.amplitude = kBend * strength * half;
+    warp.frequency = kBendCycles / half;
+    warp.octaves = 1;
+    return warp;
+  }
+  static std::uint32_t bend_seed(std::uint64_t seed) { return hash_seed(seed, kBendStream); }
+
+  Vec3d center_;
+  double step_;
+  CoordinateWarp warp_;
+  Vec3d stretch_{1, 1, 1};
+};
+
+// Returns by what the layer's heights have grown.
+double vary(FractalLayer& layer, double strength, CounterRandom random) {
+  const double growth = std::exp(kAmplitudeChange * strength * random.normal());
+  layer.amplitude = round_to_seven_digits(layer.amplitude * growth);
+  layer.frequency =
+      round_to_seven_digits(layer.frequency * std::exp(kFrequencyChange * strength * random.normal()));
+  return growth;
+}
+
+// Other layers change with the seed alone.
+template <typename OtherLayer>
+double vary(OtherLayer&, double, CounterRandom) {
+  return 1.0;
+}
+
+const std::string& name_of(const Layer& layer) {
+  return std::visit([](const auto& l) -> const std::string& { return l.name; }, layer);
+}
+
+// A mask follows the heights that it asks for, those of the last layer of its name before, and a blend's
+// joint those that it joins: what was covered stays covered. `growth` of each layer's heights.
+void follow_heights(const std::vector<double>& growth, std::vector<Layer>& layers) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    LayerUse* use = use_of(layers[i]);
+    if (use == nullptr) continue;
+    use->combination.width = round_to_seven_digits(use->combination.width * growth[i]);
+    if (!use->mask) continue;
+    std::size_t asked = i;
+    while (asked > 0 && name_of(layers[asked - 1]) != use->mask->layer) --asked;
+    if (asked == 0) continue;
+    use->mask->from = round_to_seven_digits(use->mask->from * growth[asked - 1]);
+    use->mask->to = round_to_seven_digits(use->mask->to * growth[asked - 1]);
+  }
+}
+
+}  // namespace
+
+Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variation_seed, VariedNoise noise) {
+  Recipe varied = recipe;
+  if (noise == VariedNoise::kNew) {
+    varied.seed =
+        CounterRandom(recipe.seed ^ (variation_seed * 0x9e3779b97f4a7c15u), kSeedStream).next() >> 11;
+  }
+  varied.provenance.achieved.clear();
+  const Deformation deform(sphere_bounds(*recipe.body), strength, variation_seed);
+  for_each_sphere(*varied.body, [&](Sphere& s) {
+    const Vec3d c = deform(s.center);
+    s.radius = round_to_seven_digits(s.radius * deform.growth(s.center));
+    s.center = {round_to_seven_digits(c.x), round_to_seven_digits(c.y), round_to_seven_digits(c.z)};
+  });
+  std::vector<double> growth;
+  for (std::size_t i = 0; i < varied.layers.size(); ++i) {
+    const CounterRandom random(variation_seed, (std::uint64_t{kLayerStream} << 32) + i);
+    growth.push_back(
+        std::visit([&](auto& layer) { return vary(layer, strength, random); }, varied.layers[i]));
+  }
+  follow_heights(growth, varied.layers);
+  return varied;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,248 @@
+#include "synthesis/gabor/gabor_surface_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace astrolith {
+namespace {
+
+constexpr int kGroup = static_cast<int>(kLanes);
+// Groups narrow down the impulses together before each does for itself.
+constexpr int kCluster = 4 * kGroup;
+
+// Cells around so many points are drawn at once: memory is bounded.
+constexpr std::int64_t kMostCells = 1 << 17;
+// Around up to so many cells for each point all are drawn, by tiles that others can use too, and groups of
+// points share their impulses. Beyond, only those around each point are.
+constexpr std::int64_t kCellsPerPoint = 300;
+
+// The cells whose impulses may reach a point of the box.
+CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
+  CellRange range;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const GaborCellSpan span = gabor_cells_around(band, box.low[axis], box.high[axis]);
+    range.first[axis] = span.first;
+    range.last[axis] = span.last;
+  }
+  return range;
+}
+
+// Tiles in their order (z, then y, then x), numbered.
+struct TileRange {
+  explicit TileRange(const CellRange& cells) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] = gabor_tile_of(cells.first[axis]);
+      count[axis] = gabor_tile_of(cells.last[axis]) - first[axis] + 1;
+    }
+  }
+  std::size_t size() const { return static_cast<std::size_t>(count[0] * count[1] * count[2]); }
+  std::array<int, 3> index(std::size_t number) const {
+    const int i = static_cast<int>(number);
+    return {first[0] + i % count[0], first[1] + i / count[0] % count[1],
+            first[2] + i / (count[0] * count[1])};
+  }
+  std::size_t number(int tx, int ty, int tz) const {
+    return static_cast<std::size_t>(((tz - first[2]) * count[1] + ty - first[1]) * count[0] + tx - first[0]);
+  }
+
+  std::array<int, 3> first, count;
+};
+
+using HeldTiles = std::vector<std::shared_ptr<const GaborTile>>;
+
+HeldTiles whole_tiles(const GaborTiles& tiles, const TileRange& range) {
+  HeldTiles held;
+  held.reserve(range.size());
+  for (std::size_t i = 0; i < range.size(); ++i) held.push_back(tiles.tile(range.index(i)));
+  return held;
+}
+
+void mark(const CellRange& cells, const TileRange& range, std::vector<TileCells>& marks) {
+  for (int z = cells.first[2]; z <= cells.last[2]; ++z) {
+    for (int y = cells.first[1]; y <= cells.last[1]; ++y) {
+      for (int x = cells.first[0]; x <= cells.last[0]; ++x) {
+        const int tx = gabor_tile_of(x), ty = gabor_tile_of(y), tz = gabor_tile_of(z);
+        const int bit =
+            ((z - tz * kTileCells) * kTileCells + y - ty * kTileCells) * kTileCells + x - tx * kTileCells;
+        marks[range.number(tx, ty, tz)] |= TileCells{1} << bit;
+      }
+    }
+  }
+}
+
+using Chunks = std::vector<const ImpulseChunk*>;
+
+// Those of some chunks that overlap a box.
+void narrow(const Chunks& chunks, const PointBox& box, Chunks& kept) {
+  kept.clear();
+  for (const ImpulseChunk* chunk : chunks) {
+    if (overlap(box, chunk->low, chunk->high)) kept.push_back(chunk);
+  }
+}
+
+// The chunks of the tiles that overlap a box.
+void find_chunks(const HeldTiles& tiles, const PointBox& box, Chunks& chunks) {
+  chunks.clear();
+  for (const auto& tile : tiles) {
+    if (tile == nullptr || !overlap(box, tile->low, tile->high)) continue;
+    for (const ImpulseChunk& chunk : tile->chunks) {
+      if (overlap(box, chunk.low, chunk.high)) chunks.push_back(&chunk);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<GaborImpulse> impulses_reaching(const GaborTiles& tiles, const PointBox& box) {
+  const HeldTiles held = whole_tiles(tiles, TileRange(cells_around(tiles.band(), box)));
+  Chunks chunks;
+  find_chunks(held, box, chunks);
+  std::vector<ImpulseLane> lanes;
+  append_reaching(chunks, box, lanes);
+  std::vector<GaborImpulse> impulses;
+  for (const ImpulseLane lane : lanes) impulses.push_back(impulse_at(lane));
+  return impulses;
+}
+
+GaborSurfacePoints::GaborSurfacePoints(int n, const float* x, const float* y, const float* z,
+                                       bool with_slopes)
+    : index_(static_cast<std::size_t>(n)) {
+  std::iota(index_.begin(), index_.end(), 0);
+  x_.assign(x, x + n);
+  y_.assign(y, y + n);
+  z_.assign(z, z + n);
+  if (n > kGroup) sort(0, n);
+  const auto padded = static_cast<std::size_t>((n + kGroup - 1) / kGroup * kGroup);
+  for (auto [to, from] : {std::pair{&x_, x}, {&y_, y}, {&z_, z}}) {
+    for (std::size_t i = 0; i < index_.size(); ++i) (*to)[i] = from[index_[i]];
+    to->resize(padded, n > 0 ? to->back() : 0.0f);
+  }
+  height_.assign(padded, 0.0f);
+  if (with_slopes) {
+    for (auto* s : {&sx_, &sy_, &sz_}) s->assign(padded, 0.0f);
+  }
+}
+
+// Of the points as they were given: halves along the longest axis until a group is left; `begin` is a
+// multiple of a group's size, of a cluster's where both halves hold clusters.
+void GaborSurfacePoints::sort(int begin, int end) {
+  if (end - begin <= kGroup) return;
+  std::array<float, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+  const std::array<const std::vector<float>*, 3> coordinates{&x_, &y_, &z_};
+  for (int i = begin; i < end; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float c = (*coordinates[axis])[static_cast<std::size_t>(index_[static_cast<std::size_t>(i)])];
+      low[axis] = std::min(low[axis], c);
+      high[axis] = std::max(high[axis], c);
+    }
+  }
+  const auto extent = [&](std::size_t axis) { return high[axis] - low[axis]; };
+  const std::size_t axis = extent(0) >= extent(1) && extent(0) >= extent(2) ? 0
+                           : extent(1) >= extent(2)                         ? 1
+                                                                            : 2;
+  const std::vector<float>& c = *coordinates[axis];
+  const int unit = end - begin > kCluster ? kCluster : kGroup;
+  const int middle = begin + ((end - begin) / 2 + unit - 1) / unit * unit;
+  std::nth_element(index_.begin() + begin, index_.begin() + middle, index_.begin() + end, [&](int i, int j) {
+    return c[static_cast<std::size_t>(i)] < c[static_cast<std::size_t>(j)];
+  });
+  sort(begin, middle);
+  sort(middle, end);
+}
+
+PointBox GaborSurfacePoints::box_of(int begin, int end) const {
+  PointBox box;
+  const std::array<const std::vector<float>*, 3> coordinates{&x_, &y_, &z_};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] =
+        std::minmax_element(coordinates[axis]->begin() + begin, coordinates[axis]->begin() + end);
+    box.low[axis] = *low;
+    box.high[axis] = *high;
+  }
+  return box;
+}
+
+HeightSums GaborSurfacePoints::sums_from(int begin) {
+  const auto i = static_cast<std::size_t>(begin);
+  if (sx_.empty()) return {&height_[i], nullptr, nullptr, nullptr};
+  return {&height_[i], &sx_[i], &sy_[i], &sz_[i]};
+}
+
+void GaborSurfacePoints::add_band(const GaborTiles& tiles) {
+  if (size() > 0) add_band(tiles, 0, size());
+}
+
+// A group is added to as a whole: one that was split belongs to more than one range.
+bool GaborSurfacePoints::whole_groups(int begin, int end) const {
+  return begin % kGroup == 0 && (end % kGroup == 0 || end == size());
+}
+
+void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
+  const CellRange range = cells_around(tiles.band(), box_of(begin, end));
+  if (range.cells() > kMostCells && end - begin > 1) {
+    const int unit = end - begin > kGroup ? kGroup : 1;
+    const int middle = begin + ((end - begin) / 2 + unit - 1) / unit * unit;
+    add_band(tiles, begin, middle);
+    add_band(tiles, middle, end);
+  } else if (whole_groups(begin, end) && range.cells() <= kCellsPerPoint * (end - begin)) {
+    add_to_dense(tiles, range, begin, end);
+  } else {
+    add_to_scattered(tiles, range, begin, end);
+  }
+}
+
+void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end) {
+  const HeldTiles held = whole_tiles(tiles, TileRange(range));
+  Chunks all, near, nearest;
+  std::vector<ImpulseLane> lanes;
+  find_chunks(held, box_of(begin, end), all);
+  for (int cluster = begin; cluster < end; cluster += kCluster) {
+    const int cluster_end = std::min(cluster + kCluster, end);
+    narrow(all, box_of(cluster, cluster_end), near);
+    for (int group = cluster; group < cluster_end; group += kGroup) {
+      const PointBox box = box_of(group, std::min(group + kGroup, end));
+      narrow(near, box, nearest);
+      lanes.clear();
+      append_reaching(nearest, box, lanes);
+      const auto i = static_cast<std::size_t>(group);
+      add_to_group(lanes, tiles.band().amplitude, &x_[i], &y_[i], &z_[i], sums_from(group));
+    }
+  }
+}
+
+void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, const CellRange& range, int begin,
+                                          int end) {
+  const TileRange tile_range(range);
+  HeldTiles held;
+  std::vector<TileCells> marks(tile_range.size());
+  for (int i = begin; i < end; ++i) mark(cells_around(tiles.band(), box_of(i, i + 1)), tile_range, marks);
+  held.resize(marks.size());
+  for (std::size_t t = 0; t < marks.size(); ++t) {
+    if (marks[t] != 0) held[t] = tiles.draw(tile_range.index(t), marks[t]);
+  }
+  Chunks near, nearest;
+  for (int cluster = begin; cluster < end; cluster += kCluster) {
+    const int cluster_end = std::min(cluster + kCluster, end);
+    find_chunks(held, box_of(cluster, cluster_end), near);
+    for (int i = cluster; i < cluster_end; ++i) {
+      const auto p = static_cast<std::size_t>(i);
+      narrow(near, box_of(i, i + 1), nearest);
+      add_at_point(nearest, tiles.band().amplitude, x_[p], y_[p], z_[p], sums_from(i));
+    }
+  }
+}
+
+void GaborSurfacePoints::store_heights(float* height) const {
+  for (std::size_t i = 0; i < index_.size(); ++i) height[index_[i]] = height_[i];
+}
+
+void GaborSurfacePoints::store_slopes(float* x, float* y, float* z) const {
+  for (std::size_t i = 0; i < index_.size(); ++i) {
+    x[index_[i]] = sx_[i];
+    y[index_[i]] = sy_[i];
+    z[index_[i]] = sz_[i];
+  }
+}
+
+}  // namespace astrolith

@@ -1,0 +1,73 @@
+#include "synthesis/gabor/gabor_tiles.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "numerics/hash_random.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::size_t kMostShelfBytes = std::size_t{1} << 19;  // 32 MB a band in all
+
+// Indices stay below 2^20 in magnitude.
+std::uint64_t key_of(const std::array<int, 3>& index) {
+  std::uint64_t key = 0;
+  for (const int i : index) key = key << 21 | (static_cast<std::uint32_t>(i) & 0x1fffffu);
+  return key;
+}
+
+std::size_t bytes_of(const GaborTile& tile) {
+  return sizeof(tile) + tile.chunks.capacity() * sizeof(ImpulseChunk);
+}
+
+}  // namespace
+
+GaborTiles::GaborTiles(SurfaceBand band, const PreparedBody& body)
+    : band_(std::move(band)), body_(body), shelves_(std::make_unique<std::array<Shelf, kShelves>>()) {}
+
+std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& index) const {
+  const std::uint64_t key = key_of(index);
+  Shelf& shelf = (*shelves_)[hash_cell(0, index[0], index[1], index[2]) % kShelves];
+  {
+    const std::lock_guard lock(shelf.mutex);
+    const auto known = shelf.tiles.find(key);
+    if (known != shelf.tiles.end()) return known->second;
+  }
+  const std::shared_ptr<const GaborTile> made = draw(index, kWholeTile);
+  const std::lock_guard lock(shelf.mutex);
+  const auto [place, is_new] = shelf.tiles.emplace(key, made);
+  if (!is_new) return place->second;  // another thread was faster
+  shelf.oldest_first.push_back(key);
+  shelf.bytes += bytes_of(*made);
+  while (shelf.bytes > kMostShelfBytes && shelf.oldest_first.size() > 1) {
+    const auto oldest = shelf.tiles.find(shelf.oldest_first.front());
+    shelf.bytes -= bytes_of(*oldest->second);
+    shelf.tiles.erase(oldest);
+    shelf.oldest_first.pop_front();
+  }
+  return made;
+}
+
+std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& index, TileCells wanted) const {
+  std::vector<GaborCell> cells;
+  for (int i = 0; i < kTileCells * kTileCells * kTileCells; ++i) {
+    if ((wanted >> i & 1u) == 0) continue;
+    cells.push_back({index[0] * kTileCells + i % kTileCells,
+                     index[1] * kTileCells + i / kTileCells % kTileCells,
+                     index[2] * kTileCells + i / (kTileCells * kTileCells)});
+  }
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  GaborTile tile{make_chunks(draw_cells(band_, body_, cells), double{band_.a}),
+                 {kInfinity, kInfinity, kInfinity},
+                 {-kInfinity, -kInfinity, -kInfinity}};
+  for (const ImpulseChunk& chunk : tile.chunks) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      tile.low[axis] = std::min(tile.low[axis], chunk.low[axis]);
+      tile.high[axis] = std::max(tile.high[axis], chunk.high[axis]);
+    }
+  }
+  return std::make_shared<const GaborTile>(std::move(tile));
+}
+
+}  // namespace astrolith

@@ -1,0 +1,190 @@
+#include "synthesis/landforms/boulder_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "numerics/interval.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/landforms/population.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kDegree = 3.141592653589793 / 180.0;
+
+void expect_on_body(double axis, const BareSurface& surface, const std::string& where) {
+  if (axis <= surface.longest_side()) return;
+  throw InputError(where + ": is " + std::to_string(axis) + ", longer than the bare body, " +
+                   std::to_string(surface.longest_side()) + "; lower it");
+}
+
+// Along the normal to where F = 0, which falls by about one a length unit.
+Vec3d on_terrain(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain) {
+  double height = 0.0;
+  for (int step = 0; step < 12; ++step) {
+    const double change = terrain.field(bare + height * normal);
+    height = std::clamp(height + change, -terrain.height_bound, terrain.height_bound);
+    if (std::fabs(change) < 1e-4 * terrain.height_bound) break;
+  }
+  return bare + height * normal;
+}
+
+// Turned by its heading and tilt about the normal.
+void turn(const Vec3d& normal, PlacedBoulder& boulder) {
+  Vec3d east = cross(Vec3d{0, 0, 1}, normal);
+  east = norm(east) > 1e-6 ? normalized(east) : Vec3d{1, 0, 0};
+  const Vec3d north = cross(normal, east);
+  const double heading = boulder.heading * kDegree, tilt = boulder.tilt * kDegree;
+  Vec3d(&axis)[3] = boulder.directions;
+  axis[0] = std::cos(heading) * east + std::sin(heading) * north;
+  const Vec3d level = cross(normal, axis[0]);
+  axis[1] = std::cos(tilt) * level + std::sin(tilt) * normal;
+  axis[2] = std::cos(tilt) * normal - std::sin(tilt) * level;
+}
+
+struct Placement {
+  Vec3d bare;
+  PlacedBoulder boulder;
+};
+
+void find_listed(const BoulderLayer& layer, const BareSurface& surface, const std::string& where,
+                 std::vector<Placement>& out) {
+  for (std::size_t i = 0; i < layer.boulders.size(); ++i) {
+    const Boulder& b = layer.boulders[i];
+    const std::string at = where + ".boulders[" + std::to_string(i) + "].";
+    expect_on_body(std::max({b.axes.x, b.axes.y, b.axes.z}), surface, at + "axes");
+    const Vec3d bare = surface.find(b.place, at + (b.place.is_direction ? "direction" : "position"));
+    out.push_back({bare, {{}, {}, b.axes, b.heading, b.tilt, b.burial, 0}});
+  }
+}
+
+void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t seed, int layer_index,
+          const std::string& where, std::vector<Placement>& out) {
+  const BoulderPopulation& population = *layer.population;
+  expect_on_body(population.drawn.greatest_diameter, surface, where + ".greatest_diameter");
+  for (DrawnFeature& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
+    CounterRandom& random = drawn.random;
+    const auto spread = [&](double ratio) {
+      const double factor = 1.0 + population.ratio_spread * random.uniform(-1.0, 1.0);
+      return std::clamp(ratio * factor, kMinAxisRatio, 1.0);
+    };
+    PlacedBoulder boulder;
+    const double b = spread(population.axis_ratios.y / population.axis_ratios.x);
+    const double c = spread(population.axis_ratios.z / population.axis_ratios.x);
+    boulder.axes = drawn.diameter * Vec3d{1.0, b, c};
+    boulder.heading = 360.0 * random.uniform();
+    boulder.tilt = population.greatest_tilt * random.uniform(-1.0, 1.0);
+    boulder.burial = random.uniform(population.least_burial, population.greatest_burial);
+    out.push_back({drawn.position, boulder});
+  }
+}
+
+BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder) {
+  const Vec3d half = 0.5 * boulder.axes;
+  const double least = std::min({half.x, half.y, half.z});
+  // The distance is at least (1 - |u|) times the least half axis.
+  const double reach = 1.0 + layer.smoothing + layer.roughness;
+  return {to_float(boulder.center),
+          {to_float(boulder.directions[0] * (1.0 / half.x)), to_float(boulder.directions[1] * (1.0 / half.y)),
+           to_float(boulder.directions[2] * (1.0 / half.z))},
+          to_float({1.0 / half.x, 1.0 / half.y, 1.0 / half.z}),
+          static_cast<float>(1e-6 / least),
+          static_cast<float>(layer.smoothing * least),
+          static_cast<float>(layer.roughness * least),
+          boulder.noise_seed,
+          static_cast<float>(reach * reach)};
+}
+
+// How far a boulder about the origin reaches along a direction, its roughness included.
+double extent_along(const BoulderKernel& kernel, const Vec3d& direction, double longest) {
+  double in = 0.0, out = longest;
+  for (int halving = 0; halving < 30; ++halving) {
+    const double middle = 0.5 * (in + out);
+    const Vec3f p = to_float(middle * direction);
+    (boulder_distance(kernel, boulder_coordinates(kernel, p.x, p.y, p.z)) > 0.0f ? in : out) = middle;
+  }
+  return in;
+}
+
+// As deep in the ground as its burial says, measured along the normal through its centre: whatever its shape,
+// it touches the ground.
+void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& normal, PlacedBoulder& boulder) {
+  turn(normal, boulder);
+  const BoulderKernel kernel = kernel_of(layer, boulder);
+  const double longest = std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
+  const double above = extent_along(kernel, normal, longest), below = extent_along(kernel, -normal, longest);
+  boulder.center = ground + (below - boulder.burial * (above + below)) * normal;
+}
+
+Box reach_of(const PlacedBoulder& boulder, double reach) {
+  const Vec3d half = 0.5 * boulder.axes;
+  const auto extent = [&](double x, double y, double z) {
+    return reach * norm(Vec3d{half.x * x, half.y * y, half.z * z});
+  };
+  const Vec3d(&d)[3] = boulder.directions;
+  const Vec3d e{extent(d[0].x, d[1].x, d[2].x), extent(d[0].y, d[1].y, d[2].y),
+                extent(d[0].z, d[1].z, d[2].z)};
+  const Box box{boulder.center - e, boulder.center + e};
+  return widened(box, 1e-5 * norm(e) + 2e-6 * largest_coordinate(box));
+}
+
+ASTROLITH_SIMD_CLONES void join_boulder(const BoulderKernel& kernel, int n, const float* __restrict x,
+                                        const float* __restrict y, const float* __restrict z,
+                                        float* __restrict field) {
+  const BoulderKernel boulder = kernel;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) field[i] = joined(boulder, x[i], y[i], z[i], field[i]);
+}
+
+}  // namespace
+
+std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareSurface& surface,
+                                          const Terrain& terrain, std::uint64_t seed, int layer_index,
+                                          const std::string& where) {
+  if (surface.empty()) return {};
+  std::vector<Placement> placements;
+  find_listed(layer, surface, where, placements);
+  if (layer.population) draw(layer, surface, seed, layer_index, where + ".population", placements);
+  const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
+  parallel_for(0, static_cast<std::int64_t>(placements.size()), [&](std::int64_t i) {
+    Placement& p = placements[static_cast<std::size_t>(i)];
+    const Vec3d normal = surface.normal(p.bare);
+    p.boulder.noise_seed = hash_append(layer_seed, static_cast<std::uint32_t>(i));
+    settle(layer, on_terrain(p.bare, normal, terrain), normal, p.boulder);
+  });
+  std::vector<PlacedBoulder> boulders;
+  for (const Placement& p : placements) boulders.push_back(p.boulder);
+  return boulders;
+}
+
+void BoulderField::add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders) {
+  for (const PlacedBoulder& boulder : boulders) {
+    boulders_.push_back(kernel_of(layer, boulder));
+    boxes_.push_back(reach_of(boulder, 1.0 + layer.smoothing + layer.roughness));
+  }
+}
+
+void BoulderField::finish() { tree_ = BoxTree(boxes_); }
+
+std::vector<std::uint32_t> BoulderField::near(int n, const float* x, const float* y, const float* z) const {
+  if (empty()) return {};
+  Box box;
+  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
+  return tree_.touching(box);
+}
+
+bool BoulderField::reach(std::span<const std::uint32_t> boulders, float x, float y, float z) const {
+  const Vec3d p{x, y, z};
+  return std::any_of(boulders.begin(), boulders.end(), [&](std::uint32_t i) {
+    return boxes_touch(boxes_[i], {p, p});
+  });
+}
+
+void BoulderField::join(std::span<const std::uint32_t> boulders, int n, const float* x, const float* y,
+                        const float* z, float* field) const {
+  for (const std::uint32_t i : boulders) join_boulder(boulders_[i], n, x, y, z, field);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,61 @@
+// One boulder as a signed distance to first order, and its union with the body.
+#pragma once
+
+#include <cstdint>
+
+#include "numerics/host_device.h"
+#include "numerics/scalar_math.h"
+#include "numerics/vec3.h"
+#include "synthesis/landforms/crater_profile.h"
+#include "synthesis/noise/simplex_noise.h"
+
+namespace astrolith {
+
+// An ellipsoid, ready for evaluation.
+struct BoulderKernel {
+  Vec3f center;         // length units
+  Vec3f across[3];      // unit axes, each over half its length
+  Vec3f inverse_half;   // of the axes, per length unit
+  float floor;          // of |grad|: keeps the distance finite at the centre, per length unit
+  float smoothing;      // k of the union, length units
+  float roughness;      // amplitude of the noise, length units
+  std::uint32_t seed;   // of the noise
+  float reach_squared;  // beyond it, in half axes, the boulder changes nothing
+};
+
+// In half axes along its own axes.
+ASTROLITH_KERNEL Vec3f boulder_coordinates(const BoulderKernel& b, float x, float y, float z) {
+  const float dx = x - b.center.x, dy = y - b.center.y, dz = z - b.center.z;
+  const auto along = [&](const Vec3f& a) { return math::fma(a.x, dx, math::fma(a.y, dy, a.z * dz)); };
+  return {along(b.across[0]), along(b.across[1]), along(b.across[2])};
+}
+
+ASTROLITH_KERNEL float squared_length(float x, float y, float z) {
+  return math::fma(x, x, math::fma(y, y, z * z));
+}
+
+// Two octaves in [-1, 1], with features as wide as a half axis.
+ASTROLITH_KERNEL float boulder_noise(const Vec3f& u, std::uint32_t seed) {
+  const float wide = simplex_noise(1.2f * u.x, 1.2f * u.y, 1.2f * u.z, seed);
+  const float narrow = simplex_noise(2.9f * u.x, 2.9f * u.y, 2.9f * u.z, seed + 1u);
+  return math::fma(0.4f, narrow, wide) * (1.0f / 1.4f);
+}
+
+// Positive inside: (1 - |u|) over the gradient of |u|, and noise.
+ASTROLITH_KERNEL float boulder_distance(const BoulderKernel& b, const Vec3f& u) {
+  const float length = math::sqrt(squared_length(u.x, u.y, u.z)) + 1e-6f;
+  const float slope =
+      math::sqrt(squared_length(u.x * b.inverse_half.x, u.y * b.inverse_half.y, u.z * b.inverse_half.z)) +
+      b.floor;
+  const float smooth = (1.0f - length) * (length / slope);
+  return b.roughness > 0.0f ? math::fma(b.roughness, boulder_noise(u, b.seed), smooth) : smooth;
+}
+
+// What becomes of F.
+ASTROLITH_KERNEL float joined(const BoulderKernel& b, float x, float y, float z, float field) {
+  const Vec3f u = boulder_coordinates(b, x, y, z);
+  const float together = smooth_max(field, boulder_distance(b, u), b.smoothing);
+  return squared_length(u.x, u.y, u.z) < b.reach_squared ? together : field;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,169 @@
+#include "synthesis/landforms/crater_relief.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "synthesis/landforms/crater_bounds.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kMostOverlaps = 2000.0;  // of craters at a place, on average: what a point may cost
+constexpr double kClip = 2.0;             // of craters that pile up, in the greatest relief of one
+
+const CraterProfile& profile_of(const CraterLayer& layer, bool complex) {
+  return complex ? layer.complex : layer.simple;
+}
+
+PlacedCrater sized_crater(const CraterLayer& layer, double diameter, double age) {
+  const bool complex = layer.complex_from && diameter >= *layer.complex_from;
+  const CraterProfile& profile = profile_of(layer, complex);
+  return {{}, diameter, profile.depth * diameter, profile.rim_height * diameter, age, complex};
+}
+
+void expect_on_body(double diameter, const BareSurface& surface, const std::string& where) {
+  if (diameter <= surface.longest_side()) return;
+  throw InputError(where + "diameter: is " + std::to_string(diameter) + ", wider than the bare body, " +
+                   std::to_string(surface.longest_side()) + "; lower it");
+}
+
+void place_listed(const CraterLayer& layer, const BareSurface& surface, const std::string& where,
+                  std::vector<PlacedCrater>& out) {
+  for (std::size_t i = 0; i < layer.craters.size(); ++i) {
+    const Crater& crater = layer.craters[i];
+    const std::string at = where + ".craters[" + std::to_string(i) + "].";
+    expect_on_body(crater.diameter, surface, at);
+    PlacedCrater placed = sized_crater(layer, crater.diameter, crater.age);
+    placed.position = surface.find(crater.place, at + (crater.place.is_direction ? "direction" : "position"));
+    if (crater.depth) placed.depth = *crater.depth;
+    if (crater.rim_height) placed.rim_height = *crater.rim_height;
+    out.push_back(placed);
+  }
+}
+
+void place_drawn(const CraterLayer& layer, const BareSurface& surface, std::uint64_t seed, int layer_index,
+                 const std::string& where, std::vector<PlacedCrater>& out) {
+  const CraterPopulation& population = *layer.population;
+  expect_on_body(population.drawn.greatest_diameter, surface, where + ".greatest_");
+  for (DrawnFeature& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
+    const double age_share = drawn.random.uniform();
+    PlacedCrater crater = sized_crater(layer, drawn.diameter, population.greatest_age * age_share);
+    crater.position = drawn.position;
+    const double factor = (1.0 + population.depth_spread * drawn.random.uniform(-1.0, 1.0)) *
+                          (1.0 - population.degradation * age_share);
+    crater.depth *= factor;
+    crater.rim_height *= factor;
+    out.push_back(crater);
+  }
+}
+
+// As often as the craters would cover a ball as wide as the body.
+void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrater>& craters,
+                         const BareSurface& surface, const std::string& where) {
+  double covered = 0.0;
+  for (const PlacedCrater& crater : craters) {
+    const double across = profile_of(layer, crater.complex).extent * crater.diameter / surface.longest_side();
+    covered += 0.25 * across * across;
+  }
+  if (covered <= kMostOverlaps) return;
+  throw InputError(where + ": its craters would cover every place " + std::to_string(covered) +
+                   " times, above 2000; use fewer or smaller ones");
+}
+
+CraterKernel kernel_of(const CraterProfile& profile, const PlacedCrater& crater, const Vec3d& center) {
+  const double radius = 0.5 * crater.diameter;
+  CraterKernel kernel{};
+  kernel.x = static_cast<float>(center.x);
+  kernel.y = static_cast<float>(center.y);
+  kernel.z = static_cast<float>(center.z);
+  kernel.inverse_radius_squared = static_cast<float>(1.0 / (radius * radius));
+  kernel.depth = static_cast<float>(crater.depth);
+  kernel.rim_height = static_cast<float>(crater.rim_height);
+  kernel.sharpness = static_cast<float>(profile.sharpness);
+  kernel.extent = static_cast<float>(profile.extent);
+  kernel.extent_squared = kernel.extent * kernel.extent;
+  kernel.inverse_flank_width = static_cast<float>(1.0 / (profile.extent - 1.0));
+  kernel.flank = static_cast<float>(profile.flank);
+  kernel.terraces = static_cast<float>(profile.terraces);
+  kernel.peak_height = static_cast<float>(profile.peak_height * crater.diameter);
+  kernel.inverse_peak_radius_squared = static_cast<float>(1.0 / (profile.peak_radius * profile.peak_radius));
+  // So that smoothing ends within the extent.
+  const float cavity_there = crater_cavity(kernel, kernel.extent_squared);
+  kernel.smoothing = std::min(static_cast<float>(profile.smoothing * crater.depth), cavity_there);
+  return kernel;
+}
+
+ASTROLITH_SIMD_CLONES void apply_crater(const CraterKernel& kernel, int n, const float* __restrict x,
+                                        const float* __restrict y, const float* __restrict z,
+                                        float* __restrict elevation) {
+  const CraterKernel crater = kernel;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    elevation[i] = cratered(crater, crater_distance_squared(crater, x[i], y[i], z[i]), elevation[i]);
+  }
+}
+
+}  // namespace
+
+std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurface& surface,
+                                        std::uint64_t seed, int layer_index, const std::string& where) {
+  std::vector<PlacedCrater> craters;
+  if (surface.empty()) return craters;
+  place_listed(layer, surface, where, craters);
+  if (layer.population) place_drawn(layer, surface, seed, layer_index, where + ".population", craters);
+  expect_few_overlaps(layer, craters, surface, where);
+  std::stable_sort(craters.begin(), craters.end(),
+                   [](const PlacedCrater& a, const PlacedCrater& b) { return a.age > b.age; });
+  return craters;
+}
+
+CraterRelief::CraterRelief(const CraterLayer& layer, std::span<const PlacedCrater> oldest_first,
+                           std::span<const Vec3d> centers, std::span<const float> elevations,
+                           double bound_before) {
+  double greatest = 0.0;
+  std::vector<Box> boxes;
+  for (std::size_t i = 0; i < oldest_first.size(); ++i) {
+    const PlacedCrater& crater = oldest_first[i];
+    craters_.push_back(kernel_of(profile_of(layer, crater.complex), crater, centers[i]));
+    boxes.push_back(crater_reach(craters_.back()));
+    const double peak = double{craters_.back().peak_height};
+    greatest = std::max({greatest, crater.depth, crater.rim_height + peak});
+  }
+  tree_ = BoxTree(boxes);
+  elevation_bound_ = bound_before + kClip * greatest;
+  find_bases(oldest_first, elevations);
+}
+
+void CraterRelief::find_bases(std::span<const PlacedCrater> craters, std::span<const float> elevations) {
+  for (std::size_t i = 0; i < craters_.size(); ++i) {
+    CraterKernel& crater = craters_[i];
+    const Vec3d center{crater.x, crater.y, crater.z};
+    float base = elevations[i];
+    for (const std::uint32_t k : tree_.touching({center, center})) {
+      if (k >= i) break;
+      if (craters[k].diameter < craters[i].diameter) continue;
+      base = cratered(craters_[k], crater_distance_squared(craters_[k], crater.x, crater.y, crater.z), base);
+    }
+    crater.base = base;
+  }
+}
+
+void CraterRelief::apply(int n, const float* x, const float* y, const float* z, float* elevation) const {
+  Box box;
+  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
+  for (const std::uint32_t k : tree_.touching(box)) apply_crater(craters_[k], n, x, y, z, elevation);
+  const float clip = static_cast<float>(elevation_bound_);
+  for (int i = 0; i < n; ++i) elevation[i] = math::clamp(elevation[i], -clip, clip);
+}
+
+Interval CraterRelief::bound(const Box& box, const Interval& before) const {
+  Interval elevation = before;
+  for (const std::uint32_t k : tree_.touching(box)) {
+    elevation = bound_cratered(craters_[k], box, elevation);
+  }
+  return {std::clamp(elevation.low, -elevation_bound_, elevation_bound_),
+          std::clamp(elevation.high, -elevation_bound_, elevation_bound_)};
+}
+
+}  // namespace astrolith

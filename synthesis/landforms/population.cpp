@@ -1,0 +1,68 @@
+#include "synthesis/landforms/population.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "numerics/errors.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::uint64_t kPopulationStream = std::uint64_t{0x706f70} << 40;  // layer and feature follow
+constexpr std::uint64_t kCountOfLayer = 0xffffffffu;
+
+CounterRandom stream_of(std::uint64_t seed, int layer_index, std::uint64_t feature) {
+  return CounterRandom(seed, kPopulationStream + (static_cast<std::uint64_t>(layer_index) << 32) + feature);
+}
+
+// By the waiting times between events.
+int poisson_number(double mean, CounterRandom random) {
+  int number = 0;
+  for (double waited = -std::log(1.0 - random.uniform()); waited < mean; ++number) {
+    waited -= std::log(1.0 - random.uniform());
+  }
+  return number;
+}
+
+int number_of(const Population& population, const BareSurface& surface, const CounterRandom& random,
+              const std::string& where) {
+  if (population.count) return *population.count;
+  const double mean = *population.density * surface.area();
+  if (mean > 0.9 * kMaxDrawnFeatures) {  // far beyond chance
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        ".density: would draw %.3g on this body, whose area is %.4g; at most 9e5 may be drawn: lower it",
+        mean, surface.area());
+    throw InputError(where + text);
+  }
+  return poisson_number(mean, random);
+}
+
+}  // namespace
+
+double power_law_diameter(const Population& population, double u) {
+  const double ratio = population.greatest_diameter / population.least_diameter;
+  const double left_out = 1.0 - std::pow(ratio, -population.exponent);
+  return population.least_diameter * std::pow(1.0 - u * left_out, -1.0 / population.exponent);
+}
+
+std::vector<DrawnFeature> draw_population(const Population& population, const BareSurface& surface,
+                                          std::uint64_t seed, int layer_index, const std::string& where) {
+  const int number = number_of(population, surface, stream_of(seed, layer_index, kCountOfLayer), where);
+  std::vector<DrawnFeature> features(static_cast<std::size_t>(number));
+  std::vector<Vec3d> random(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    DrawnFeature& feature = features[i];
+    feature.random = stream_of(seed, layer_index, i);
+    feature.diameter = power_law_diameter(population, feature.random.uniform());
+    random[i].x = feature.random.uniform();
+    random[i].y = feature.random.uniform();
+    random[i].z = feature.random.uniform();
+  }
+  const std::vector<Vec3d> points = surface.scatter(random);
+  for (std::size_t i = 0; i < points.size(); ++i) features[i].position = points[i];
+  return features;
+}
+
+}  // namespace astrolith

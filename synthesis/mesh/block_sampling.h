@@ -1,0 +1,228 @@
+// Fills the samples of a layer's blocks: first each block what it owns, and what nobody else will; then what
+// its lower neighbours own.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "synthesis/mesh/block_culling.h"
+#include "synthesis/mesh/block_layer.h"
+
+namespace astrolith {
+
+// Points gathered for one call of a field block.
+template <std::size_t Capacity>
+class PointBatch {
+ public:
+  void add(float px, float py, float pz) {
+    x_[size_] = px;
+    y_[size_] = py;
+    z_[size_] = pz;
+    ++size_;
+  }
+  std::size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  float value(std::size_t i) const { return value_[i]; }
+
+  template <FieldBlockLike Block>
+  void evaluate(const Block& field, float band = kExactEverywhere) {
+    const auto points = [this](const auto& v) { return std::span(v).first(size_); };
+    if (size_ > 0) field.evaluate(points(x_), points(y_), points(z_), std::span(value_).first(size_), band);
+  }
+  // Of points that are the corners of tetrahedra, four after four.
+  template <FieldBlockLike Block>
+  void evaluate_tetrahedra(const Block& field) {
+    if constexpr (HasTetrahedra<Block>) {
+      const auto points = [this](const auto& v) { return std::span(v).first(size_); };
+      field.evaluate_tetrahedra(points(x_), points(y_), points(z_), std::span(value_).first(size_));
+    } else {
+      evaluate(field);
+    }
+  }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<float, Capacity> x_, y_, z_, value_;
+};
+
+// Samples beyond the grid, in blocks that stick out of it, and all samples before they are known.
+inline constexpr float kOutsideGrid = -1.0f;
+
+// In steps of the grid. Along an edge a distance changes by about a step, so both ends of an edge that the
+// surface crosses lie within the band. Where a field is steeper an end may lie beyond: its sign still is
+// right, and the vertex stays on its edge.
+inline constexpr double kSampleBand = 2.0;
+
+// Local samples first .. last along x of a row that a block has to evaluate itself.
+struct SampleRow {
+  int first, last;
+};
+
+// The row's samples within the grid that belong to the block or, since their owner is not active, to nobody.
+template <int B>
+ASTROLITH_HD SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, const Owners<B>& owners,
+                                       const LayerBlock<B>& block, int y, int z) {
+  const auto mine = [&](unsigned owner) { return owner == 0 || owners[owner] == nullptr; };
+  const auto [nx, ny, nz] = grid.samples.cells;
+  if (block.y * B + y > ny || layer_z * B + z > nz) return {0, -1};
+  return {mine(owner_of(0, y, z)) ? 0 : 1, mine(owner_of(1, y, z)) ? std::min(B, nx - block.x * B) : 0};
+}
+
+template <int B>
+bool is_at_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block) {
+  const auto touches = [](int first, int cells) { return first == 0 || first + B >= cells; };
+  const auto [nx, ny, nz] = grid.samples.cells;
+  return touches(block.x * B, nx) || touches(block.y * B, ny) || touches(layer_z * B, nz);
+}
+
+template <int B>
+ASTROLITH_HD bool on_border(const BlockGrid<B>& grid, int gx, int gy, int gz) {
+  const auto [nx, ny, nz] = grid.samples.cells;
+  return gx == 0 || gy == 0 || gz == 0 || gx == nx || gy == ny || gz == nz;
+}
+
+// Throws WorkError when a sample on the grid's border is inside.
+template <int B>
+void check_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block) {
+  for (int z = 0; z <= B; ++z) {
+    for (int y = 0; y <= B; ++y) {
+      for (int x = 0; x <= B; ++x) {
+        const bool at_border = on_border(grid, block.x * B + x, block.y * B + y, layer_z * B + z);
+        if (at_border && block.values[LayerBlock<B>::sample(x, y, z)] > 0.0f) fail_at_border();
+      }
+    }
+  }
+}
+
+// Evaluates the samples whose owner is the block itself or no active block; returns how many. Throws
+// WorkError when a sample on the grid's border is inside.
+template <int B, FieldBlockLike Block>
+std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block& field,
+                              const Owners<B>& owners, LayerBlock<B>& block) {
+  PointBatch<LayerBlock<B>::kSamples> batch;
+  const auto for_each_row = [&](const auto& visit) {
+    for (int z = 0; z <= B; ++z) {
+      for (int y = 0; y <= B; ++y) visit(y, z, row_to_evaluate(grid, layer_z, owners, block, y, z));
+    }
+  };
+  for_each_row([&](int y, int z, SampleRow row) {
+    const float py = grid.samples.y(block.y * B + y), pz = grid.samples.z(layer_z * B + z);
+    for (int x = row.first; x <= row.last; ++x) batch.add(grid.samples.x(block.x * B + x), py, pz);
+  });
+  batch.evaluate(field, static_cast<float>(kSampleBand * grid.samples.step));
+  block.values.fill(kOutsideGrid);
+  std::size_t next = 0;
+  for_each_row([&](int y, int z, SampleRow row) {
+    for (int x = row.first; x <= row.last; ++x) {
+      block.values[LayerBlock<B>::sample(x, y, z)] = batch.value(next++);
+    }
+  });
+  if (grid.closed && is_at_border(grid, layer_z, block)) check_border(grid, layer_z, block);
+  return static_cast<std::int64_t>(batch.size());
+}
+
+// Calls visit(x, y, z, owner) for every sample that a lower neighbour owns.
+template <int B, typename Visit>
+void for_each_borrowed(const Visit& visit) {
+  for (int z = 0; z <= B; ++z) {
+    for (int y = 0; y <= B; ++y) {
+      const bool inner_row = y != 0 && z != 0;
+      for (int x = 0; x <= (inner_row ? 0 : B); ++x) visit(x, y, z, owner_of(x, y, z));
+    }
+  }
+}
+
+// Where the owner of a borrowed sample keeps it.
+template <int B>
+ASTROLITH_HD std::size_t owned_sample(int x, int y, int z) {
+  return LayerBlock<B>::sample(x == 0 ? B : x, y == 0 ? B : y, z == 0 ? B : z);
+}
+
+// Copies a sample from the lower neighbour that owns it, where that is active.
+template <int B>
+ASTROLITH_HD void borrow_sample(const Owners<B>& owners, int x, int y, int z, LayerBlock<B>& block) {
+  const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
+  if (owner == nullptr) return;
+  block.values[LayerBlock<B>::sample(x, y, z)] = owner->values[owned_sample<B>(x, y, z)];
+}
+
+template <int B>
+void borrow_samples(const Owners<B>& owners, LayerBlock<B>& block) {
+  for_each_borrowed<B>([&](int x, int y, int z, unsigned) { borrow_sample(owners, x, y, z, block); });
+}
+
+// Of row number sign_row(y, z).
+template <int B>
+ASTROLITH_HD SignRow signs_of_row(const LayerBlock<B>& block, std::size_t row) {
+  const float* value = block.values.data() + row * LayerBlock<B>::kSide;
+  SignRow signs = 0;
+  for (int x = 0; x <= B; ++x) signs |= (value[x] > 0.0f ? SignRow{1} : SignRow{0}) << x;
+  return signs;
+}
+
+template <int B>
+void take_signs(LayerBlock<B>& block) {
+  for (std::size_t row = 0; row < block.signs.size(); ++row) block.signs[row] = signs_of_row(block, row);
+}
+
+// Whether the surface crosses side 0 .. 5 (axis, then low or high) of a block. `last` holds the last local
+// samples that lie in the grid.
+template <int B>
+ASTROLITH_HD bool is_side_crossed(const LayerBlock<B>& block, int side, const std::array<int, 3>& last) {
+  const auto axis = static_cast<std::size_t>(side / 2);
+  const int fixed = side % 2 != 0 ? B : 0;
+  if (fixed > last[axis]) return false;
+  const SignRow mask = axis == 0 ? SignRow{1} << fixed : (SignRow{2} << last[0]) - 1;
+  SignRow any = 0, all = mask;
+  for (int v = 0; v <= last[axis == 2 ? 1 : 2]; ++v) {
+    for (int u = 0; u <= (axis == 0 ? last[1] : 0); ++u) {
+      const SignRow row = block.signs[axis == 0   ? LayerBlock<B>::sign_row(u, v)
+                                      : axis == 1 ? LayerBlock<B>::sign_row(fixed, v)
+                                                  : LayerBlock<B>::sign_row(v, fixed)];
+      any |= row & mask;
+      all &= row;
+    }
+  }
+  return any != 0 && all != mask;
+}
+
+// The last local samples of a block that lie in the grid.
+template <int B>
+ASTROLITH_HD std::array<int, 3> last_samples(const BlockGrid<B>& grid, const LayerBlock<B>& block,
+                                             int layer_z) {
+  const std::array<int, 3> place{block.x, block.y, layer_z};
+  std::array<int, 3> last{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    last[axis] = std::min(B, grid.samples.cells[axis] - place[axis] * B);
+  }
+  return last;
+}
+
+[[noreturn]] inline void fail_at_open_side() {
+  throw WorkError("mesher: the surface enters a block that a bound of the field proved free of it");
+}
+
+// Throws WorkError when the surface crosses a side of a block whose neighbour there was proved free of
+// surface: the mesh would have a hole. The layers below and above are null where they are not made.
+template <int B>
+void check_open_sides(const BlockGrid<B>& grid, int layer_z, const BlockLayer<B>& layer,
+                      const BlockLayer<B>* below, const BlockLayer<B>* above) {
+  const auto lacks_block = [](const BlockLayer<B>* there, int x, int y) {
+    return there != nullptr && there->contains(x, y) && there->find(x, y) == nullptr;
+  };
+  parallel_for(0, static_cast<std::int64_t>(layer.blocks.size()), [&](std::int64_t i) {
+    const LayerBlock<B>& block = layer.blocks[static_cast<std::size_t>(i)];
+    const int x = block.x, y = block.y;
+    const std::array<bool, 6> lacking = {lacks_block(&layer, x - 1, y), lacks_block(&layer, x + 1, y),
+                                         lacks_block(&layer, x, y - 1), lacks_block(&layer, x, y + 1),
+                                         lacks_block(below, x, y),      lacks_block(above, x, y)};
+    const std::array<int, 3> last = last_samples(grid, block, layer_z);
+    for (int side = 0; side < 6; ++side) {
+      if (lacking[static_cast<unsigned>(side)] && is_side_crossed(block, side, last)) fail_at_open_side();
+    }
+  });
+}
+
+}  // namespace astrolith

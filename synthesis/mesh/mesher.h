@@ -1,0 +1,204 @@
+// Turns a field into a closed 2-manifold triangle mesh: marching cubes over sparse blocks, layer by layer.
+//
+// One layer of blocks at a time is culled by bounds of the field, sampled, numbered and polygonised, in
+// parallel over blocks; the layer below is kept for the samples and vertices they share, so memory is bounded
+// by two layers. Vertices and triangles come in rows of the whole grid: the bytes depend on the field, the
+// bounds and the resolution alone.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "geometry/mesh_sink.h"
+#include "numerics/progress.h"
+#include "synthesis/mesh/block_culling.h"
+#include "synthesis/mesh/block_layer.h"
+#include "synthesis/mesh/block_polygons.h"
+#include "synthesis/mesh/block_sampling.h"
+#include "synthesis/mesh/sample_grid.h"
+
+namespace astrolith {
+
+struct MeshStatistics {
+  std::int64_t vertices = 0;
+  std::int64_t triangles = 0;
+  std::int64_t evaluations = 0;    // of the field, at samples and for normals
+  std::int64_t active_blocks = 0;  // that the surface may cross; the others were never sampled
+  std::int64_t total_blocks = 0;
+  std::int64_t working_bytes = 0;  // of two layers of blocks and one of vertices and triangles, at their most
+  std::int64_t cut_vertices = 0;   // in the planes where a tile or a patch was cut: its open ones
+  double step = 0.0;               // edge of a cell, length units
+
+  // V - E + F with E = 3F/2, as in every closed mesh of triangles.
+  std::int64_t euler_characteristic() const { return vertices - triangles / 2; }
+};
+
+// One of `count` slabs along z, each of whole layers of blocks. Its mesh is open where it was cut; the
+// vertices there have the same bits in both tiles that share them, so tiles fit without cracks.
+struct MeshTile {
+  int index = 0;  // 0 .. count - 1
+  int count = 1;
+};
+
+// The cells of a tile: whole layers of blocks. Throws InputError for a tile that there is not.
+template <int B>
+CellWindow window_of_tile(const SampleGrid& grid, MeshTile tile) {
+  const std::int64_t layers = (grid.cells[2] + B - 1) / B;
+  if (tile.count < 1 || tile.count > layers || tile.index < 0 || tile.index >= tile.count) {
+    throw InputError("tile: there is no tile " + std::to_string(tile.index + 1) + " of " +
+                     std::to_string(tile.count) + "; at this resolution there can be up to " +
+                     std::to_string(layers));
+  }
+  const auto layer = [&](int index) { return static_cast<int>(layers * index / tile.count); };
+  return {{1, 1, B * layer(tile.index) + 1},
+          {grid.cells[0], grid.cells[1], std::min(B * layer(tile.index + 1), grid.cells[2])}};
+}
+
+// The layers of blocks that a window needs.
+struct LayerRange {
+  int first, end;
+};
+// From the layer that owns the samples in the window's lower side.
+template <int B>
+LayerRange layers_of_window(const BlockGrid<B>& grid) {
+  return {std::max(grid.window.first[2] - 2, 0) / B, (grid.window.last[2] - 1) / B + 1};
+}
+
+template <int B, BlockField Field>
+class LayeredMesher {
+ public:
+  LayeredMesher(const Field& field, const BlockGrid<B>& grid, MeshSink& sink)
+      : grid_(grid), whole_(field.gather(whole_box())), sink_(sink) {
+    statistics_.step = grid_.samples.step;
+    statistics_.total_blocks = std::int64_t{grid_.blocks(0)} * grid_.blocks(1) * grid_.blocks(2);
+  }
+
+  MeshStatistics run(const Progress& progress) {
+    const auto [first, end] = layers_of_window(grid_);
+    const BlockLayer<B> nothing(grid_.blocks(0), grid_.blocks(1));
+    BlockLayer<B> two_below = nothing, below = nothing;
+    for (int z = first; z < end; ++z) {
+      BlockLayer<B> layer = make_layer(z, below);
+      if (z > first) check_open_sides(grid_, z - 1, below, z > first + 1 ? &two_below : nullptr, &layer);
+      two_below = std::move(below);
+      below = std::move(layer);
+      if (!report(progress, double(z + 1 - first) / (end - first),
+                  std::to_string(statistics_.triangles) + " triangles")) {
+        throw WorkError("mesher: stopped before the mesh was complete");
+      }
+    }
+    check_open_sides<B>(grid_, end - 1, below, end > first + 1 ? &two_below : nullptr, nullptr);
+    return statistics_;
+  }
+
+ private:
+  using Blocks = std::vector<BlockNode<decltype(std::declval<const Field&>().gather(Box{}))>>;
+
+  Box whole_box() const { return grid_.samples.box({0, 0, 0}, grid_.samples.cells, grid_.samples.step); }
+
+  BlockLayer<B> make_layer(int z, const BlockLayer<B>& below) {
+    const Blocks active = mixed_blocks(grid_, whole_, z);
+    BlockLayer<B> layer(grid_.blocks(0), grid_.blocks(1));
+    layer.blocks.reserve(active.size());
+    for (const auto& node : active) layer.add(node.x, node.y);
+    statistics_.active_blocks += static_cast<std::int64_t>(active.size());
+    sample(z, active, below, layer);
+    const LayerCounts counts = number_rows(layer);
+    emit_vertices(z, active, counts, layer);
+    emit_triangles(z, counts, below, layer);
+    note_memory(layer.blocks.size());
+    return layer;
+  }
+
+  void note_memory(std::size_t blocks) {
+    const std::size_t bytes = 2 * blocks * (sizeof(LayerBlock<B>) + sizeof(typename Blocks::value_type)) +
+                              vertices_.capacity() * sizeof(MeshVertex) +
+                              triangles_.capacity() * sizeof(Triangle);
+    statistics_.working_bytes = std::max(statistics_.working_bytes, static_cast<std::int64_t>(bytes));
+  }
+
+  // Calls body(i) for every block in parallel and adds up the counts it returns.
+  template <typename Body>
+  static std::int64_t for_each_block(const BlockLayer<B>& layer, const Body& body) {
+    std::vector<std::int64_t> counts(layer.blocks.size());
+    parallel_for(0, static_cast<std::int64_t>(layer.blocks.size()), [&](std::int64_t i) {
+      counts[static_cast<std::size_t>(i)] = body(static_cast<std::size_t>(i));
+    });
+    return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+  }
+
+  void sample(int z, const Blocks& active, const BlockLayer<B>& below, BlockLayer<B>& layer) {
+    statistics_.evaluations += for_each_block(layer, [&](std::size_t i) {
+      LayerBlock<B>& block = layer.blocks[i];
+      return evaluate_samples(grid_, z, active[i].field, find_owners(layer, below, block), block);
+    });
+    statistics_.cut_vertices += for_each_block(layer, [&](std::size_t i) {
+      LayerBlock<B>& block = layer.blocks[i];
+      borrow_samples(find_owners(layer, below, block), block);
+      take_signs(block);
+      return count_rows(grid_.window_of(block.x, block.y, z), block);
+    });
+  }
+
+  void emit_vertices(int z, const Blocks& active, const LayerCounts& counts, BlockLayer<B>& layer) {
+    const std::int64_t limit = std::numeric_limits<std::uint32_t>::max();
+    if (statistics_.vertices + counts.vertices > limit) {
+      throw WorkError("mesher: more than 2^32 vertices; lower the resolution");
+    }
+    const auto first = static_cast<std::uint32_t>(statistics_.vertices);
+    vertices_.resize(counts.vertices);
+    statistics_.evaluations += for_each_block(layer, [&](std::size_t i) {
+      return make_vertices(grid_, z, active[i].field, first, layer.blocks[i], std::span(vertices_));
+    });
+    sink_.add_vertices(vertices_);
+    statistics_.vertices += counts.vertices;
+  }
+
+  void emit_triangles(int z, const LayerCounts& counts, const BlockLayer<B>& below, BlockLayer<B>& layer) {
+    triangles_.resize(counts.triangles);
+    for_each_block(layer, [&](std::size_t i) {
+      LayerBlock<B>& block = layer.blocks[i];
+      const BlockWindow<B> window = grid_.window_of(block.x, block.y, z);
+      borrow_vertices(find_owners(layer, below, block), window, block);
+      make_triangles(block, window, std::span(triangles_));
+      return std::int64_t{0};
+    });
+    sink_.add_triangles(triangles_);
+    statistics_.triangles += counts.triangles;
+  }
+
+  BlockGrid<B> grid_;
+  decltype(std::declval<const Field&>().gather(Box{})) whole_;
+  MeshSink& sink_;
+  MeshStatistics statistics_;
+  // Of the layer in hand; kept for their memory.
+  std::vector<MeshVertex> vertices_;
+  std::vector<Triangle> triangles_;
+};
+
+// Cells along a block's side: 8 keeps a block's samples in the first-level cache.
+inline constexpr int kBlockCells = 8;
+
+// Meshes the surface F = 0, or a tile of it, with `resolution` cells along the longest side of bounds, which
+// must hold the surface. A sample is inside when F > 0 strictly. Vertices carry unit normals out of the body.
+// Throws InputError for bad bounds, resolution or tile, WorkError when a promise of the field is broken (the
+// bounds cut the body, a bound culled the surface) or progress asks to stop.
+template <int B = kBlockCells, BlockField Field>
+MeshStatistics mesh_field(const Field& field, const Box& bounds, int resolution, MeshSink& sink,
+                          const Progress& progress = {}, MeshTile tile = {}) {
+  const SampleGrid grid = make_sample_grid(bounds, resolution);
+  return LayeredMesher<B, Field>(field, {grid, window_of_tile<B>(grid, tile), true}, sink).run(progress);
+}
+
+// Meshes what lies of the surface F = 0 in a cube of `size` around the field's origin, `resolution` cells
+// along its sides: open where the cube cuts the surface. Throws as mesh_field does.
+template <int B = kBlockCells, BlockField Field>
+MeshStatistics mesh_patch(const Field& field, double size, int resolution, MeshSink& sink,
+                          const Progress& progress = {}) {
+  const SampleGrid grid = make_patch_grid(size, resolution);
+  return LayeredMesher<B, Field>(field, {grid, window_of_patch(grid), false}, sink).run(progress);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,133 @@
+#include "synthesis/noise/noise_octaves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/hash_random.h"
+#include "synthesis/noise/octave_bounds.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kLargestLatticeCoordinate = 1048576.0;  // 2^20: leaves three bits within a cell
+constexpr double kSteepestOctave = 1e12;                 // keeps the squares of slopes finite in a float
+
+// One loop a noise: a choice inside it would keep it from vectorising.
+#define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x, \
+                                  const float* __restrict y, const float* __restrict z,        \
+                                  float* __restrict sum) {                                     \
+    const NoiseOctave o = octave;                                                              \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                          \
+      sum[i] = with_octave<noise>(o, x[i], y[i], z[i], sum[i]);                                \
+    }                                                                                          \
+  }
+ASTROLITH_OCTAVE_LOOP(add_simplex, simplex_noise)
+ASTROLITH_OCTAVE_LOOP(add_perlin, perlin_noise)
+ASTROLITH_OCTAVE_LOOP(add_f1, worley_f1)
+ASTROLITH_OCTAVE_LOOP(add_f2, worley_f2)
+ASTROLITH_OCTAVE_LOOP(add_f2_minus_f1, worley_f2_minus_f1)
+#undef ASTROLITH_OCTAVE_LOOP
+
+#define ASTROLITH_MODULATED_LOOP(name, noise)                                                             \
+  ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, float modulation, int n,                     \
+                                  const float* __restrict x, const float* __restrict y,                   \
+                                  const float* __restrict z, float* __restrict dx, float* __restrict dy,  \
+                                  float* __restrict dz, float* __restrict sum) {                          \
+    const NoiseOctave o = octave;                                                                         \
+    _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                     \
+      const ModulatedSum s =                                                                              \
+          with_modulated_octave<noise>(o, modulation, x[i], y[i], z[i], {sum[i], {dx[i], dy[i], dz[i]}}); \
+      dx[i] = s.slope.x;                                                                                  \
+      dy[i] = s.slope.y;                                                                                  \
+      dz[i] = s.slope.z;                                                                                  \
+      sum[i] = s.value;                                                                                   \
+    }                                                                                                     \
+  }
+ASTROLITH_MODULATED_LOOP(add_modulated_simplex, simplex_with_gradient)
+ASTROLITH_MODULATED_LOOP(add_modulated_perlin, perlin_with_gradient)
+#undef ASTROLITH_MODULATED_LOOP
+
+}  // namespace
+
+std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int count, double gain,
+                                      double lacunarity, const OctaveSeeds& seeds, double farthest) {
+  std::vector<NoiseOctave> octaves;
+  double slope = 1.0;
+  for (int o = 0; o < count; ++o) {
+    if (!(frequency * farthest <= kLargestLatticeCoordinate)) break;
+    const std::uint32_t stream = seeds.first_stream + static_cast<std::uint32_t>(o) * seeds.stream_step;
+    octaves.push_back({static_cast<float>(frequency),
+                       static_cast<float>(amplitude),
+                       static_cast<float>(std::min(slope, kSteepestOctave)),
+                       hash_append(seeds.seed, stream),
+                       {}});
+    frequency *= lacunarity;
+    amplitude *= gain;
+    slope *= lacunarity * gain;
+  }
+  return octaves;
+}
+
+std::vector<NoiseOctave> octaves_near(Noise noise, std::vector<NoiseOctave> octaves, const Vec3d& q) {
+  for (NoiseOctave& o : octaves) {
+    const Vec3d at = static_cast<double>(o.frequency) * q;
+    Vec3d cell{std::floor(at.x), std::floor(at.y), std::floor(at.z)};
+    Vec3d lattice = cell;
+    if (noise == Noise::kSimplex) {
+      // Its lattice is skewed by a third of the coordinates' sum, which is to stay whole.
+      cell.z -= std::fmod(std::fmod(cell.x + cell.y + cell.z, 3.0) + 3.0, 3.0);
+      const double skew = (cell.x + cell.y + cell.z) / 3.0;
+      lattice = cell + Vec3d{skew, skew, skew};
+    }
+    const Vec3d rest = at - cell;
+    o.offset = to_float(rest);
+    o.seed = lattice_point(static_cast<float>(lattice.x), static_cast<float>(lattice.y),
+                           static_cast<float>(lattice.z), o.seed);
+  }
+  return octaves;
+}
+
+double sum_bound(const std::vector<NoiseOctave>& octaves) {
+  double bound = 0.0;
+  for (const NoiseOctave& o : octaves) bound += std::fabs(static_cast<double>(o.amplitude));
+  return bound;
+}
+
+double slope_bound(Noise noise, const std::vector<NoiseOctave>& octaves) {
+  double bound = 0.0;
+  for (const NoiseOctave& o : octaves) {
+    bound += range_of(noise).slope *
+             std::fabs(static_cast<double>(o.amplitude) * static_cast<double>(o.frequency));
+  }
+  return bound;
+}
+
+void add_octave(Noise noise, const NoiseOctave& octave, int n, const float* x, const float* y, const float* z,
+                float* sum) {
+  switch (noise) {
+    case Noise::kSimplex:
+      return add_simplex(octave, n, x, y, z, sum);
+    case Noise::kPerlin:
+      return add_perlin(octave, n, x, y, z, sum);
+    case Noise::kWorleyF1:
+      return add_f1(octave, n, x, y, z, sum);
+    case Noise::kWorleyF2:
+      return add_f2(octave, n, x, y, z, sum);
+    case Noise::kWorleyF2MinusF1:
+      return add_f2_minus_f1(octave, n, x, y, z, sum);
+  }
+}
+
+void add_modulated_octave(Noise noise, const NoiseOctave& octave, float modulation, int n, const float* x,
+                          const float* y, const float* z, float* slope_x, float* slope_y, float* slope_z,
+                          float* sum) {
+  const auto add = noise == Noise::kPerlin ? add_modulated_perlin : add_modulated_simplex;
+  add(octave, modulation, n, x, y, z, slope_x, slope_y, slope_z, sum);
+}
+
+Interval bound_sum(Noise noise, const std::vector<NoiseOctave>& octaves, const Box& box, bool modulated) {
+  return bound_octaves(noise, octaves.data(), static_cast<std::uint32_t>(octaves.size()), box, modulated);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,86 @@
+// What is certain about fractal sums over a box, for CPU and GPU.
+#pragma once
+
+#include <span>
+
+#include "numerics/interval.h"
+#include "synthesis/noise/octave_sum.h"
+
+namespace astrolith {
+
+// A noise's values and its greatest slope: 6.960 and 3.619 for simplex and Perlin noise (by search over all
+// positions and gradients), and a distance changes by no more than the way gone.
+struct NoiseRange {
+  double low, high, slope;
+};
+ASTROLITH_HD inline NoiseRange range_of(Noise noise) {
+  constexpr double kF1 = kWorleyMeanF1, kF2 = kWorleyMeanF2, kSlope = 1.0 / kWorleyFarthest;
+  switch (noise) {
+    case Noise::kSimplex:
+      return {-1.0, 1.0, 7.0};
+    case Noise::kPerlin:
+      return {-1.0, 1.0, 3.65};
+    case Noise::kWorleyF1:
+      return {-kF1, 1.0 - kF1, kSlope};
+    case Noise::kWorleyF2:
+      return {-kF2, 1.0 - kF2, kSlope};
+    default:
+      return {kF1 - kF2, 1.0 + kF1 - kF2, 2.0 * kSlope};
+  }
+}
+
+// One octave's noise over a box: its value at the centre and its greatest slope tell more than its range
+// where the box is small beside the noise's features.
+ASTROLITH_HD inline Interval bound_noise(Noise noise, const NoiseOctave& octave, const Box& box) {
+  const NoiseRange range = range_of(noise);
+  const double f = static_cast<double>(octave.frequency);
+  const double rounding = 1e-6 * f * largest_coordinate(box);  // of coordinates, in cells
+  const double spread = range.slope * (0.5 * f * norm(box.extent()) + rounding) + 1e-5;
+  if (spread >= 1.0) return {range.low, range.high};
+  const Vec3d c = f * box.center();
+  const Vec3f at = to_float(c);
+  const NoiseOctave unit{1.0f, 1.0f, 1.0f, octave.seed, {}};
+  const double value = static_cast<double>(with_octave(noise, unit, at, 0.0f));
+  return {std::max(range.low, value - spread), std::min(range.high, value + spread)};
+}
+
+// The sum at every float point of the box, modulated or not.
+ASTROLITH_HD inline Interval bound_octaves(Noise noise, const NoiseOctave* octaves, std::uint32_t count,
+                                           const Box& box, bool modulated) {
+  Interval sum;
+  for (std::uint32_t o = 0; o < count; ++o) {
+    Interval values = bound_noise(noise, octaves[o], box);
+    if (modulated) values = {std::min(0.0, values.low), std::max(0.0, values.high)};
+    const double a = static_cast<double>(octaves[o].amplitude), slack = 1e-5 * std::fabs(a);
+    sum = plus(sum, plus(scaled(a, values), {-slack, slack}));
+  }
+  return sum;
+}
+
+// What placing a fractal layer's points makes of a box's values low .. high along an axis.
+ASTROLITH_HD inline Interval bound_placed(double low, double high, float domain_low, float domain_high,
+                                          float scale, float bias) {
+  const double a = clamped(low, double{domain_low}, double{domain_high}),
+               b = clamped(high, double{domain_low}, double{domain_high});
+  const Interval s = scaled(double{scale}, {a, b});
+  return {s.low + double{bias}, s.high + double{bias}};
+}
+ASTROLITH_HD inline Box bound_placed(const Box& p, const Vec3f& low, const Vec3f& high, const Vec3f& scale,
+                                     const Vec3f& bias) {
+  const Interval x = bound_placed(p.min.x, p.max.x, low.x, high.x, scale.x, bias.x);
+  const Interval y = bound_placed(p.min.y, p.max.y, low.y, high.y, scale.y, bias.y);
+  const Interval z = bound_placed(p.min.z, p.max.z, low.z, high.z, scale.z, bias.z);
+  return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
+}
+
+// Where a warp takes the points of a box, from what it displaces them by along each axis; `farthest` is its
+// greatest displacement.
+ASTROLITH_HD inline Box displaced_box(const Box& box, const Interval& dx, const Interval& dy,
+                                      const Interval& dz, double farthest) {
+  const double rounding = 1e-6 * (largest_coordinate(box) + farthest);
+  const Vec3d margin{rounding, rounding, rounding};
+  return {box.min + Vec3d{dx.low, dy.low, dz.low} - margin,
+          box.max + Vec3d{dx.high, dy.high, dz.high} + margin};
+}
+
+}  // namespace astrolith

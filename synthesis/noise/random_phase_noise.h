@@ -1,0 +1,93 @@
+// Local random phase noise (Gilet et al. 2014; thesis eq. 2.25), ready for evaluation over many points.
+//
+//   n(p) = rms / norm(p) sum_i w_i(p) sum_j A_j cos(2 pi f_j.p + phi_ij)
+// with i over the eight lattice points around p. Each window w_i is a product of cos(pi/2 fade(t)) along the
+// axes, t in cells: its squares add up to 1 over the lattice, so that waves of independent phases have the
+// same variance everywhere. Phases that the cells share in part add up coherently; norm(p) makes up for it:
+//   norm^2 = (1 - c) + c (sum_i w_i)^2,      c = (sin(pi r) / (pi r))^2,     r the layer's randomness.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "numerics/hash_random.h"
+#include "numerics/interval.h"
+#include "recipe/recipe.h"
+#include "synthesis/noise/perlin_noise.h"
+
+namespace astrolith {
+
+// One wave: turns at p are frequency . p + phase.
+struct Wave {
+  Vec3f frequency;
+  float phase;
+  float amplitude;  // length units
+  std::uint32_t seed;
+};
+
+ASTROLITH_KERNEL float phase_window(float t) { return math::cos_turns(0.25f * quintic_fade(t)); }
+
+// How much the c-th lattice point around a point counts there, and its hash; coordinates in cells.
+struct PhaseCorner {
+  float weight;
+  std::uint32_t hash;
+};
+ASTROLITH_KERNEL PhaseCorner phase_corner(unsigned c, float x, float y, float z, std::uint32_t seed) {
+  const PerlinCell cell = perlin_cell(x, y, z, seed);
+  const bool far_x = (c & 1) != 0, far_y = (c & 2) != 0, far_z = (c & 4) != 0;
+  const float wx = phase_window(far_x ? 1.0f - cell.x : cell.x),
+              wy = phase_window(far_y ? 1.0f - cell.y : cell.y),
+              wz = phase_window(far_z ? 1.0f - cell.z : cell.z);
+  const std::uint32_t step = (far_x ? kLatticeX : 0u) + (far_y ? kLatticeY : 0u) + (far_z ? kLatticeZ : 0u);
+  return {wx * wy * wz, cell.first + step};
+}
+
+// 1 / norm, from the sum of the weights.
+ASTROLITH_KERNEL float phase_scale(float coherence, float sum) {
+  return 1.0f / math::sqrt(math::fma(coherence, math::fma(sum, sum, -1.0f), 1.0f));
+}
+
+// The height and one wave as a corner sees it.
+ASTROLITH_KERNEL float with_wave(const Wave& w, float randomness, const PhaseCorner& corner, float x, float y,
+                                 float z, float height) {
+  const float turns = math::fma(w.frequency.x, x, math::fma(w.frequency.y, y, w.frequency.z * z));
+  const float random = unit_float(mix_bits(corner.hash ^ w.seed)) - 0.5f;
+  const float angle = (turns - math::round_even(turns)) + math::fma(randomness, random, w.phase);
+  return math::fma(w.amplitude * corner.weight, math::cos_turns(angle), height);
+}
+
+class RandomPhaseNoise {
+ public:
+  // `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
+  // `domain`, where no surface is, are moved to its border; waves of more than 2^18 turns within it, whose
+  // phases float coordinates could not hold, are left out.
+  RandomPhaseNoise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
+
+  // height[i] = n(p_i), length units: 0 on average, standard deviation height_rms over seeds.
+  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
+
+  // 6 times the standard deviation, where heights are cut.
+  double height_bound() const { return static_cast<double>(clip_); }
+  Interval bound_heights(const Box&) const { return {-height_bound(), height_bound()}; }
+
+  const std::vector<Wave>& waves() const { return waves_; }
+  // What else it is made of.
+  struct Parts {
+    Vec3f domain_min, domain_max;
+    float inverse_cell, randomness, coherence, clip;
+    std::uint32_t seed;
+  };
+  Parts parts() const {
+    return {domain_min_, domain_max_, inverse_cell_, randomness_, coherence_, clip_, seed_};
+  }
+
+ private:
+  void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;
+
+  std::vector<Wave> waves_;
+  Vec3f domain_min_, domain_max_;
+  float inverse_cell_, randomness_, coherence_, clip_;
+  std::uint32_t seed_;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,136 @@
+#include "synthesis/picture/image_file.h"
+
+#include <png.h>
+#include <tiffio.h>
+
+#include <bit>
+#include <csetjmp>
+#include <memory>
+#include <string>
+
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+namespace {
+
+// 2^31 - 1 pixels a side is what PNG allows; this also keeps rows within memory.
+constexpr int kMaxSide = 1 << 20;
+
+void check_size(std::size_t values, std::size_t channels, int width, int height,
+                const std::filesystem::path& file) {
+  const bool sides_fit = width > 0 && height > 0 && width <= kMaxSide && height <= kMaxSide;
+  if (!sides_fit || values != channels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    throw InputError(file.string() + ": an image of " + std::to_string(width) + " x " +
+                     std::to_string(height) + " does not fit its " + std::to_string(values) +
+                     " values; give sides of 1 .. " + std::to_string(kMaxSide));
+  }
+}
+
+struct PngLayout {
+  int width, height, bit_depth, color_type;
+  std::size_t row_bytes;
+};
+
+void append_bytes(png_structp png, png_bytep data, png_size_t size) {
+  auto* bytes = static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(png));
+  bytes->insert(bytes->end(), data, data + size);
+}
+
+void no_flush(png_structp) {}
+void no_warning(png_structp, png_const_charp) {}
+[[noreturn]] void jump_back(png_structp png, png_const_charp) { png_longjmp(png, 1); }
+
+// libpng reports errors by longjmp: nothing here may need a destructor.
+bool encode(png_structp png, png_infop info, const PngLayout& layout, const std::uint8_t* data,
+            std::vector<std::uint8_t>* bytes) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  png_set_write_fn(png, bytes, append_bytes, no_flush);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(layout.width), static_cast<png_uint_32>(layout.height),
+               layout.bit_depth, layout.color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  if (layout.bit_depth == 16 && std::endian::native == std::endian::little) png_set_swap(png);
+  for (int y = 0; y < layout.height; ++y) {
+    png_write_row(png, data + static_cast<std::size_t>(y) * layout.row_bytes);
+  }
+  png_write_end(png, nullptr);
+  return true;
+}
+
+void write_png(const PngLayout& layout, const void* data, const std::filesystem::path& target) {
+  OutputFile file(target);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, jump_back, no_warning);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  std::vector<std::uint8_t> bytes;
+  const bool done =
+      info != nullptr && encode(png, info, layout, static_cast<const std::uint8_t*>(data), &bytes);
+  png_destroy_write_struct(&png, &info);
+  if (!done) throw WorkError(target.string() + ": the image could not be encoded as PNG");
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+struct CloseTiff {
+  void operator()(TIFF* tiff) const { TIFFClose(tiff); }
+};
+
+bool write_tiff_rows(TIFF* tiff, std::span<const float> values, int width, int height, int channels) {
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(width));
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(height));
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, channels);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32);
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
+  const auto row_size = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
+    std::vector<float> row(values.begin() + static_cast<std::ptrdiff_t>(y * row_size),
+                           values.begin() + static_cast<std::ptrdiff_t>((y + 1) * row_size));
+    if (TIFFWriteScanline(tiff, row.data(), static_cast<std::uint32_t>(y)) != 1) return false;
+  }
+  return TIFFFlush(tiff) == 1;
+}
+
+}  // namespace
+
+void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file) {
+  check_size(image.pixels.size(), 3, image.width, image.height, file);
+  write_png({image.width, image.height, 8, PNG_COLOR_TYPE_RGB, 3 * static_cast<std::size_t>(image.width)},
+            image.pixels.data(), file);
+}
+
+void write_png8_grey(std::span<const std::uint8_t> grey, int width, int height,
+                     const std::filesystem::path& file) {
+  check_size(grey.size(), 1, width, height, file);
+  write_png({width, height, 8, PNG_COLOR_TYPE_GRAY, static_cast<std::size_t>(width)}, grey.data(), file);
+}
+
+void write_png16_grey(std::span<const std::uint16_t> grey, int width, int height,
+                      const std::filesystem::path& file) {
+  check_size(grey.size(), 1, width, height, file);
+  write_png({width, height, 16, PNG_COLOR_TYPE_GRAY, 2 * static_cast<std::size_t>(width)}, grey.data(), file);
+}
+
+void write_png16_rgb(std::span<const std::uint16_t> rgb, int width, int height,
+                     const std::filesystem::path& file) {
+  check_size(rgb.size(), 3, width, height, file);
+  write_png({width, height, 16, PNG_COLOR_TYPE_RGB, 6 * static_cast<std::size_t>(width)}, rgb.data(), file);
+}
+
+void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
+                      int channels) {
+  check_size(values.size(), static_cast<std::size_t>(channels), width, height, file);
+  OutputFile target(file);
+  TIFFSetErrorHandler(nullptr);  // libraries never print: failures come back as statuses
+  TIFFSetWarningHandler(nullptr);
+  std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(target.temporary_name().c_str(), "w"));
+  if (tiff == nullptr || !write_tiff_rows(tiff.get(), values, width, height, channels)) {
+    throw WorkError(file.string() + ": writing failed; is the disk full?");
+  }
+  tiff.reset();
+  target.commit();
+}
+
+}  // namespace astrolith

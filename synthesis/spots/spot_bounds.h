@@ -1,0 +1,86 @@
+// What is certain about spots over a box, for CPU and GPU.
+#pragma once
+
+#include "numerics/portable_double.h"
+#include "synthesis/spots/spot_draw.h"
+
+namespace astrolith {
+
+inline constexpr double kMostSpotCells = 4096.0;  // drawn at once
+inline constexpr double kSpotSlack = 1e-5;        // relative, for the rounding of positions and kernels
+
+// Of q^2 weighted along the kernel's axes, over a box: q.q and q.V^-1 q.
+struct SpotSquares {
+  Interval plain, cut;
+};
+ASTROLITH_HD inline SpotSquares spot_squares(const SpotKernel& k, const SpotImpulse& p, const Box& box) {
+  const Vec3d at{double{p.x}, double{p.y}, double{p.z}}, low = box.min - at, high = box.max - at;
+  SpotSquares squares;
+  const auto add = [&](float along_x, float along_y, float along_z, float inverse_v) {
+    const auto lower = [](float m, double a, double b) { return double{m} * (m > 0.0f ? a : b); };
+    const double least =
+        lower(along_x, low.x, high.x) + lower(along_y, low.y, high.y) + lower(along_z, low.z, high.z);
+    const double most =
+        lower(along_x, high.x, low.x) + lower(along_y, high.y, low.y) + lower(along_z, high.z, low.z);
+    const double near = std::max(std::max(0.0, least), -most),
+                 far = std::max(std::fabs(least), std::fabs(most));
+    squares.plain.low += near * near;
+    squares.plain.high += far * far;
+    squares.cut.low += double{inverse_v} * near * near;
+    squares.cut.high += double{inverse_v} * far * far;
+  };
+  add(k.xx, k.xy, k.xz, k.inverse_vx);
+  add(k.yx, k.yy, k.yz, k.inverse_vy);
+  add(k.zx, k.zy, k.zz, k.inverse_vz);
+  return squares;
+}
+
+// K over squared distances, as spot_profile: one part falls, the other rises to its ring and falls.
+ASTROLITH_HD inline Interval bound_spot_profile(const SpotKernel& k, const Interval& q2) {
+  const auto bowl = [&](double q) { return portable::exp(-double{k.alpha} * q); };
+  const auto ring = [&](double q) {
+    const double log_ring = portable::log(std::max(double{k.gamma} * q, 1e-38));
+    return portable::exp(-double{k.beta} * log_ring * log_ring);
+  };
+  const Interval fall = scaled(double{k.gaussian}, {bowl(q2.high), bowl(q2.low)});
+  if (k.kappa == 0.0f) return fall;
+  const double at_ring = clamped(1.0 / double{k.gamma}, q2.low, q2.high);
+  return plus(fall, scaled(double{k.kappa}, {std::min(ring(q2.low), ring(q2.high)), ring(at_ring)}));
+}
+
+// The sum of some spots of one kind over a box, one by one.
+struct SpotSumBound {
+  const SpotKind& kind;
+  const Box& box;
+  Interval sum{};
+
+  ASTROLITH_HD void add(const SpotImpulse& impulse) {
+    const SpotKernel& k = kind.kernel;
+    const double sigma = double{k.sigma};
+    const SpotSquares q2 = spot_squares(k, impulse, box);
+    if (q2.cut.low > sigma * (1.0 + kSpotSlack)) return;
+    Interval profile =
+        bound_spot_profile(k, {q2.plain.low * (1.0 - kSpotSlack), q2.plain.high * (1.0 + kSpotSlack)});
+    if (q2.cut.high > sigma * (1.0 - kSpotSlack)) {
+      profile = {std::min(0.0, profile.low), std::max(0.0, profile.high)};
+    }
+    sum.low += double{impulse.weight} * profile.low;
+    sum.high += double{impulse.weight} * profile.high;
+  }
+  ASTROLITH_HD Interval clipped() const {
+    const double clip = double{kind.clip};
+    return {clamped(sum.low, -clip, clip), clamped(sum.high, -clip, clip)};
+  }
+};
+
+// Of all that reach the box; where they are too many to be drawn, what is certain without.
+ASTROLITH_HD inline Interval bound_drawn_spots(const SpotKind& kind, const std::uint32_t* thresholds,
+                                               const Box& box) {
+  const double clip = double{kind.clip};
+  if (spot_cells_around(kind, box).count() > kMostSpotCells) return {-clip, clip};
+  SpotSumBound bound{kind, box};
+  for_each_spot(kind, thresholds, box, [&](const SpotImpulse& impulse) { bound.add(impulse); });
+  return bound.clipped();
+}
+
+}  // namespace astrolith

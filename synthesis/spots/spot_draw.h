@@ -1,0 +1,116 @@
+// Draws the impulses of one kind of spots that reach a box, cell by cell, on CPU and GPU.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "numerics/hash_random.h"
+#include "numerics/interval.h"
+#include "synthesis/spots/spot_kernel.h"
+
+namespace astrolith {
+
+// Where the spots of one size lie: cells of a lattice (thesis 5.3.1, figure 5.5).
+struct SpotLattice {
+  Vec3f a, b, c;       // edges of a cell, length units
+  Vec3d cells_per[3];  // their inverse: position to cells, per length unit
+  std::uint32_t seed;
+  double probability;  // of a cell to hold any
+  double reach;        // of an impulse beyond its cell, in cells, and more than rounding
+  float width;         // of where a cell's impulses lie, in cells
+  float least_weight;
+  // Of an array of thresholds: a cell whose hash is at least the l-th of its own has l + 1 impulses.
+  std::uint32_t first_threshold, num_thresholds;
+};
+
+// One part of the spots of one size; all parts of a size have the same impulses, each moved by its own
+// offset.
+struct SpotKind {
+  SpotKernel kernel;
+  SpotLattice lattice;
+  Vec3d offset;   // from an impulse, length units
+  Vec3d support;  // half axes, length units
+  float clip;     // of |sum|, length units
+};
+
+struct SpotCells {
+  int first[3], last[3];
+
+  ASTROLITH_HD double count() const {
+    return (double(last[0]) - first[0] + 1) * (double(last[1]) - first[1] + 1) *
+           (double(last[2]) - first[2] + 1);
+  }
+};
+
+// Those whose impulses may reach a box.
+ASTROLITH_HD inline SpotCells spot_cells_around(const SpotKind& kind, const Box& box) {
+  const Vec3d low = box.min - kind.offset - kind.support, high = box.max - kind.offset + kind.support;
+  SpotCells cells;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d& per = kind.lattice.cells_per[i];
+    const auto lower = [](double k, double least, double most) { return k * (k > 0.0 ? least : most); };
+    const double from =
+        lower(per.x, low.x, high.x) + lower(per.y, low.y, high.y) + lower(per.z, low.z, high.z);
+    const double to = lower(per.x, high.x, low.x) + lower(per.y, high.y, low.y) + lower(per.z, high.z, low.z);
+    cells.first[i] = static_cast<int>(std::floor(from - kind.lattice.reach));
+    cells.last[i] = static_cast<int>(std::floor(to + kind.lattice.reach));
+  }
+  return cells;
+}
+
+// Whether a spot of these half axes touches the box.
+ASTROLITH_HD inline bool spot_reaches(const SpotImpulse& impulse, const Vec3d& half, const Box& box) {
+  const auto near = [](double c, double low, double high, double h) { return c >= low - h && c <= high + h; };
+  return near(double{impulse.x}, box.min.x, box.max.x, half.x) &&
+         near(double{impulse.y}, box.min.y, box.max.y, half.y) &&
+         near(double{impulse.z}, box.min.z, box.max.z, half.z);
+}
+
+// For the rounding of float positions.
+ASTROLITH_HD inline Box spot_box(const Box& box) { return widened(box, 2e-6 * largest_coordinate(box)); }
+
+// Calls visit(impulse) for those of one cell, before any offset.
+template <typename Visit>
+ASTROLITH_HD void for_each_spot_of_cell(const SpotLattice& lattice, const std::uint32_t* thresholds, int a,
+                                        int b, int c, Visit&& visit) {
+  constexpr std::uint32_t kCountStream = 0x636f756eu, kOccupiedStream = 0x6f636375u;
+  const std::uint32_t cell = hash_cell(lattice.seed, a, b, c);
+  if (!(static_cast<double>(unit_float(hash_append(cell, kOccupiedStream))) < lattice.probability)) return;
+  const std::uint32_t number = hash_append(cell, kCountStream);
+  for (std::uint32_t l = 0; l < lattice.num_thresholds && number >= thresholds[lattice.first_threshold + l];
+       ++l) {
+    const auto random = [&](std::uint32_t k) { return unit_float(hash_append(cell, 4 * l + k)); };
+    const auto along = [&](int index, std::uint32_t k) {
+      return static_cast<float>(index) + math::fma(lattice.width, random(k) - 0.5f, 0.5f);
+    };
+    const float ea = along(a, 0), eb = along(b, 1), ec = along(c, 2);
+    const auto at = [&](float u, float v, float w) { return math::fma(u, ea, math::fma(v, eb, w * ec)); };
+    visit(SpotImpulse{at(lattice.a.x, lattice.b.x, lattice.c.x), at(lattice.a.y, lattice.b.y, lattice.c.y),
+                      at(lattice.a.z, lattice.b.z, lattice.c.z),
+                      math::fma(1.0f - lattice.least_weight, random(3), lattice.least_weight)});
+  }
+}
+
+// Of all cells, in their order (z, then y, then x), those whose spots may reach points of the box.
+template <typename Visit>
+ASTROLITH_HD void for_each_spot(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box,
+                                Visit&& visit) {
+  const Box wide = spot_box(box);
+  const SpotCells cells = spot_cells_around(kind, wide);
+  const Vec3f offset = to_float(kind.offset);
+  const auto keep = [&](SpotImpulse impulse) {
+    impulse.x += offset.x;
+    impulse.y += offset.y;
+    impulse.z += offset.z;
+    if (spot_reaches(impulse, kind.support, wide)) visit(impulse);
+  };
+  for (int c = cells.first[2]; c <= cells.last[2]; ++c) {
+    for (int b = cells.first[1]; b <= cells.last[1]; ++b) {
+      for (int a = cells.first[0]; a <= cells.last[0]; ++a) {
+        for_each_spot_of_cell(kind.lattice, thresholds, a, b, c, keep);
+      }
+    }
+  }
+}
+
+}  // namespace astrolith

@@ -1,0 +1,165 @@
+// The GPU's mesher on the host, thread by thread, against the CPU's.
+#include "cuda/mesher/machine_mesher.h"
+
+#include <cstring>
+#include <filesystem>
+
+#include "cuda/device.h"
+#include "cuda/host_machine.h"
+#include "cuda/mesher/mesh_field.h"
+#include "recipe/recipe_json.h"
+#include "tests/support/test_size.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+using testing::fractal_layer;
+using testing::potato_recipe;
+using testing::sphere_recipe;
+
+// Two blocks along a side; in full eight, of cells small enough that the GPU meshes more of the examples.
+const int kExampleCells = testing::by_size(12, 64);
+
+struct Made {
+  MeshStatistics statistics;
+  TriangleMesh mesh;
+};
+
+Made on_cpu(const ImplicitField& field, int resolution, MeshTile tile = {}) {
+  MeshCollector sink;
+  const MeshStatistics statistics = mesh_field(field, field.bounds(), resolution, sink, {}, tile);
+  return {statistics, std::move(sink.mesh)};
+}
+Made on_twin(const ImplicitField& field, int resolution, MeshTile tile = {},
+             HostMachine machine = HostMachine()) {
+  MeshCollector sink;
+  const MeshStatistics statistics = mesh_field_on(machine, field, field.bounds(), resolution, sink, {}, tile);
+  return {statistics, std::move(sink.mesh)};
+}
+
+template <typename T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+void expect_same(const Made& twin, const Made& cpu) {
+  EXPECT_GT(cpu.mesh.triangles.size(), 30u);
+  EXPECT_TRUE(same_bytes(twin.mesh.vertices, cpu.mesh.vertices));
+  EXPECT_TRUE(same_bytes(twin.mesh.normals, cpu.mesh.normals));
+  EXPECT_TRUE(same_bytes(twin.mesh.triangles, cpu.mesh.triangles));
+  EXPECT_EQ(twin.statistics.vertices, cpu.statistics.vertices);
+  EXPECT_EQ(twin.statistics.triangles, cpu.statistics.triangles);
+  EXPECT_EQ(twin.statistics.evaluations, cpu.statistics.evaluations);
+  EXPECT_EQ(twin.statistics.active_blocks, cpu.statistics.active_blocks);
+  EXPECT_EQ(twin.statistics.total_blocks, cpu.statistics.total_blocks);
+  EXPECT_EQ(twin.statistics.cut_vertices, cpu.statistics.cut_vertices);
+}
+
+Recipe asteroid() {
+  Recipe recipe = potato_recipe(30, 5);
+  SpotLayer spots;
+  spots.amplitude = 0.01;
+  spots.size = 0.08;
+  spots.cell_size = 0.25;
+  spots.layers = 2;
+  SparseLayer pits;
+  pits.amplitude = 0.01;
+  pits.cell_size = 0.1;
+  recipe.layers = {fractal_layer(0.02, 4.0, 4), spots, pits};
+  return recipe;
+}
+
+TEST(MachineMesher, MakesTheMeshOfTheCpu) {
+  for (const int resolution : {4, 9, 10, 11, 33, 64}) {
+    const ImplicitField field(asteroid());
+    expect_same(on_twin(field, std::max(resolution, 9)), on_cpu(field, std::max(resolution, 9)));
+  }
+  const ImplicitField bare(potato_recipe(60, 8));
+  expect_same(on_twin(bare, 50), on_cpu(bare, 50));
+  Recipe gravel = potato_recipe(10, 8);
+  gravel.layers = {testing::gabor_layer(0.06, 0.003)};
+  const ImplicitField noisy(gravel);
+  ASSERT_EQ(obstacle_to_flattening(noisy, block_side(noisy.bounds(), 12)), "");
+  expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
+}
+
+// Samples whose field is exactly zero, and cells with many of them.
+TEST(MachineMesher, TreatsTiesAsTheCpu) {
+  Recipe recipe = sphere_recipe(1.0);
+  recipe.body->spheres.push_back({{2.0, 0.0, 0.0}, 1.0});
+  recipe.body->blend_exponent = 1.0;
+  const ImplicitField field(recipe);
+  for (const int resolution : {16, 18, 34})
+    expect_same(on_twin(field, resolution), on_cpu(field, resolution));
+}
+
+TEST(MachineMesher, MakesTheTilesOfTheCpu) {
+  const ImplicitField field(asteroid());
+  for (int i = 0; i < 3; ++i) expect_same(on_twin(field, 50, {i, 3}), on_cpu(field, 50, {i, 3}));
+}
+
+// Of the sources, or beside the programs where these were taken elsewhere (scripts/gpu.sh).
+std::filesystem::path examples() {
+  const std::filesystem::path sources = ASTROLITH_EXAMPLES;
+  return std::filesystem::exists(sources) ? sources : std::filesystem::path("synthesis/examples");
+}
+
+// Every example of a recipe that the GPU can mesh, on a coarse grid.
+TEST(MachineMesher, MeshesTheExamplesAsTheCpu) {
+  if (!std::filesystem::exists(examples())) GTEST_SKIP() << "the examples are not here";
+  int meshed = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(examples())) {
+    if (entry.path().extension() != ".json") continue;
+    const ImplicitField field(read_recipe(entry.path()));
+    if (!obstacle_to_flattening(field, block_side(field.bounds(), kExampleCells)).empty()) continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    expect_same(on_twin(field, kExampleCells), on_cpu(field, kExampleCells));
+    ++meshed;
+  }
+  EXPECT_GE(meshed, testing::by_size(19, 30));
+}
+
+// Threads come at the same time on a GPU: whatever their order, the bytes are the same.
+TEST(MachineMesher, TakesThreadsInAnyOrder) {
+  const ImplicitField field(asteroid());
+  const Made cpu = on_cpu(field, 33);
+  for (const std::size_t seed : {1, 2, 31}) {
+    expect_same(on_twin(field, 33, {}, HostMachine(std::size_t{1} << 34, {seed})), cpu);
+  }
+}
+
+// Less memory means smaller batches, down to a layer each, and the same mesh.
+TEST(MachineMesher, HalvesTheBatchWhereMemoryEnds) {
+  const ImplicitField field(asteroid());
+  const Made cpu = on_cpu(field, 50);
+  for (const std::size_t megabytes : {12, 8, 5, 4}) {
+    expect_same(on_twin(field, 50, {}, HostMachine(megabytes << 20)), cpu);
+  }
+  EXPECT_THROW(on_twin(field, 50, {}, HostMachine(std::size_t{1} << 19)), WorkError);
+}
+
+TEST(MachineMesher, FailsAsTheCpuAtWrongBounds) {
+  const ImplicitField field(sphere_recipe(1.0));
+  MeshDiscard sink;
+  HostMachine machine;
+  const Box half{{-2, -2, -2}, {0.1, 2, 2}};
+  EXPECT_THROW(mesh_field(field, half, 30, sink), WorkError);
+  EXPECT_THROW(mesh_field_on(machine, field, half, 30, sink, {}, {}), WorkError);
+}
+
+TEST(MeshFieldOnGpu, MakesTheMeshOfTheCpu) {
+  const DeviceStatus status = probe_device();
+  if (!status.usable) GTEST_SKIP() << "no GPU here: " << status.reason;
+  const ImplicitField field(asteroid());
+  for (const MeshTile tile : {MeshTile{0, 1}, MeshTile{1, 3}}) {
+    for (const int resolution : {33, 200}) {
+      MeshCollector sink;
+      const MeshStatistics statistics = mesh_field_on_gpu(field, field.bounds(), resolution, sink, {}, tile);
+      expect_same({statistics, std::move(sink.mesh)}, on_cpu(field, resolution, tile));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,209 @@
+#include "estimation/gabor/image/image_reader.h"
+
+#include <png.h>
+#include <tiffio.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "numerics/errors.h"
+#include "synthesis/picture/image_file.h"
+#include "tests/support/data.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageReaderTest : public ::testing::Test {
+ protected:
+  ImageReaderTest() { fs::create_directories(folder); }
+  ~ImageReaderTest() override { fs::remove_all(folder); }
+
+  fs::path write_text(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return folder / name;
+  }
+  static void write_half_tiff(const fs::path& file, int width, int height, int channels,
+                              std::vector<std::uint16_t> halves) {
+    TIFF* tiff = TIFFOpen(file.c_str(), "w");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, width);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, height);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, channels);
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+    for (int y = 0; y < height; ++y)
+      TIFFWriteScanline(tiff, &halves[static_cast<std::size_t>(y * width * channels)],
+                        static_cast<std::uint32_t>(y));
+    TIFFClose(tiff);
+  }
+  static std::string error_of(const fs::path& file) {
+    try {
+      read_grey_image(file);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  fs::path folder = fs::temp_directory_path() / ("astrolith_images_" + std::to_string(::getpid()));
+};
+
+TEST_F(ImageReaderTest, FullScaleOfIntegersIsOne) {
+  const std::vector<std::uint8_t> bytes{0, 51, 102, 255};
+  write_png8_grey(bytes, 2, 2, folder / "a.png");
+  const std::vector<std::uint16_t> words{0, 13107, 26214, 65535};
+  write_png16_grey(words, 2, 2, folder / "b.png");
+  for (const char* name : {"a.png", "b.png"}) {
+    const GreyImage image = read_grey_image(folder / name).image;
+    ASSERT_EQ(image.values.size(), 4u);
+    EXPECT_EQ(image.width, 2);
+    const double expected[] = {0.0, 0.2, 0.4, 1.0};
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(image.values[i], expected[i]) << name;
+  }
+}
+
+TEST_F(ImageReaderTest, FloatsStayAsTheyAre) {
+  const std::vector<float> values{-3.5f, 0.0f, 1e-3f, 1200.0f, 7.0f, 8.0f};
+  write_tiff_float(values, 3, 2, folder / "h.tif");
+  const GreyImage image = read_grey_image(folder / "h.tif").image;
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(image.values[i], static_cast<double>(values[i]));
+}
+
+TEST_F(ImageReaderTest, HalfFloatsAreRead) {
+  write_half_tiff(folder / "h.tif", 3, 2, 1, {0x3c00, 0x3800, 0x0000, 0xc000, 0x7bff, 0x0001});
+  const GreyImage image = read_grey_image(folder / "h.tif").image;
+  const std::vector<double> expected{1.0, 0.5, 0.0, -2.0, 65504.0, std::ldexp(1.0, -24)};
+  EXPECT_EQ(image.values, expected);
+  write_half_tiff(folder / "c.tif", 1, 1, 3, {0x3c00, 0x3800, 0x3400});
+  const ColorImageFile color = read_color_image(folder / "c.tif");
+  EXPECT_EQ(color.planes[0].values[0], 1.0);
+  EXPECT_EQ(color.planes[1].values[0], 0.5);
+  EXPECT_EQ(color.planes[2].values[0], 0.25);
+  write_half_tiff(folder / "nan.tif", 1, 1, 1, {0x7e00});
+  EXPECT_NE(error_of(folder / "nan.tif").find("pixel (0, 0)"), std::string::npos);
+}
+
+// Orientation 6: the stored picture is to be turned clockwise to stand upright.
+TEST_F(ImageReaderTest, OrientationIsHonoured) {
+  TIFF* tiff = TIFFOpen((folder / "o.tif").c_str(), "w");
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 3);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 2);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_RIGHTTOP);
+  unsigned char rows[2][3] = {{10, 20, 30}, {40, 50, 60}};
+  for (std::uint32_t y = 0; y < 2; ++y) TIFFWriteScanline(tiff, rows[y], y);
+  TIFFClose(tiff);
+  const GreyImage image = read_grey_image(folder / "o.tif").image;
+  ASSERT_EQ(image.width, 2);
+  ASSERT_EQ(image.height, 3);
+  const std::vector<double> expected{40, 10, 50, 20, 60, 30};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(image.values[i] * 255, expected[i]);
+}
+
+TEST_F(ImageReaderTest, AlphaIsIgnoredAndSaidWhereItHides) {
+  const auto write_rgba = [&](const char* name, std::uint8_t alpha) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = 2;
+    image.height = 1;
+    image.format = PNG_FORMAT_RGBA;
+    const std::uint8_t pixels[8] = {255, 255, 255, 255, 51, 51, 51, alpha};
+    png_image_write_to_file(&image, (folder / name).c_str(), 0, pixels, 0, nullptr);
+    return read_grey_image(folder / name);
+  };
+  EXPECT_TRUE(write_rgba("opaque.png", 255).remarks.empty());
+  const ImageFile half = write_rgba("half.png", 0);
+  EXPECT_DOUBLE_EQ(half.image.values[1], 0.2);
+  ASSERT_EQ(half.remarks.size(), 1u);
+  EXPECT_NE(half.remarks[0].find("50.0 %"), std::string::npos) << half.remarks[0];
+}
+
+TEST_F(ImageReaderTest, AnimationsAreSaid) {
+  write_png8_grey(std::vector<std::uint8_t>{1, 2, 3, 4}, 2, 2, folder / "still.png");
+  std::ifstream in(folder / "still.png", std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  // An acTL chunk (8 bytes of data) between IHDR, which ends at byte 33, and IDAT.
+  bytes.insert(33, std::string("\0\0\0\x08"
+                               "acTL\0\0\0\x02\0\0\0\0\xf3\x8d\x93\x70",
+                               20));
+  const ImageFile file = read_grey_image(write_text("animated.png", bytes));
+  ASSERT_EQ(file.remarks.size(), 1u);
+  EXPECT_NE(file.remarks[0].find("first frame"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, ColoursComeAsPlanes) {
+  write_png8_rgb({2, 1, {255, 0, 51, 0, 102, 0}}, folder / "c.png");
+  const ColorImageFile color = read_color_image(folder / "c.png");
+  ASSERT_EQ(color.planes.size(), 3u);
+  EXPECT_DOUBLE_EQ(color.planes[0].values[0], 1.0);
+  EXPECT_DOUBLE_EQ(color.planes[1].values[1], 0.4);
+  EXPECT_DOUBLE_EQ(color.planes[2].values[0], 0.2);
+  write_png8_grey(std::vector<std::uint8_t>{51, 255}, 2, 1, folder / "g.png");
+  for (const GreyImage& plane : read_color_image(folder / "g.png").planes)
+    EXPECT_DOUBLE_EQ(plane.values[0], 0.2);
+}
+
+TEST_F(ImageReaderTest, ColoursBecomeLuma) {
+  write_png8_rgb({3, 1, {255, 0, 0, 0, 255, 0, 0, 0, 255}}, folder / "c.png");
+  const ImageFile file = read_grey_image(folder / "c.png");
+  EXPECT_DOUBLE_EQ(file.image.values[0], 0.2126);
+  EXPECT_DOUBLE_EQ(file.image.values[1], 0.7152);
+  EXPECT_DOUBLE_EQ(file.image.values[2], 0.0722);
+  EXPECT_TRUE(file.remarks.empty());
+}
+
+TEST_F(ImageReaderTest, NamesTheFileAndTheRemedy) {
+  EXPECT_NE(error_of(folder / "missing.png").find("missing.png: cannot be read"), std::string::npos);
+  EXPECT_NE(error_of(folder).find("is a folder"), std::string::npos);
+  EXPECT_NE(error_of(write_text("text.png", "this is no picture, it is a line of text")).find("first bytes"),
+            std::string::npos);
+  EXPECT_NE(error_of(write_text("empty.png", "")).find("is empty"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
+  std::vector<std::uint8_t> grey(64 * 64);
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint8_t>(i * 37 % 251);
+  write_png8_grey(grey, 64, 64, folder / "whole.png");
+  std::ifstream in(folder / "whole.png", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_NE(error_of(write_text("cut.png", bytes.substr(0, 60))).find("cut.png"), std::string::npos);
+  EXPECT_NE(
+      error_of(write_text("cut.jpg", std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10) + std::string(30, 'x')))
+          .find("cut.jpg"),
+      std::string::npos);
+  EXPECT_NE(error_of(write_text("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
+                .find("cut.tif"),
+            std::string::npos);
+}
+
+// The header alone decides: nothing is allocated for a size that is refused.
+TEST_F(ImageReaderTest, HugeImagesAreRefusedBeforeDecoding) {
+  const std::string header = std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) +
+                             std::string("\0\0\x4e\x20\0\0\x4e\x20\x08\0\0\0\0", 13) + std::string(8, '\0');
+  const std::string error = error_of(write_text("huge.png", header));
+  EXPECT_NE(error.find("20000 x 20000"), std::string::npos) << error;
+  EXPECT_NE(error.find("GB"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, ValuesThatAreNotFiniteAreErrors) {
+  std::vector<float> values(40 * 40, 1.0f);
+  values[3 * 40 + 7] = std::numeric_limits<float>::quiet_NaN();
+  write_tiff_float(values, 40, 40, folder / "nan.tif");
+  EXPECT_NE(error_of(folder / "nan.tif").find("pixel (7, 3)"), std::string::npos);
+}
+
+TEST_F(ImageReaderTest, ReadsARealPalette) {
+  const fs::path file = testing::shared_texture("sand_height_cc0textures_1024.png");
+  ASTROLITH_SKIP_WITHOUT(file);
+  const GreyImage image = read_grey_image(file).image;
+  EXPECT_EQ(image.values.size(),
+            static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+}
+
+}  // namespace
+}  // namespace astrolith

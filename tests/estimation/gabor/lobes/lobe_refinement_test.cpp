@@ -1,0 +1,101 @@
+#include "estimation/gabor/lobes/lobe_refinement.h"
+
+#include <cmath>
+
+#include "estimation/gabor/lobes/lobe_misfit.h"
+#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "numerics/parallel_for.h"
+#include "tests/estimation/gabor/known_spectrum.h"
+
+namespace astrolith {
+namespace {
+
+PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int height) {
+  std::vector<GaborLobe> layer;
+  for (const SpectralLobe& lobe : lobes) {
+    layer.push_back({lobe.bandwidth, lobe.x, lobe.y, lobe_variance(lobe, width, height)});
+  }
+  return spectrum_of(layer, width, height);
+}
+
+// One of them broad enough to wrap around the grid, one on the axis, one at frequency 0.
+std::vector<SpectralLobe> four_lobes() {
+  return {{4, 0.11, 0.06, 3.0}, {3, -0.2, 0.25, 1.0}, {1, 0.3, 0.0, 0.4}, {4, 0.0, 0.0, 0.7}};
+}
+
+std::vector<SpectralLobe> disturbed(std::vector<SpectralLobe> lobes) {
+  double sign = 1.0;
+  for (SpectralLobe& lobe : lobes) {
+    lobe.x += sign * 0.4 * lobe_deviation(lobe.bandwidth);
+    lobe.y += 0.3 * lobe_deviation(lobe.bandwidth);
+    lobe.height *= 1.0 + 0.3 * sign;
+    sign = -sign;
+  }
+  return lobes;
+}
+
+TEST(LobeMisfit, IsTheSquaredDistance) {
+  const PowerSpectrum truth = sum_of(four_lobes(), 60, 48);
+  const std::vector<SpectralLobe> lobes = disturbed(four_lobes());
+  const LobeMisfit misfit(lobes, truth);
+  const std::vector<double> start(12, 0.0);
+  EXPECT_NEAR(std::sqrt(misfit(start, {})), optimal_transport_distance(sum_of(lobes, 60, 48), truth), 1e-5);
+}
+
+TEST(LobeMisfit, GradientAgreesWithDifferences) {
+  const LobeMisfit misfit(disturbed(four_lobes()), sum_of(four_lobes(), 60, 48));
+  std::vector<double> p(12, 0.0);
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = 0.1 * std::sin(3.0 * static_cast<double>(i));
+  std::vector<double> gradient(12);
+  misfit(p, gradient);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    constexpr double h = 1e-5;
+    std::vector<double> q = p;
+    q[i] = p[i] + h;
+    const double above = misfit(q, {});
+    q[i] = p[i] - h;
+    EXPECT_NEAR(gradient[i], (above - misfit(q, {})) / (2.0 * h), 1e-6) << "parameter " << i;
+  }
+}
+
+TEST(RefineLobes, FindsTheLobesOfAnExactSpectrum) {
+  const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
+  const std::vector<SpectralLobe> refined = refine_lobes(disturbed(four_lobes()), truth);
+  ASSERT_EQ(refined.size(), 4u);
+  EXPECT_LT(optimal_transport_distance(sum_of(refined, 64, 64), truth), 0.01);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(refined[i].x, four_lobes()[i].x, 0.05 * lobe_deviation(refined[i].bandwidth));
+    EXPECT_NEAR(refined[i].height, four_lobes()[i].height, 0.05 * four_lobes()[i].height);
+  }
+}
+
+TEST(RefineLobes, ThreadsDoNotChangeABit) {
+  const PowerSpectrum truth = sum_of(four_lobes(), 64, 48);
+  const auto refined_with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return sum_of(refine_lobes(disturbed(four_lobes()), truth), 64, 48).power;
+  };
+  EXPECT_EQ(refined_with(1), refined_with(4));
+}
+
+// Superfluous lobes go; those that carry the spectrum stay, whatever the criterion must allow for.
+TEST(FewestLobes, KeepsWhatTheEstimateIsWorth) {
+  const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
+  std::vector<SpectralLobe> lobes = disturbed(four_lobes());
+  for (const SpectralLobe& lobe : four_lobes()) {
+    for (const double side : {-0.7, 0.7}) {
+      SpectralLobe other = lobe;
+      other.x += side * lobe_deviation(lobe.bandwidth);
+      other.height *= 0.2;
+      lobes.push_back(other);
+    }
+  }
+  const std::vector<double> evenly(truth.power.size(), 1.0);
+  const std::vector<SpectralLobe> few = fewest_lobes(lobes, {truth, {}, 0.09}, evenly);
+  EXPECT_LE(few.size(), 6u);
+  EXPECT_GE(few.size(), 3u);
+  EXPECT_LE(optimal_transport_distance(sum_of(few, 64, 64), truth), 0.03);
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,199 @@
+#include "estimation/gabor/pursuit/basis_pursuit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/gabor/pursuit/duality_certificate.h"
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+
+namespace astrolith {
+namespace {
+
+std::vector<double> speckled_target(const GaborDictionary& dictionary, std::uint64_t seed) {
+  CounterRandom random(seed);
+  std::vector<double> x(dictionary.size(), 0.0);
+  for (int k = 0; k < 6; ++k) x[random.below(x.size())] += 1.0 + random.uniform();
+  std::vector<double> s(dictionary.rows());
+  dictionary.synthesize(x, s);
+  // Symmetric speckle, as in a periodogram.
+  const int w = dictionary.width();
+  const int h = dictionary.height();
+  for (int y = 0; y < h; ++y) {
+    for (int xx = 0; xx < w; ++xx) {
+      const auto i = static_cast<std::size_t>(y * w + xx);
+      const auto mirror = static_cast<std::size_t>((h - y) % h * w + (w - xx) % w);
+      if (mirror < i) continue;
+      s[i] = s[mirror] = -std::log(1.0 - random.uniform()) * s[i];
+    }
+  }
+  return s;
+}
+
+// Cyclic coordinate descent on explicit columns: slow, dense and independent of the solvers under test.
+double dense_minimum(const BasisPursuitProblem& problem) {
+  const std::size_t n = problem.dictionary.size();
+  std::vector<std::vector<double>> columns(n, std::vector<double>(problem.dictionary.rows()));
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<double> unit(n, 0.0);
+    unit[j] = 1.0;
+    problem.dictionary.synthesize(unit, columns[j]);
+  }
+  std::vector<std::vector<double>> gram(n, std::vector<double>(n, 0.0));
+  std::vector<double> c(n, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t i = 0; i < columns[j].size(); ++i) gram[j][k] += columns[j][i] * columns[k][i];
+    }
+    for (std::size_t i = 0; i < columns[j].size(); ++i) c[j] += columns[j][i] * problem.target[i];
+  }
+  std::vector<double> x(n, 0.0);
+  for (int sweep = 0; sweep < 20000; ++sweep) {
+    double change = 0.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      double gradient = c[j] - problem.penalty;
+      for (std::size_t k = 0; k < n; ++k) gradient -= gram[j][k] * x[k];
+      const double updated = std::max(0.0, x[j] + gradient / gram[j][j]);
+      change = std::max(change, std::abs(updated - x[j]));
+      x[j] = updated;
+    }
+    if (change < 1e-13) break;
+  }
+  std::vector<double> r = problem.target;
+  double sum = 0.0;
+  for (std::size_t j = 0; j < n; ++j) {
+    sum += x[j];
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] -= x[j] * columns[j][i];
+  }
+  double square = 0.0;
+  for (const double v : r) square += v * v;
+  return 0.5 * square + problem.penalty * sum;
+}
+
+using Solver = BasisPursuitResult (*)(const BasisPursuitProblem&, const BasisPursuitOptions&);
+BasisPursuitResult fista(const BasisPursuitProblem& p, const BasisPursuitOptions& o) {
+  return solve_fista(p, o);
+}
+
+BasisPursuitResult working_set(const BasisPursuitProblem& p, const BasisPursuitOptions& o) {
+  return solve_working_set(p, o);
+}
+
+class BasisPursuitTest : public ::testing::TestWithParam<Solver> {};
+
+TEST_P(BasisPursuitTest, AgreesWithADenseSolverAndItsCertificateIsTrue) {
+  const GaborDictionary dictionary(20, 16, 2, 3, std::vector<double>(20 * 16, 1.0));
+  ASSERT_LE(dictionary.size(), 300u);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    BasisPursuitProblem problem{dictionary, speckled_target(dictionary, seed), 0.0};
+    problem.penalty = 0.02 * largest_penalty(dictionary, problem.target);
+    const double minimum = dense_minimum(problem);
+    for (const double gap : {1e-2, 1e-4, 1e-7}) {
+      BasisPursuitOptions options;
+      options.relative_gap = gap;
+      const BasisPursuitResult result = GetParam()(problem, options);
+      EXPECT_TRUE(result.reached);
+      EXPECT_GE(result.primal, minimum * (1.0 - 1e-9));
+      EXPECT_LE(result.primal - minimum, result.relative_gap * result.primal + 1e-9 * minimum);
+      for (const GapSample& sample : result.history) EXPECT_GE(sample.relative_gap, 0.0);
+      EXPECT_GE(*std::min_element(result.x.begin(), result.x.end()), 0.0);
+    }
+  }
+}
+
+TEST_P(BasisPursuitTest, AboveTheLargestPenaltyTheSolutionIsZero) {
+  const GaborDictionary dictionary(32, 32, 2, 4, std::vector<double>(32 * 32, 1.0));
+  BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 4), 0.0};
+  problem.penalty = 1.001 * largest_penalty(dictionary, problem.target);
+  const BasisPursuitResult result = GetParam()(problem, {});
+  EXPECT_TRUE(result.reached);
+  EXPECT_EQ(*std::max_element(result.x.begin(), result.x.end()), 0.0);
+}
+
+// Targets no spectrum would be: negative, zero, one spike. The gap stays a true bound.
+TEST_P(BasisPursuitTest, AdversarialTargetsKeepTheGapNonNegative) {
+  const GaborDictionary dictionary(32, 32, 2, 5, std::vector<double>(32 * 32, 1.0));
+  std::vector<std::vector<double>> targets(3, std::vector<double>(dictionary.rows(), 0.0));
+  for (double& v : targets[0]) v = -1.0;
+  targets[1][5 * 32 + 3] = 1.0;
+  CounterRandom random(5);
+  for (double& v : targets[2]) v = random.normal();
+  for (std::vector<double>& target : targets) {
+    BasisPursuitProblem problem{dictionary, target, 0.05};
+    BasisPursuitOptions options;
+    options.max_iterations = 300;
+    const BasisPursuitResult result = GetParam()(problem, options);
+    for (const GapSample& sample : result.history) EXPECT_GE(sample.relative_gap, 0.0);
+  }
+  const BasisPursuitResult zero =
+      GetParam()({dictionary, std::vector<double>(dictionary.rows(), 0.0), 0.05}, BasisPursuitOptions{});
+  EXPECT_TRUE(zero.reached);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, BasisPursuitTest, ::testing::Values(&fista, &working_set));
+
+// The optimality conditions, checked in the test's own arithmetic: a_j'r <= penalty everywhere, with equality
+// where x_j > 0. And one optimum: both solvers end at the same value and nearly the same spectrum.
+TEST(BasisPursuit, BothSolversMeetTheOptimalityConditionsAndEachOther) {
+  const GaborDictionary dictionary(32, 24, 2, 5, std::vector<double>(32 * 24, 1.0));
+  BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 12), 0.0};
+  const double largest = largest_penalty(dictionary, problem.target);
+  for (const double share : {0.3, 0.03}) {
+    problem.penalty = share * largest;
+    BasisPursuitOptions options;
+    options.relative_gap = 1e-9;
+    options.max_iterations = 100000;
+    const BasisPursuitResult exact = solve_working_set(problem, options),
+                             slow = solve_fista(problem, options);
+    EXPECT_TRUE(exact.reached && slow.reached);
+    EXPECT_NEAR(exact.primal / slow.primal, 1.0, 2e-9);
+    std::vector<double> a(dictionary.rows()), b(dictionary.rows()), correlations(dictionary.size());
+    dictionary.synthesize(exact.x, a);
+    dictionary.synthesize(slow.x, b);
+    double difference = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      difference += (a[i] - b[i]) * (a[i] - b[i]);
+      size += a[i] * a[i];
+    }
+    // Strong convexity in A x: |A x - A x*|^2 / 2 is at most the absolute gap.
+    EXPECT_LE(difference, 4 * 4e-9 * slow.primal);
+    EXPECT_GT(size, 0.0);
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] = problem.target[i] - a[i];
+    dictionary.analyze(a, correlations);
+    // For the same reason the residual, and so every correlation, is this far from the optimum's at most.
+    const double slack = std::sqrt(2.0 * options.relative_gap * exact.primal);
+    for (std::size_t j = 0; j < correlations.size(); ++j) {
+      EXPECT_LE(correlations[j], problem.penalty + slack);
+      if (exact.x[j] > 0.01 * largest) {
+        EXPECT_NEAR(correlations[j], problem.penalty, slack);
+      }
+    }
+  }
+}
+
+// With the residual pointing away from the target the scaled dual's factor would be negative; an unclipped
+// certificate then claims a bound above the minimum.
+TEST(DualityCertificate, ResidualsAgainstTheTargetGiveNoFalseBound) {
+  const GaborDictionary dictionary(32, 32, 2, 4, std::vector<double>(32 * 32, 1.0));
+  const BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 6), 1.0};
+  DualityCertificate certificate(problem);
+  std::vector<double> r = problem.target;
+  for (double& v : r) v *= -3.0;
+  std::vector<double> correlations(dictionary.size());
+  dictionary.analyze(r, correlations);
+  EXPECT_GE(certificate.check(r, correlations, 1.0), 0.0);
+  EXPECT_GE(certificate.best_dual(), 0.0);
+}
+
+TEST(DualityCertificate, AWrongTransposeIsCaught) {
+  const GaborDictionary dictionary(32, 32, 2, 4, std::vector<double>(32 * 32, 1.0));
+  const BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 6), 1.0};
+  DualityCertificate certificate(problem);
+  const std::vector<double> correlations(dictionary.size(), 0.0);  // claims that every theta is feasible
+  certificate.check(problem.target, correlations, 0.0);
+  const std::vector<double> nearly_fitted(dictionary.rows(), 0.0);
+  EXPECT_THROW(certificate.check(nearly_fitted, correlations, 0.0), WorkError);
+}
+
+}  // namespace
+}  // namespace astrolith

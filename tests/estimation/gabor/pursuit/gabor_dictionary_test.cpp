@@ -1,0 +1,136 @@
+#include "estimation/gabor/pursuit/gabor_dictionary.h"
+
+#include <cmath>
+
+#include "numerics/hash_random.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+// Weights that differ everywhere and are symmetric under f -> -f, zero at frequency 0.
+std::vector<double> uneven_weight(int width, int height) {
+  std::vector<double> weight;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double fx = signed_frequency(x, width);
+      const double fy = signed_frequency(y, height);
+      weight.push_back(x == 0 && y == 0 ? 0.0 : 1.0 + std::cos(0.1 * fx * fy) + 0.01 * (fx * fx + fy * fy));
+    }
+  }
+  return weight;
+}
+
+// A column by its definition, without transforms.
+std::vector<double> column(const GaborDictionary& dictionary, std::size_t j) {
+  const GaborAtom& atom = dictionary.atom(j);
+  const double deviation = lobe_deviation(atom.bandwidth);
+  const int w = dictionary.width();
+  const int h = dictionary.height();
+  std::vector<double> values(dictionary.rows(), 0.0);
+  for (const int sign : {1, -1}) {
+    const auto gx = periodic_gaussian(w, sign * atom.kx, deviation * w);
+    const auto gy = periodic_gaussian(h, sign * atom.ky, deviation * h);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] += dictionary.scale(j) * dictionary.weight()[i] * gx[i % static_cast<std::size_t>(w)] *
+                   gy[i / static_cast<std::size_t>(w)];
+    }
+  }
+  return values;
+}
+
+class DictionarySizes : public ::testing::TestWithParam<std::pair<int, int>> {
+ protected:
+  int w = GetParam().first;
+  int h = GetParam().second;
+  GaborDictionary dictionary{w, h, 2, narrowest_bandwidth(w, h), uneven_weight(w, h)};
+};
+
+TEST_P(DictionarySizes, ColumnsAreUnitVectorsAndProductsAreTheirs) {
+  CounterRandom random(11);
+  std::vector<double> r(dictionary.rows());
+  for (double& value : r) value = random.normal();
+  std::vector<double> correlations(dictionary.size());
+  dictionary.analyze(r, correlations);
+  std::vector<double> image(dictionary.rows());
+  for (std::size_t j = 0; j < dictionary.size(); j += 37) {
+    const std::vector<double> a = column(dictionary, j);
+    double squared = 0.0;
+    double product = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      squared += a[i] * a[i];
+      product += a[i] * r[i];
+    }
+    EXPECT_NEAR(squared, 1.0, 1e-9) << "atom " << j;
+    EXPECT_NEAR(correlations[j], product, 1e-9) << "atom " << j;
+    std::vector<double> x(dictionary.size(), 0.0);
+    x[j] = 2.0;
+    dictionary.synthesize(x, image);
+    for (std::size_t i = 0; i < a.size(); i += 5) ASSERT_NEAR(image[i], 2.0 * a[i], 1e-10) << "atom " << j;
+  }
+}
+
+TEST_P(DictionarySizes, TheTransposeIsTheTranspose) {
+  CounterRandom random(12);
+  std::vector<double> x(dictionary.size());
+  std::vector<double> r(dictionary.rows());
+  for (double& value : x) value = random.uniform();
+  for (double& value : r) value = random.normal();
+  std::vector<double> image(r.size());
+  std::vector<double> correlations(x.size());
+  dictionary.synthesize(x, image);
+  dictionary.analyze(r, correlations);
+  double left = 0.0;
+  double right = 0.0;
+  for (std::size_t i = 0; i < r.size(); ++i) left += image[i] * r[i];
+  for (std::size_t j = 0; j < x.size(); ++j) right += x[j] * correlations[j];
+  EXPECT_NEAR(left, right, 1e-10 * (1.0 + std::abs(left)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, DictionarySizes,
+                         ::testing::Values(std::pair{32, 32}, std::pair{40, 33}, std::pair{35, 64}));
+
+TEST(GaborDictionary, HasTheAtomsOfThePaper) {
+  // The reference estimator counts 26,836 atoms at 128 x 128 for bandwidths 2 .. 7; it keeps the Nyquist
+  // frequencies, which belong to no pair.
+  const GaborDictionary dictionary(128, 128, 2, 7, std::vector<double>(128 * 128, 1.0));
+  EXPECT_NEAR(static_cast<double>(dictionary.size()), 26836.0, 0.02 * 26836.0);
+  EXPECT_EQ(narrowest_bandwidth(128, 128), 7);
+  EXPECT_EQ(narrowest_bandwidth(256, 256), 8);
+}
+
+TEST(GaborDictionary, NeighboursOfOneBandwidthCorrelateByAtMost95Percent) {
+  const GaborDictionary dictionary(128, 128, 2, 4, std::vector<double>(128 * 128, 1.0));
+  std::vector<double> correlations(dictionary.size());
+  for (std::size_t j = 50; j < dictionary.size(); j += 301) {
+    dictionary.analyze(column(dictionary, j), correlations);
+    for (std::size_t i = 0; i < dictionary.size(); ++i) {
+      if (i == j || dictionary.atom(i).bandwidth != dictionary.atom(j).bandwidth) continue;
+      const int far_x = std::min(std::abs(dictionary.atom(i).kx), std::abs(dictionary.atom(j).kx));
+      const int far_y = std::min(std::abs(dictionary.atom(i).ky), std::abs(dictionary.atom(j).ky));
+      if (std::max(far_x, far_y) < 40) continue;  // near frequency 0 a pair overlaps itself
+      EXPECT_LE(correlations[i], 0.96);
+    }
+  }
+}
+
+TEST(GaborDictionary, ThreadsDoNotChangeABit) {
+  const GaborDictionary dictionary(48, 40, 2, 5, uneven_weight(48, 40));
+  std::vector<double> r(dictionary.rows(), 0.0);
+  CounterRandom random(13);
+  for (double& value : r) value = random.normal();
+  std::vector<double> one(dictionary.size());
+  std::vector<double> many(dictionary.size());
+  {
+    const ThreadLimit limit(1);
+    dictionary.analyze(r, one);
+  }
+  {
+    const ThreadLimit limit(4);
+    dictionary.analyze(r, many);
+  }
+  EXPECT_EQ(one, many);
+}
+
+}  // namespace
+}  // namespace astrolith

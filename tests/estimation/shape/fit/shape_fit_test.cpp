@@ -1,0 +1,137 @@
+#include "estimation/shape/fit/shape_fit.h"
+
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesher.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith {
+namespace {
+
+TriangleMesh mesh_of(const MetaballBody& body, int resolution) {
+  Recipe recipe;
+  recipe.body = body;
+  const ImplicitField field(recipe);
+  MeshCollector collector;
+  mesh_field(field, field.bounds(), resolution, collector);
+  return std::move(collector.mesh);
+}
+
+ShapeFitOptions quick(int spheres) {
+  ShapeFitOptions options;
+  options.spheres = spheres;
+  options.points = 1500;
+  options.population = 8;
+  options.generations = 4;
+  options.check_resolution = 64;
+  options.check_samples = 5000;
+  return options;
+}
+
+TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
+  const TargetBody target = prepare_target(testing::icosphere(4, 2.0, {5, 6, 7}), "sphere");
+  const ShapeFitResult fit = fit_shape(target, quick(1));
+  ASSERT_EQ(fit.body.spheres.size(), 1u);
+  EXPECT_NEAR(fit.body.spheres[0].radius, 2.0, 0.01);
+  EXPECT_NEAR(norm(fit.body.spheres[0].center - Vec3d{5, 6, 7}), 0.0, 0.01);
+  EXPECT_NEAR(fit.check.volume_ratio, 1.0, 0.01);
+  EXPECT_LT(fit.check.distance.mean, 2e-3);
+}
+
+// Bodies of each kernel, fitted with the same.
+class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
+
+TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballs) {
+  MetaballBody truth;
+  truth.kernel = GetParam();
+  if (truth.kernel == Kernel::kGaussian) {
+    truth.blend_exponent = 2.5;
+  } else {
+    truth.a = truth.b = 1.5;
+  }
+  truth.spheres = {{{-0.9, 0, 0}, 0.9}, {{0.5, 0.2, 0}, 1.0}, {{1.3, 0.5, 0.3}, 0.6}};
+  const TargetBody target = prepare_target(mesh_of(truth, 64), "three");
+  ShapeFitOptions options = quick(16);
+  options.kernel = GetParam();
+  const ShapeFitResult fit = fit_shape(target, options);
+  EXPECT_EQ(fit.body.kernel, GetParam());
+  EXPECT_LT(fit.check.distance.mean, 5e-4);
+  EXPECT_LT(fit.check.distance.p99, 3e-3);
+  EXPECT_NEAR(fit.check.volume_ratio, 1.0, GetParam() == Kernel::kGaussian ? 2e-3 : 4e-3);
+  EXPECT_TRUE(fit.check.topology.closed && fit.check.topology.manifold);
+  EXPECT_EQ(fit.check.topology.components, 1);
+  // Kernels that end leave bumps where supports end, which normals see first: the fit's default has none.
+  EXPECT_GT(fit.similarity, (GetParam() == Kernel::kGaussian ? 0.95 : 0.75) * fit.similarity_floor);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels));
+
+// Bodies of several parts, and with a hole.
+struct PartsCase {
+  const char* name;
+  TriangleMesh (*mesh)();
+  std::int64_t components, genus;
+};
+
+class ShapeFitParts : public ::testing::TestWithParam<PartsCase> {};
+
+TEST_P(ShapeFitParts, AreThoseOfTheTarget) {
+  const TargetBody target = prepare_target(GetParam().mesh(), GetParam().name);
+  for (const std::uint64_t seed : {1u, 2u}) {
+    ShapeFitOptions options = quick(16);
+    options.seed = seed;
+    const ShapeFitResult fit = fit_shape(target, options);
+    EXPECT_EQ(fit.check.topology.components, GetParam().components) << "seed " << seed;
+    EXPECT_EQ(fit.check.topology.genus, GetParam().genus) << "seed " << seed;
+    EXPECT_LT(fit.check.distance.mean, 3e-3) << "seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parts, ShapeFitParts,
+    ::testing::Values(PartsCase{"Apart", [] { return testing::two_spheres(3, 1.0, 2.6); }, 2, 0},
+                      PartsCase{"NearlyTouching", [] { return testing::two_spheres(3, 1.0, 2.1); }, 2, 0},
+                      PartsCase{"Overlapping", [] { return testing::two_spheres(3, 1.0, 1.8); }, 1, 0},
+                      PartsCase{"Ring", [] { return testing::torus(1.0, 0.45); }, 1, 1}),
+    [](const ::testing::TestParamInfo<PartsCase>& parts) { return std::string(parts.param.name); });
+
+TEST(ShapeFit, SameBodyForOneAndTwoThreads) {
+  const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
+  std::vector<MetaballBody> bodies;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    bodies.push_back(fit_shape(target, quick(12)).body);
+  }
+  EXPECT_EQ(bodies[0].blend_exponent, bodies[1].blend_exponent);
+  ASSERT_EQ(bodies[0].spheres.size(), bodies[1].spheres.size());
+  for (std::size_t i = 0; i < bodies[0].spheres.size(); ++i) {
+    EXPECT_EQ(bodies[0].spheres[i].center, bodies[1].spheres[i].center);
+    EXPECT_EQ(bodies[0].spheres[i].radius, bodies[1].spheres[i].radius);
+  }
+}
+
+TEST(ShapeFit, StopsWhenAskedWithABodyAllTheSame) {
+  const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
+  const ShapeFitResult fit = fit_shape(target, quick(12), [](const std::string& stage) -> Progress {
+    if (stage != "refine") return {};
+    return [](double, std::string_view) { return false; };
+  });
+  EXPECT_TRUE(fit.interrupted);
+  EXPECT_FALSE(fit.body.spheres.empty());
+}
+
+TEST(ShapeFit, ToleranceEndsTheGrowth) {
+  const TargetBody target = prepare_target(testing::icosphere(3), "sphere");
+  ShapeFitOptions options = quick(40);
+  options.tolerance = 0.01;
+  EXPECT_LT(fit_shape(target, options).body.spheres.size(), 40u);
+}
+
+TEST(ShapeFit, RefusesOptionsOutOfRange) {
+  const TargetBody target = prepare_target(testing::icosphere(2), "sphere");
+  EXPECT_THROW(fit_shape(target, quick(0)), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith

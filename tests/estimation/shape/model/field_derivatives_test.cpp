@@ -1,0 +1,141 @@
+#include "estimation/shape/model/field_derivatives.h"
+
+#include <numeric>
+
+#include "numerics/hash_random.h"
+#include "synthesis/body/metaball_body.h"
+
+namespace astrolith {
+namespace {
+
+MetaballModel random_model(std::uint64_t seed, int count, double sharpness,
+                           Kernel kernel = Kernel::kGaussian) {
+  CounterRandom random(seed);
+  MetaballModel model{sharpness, {}, kernel};
+  for (int i = 0; i < count; ++i) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+    model.spheres.push_back({{x, y, z}, random.uniform(0.3, 0.9)});
+  }
+  return model;
+}
+
+// Every third sphere takes away.
+MetaballModel dented(MetaballModel model) {
+  for (std::size_t i = 2; i < model.spheres.size(); i += 3) model.spheres[i].takes_away = true;
+  return model;
+}
+
+std::vector<std::int32_t> all_of(const MetaballModel& model) {
+  std::vector<std::int32_t> indices(model.spheres.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+// The model after parameter `which` of sphere `i` (centre, log radius) grew by h; i = -1: log sharpness.
+MetaballModel nudged(MetaballModel model, int i, int which, double h) {
+  if (i < 0) {
+    model.sharpness *= std::exp(h);
+    return model;
+  }
+  Sphere& s = model.spheres[static_cast<std::size_t>(i)];
+  if (which == 0) s.center.x += h;
+  if (which == 1) s.center.y += h;
+  if (which == 2) s.center.z += h;
+  if (which == 3) s.radius *= std::exp(h);
+  return model;
+}
+
+using Function = double (*)(const MetaballModel&, const ModelEvaluation&, std::span<const std::int32_t>,
+                            const Vec3d&, std::span<SphereDerivatives>, double*);
+
+// Every derivative against a central difference, with the support held fixed: the derivatives ignore how the
+// cut-off and the gradient floor follow the model.
+void check_derivatives(Function function, const MetaballModel& model, const Vec3d& p) {
+  const auto neighbours = all_of(model);
+  const ModelEvaluation fixed = evaluation_parameters(model);
+  std::vector<SphereDerivatives> by_sphere(neighbours.size());
+  double by_log_sharpness = 0;
+  function(model, fixed, neighbours, p, by_sphere, &by_log_sharpness);
+  const auto difference = [&](int i, int which) {
+    const double h = 1e-5;
+    const auto value = [&](double step) {
+      const MetaballModel moved = nudged(model, i, which, step);
+      ModelEvaluation parameters = evaluation_parameters(moved);
+      parameters.cutoff_squared = fixed.cutoff_squared;
+      parameters.gradient_floor = fixed.gradient_floor;
+      return function(moved, parameters, neighbours, p, {}, nullptr);
+    };
+    return (value(h) - value(-h)) / (2 * h);
+  };
+  const auto tolerance = [](double value) { return 1e-7 * (1.0 + std::abs(value)); };
+  EXPECT_NEAR(by_log_sharpness, difference(-1, 0), tolerance(by_log_sharpness));
+  for (int i = 0; i < static_cast<int>(model.spheres.size()); ++i) {
+    for (int which = 0; which < 4; ++which) {
+      const double derivative = by_sphere[static_cast<std::size_t>(i)][static_cast<std::size_t>(which)];
+      EXPECT_NEAR(derivative, difference(i, which), tolerance(derivative))
+          << "sphere " << i << ", parameter " << which;
+    }
+  }
+}
+
+class FieldDerivatives : public ::testing::TestWithParam<Kernel> {};
+
+TEST_P(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
+  for (const double sharpness : {0.7, 2.0, 9.0}) {
+    const MetaballModel model = random_model(3, 6, sharpness, GetParam());
+    CounterRandom random(11);
+    for (int k = 0; k < 20; ++k) {
+      const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
+                   z = random.uniform(-1.2, 1.2);
+      check_derivatives(level_with_derivatives, model, {x, y, z});
+      check_derivatives(distance_with_derivatives, model, {x, y, z});
+    }
+  }
+}
+
+TEST(FieldDerivativesOfDents, DistanceAndLevelAgreeWithDifferences) {
+  for (const double sharpness : {0.7, 2.0, 9.0}) {
+    const MetaballModel model = dented(random_model(3, 9, sharpness));
+    CounterRandom random(11);
+    for (int k = 0; k < 20; ++k) {
+      const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
+                   z = random.uniform(-1.2, 1.2);
+      const double level =
+          level_with_derivatives(model, evaluation_parameters(model), all_of(model), {x, y, z}, {}, nullptr);
+      if (sharpness * level < -8.0) continue;  // next to nothing is left: the floor hides the rest
+      check_derivatives(level_with_derivatives, model, {x, y, z});
+      check_derivatives(distance_with_derivatives, model, {x, y, z});
+    }
+  }
+}
+
+TEST(FieldDerivativesOfDents, TheModelIsTheBodyThatSynthesisMakes) {
+  const MetaballModel model = dented(random_model(3, 9, 2.0));
+  const PreparedMetaballs body = prepare_metaballs(metaball_body(model));
+  const ModelEvaluation parameters = evaluation_parameters(model);
+  const auto neighbours = all_of(model);
+  CounterRandom random(7);
+  for (int k = 0; k < 100; ++k) {
+    const auto x = static_cast<float>(random.uniform(-1, 1)), y = static_cast<float>(random.uniform(-1, 1)),
+               z = static_cast<float>(random.uniform(-1, 1));
+    float s = 0, gx = 0, gy = 0, gz = 0;
+    evaluate_metaballs(body, 1, &x, &y, &z, &s, &gx, &gy, &gz);
+    const double fitted = distance_with_derivatives(model, parameters, neighbours, {x, y, z}, {}, nullptr);
+    EXPECT_NEAR(fitted, s, 1e-4 * (1.0 + std::abs(fitted)));
+  }
+}
+
+TEST_P(FieldDerivatives, LoneSphereHasItsRadius) {
+  const MetaballModel model{4.0, {{{1, 2, 3}, 2.0}}, GetParam()};
+  const auto neighbours = all_of(model);
+  const auto parameters = evaluation_parameters(model);
+  const double s = distance_with_derivatives(model, parameters, neighbours, {1, 2, 5}, {}, nullptr);
+  EXPECT_NEAR(s, 0.0, 1e-12);
+  const double level = level_with_derivatives(model, parameters, neighbours, {1, 2, 3}, {}, nullptr);
+  EXPECT_NEAR(level, GetParam() == Kernel::kGaussian ? 1.0 : std::exp(4.0) - 1.0, 1e-11);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, FieldDerivatives, ::testing::ValuesIn(kKernels));
+
+}  // namespace
+}  // namespace astrolith

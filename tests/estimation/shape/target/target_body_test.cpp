@@ -1,0 +1,105 @@
+#include "estimation/shape/target/target_body.h"
+
+#include <numbers>
+
+#include "numerics/errors.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith {
+namespace {
+
+using testing::icosphere;
+
+std::string error_of(const TriangleMesh& mesh) {
+  try {
+    prepare_target(mesh, "body.obj");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(TargetBody, HasDiagonalOneAndKnowsTheWayBack) {
+  const TargetBody target = prepare_target(icosphere(4, 3.0, {10, 20, 30}), "body.obj");
+  EXPECT_NEAR(target.mesh.bounds().diagonal(), 1.0, 1e-12);
+  const Vec3d p = target.center + target.diagonal * target.mesh.vertices[5];
+  EXPECT_NEAR(norm(p - Vec3d{10, 20, 30}), 3.0, 1e-9);
+  const double radius = 3.0 / target.diagonal;
+  EXPECT_NEAR(target.area, 4 * std::numbers::pi * radius * radius, 0.01 * target.area);
+  EXPECT_EQ(target.components, 1);
+  EXPECT_TRUE(target.remarks.empty());
+}
+
+TEST(TargetBody, TurnsAnInsideOutMeshAndSaysSo) {
+  const TargetBody target = prepare_target(testing::reversed(icosphere(2)), "body.obj");
+  EXPECT_GT(target.volume, 0.0);
+  EXPECT_EQ(target.remarks.size(), 1u);
+  EXPECT_GT(target.tree.signed_distance({0, 0, 0}), 0.0);
+}
+
+TEST(TargetBody, WeldsRepeatedVertices) {
+  const TriangleMesh sphere = icosphere(2);
+  TriangleMesh soup;
+  for (const Triangle& t : sphere.triangles) {
+    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+    for (const std::uint32_t v : t) soup.vertices.push_back(sphere.vertices[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  const TargetBody target = prepare_target(soup, "body.obj");
+  EXPECT_EQ(target.mesh.vertices.size(), sphere.vertices.size());
+  EXPECT_EQ(target.remarks.size(), 1u);
+}
+
+TEST(TargetBody, RefusesWhatIsNoBody) {
+  EXPECT_NE(error_of(testing::open_cap(2)).find("body.obj: mesh is open"), std::string::npos);
+  EXPECT_NE(error_of({}).find("body.obj: no face"), std::string::npos);
+  TriangleMesh flat = icosphere(2);
+  for (Vec3d& p : flat.vertices) p.z *= 1e-9;
+  EXPECT_NE(error_of(flat).find("no volume"), std::string::npos);
+  TriangleMesh tiny = icosphere(2, 1e-12);
+  EXPECT_NE(error_of(tiny).find("out of range"), std::string::npos);
+}
+
+TEST(TargetBody, RefusesASurfaceThroughItself) {
+  // Pulled through itself, the upper half is inside out; one ring of the other is in the lower half.
+  TriangleMesh bow_tie = icosphere(3);
+  for (Vec3d& p : bow_tie.vertices) {
+    const double width = p.z < 0.0 ? 1.0 : 1.0 - 2.3 * p.z;
+    p = {p.x * width, p.y, p.z};
+  }
+  EXPECT_NE(error_of(bow_tie).find("body.obj: mesh passes through itself"), std::string::npos);
+  const TriangleMesh one_reversed =
+      testing::joined(icosphere(2, 2.0), testing::reversed(icosphere(2, 1.0, {5, 0, 0})));
+  EXPECT_NE(error_of(one_reversed).find("has parts inside out"), std::string::npos);
+}
+
+TEST(TargetBody, AcceptsCavitiesAndParts) {
+  const TriangleMesh hollow = testing::joined(icosphere(3), testing::reversed(icosphere(3, 0.5)));
+  EXPECT_EQ(error_of(hollow), "");
+  EXPECT_EQ(error_of(testing::two_spheres(3, 1.0, 2.6)), "");
+  EXPECT_EQ(error_of(testing::torus(1.0, 0.3)), "");
+}
+
+TEST(TargetBody, OverlappingPartsBecomeTheirUnion) {
+  const TargetBody apart = prepare_target(testing::two_spheres(3, 1.0, 2.6), "apart");
+  EXPECT_EQ(apart.components, 2);
+  EXPECT_EQ(apart.surface.triangles.size(), apart.mesh.triangles.size());
+  // Two unit spheres one radius apart: each loses the cap of height 1/2, a quarter of its area.
+  const TargetBody joined = prepare_target(testing::two_spheres(4, 1.0, 1.0), "joined");
+  EXPECT_EQ(joined.components, 1);
+  EXPECT_EQ(joined.remarks.size(), 1u);
+  EXPECT_NEAR(joined.area * joined.diagonal * joined.diagonal, 2 * 0.75 * 4 * std::numbers::pi, 0.15);
+}
+
+TEST(TargetBody, ContainmentPointsAreAsDeepAsAsked) {
+  const TargetBody target = prepare_target(testing::torus(1.0, 0.3), "torus.obj");
+  FitPoints points;
+  add_containment_points(target, 0.02, 200, 1, points);
+  EXPECT_EQ(points.inside.size(), 200u);
+  EXPECT_EQ(points.outside.size(), 200u);
+  for (const Vec3d& p : points.inside) EXPECT_GT(target.tree.signed_distance(p), 0.02);
+  for (const Vec3d& p : points.outside) EXPECT_LT(target.tree.signed_distance(p), -0.02);
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,132 @@
+#include "geometry/io/mesh_io.h"
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_normals.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
+#include "tests/support/data.h"
+#include "tests/support/meshes.h"
+#include "tests/support/scratch_folder.h"
+
+namespace astrolith {
+namespace {
+
+using namespace testing;
+
+const MeshFileInfo kInfo{"km", "body-fixed, +z spin pole", "a test\nof two lines"};
+
+// Multiples of 2^-18 below 32 have 23 bits: float32 holds them exactly, so that round trips can be exact too.
+double on_float_grid(double x) { return std::round(x * 262144) / 262144; }
+
+TriangleMesh float_body(bool with_normals) {
+  TriangleMesh mesh = icosphere(3, 1.7, {0.25, -3, 12});
+  if (with_normals) mesh.normals = vertex_normals(mesh);
+  for (Vec3d& v : mesh.vertices) v = {on_float_grid(v.x), on_float_grid(v.y), on_float_grid(v.z)};
+  for (Vec3d& v : mesh.normals) v = {on_float_grid(v.x), on_float_grid(v.y), on_float_grid(v.z)};
+  return mesh;
+}
+
+TEST(MeshIo, PlyRoundTripIsExact) {
+  const ScratchFolder folder;
+  for (const bool with_normals : {false, true}) {
+    const TriangleMesh mesh = float_body(with_normals);
+    write_mesh(mesh, folder / "a.ply", kInfo);
+    const TriangleMesh back = read_mesh(folder / "a.ply");
+    EXPECT_TRUE(back.vertices == mesh.vertices);
+    EXPECT_TRUE(back.triangles == mesh.triangles);
+    EXPECT_TRUE(back.normals == mesh.normals);
+  }
+}
+
+TEST(MeshIo, ObjRoundTripIsExactInDouble) {
+  const ScratchFolder folder;
+  TriangleMesh mesh = icosphere(2, 1.0 / 3, {1e-7, 1e5, 0});
+  write_mesh(mesh, folder / "a.obj", kInfo);
+  EXPECT_TRUE(read_mesh(folder / "a.obj").vertices == mesh.vertices);
+  mesh.normals = vertex_normals(mesh);
+  write_mesh(mesh, folder / "b.OBJ", kInfo);
+  const TriangleMesh back = read_mesh(folder / "b.OBJ");
+  EXPECT_TRUE(back.vertices == mesh.vertices);
+  EXPECT_TRUE(back.triangles == mesh.triangles);
+}
+
+// STL keeps no numbering: the shape must come back, welded and closed.
+TEST(MeshIo, StlRoundTripKeepsTheShape) {
+  const ScratchFolder folder;
+  const TriangleMesh mesh = float_body(false);
+  write_mesh(mesh, folder / "a.stl", kInfo);
+  const TriangleMesh back = read_mesh(folder / "a.stl");
+  EXPECT_EQ(back.vertices.size(), mesh.vertices.size());
+  EXPECT_EQ(back.triangles.size(), mesh.triangles.size());
+  EXPECT_TRUE(analyze_topology(back).closed);
+  EXPECT_NEAR(volume(back), volume(mesh), 1e-9);
+}
+
+TEST(MeshIo, FilesStateUnitAndFrame) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.ply", "a.obj", "a.stl", "a.glb"}) {
+    write_mesh(icosphere(1, 1), folder / name, kInfo);
+    const std::string content = file_content(folder / name);
+    EXPECT_NE(content.find("km"), content.npos) << name;
+    EXPECT_NE(content.find("+z spin pole"), content.npos) << name;
+  }
+}
+
+TEST(MeshIo, SameMeshSameBytes) {
+  const ScratchFolder folder;
+  for (const char* extension : {".ply", ".obj", ".stl", ".glb"}) {
+    const std::string a = std::string("a") + extension, b = std::string("b") + extension;
+    write_mesh(float_body(true), folder / a, kInfo);
+    write_mesh(float_body(true), folder / b, kInfo);
+    EXPECT_TRUE(file_content(folder / a) == file_content(folder / b));
+  }
+}
+
+TEST(MeshIo, WhatCannotBeWrittenLeavesNothing) {
+  const ScratchFolder folder;
+  const TriangleMesh mesh = icosphere(1, 1);
+  EXPECT_THROW(write_mesh(mesh, folder / "a.xyz", {}), InputError);
+  EXPECT_THROW(check_mesh_extension("a.off"), InputError);
+  EXPECT_NO_THROW(check_mesh_extension("A.GLB"));
+  EXPECT_THROW(write_mesh(mesh, folder.path() / "none" / "a.ply", {}), InputError);
+  EXPECT_THROW(write_mesh({}, folder / "a.ply", {}), WorkError);
+  TriangleMesh broken = mesh;
+  broken.triangles[3][1] = 1000;
+  EXPECT_THROW(write_mesh(broken, folder / "a.obj", {}), WorkError);
+  broken = mesh;
+  broken.vertices[2].y = std::nan("");
+  EXPECT_THROW(write_mesh(broken, folder / "a.glb", {}), WorkError);
+  broken = mesh;
+  broken.normals.resize(3);
+  EXPECT_THROW(write_mesh(broken, folder / "a.stl", {}), WorkError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(MeshIo, BodiesOfOpenUniverseAreClosed) {
+  ASTROLITH_SKIP_WITHOUT(package_file("vesta.bmf"));
+  int bodies = 0;
+  for (const auto& item : std::filesystem::directory_iterator(package_file(""))) {
+    if (item.path().extension() != ".bmf") continue;
+    const TriangleMesh mesh = read_mesh(item.path());
+    const MeshTopology topology = analyze_topology(mesh);
+    EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented) << item.path();
+    EXPECT_EQ(topology.components, 1) << item.path();
+    EXPECT_EQ(topology.genus, 0) << item.path();
+    EXPECT_GT(volume(mesh), 0) << item.path();
+    ++bodies;
+  }
+  EXPECT_EQ(bodies, 16);
+  // Vesta's mean radius is 262 km (Russell et al. 2012); kilometres, then, and about the right size.
+  EXPECT_NEAR(std::cbrt(volume(read_mesh(package_file("vesta.bmf"))) * 3 / (4 * std::numbers::pi)), 262, 10);
+}
+
+TEST(MeshIo, RealShapeModelsRead) {
+  ASTROLITH_SKIP_WITHOUT(shared_shape("itokawa_gaskell_49k.ply"));
+  const TriangleMesh mesh = read_mesh(shared_shape("itokawa_gaskell_49k.ply"));
+  EXPECT_EQ(mesh.vertices.size(), 24578u);
+  EXPECT_EQ(mesh.triangles.size(), 49152u);
+  EXPECT_TRUE(analyze_topology(mesh).closed);
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,93 @@
+// The GLB that we write, read back by a glTF library.
+#define TINYGLTF_IMPLEMENTATION
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#include <tiny_gltf.h>
+#pragma GCC diagnostic pop
+
+#include <cstring>
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/mesh_normals.h"
+#include "tests/support/meshes.h"
+#include "tests/support/scratch_folder.h"
+
+namespace astrolith {
+namespace {
+
+using namespace testing;
+
+class WriteGlb : public ::testing::Test {
+ protected:
+  WriteGlb() {
+    mesh = icosphere(2, 0.5, {0, 0, 1});
+    mesh.normals = vertex_normals(mesh);
+    write_mesh(mesh, folder / "a.glb", {"km", "body-fixed", "said \"so\"\n\xff"});
+    tinygltf::TinyGLTF loader;
+    std::string error, warning;
+    EXPECT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "a.glb").string())) << error;
+    EXPECT_EQ(error + warning, "");
+  }
+
+  template <typename T>
+  std::vector<T> array(int accessor_number) const {
+    const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(accessor_number));
+    const tinygltf::BufferView& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
+    const auto& bytes = model.buffers.at(0).data;
+    EXPECT_LE(view.byteOffset + accessor.count * sizeof(T), bytes.size());
+    std::vector<T> values(accessor.count);
+    std::memcpy(values.data(), bytes.data() + view.byteOffset, accessor.count * sizeof(T));
+    return values;
+  }
+
+  ScratchFolder folder;
+  TriangleMesh mesh;
+  tinygltf::Model model;
+};
+
+TEST_F(WriteGlb, ArraysComeBack) {
+  const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
+  const auto positions = array<Vec3f>(primitive.attributes.at("POSITION"));
+  const auto normals = array<Vec3f>(primitive.attributes.at("NORMAL"));
+  const auto indices = array<std::uint32_t>(primitive.indices);
+  ASSERT_EQ(positions.size(), mesh.vertices.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    ASSERT_EQ(positions[i].x, static_cast<float>(mesh.vertices[i].x));
+    ASSERT_EQ(normals[i].z, static_cast<float>(mesh.normals[i].z));
+  }
+  const auto& accessor = model.accessors.at(static_cast<std::size_t>(primitive.indices));
+  EXPECT_EQ(accessor.count, 3 * mesh.triangles.size());
+  EXPECT_EQ(accessor.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+  for (std::size_t i = 0; i < indices.size(); ++i) ASSERT_EQ(indices[i], mesh.triangles[i / 3][i % 3]);
+}
+
+TEST_F(WriteGlb, BoundsAreThoseOfThePositions) {
+  const auto& accessor = model.accessors.at(0);
+  const Box box = mesh.bounds();
+  EXPECT_FLOAT_EQ(static_cast<float>(accessor.minValues.at(2)), static_cast<float>(box.min.z));
+  EXPECT_FLOAT_EQ(static_cast<float>(accessor.maxValues.at(0)), static_cast<float>(box.max.x));
+}
+
+// The spin pole +z must point up, which is +y, and a kilometre must be 1000 metres.
+TEST_F(WriteGlb, NodeTurnsPoleUpAndScalesToMetres) {
+  const tinygltf::Node& node = model.nodes.at(0);
+  const Vec3d axis{node.rotation.at(0), node.rotation.at(1), node.rotation.at(2)};
+  const double w = node.rotation.at(3);
+  const auto rotate = [&](const Vec3d& v) { return v + 2.0 * cross(axis, cross(axis, v) + w * v); };
+  EXPECT_NEAR(norm(rotate({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
+  EXPECT_NEAR(norm(rotate({1, 0, 0}) - Vec3d{1, 0, 0}), 0, 1e-12);
+  for (const double scale : node.scale) EXPECT_EQ(scale, 1000);
+}
+
+TEST_F(WriteGlb, AssetStatesUnitAndFrame) {
+  EXPECT_EQ(model.asset.version, "2.0");
+  EXPECT_EQ(model.asset.extras.Get("length_unit").Get<std::string>(), "km");
+  EXPECT_EQ(model.asset.extras.Get("frame").Get<std::string>(), "body-fixed");
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,129 @@
+#include "geometry/surface/mesh_sampling.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/surface/closest_on_triangle.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "tests/support/meshes.h"
+
+namespace astrolith {
+namespace {
+
+using namespace testing;
+
+double smallest_gap(const std::vector<Vec3d>& points) {
+  double gap2 = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) gap2 = std::min(gap2, squared_norm(points[i] - points[j]));
+  }
+  return std::sqrt(gap2);
+}
+
+TEST(MeshSampling, PointsLieInTheirTriangles) {
+  const TriangleMesh mesh = torus(1, 0.4, 12, 8);
+  const SurfaceSamples s = sample_surface(mesh, 1000, 5);
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    const auto [a, b, c] = mesh.triangles[s.triangles[i]];
+    const auto found = closest_on_triangle(s.points[i], mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    ASSERT_LT(found.squared_distance, 1e-28);
+    ASSERT_NEAR(norm(s.normals[i]), 1, 1e-12);
+    ASSERT_NEAR(dot(s.normals[i], mesh.vertices[b] - mesh.vertices[a]), 0, 1e-12);
+  }
+}
+
+// Large and small triangles in one mesh: counts follow area, chi-square with #F - 1 degrees of freedom.
+TEST(MeshSampling, CountsFollowArea) {
+  const TriangleMesh mesh = torus(1, 0.8, 10, 10);
+  const int n = 400000;
+  const SurfaceSamples s = sample_surface(mesh, n, 11);
+  std::vector<double> counts(mesh.triangles.size(), 0.0);
+  for (const std::uint32_t t : s.triangles) ++counts[t];
+  double chi2 = 0;
+  const double total = surface_area(mesh);
+  for (std::size_t t = 0; t < counts.size(); ++t) {
+    const double expected = n * triangle_area(mesh, mesh.triangles[t]) / total;
+    chi2 += (counts[t] - expected) * (counts[t] - expected) / expected;
+  }
+  EXPECT_NEAR(chi2, 199, 5 * std::sqrt(2 * 199.0));
+}
+
+// Within one triangle: the mean is the centroid and the second moments are those of a uniform density.
+TEST(MeshSampling, UniformInsideATriangle) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+  const int n = 200000;
+  double x = 0, xx = 0, xy = 0;
+  for (const Vec3d& p : sample_surface(mesh, n, 2).points) {
+    x += p.x / n;
+    xx += p.x * p.x / n;
+    xy += p.x * p.y / n;
+  }
+  EXPECT_NEAR(x, 1.0 / 3, 5 * 0.24 / std::sqrt(n));
+  EXPECT_NEAR(xx, 1.0 / 6, 5 * 0.2 / std::sqrt(n));
+  EXPECT_NEAR(xy, 1.0 / 12, 5 * 0.1 / std::sqrt(n));
+}
+
+TEST(MeshSampling, FewerSamplesAreAPrefix) {
+  const TriangleMesh mesh = icosphere(2);
+  const auto many = sample_surface(mesh, 500, 9), few = sample_surface(mesh, 100, 9);
+  EXPECT_TRUE(std::equal(few.points.begin(), few.points.end(), many.points.begin()));
+  EXPECT_FALSE(sample_surface(mesh, 1, 10).points[0] == few.points[0]);
+}
+
+TEST(MeshSampling, InterpolatedNormalsOfASphere) {
+  const auto s = sample_surface(icosphere(3), 1000, 1, SampleNormals::interpolated);
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    ASSERT_NEAR(norm(s.normals[i] - normalized(s.points[i])), 0, 5e-3);
+  }
+}
+
+TEST(PoissonDisk, ExactlyAsManyAndEvenlySpread) {
+  const TriangleMesh mesh = icosphere(4);
+  for (const int n : {1, 2, 10, 1000}) {
+    const auto s = sample_poisson_disk(mesh, n, 3);
+    ASSERT_EQ(static_cast<int>(s.points.size()), n);
+    ASSERT_EQ(s.normals.size(), s.points.size());
+  }
+  const int n = 1000;
+  const double r_max = poisson_disk_radius(surface_area(mesh), n);
+  // Yuksel reports relative radii of 0.7 and more; independent points reach about 0.02.
+  EXPECT_GT(smallest_gap(sample_poisson_disk(mesh, n, 3).points), 0.65 * 2 * r_max);
+  EXPECT_LT(smallest_gap(sample_surface(mesh, n, 3).points), 0.1 * 2 * r_max);
+}
+
+TEST(PoissonDisk, NoHolesEither) {
+  const TriangleMesh mesh = torus(1, 0.4);
+  const int n = 800;
+  const auto disks = sample_poisson_disk(mesh, n, 4);
+  const double r_max = poisson_disk_radius(surface_area(mesh), n);
+  double largest = 0;
+  for (const Vec3d& p : sample_surface(mesh, 3000, 5).points) {
+    double nearest = 1e300;
+    for (const Vec3d& q : disks.points) nearest = std::min(nearest, squared_norm(p - q));
+    largest = std::max(largest, std::sqrt(nearest));
+  }
+  EXPECT_LT(largest, 2 * r_max);
+}
+
+TEST(PoissonDisk, SameForAnyThreadCount) {
+  const TriangleMesh mesh = torus(1, 0.4);
+  std::vector<Vec3d> one;
+  {
+    const ThreadLimit limit(1);
+    one = sample_poisson_disk(mesh, 500, 6).points;
+  }
+  const ThreadLimit limit(4);
+  EXPECT_EQ(sample_poisson_disk(mesh, 500, 6).points, one);
+}
+
+TEST(MeshSampling, NothingToSample) {
+  EXPECT_THROW(sample_surface({}, 10, 1), InputError);
+  EXPECT_THROW(sample_surface({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}, {}}, 10, 1), InputError);
+  EXPECT_THROW(sample_surface(cube(), -1, 1), InputError);
+  EXPECT_TRUE(sample_surface(cube(), 0, 1).points.empty());
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,272 @@
+#include "synthesis/field/implicit_field.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "numerics/errors.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+using testing::fractal_layer;
+using testing::gabor_layer;
+using testing::potato_recipe;
+using testing::sphere_recipe;
+
+Vec3d random_point(CounterRandom& random, const Box& box) {
+  return {random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
+          random.uniform(box.min.z, box.max.z)};
+}
+
+TEST(ImplicitField, OneMetaballIsASphereOfItsRadius) {
+  const Vec3d center{1.0, -2.0, 0.5};
+  const ImplicitField field(sphere_recipe(2.0, center));
+  CounterRandom random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3d out = normalized(Vec3d{random.normal(), random.normal(), random.normal()});
+    EXPECT_NEAR(field.value(center + 2.0 * out), 0.0, 2e-6);
+    EXPECT_NEAR(field.value(center + 1.99 * out), 0.01, 1e-4);
+    EXPECT_TRUE(field.inside(center + 1.9 * out));
+    EXPECT_FALSE(field.inside(center + 2.1 * out));
+    EXPECT_LT(norm(field.gradient(center + 2.0 * out) + out), 1e-5);  // inwards, unit length
+  }
+  EXPECT_LT(norm(field.bounds().min - (center - Vec3d{2, 2, 2})), 0.3);
+  EXPECT_LT(norm(field.bounds().max - (center + Vec3d{2, 2, 2})), 0.3);
+}
+
+TEST(ImplicitField, PositiveHeightsEnlargeTheBody) {
+  Recipe recipe = sphere_recipe(1.0);
+  const ImplicitField bare(recipe);
+  recipe.layers = {fractal_layer(0.05, 1.0, 2)};
+  const ImplicitField field(recipe);
+  EXPECT_NEAR(field.height_bound(), 0.05 * (1 + 0.5), 1e-9);
+  CounterRandom random(2);
+  int higher = 0, lower = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d out = normalized(Vec3d{random.normal(), random.normal(), random.normal()});
+    const double height = field.value(out) - bare.value(out);
+    ASSERT_LE(std::fabs(height), field.height_bound());
+    higher += height > 0.004;
+    lower += height < -0.004;
+    EXPECT_EQ(field.inside(out), height > -bare.value(out));
+    EXPECT_FALSE(field.inside((1.0 + height + 0.5 * std::fabs(height) + 0.005) * out));
+    EXPECT_TRUE(field.inside((1.0 + height - 0.5 * std::fabs(height) - 0.005) * out));
+  }
+  EXPECT_GT(higher, 50);
+  EXPECT_GT(lower, 50);
+}
+
+TEST(ImplicitField, GradientWithLayersIsTheDerivative) {
+  Recipe recipe = potato_recipe(30, 4);
+  recipe.layers = {fractal_layer(0.01, 4.0, 2)};
+  const ImplicitField field(recipe);
+  const Vec3d p{0.31, 0.1, 0.05};
+  const Vec3d g = field.gradient(p);
+  const Vec3d step = 0.004 * normalized(Vec3d{1, 2, -1});
+  EXPECT_NEAR(field.value(p + step) - field.value(p - step), dot(g, 2.0 * step), 2e-4);
+}
+
+TEST(ImplicitField, BoundsHoldTheSurfaceTightly) {
+  for (const double amplitude : {0.0, 0.03}) {
+    Recipe recipe = potato_recipe(100, 12);
+    if (amplitude > 0) recipe.layers = {fractal_layer(amplitude, 3.0, 6)};
+    const ImplicitField field(recipe);
+    const Box bounds = field.bounds();
+    const Vec3d margin{0.5, 0.5, 0.5};
+    const Box wide{bounds.min - margin, bounds.max + margin};
+    CounterRandom random(3);
+    Box seen;
+    for (int i = 0; i < 100000; ++i) {
+      const Vec3d p = random_point(random, wide);
+      if (field.inside(p)) seen.extend(p);
+    }
+    EXPECT_GE(seen.min.x, bounds.min.x);
+    EXPECT_LE(seen.max.x, bounds.max.x);
+    EXPECT_GE(seen.min.z, bounds.min.z);
+    EXPECT_LE(seen.max.z, bounds.max.z);
+    EXPECT_LT(bounds.diagonal(), seen.diagonal() * 1.06 + 7 * field.height_bound());
+  }
+}
+
+TEST(ImplicitField, AWarpedBodyIsTheBodyAtWarpedCoordinates) {
+  Recipe recipe = sphere_recipe(1.0);
+  recipe.body->warp = Warp{0.4, 1.1, 2, 0.5, 2.0};
+  const ImplicitField field(recipe);
+  const Box bounds = field.bounds();
+  CounterRandom random(4);
+  int inside = 0, warped_out = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3d p = random_point(random, {{-2, -2, -2}, {2, 2, 2}});
+    if (!field.inside(p)) {
+      warped_out += norm(p) < 1.0;
+      continue;
+    }
+    ++inside;
+    ASSERT_LT(norm(p), 1.0 + std::sqrt(3.0) * 0.6);
+    ASSERT_TRUE(p.x >= bounds.min.x && p.y >= bounds.min.y && p.z >= bounds.min.z);
+    ASSERT_TRUE(p.x <= bounds.max.x && p.y <= bounds.max.y && p.z <= bounds.max.z);
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(warped_out, 50);
+  const Vec3d p{0.5, 0.3, 0.1}, step{0, 0, 0.003};
+  EXPECT_NEAR(field.value(p + step) - field.value(p - step), dot(field.gradient(p), 2.0 * step), 1e-4);
+}
+
+TEST(ImplicitField, ABodyThatTheIsoValueErasesHasNoBounds) {
+  Recipe recipe = sphere_recipe(1.0);
+  recipe.body->iso_value = 100.0;
+  const ImplicitField field(recipe);
+  EXPECT_TRUE(field.bounds().empty());
+  EXPECT_FALSE(field.inside({0, 0, 0}));
+  EXPECT_TRUE(std::isfinite(norm(field.gradient({0.1, 0, 0}))));
+}
+
+TEST(ImplicitField, NeedsABody) { EXPECT_THROW(ImplicitField(Recipe{}), InputError); }
+
+TEST(FieldBlock, GivesTheBitsOfTheField) {
+  Recipe recipe = potato_recipe(80, 6);
+  recipe.layers = {fractal_layer(0.01, 5.0, 6)};
+  recipe.body->warp = Warp{0.05, 3.0, 2, 0.5, 2.0};
+  const ImplicitField field(recipe);
+  CounterRandom random(7);
+  for (int k = 0; k < 50; ++k) {
+    Box parent;
+    parent.extend(random_point(random, field.bounds()));
+    parent.extend(parent.min + Vec3d{0.3, 0.3, 0.3});
+    const Box child{parent.min + Vec3d{0.1, 0.0, 0.05}, parent.max - Vec3d{0.1, 0.2, 0.2}};
+    const FieldBlock block = field.gather(parent).restricted_to(child);
+    std::vector<float> x, y, z, value(600);
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const Vec3d p = random_point(random, child);
+      x.push_back(static_cast<float>(p.x));
+      y.push_back(static_cast<float>(p.y));
+      z.push_back(static_cast<float>(p.z));
+    }
+    block.evaluate(x, y, z, value);
+    for (std::size_t i = 0; i < value.size(); i += 7) {
+      ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
+    }
+  }
+}
+
+TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
+  Recipe recipe = potato_recipe(40, 6);
+  recipe.layers = {fractal_layer(0.01, 5.0, 3), gabor_layer(0.02, 0.002)};
+  const ImplicitField field(recipe);
+  const Box box = field.bounds();
+  const FieldBlock block = field.gather(box);
+  CounterRandom random(8);
+  std::vector<float> x, y, z, exact(3000), coarse(3000);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const Vec3d p = random_point(random, box);
+    x.push_back(static_cast<float>(p.x));
+    y.push_back(static_cast<float>(p.y));
+    z.push_back(static_cast<float>(p.z));
+  }
+  constexpr float kBand = 0.01f;
+  block.evaluate(x, y, z, exact);
+  block.evaluate(x, y, z, coarse, kBand);
+  int different = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    if (exact[i] == coarse[i]) continue;
+    ++different;
+    ASSERT_GT(std::fabs(exact[i]), kBand);
+    ASSERT_GT(std::fabs(coarse[i]), kBand);
+    ASSERT_EQ(exact[i] > 0.0f, coarse[i] > 0.0f);
+  }
+  EXPECT_GT(different, 1000);
+}
+
+// Proofs are proofs: no box that is called outside or inside holds a point of the other kind.
+TEST(FieldBlock, ContentIsNeverWrong) {
+  CounterRandom random(10);
+  int proved = 0;
+  for (int k = 0; k < 120; ++k) {
+    Recipe recipe = potato_recipe(1 + k % 90, static_cast<std::uint64_t>(k), random.uniform(0.7, 12.0));
+    recipe.body->cutoff_radii = random.uniform(1.2, 5.0);
+    if (k % 2) recipe.layers = {fractal_layer(std::pow(10.0, random.uniform(-3.0, -1.0)), 4.0, 1 + k % 8)};
+    if (k % 5 == 0) recipe.layers.push_back(gabor_layer(0.02, std::pow(10.0, random.uniform(-3.5, -2.0))));
+    if (k % 3 == 0) recipe.body->warp = Warp{random.uniform(-0.1, 0.1), random.uniform(1, 5), 2, 0.5, 2.0};
+    if (k % 6 == 2) {
+      SpotLayer spots;
+      spots.amplitude = random.uniform(-0.05, 0.05);
+      spots.size = random.uniform(0.02, 0.1);
+      spots.cell_size = 3 * spots.size;
+      spots.kappa = -0.6;
+      spots.layers = 3;
+      recipe.layers.push_back(spots);
+    }
+    if (k % 4 == 1) {
+      FractalLayer layer =
+          fractal_layer(std::pow(10.0, random.uniform(-3.0, -0.5)), random.uniform(0.3, 6), 3);
+      layer.noise = k % 8 == 1 ? Noise::kWorleyF2MinusF1 : Noise::kPerlin;
+      layer.gradient_modulation = k % 8 == 1 ? 0.0 : 0.2;
+      layer.warp = Warp{0.1, 2.0, 2, 0.5, 2.0};
+      recipe.layers.push_back(layer);
+    }
+    const ImplicitField field(recipe);
+    if (field.bounds().empty()) continue;
+    for (int b = 0; b < 40; ++b) {
+      Box box;
+      const Vec3d corner = random_point(random, field.bounds());
+      const double size = std::pow(10.0, random.uniform(-2.5, -0.7));
+      box.extend(corner);
+      box.extend(corner + Vec3d{size, size, size});
+      const FieldBlock block = field.gather(box);
+      if (block.content() == BlockContent::kMixed) continue;
+      ++proved;
+      std::vector<float> x, y, z, value(256);
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const Vec3d p = random_point(random, box);
+        x.push_back(static_cast<float>(p.x));
+        y.push_back(static_cast<float>(p.y));
+        z.push_back(static_cast<float>(p.z));
+      }
+      block.evaluate(x, y, z, value);
+      for (const float f : value) ASSERT_EQ(f > 0.0f, block.content() == BlockContent::kInside);
+    }
+  }
+  EXPECT_GT(proved, 1500);
+}
+
+// Counts 8^3 blocks of a 128^3 grid that are called mixed against those that hold both signs.
+double mixed_over_active(const Recipe& recipe) {
+  const ImplicitField field(recipe);
+  const Box bounds = field.bounds();
+  const Vec3d e = bounds.extent();
+  constexpr int kBlocks = 16, kCells = 8;
+  const double h = std::max({e.x, e.y, e.z}) / (kBlocks * kCells);
+  int mixed = 0, active = 0;
+  for (int b = 0; b < kBlocks * kBlocks * kBlocks; ++b) {
+    const Vec3d corner = bounds.min + 8 * h * Vec3d{double(b % 16), double(b / 16 % 16), double(b / 256)};
+    const Box box{corner, corner + Vec3d{8 * h, 8 * h, 8 * h}};
+    const FieldBlock block = field.gather(box);
+    if (block.content() != BlockContent::kMixed) continue;
+    ++mixed;
+    std::vector<float> x, y, z, value(9 * 9 * 9);
+    for (int i = 0; i < 729; ++i) {
+      x.push_back(static_cast<float>(corner.x + h * (i % 9)));
+      y.push_back(static_cast<float>(corner.y + h * (i / 9 % 9)));
+      z.push_back(static_cast<float>(corner.z + h * (i / 81)));
+    }
+    block.evaluate(x, y, z, value);
+    const auto positive = std::count_if(value.begin(), value.end(), [](float f) { return f > 0; });
+    active += positive > 0 && positive < 729;
+  }
+  return static_cast<double>(mixed) / active;
+}
+
+TEST(FieldBlock, ContentIsUseful) {
+  Recipe recipe = potato_recipe(200, 21);
+  const double bare = mixed_over_active(recipe);
+  recipe.layers = {fractal_layer(0.004, 8.0, 8)};
+  const double rough = mixed_over_active(recipe);
+  std::printf("blocks called mixed over blocks that are: %.3f bare, %.3f rough\n", bare, rough);
+  EXPECT_LT(bare, 1.5);
+  EXPECT_LT(rough, 1.5);
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,264 @@
+#include "synthesis/field/layer_join.h"
+
+#include <cmath>
+
+#include "numerics/hash_random.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/field/implicit_field.h"
+#include "tests/synthesis/bodies.h"
+#include "tests/synthesis/mesh_checks.h"
+
+namespace astrolith {
+namespace {
+
+// Near the surface of a potato, the field less that of the bare body.
+std::vector<double> elevations(const Recipe& recipe) {
+  Recipe bare = recipe;
+  bare.layers.clear();
+  const ImplicitField field(recipe), body(bare);
+  CounterRandom random(7);
+  std::vector<double> result;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3d p{random.uniform(-0.5, 0.5), random.uniform(-0.35, 0.35), random.uniform(-0.3, 0.3)};
+    result.push_back(field.value(p) - body.value(p));
+  }
+  return result;
+}
+
+FractalLayer named(const char* name, double amplitude, double frequency) {
+  FractalLayer layer = testing::fractal_layer(amplitude, frequency, 3);
+  layer.name = name;
+  return layer;
+}
+
+Recipe with_layers(std::vector<Layer> layers) {
+  Recipe recipe = testing::potato_recipe(12, 3);
+  recipe.body->groups = {{"first", {0, 1, 2}}};
+  recipe.layers = std::move(layers);
+  return recipe;
+}
+
+Combination kind(Combine combine) {
+  Combination how;
+  how.kind = combine;
+  return how;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
+  return largest;
+}
+
+constexpr double kRounding = 1e-6;  // of values on a body about 1 long
+
+TEST(LayerJoin, ReplacedIsTheLayerAlone) {
+  FractalLayer hills = named("hills", 0.05, 3.0), plains = named("plains", 0.01, 9.0);
+  plains.use.combination = kind(Combine::kReplace);
+  hills.seed = 4;
+  plains.seed = 5;
+  EXPECT_LT(largest_difference(elevations(with_layers({hills, plains})), elevations(with_layers({plains}))),
+            kRounding);
+}
+
+TEST(LayerJoin, ReplacedByLocalityIsEitherLayer) {
+  FractalLayer hills = named("hills", 0.05, 3.0), plains = named("plains", 0.01, 9.0);
+  hills.seed = 4;
+  plains.seed = 5;
+  const std::vector<double> before = elevations(with_layers({hills})),
+                            alone = elevations(with_layers({plains}));
+  plains.use.combination = kind(Combine::kReplace);
+  plains.use.locality = Locality{"first", 1e-5};
+  const std::vector<double> joined = elevations(with_layers({hills, plains}));
+  int replaced = 0, kept = 0;
+  for (std::size_t i = 0; i < joined.size(); ++i) {
+    EXPECT_GE(joined[i], std::min(before[i], alone[i]) - kRounding);
+    EXPECT_LE(joined[i], std::max(before[i], alone[i]) + kRounding);
+    replaced += std::fabs(joined[i] - alone[i]) < 1e-4;
+    kept += std::fabs(joined[i] - before[i]) < 1e-4;
+  }
+  EXPECT_GT(replaced, 20);
+  EXPECT_GT(kept, 20);
+  EXPECT_GT(replaced + kept, 280);
+}
+
+TEST(LayerJoin, ABlendIsSymmetricAndNeverBelowEither) {
+  FractalLayer a = named("a", 0.05, 3.0), b = named("b", 0.04, 5.0);
+  a.seed = 1;
+  b.seed = 2;
+  const std::vector<double> of_a = elevations(with_layers({a})), of_b = elevations(with_layers({b}));
+  const auto blended = [](FractalLayer first, FractalLayer second, double width) {
+    Combination& how = second.use.combination;
+    how = kind(Combine::kBlend);
+    how.width = width;
+    first.use.combination = kind(Combine::kReplace);
+    return elevations(with_layers({first, second}));
+  };
+  const double width = 0.02;
+  const std::vector<double> ab = blended(a, b, width), sharp = blended(a, b, 0.0);
+  EXPECT_LT(largest_difference(ab, blended(b, a, width)), kRounding);
+  for (std::size_t i = 0; i < ab.size(); ++i) {
+    const double higher = std::max(of_a[i], of_b[i]);
+    EXPECT_NEAR(sharp[i], higher, kRounding);
+    EXPECT_GE(ab[i], higher - kRounding);
+    EXPECT_LE(ab[i], higher + 0.5 * width + kRounding);
+    // The surface lies where R_1 of both is zero, but for the rounding: (f + g + |f - g|) / 2 + ...
+    const double d = of_a[i] - of_b[i];
+    EXPECT_NEAR(ab[i], 0.5 * (of_a[i] + of_b[i] + std::sqrt(d * d + width * width)), kRounding);
+  }
+}
+
+TEST(LayerJoin, AnIntersectionIsTheUnionUpsideDown) {
+  for (const double width : {0.0, 0.1, 2.0}) {
+    CounterRandom random(3);
+    for (int i = 0; i < 50; ++i) {
+      const float a = static_cast<float>(random.normal()), b = static_cast<float>(random.normal());
+      Combination how = kind(Combine::kBlend);
+      how.width = width;
+      float above = a, height = b, below = -a, negative = -b;
+      join_elevation(how, 1, nullptr, &height, &above);
+      how.intersection = true;
+      join_elevation(how, 1, nullptr, &negative, &below);
+      EXPECT_EQ(above, -below);
+    }
+  }
+}
+
+TEST(LayerJoin, AWarpOfNothingIsNothing) {
+  FractalLayer hills = named("hills", 0.05, 3.0), warp = named("warp", 0.0, 2.0);
+  hills.seed = 4;
+  warp.use.combination = kind(Combine::kWarp);
+  warp.use.combination.direction = {1, 2, 3};
+  EXPECT_EQ(elevations(with_layers({warp, hills})), elevations(with_layers({hills})));
+  warp.amplitude = 0.1;
+  warp.use.combination.direction = {};
+  EXPECT_EQ(elevations(with_layers({warp, hills})), elevations(with_layers({hills})));
+}
+
+// A displacement by a constant height is a shift of the later noise.
+TEST(LayerJoin, AWarpMovesLaterLayers) {
+  FractalLayer hills = named("hills", 0.05, 3.0);
+  hills.seed = 4;
+  SparseLayer constant;  // every cell holds 1 less something: not constant, so its cells are huge
+  constant.cell_size = 1e6;
+  constant.levels = 1;
+  constant.probability = 1.0;
+  constant.threshold = 0.0;
+  constant.amplitude = -0.2;
+  const double height = elevations(with_layers({constant})).front();
+  ASSERT_GT(std::fabs(height), 1e-3);
+  constant.use.combination = kind(Combine::kWarp);
+  constant.use.combination.direction = {0.5, 0.0, -1.0};
+  const std::vector<double> warped = elevations(with_layers({constant, hills}));
+  hills.bias = height * constant.use.combination.direction;
+  EXPECT_LT(largest_difference(warped, elevations(with_layers({hills}))), 1e-5);
+}
+
+TEST(LayerJoin, AMaskCountsWhereItsLayerIsHigh) {
+  FractalLayer mask = named("where", 1.0, 3.0), hills = named("hills", 0.05, 6.0);
+  mask.seed = 4;
+  hills.seed = 5;
+  const std::vector<double> heights = elevations(with_layers({mask})),
+                            everywhere = elevations(with_layers({hills}));
+  mask.use.combination = kind(Combine::kMask);
+  EXPECT_LT(largest_difference(elevations(with_layers({mask})), std::vector<double>(300, 0.0)), kRounding);
+  hills.use.mask = LayerMask{"where", -0.1, 0.3};
+  const std::vector<double> masked = elevations(with_layers({mask, hills}));
+  for (std::size_t i = 0; i < masked.size(); ++i) {
+    const double t = std::clamp((heights[i] + 0.1) / 0.4, 0.0, 1.0);
+    EXPECT_NEAR(masked[i], t * t * (3.0 - 2.0 * t) * everywhere[i], 1e-5);
+  }
+}
+
+TEST(LayerJoin, AGaborLayerCannotBeWarped) {
+  FractalLayer warp = named("warp", 0.1, 2.0);
+  warp.use.combination = kind(Combine::kWarp);
+  EXPECT_NO_THROW(validate_recipe(with_layers({testing::gabor_layer(0.02, 0.01), warp}), "r"));
+  EXPECT_THROW(validate_recipe(with_layers({warp, testing::gabor_layer(0.02, 0.01)}), "r"), InputError);
+}
+
+// A layer with a seed of its own stays as it is wherever it stands; one without does not.
+TEST(LayerJoin, OwnSeedsOutliveMoves) {
+  FractalLayer hills = named("hills", 0.05, 3.0), flat = named("flat", 0.0, 3.0);
+  EXPECT_NE(elevations(with_layers({hills, flat})), elevations(with_layers({flat, hills})));
+  hills.seed = 0;
+  EXPECT_EQ(elevations(with_layers({hills, flat})), elevations(with_layers({flat, hills})));
+  CraterLayer craters;
+  craters.population = CraterPopulation{{20, std::nullopt, 0.05, 0.2, 2.0}, 1.0, 0.0, 0.0};
+  craters.seed = 3;
+  EXPECT_EQ(elevations(with_layers({craters, flat})), elevations(with_layers({flat, craters})));
+}
+
+// All ways to join, one upon the other.
+Recipe joined_in_all_ways() {
+  FractalLayer hills = named("hills", 0.06, 3.0), warp = named("warp", 0.1, 2.0), mask = named("m", 1.0, 4.0),
+               rocks = named("rocks", 0.03, 8.0), dust = named("dust", 0.005, 12.0);
+  warp.use.combination = kind(Combine::kWarp);
+  warp.use.combination.direction = {1, -1, 0.5};
+  mask.use.combination = kind(Combine::kMask);
+  rocks.use.combination = kind(Combine::kBlend);
+  rocks.use.combination.width = 0.01;
+  dust.use.combination = kind(Combine::kReplace);
+  dust.use.mask = LayerMask{"m", 0.0, 0.1};
+  SpotLayer spots;
+  spots.amplitude = 0.05;
+  spots.size = 0.05;
+  spots.cell_size = 0.2;
+  return with_layers({hills, warp, mask, spots, rocks, dust});
+}
+
+TEST(LayerJoin, MeshesAreClosedManifoldsForAnyThreads) {
+  testing::expect_closed_manifold_for_any_threads(joined_in_all_ways());
+}
+
+TEST(LayerJoin, NoBoxIsProvedEmptyThatIsNot) {
+  const ImplicitField field(joined_in_all_ways());
+  CounterRandom random(11);
+  int proved = 0;
+  for (int k = 0; k < 600; ++k) {
+    const Vec3d corner{random.uniform(-0.7, 0.6), random.uniform(-0.5, 0.4), random.uniform(-0.5, 0.4)};
+    const double size = std::pow(10.0, random.uniform(-3.0, -1.0));
+    const FieldBlock block = field.gather({corner, corner + Vec3d{size, size, size}});
+    const BlockContent content = block.content();
+    if (content == BlockContent::kMixed) continue;
+    ++proved;
+    for (int i = 0; i < 30; ++i) {
+      const Vec3d p = corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()};
+      ASSERT_EQ(field.inside(p), content == BlockContent::kInside);
+    }
+  }
+  EXPECT_GT(proved, 200);
+}
+
+// Blocks, whatever they have gathered, and points see the same bits.
+TEST(LayerJoin, BlocksHaveTheBitsOfPoints) {
+  const ImplicitField field(joined_in_all_ways());
+  CounterRandom random(5);
+  for (int k = 0; k < 100; ++k) {
+    const Vec3d corner{random.uniform(-0.5, 0.4), random.uniform(-0.4, 0.3), random.uniform(-0.3, 0.2)};
+    const FieldBlock block = field.gather({corner, corner + Vec3d{0.1, 0.1, 0.1}});
+    const Vec3d p = corner + Vec3d{random.uniform(0.01, 0.09), random.uniform(0.01, 0.09), 0.05};
+    const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+    float value = 0.0f;
+    block.evaluate({&x, 1}, {&y, 1}, {&z, 1}, {&value, 1});
+    EXPECT_EQ(static_cast<double>(value), field.value(p));
+  }
+}
+
+// In coordinates around an origin too, where noise has the digits of those.
+TEST(LayerJoin, IsTheSameNearAnOrigin) {
+  const ImplicitField field(joined_in_all_ways());
+  CounterRandom random(6);
+  for (int k = 0; k < 100; ++k) {
+    const Vec3d origin{random.uniform(-0.5, 0.4), random.uniform(-0.4, 0.3), random.uniform(-0.3, 0.2)};
+    const Vec3d p = origin + Vec3d{0.01, -0.02, 0.005};
+    const float x = 0.01f, y = -0.02f, z = 0.005f;
+    float value = 0.0f;
+    field.gather({origin - Vec3d{0.03, 0.03, 0.03}, origin + Vec3d{0.03, 0.03, 0.03}})
+        .evaluate_near(origin, {&x, 1}, {&y, 1}, {&z, 1}, {&value, 1}, kExactEverywhere);
+    EXPECT_NEAR(static_cast<double>(value), field.value(p), 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,157 @@
+#include "synthesis/field/local_weight.h"
+
+#include <vector>
+
+#include "numerics/errors.h"
+#include "numerics/scalar_math.h"
+#include "synthesis/field/implicit_field.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+// A potato whose spheres left of x = 0 are one group, the others another.
+Recipe halves(int num_spheres, std::uint64_t seed) {
+  Recipe recipe = testing::potato_recipe(num_spheres, seed);
+  SphereGroup left{"left", {}}, right{"right", {}};
+  for (int i = 0; i < num_spheres; ++i) {
+    const bool is_left = recipe.body->spheres[static_cast<std::size_t>(i)].center.x < 0.0;
+    (is_left ? left : right).spheres.push_back(i);
+  }
+  recipe.body->groups = {left, right};
+  return recipe;
+}
+
+std::vector<float> weights(const LocalWeight& weight, const std::vector<float>& x,
+                           const std::vector<float>& y, const std::vector<float>& z) {
+  std::vector<float> w(x.size(), 1.0f);
+  weight.multiply(static_cast<int>(x.size()), x.data(), y.data(), z.data(), w.data());
+  return w;
+}
+
+struct Points {
+  std::vector<float> x, y, z;
+  void add(const Vec3d& p) {
+    x.push_back(static_cast<float>(p.x));
+    y.push_back(static_cast<float>(p.y));
+    z.push_back(static_cast<float>(p.z));
+  }
+};
+
+double nearest(const MetaballBody& body, const SphereGroup& group, const Vec3d& p) {
+  double least = 1e300;
+  for (const int i : group.spheres) {
+    const Sphere& s = body.spheres[static_cast<std::size_t>(i)];
+    least = std::min(least, norm(p - s.center) - s.radius);
+  }
+  return least;
+}
+
+TEST(LocalWeight, IsTheFormulaAndAddsUpToOne) {
+  const MetaballBody body = *halves(80, 3).body;
+  const double width = 0.05;
+  const LocalWeight left({"left", width}, body), right({"right", width}, body);
+  CounterRandom random(1);
+  Points points;
+  for (int i = 0; i < 2000; ++i) {
+    points.add({random.uniform(-1, 1), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)});
+  }
+  const std::vector<float> l = weights(left, points.x, points.y, points.z),
+                           r = weights(right, points.x, points.y, points.z);
+  int near_one = 0;
+  for (std::size_t i = 0; i < l.size(); ++i) {
+    const Vec3d p{points.x[i], points.y[i], points.z[i]};
+    const double d = nearest(body, body.groups[0], p) - nearest(body, body.groups[1], p);
+    ASSERT_NEAR(l[i], 0.5 - std::atan(d / width) / 3.14159265358979, 1e-5);
+    ASSERT_NEAR(l[i] + r[i], 1.0, 1e-5);
+    ASSERT_TRUE(l[i] >= 0.0f && l[i] <= 1.0f);
+    near_one += l[i] > 0.9f;
+  }
+  EXPECT_GT(near_one, 500);
+}
+
+TEST(LocalWeight, BitsDependOnThePointAlone) {
+  const MetaballBody body = *halves(120, 5).body;
+  const LocalWeight weight({"left", 0.02}, body);
+  CounterRandom random(2);
+  Points points;
+  for (int i = 0; i < 700; ++i) {
+    points.add({random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)});
+  }
+  const std::vector<float> together = weights(weight, points.x, points.y, points.z);
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    const float alone = weights(weight, {points.x[i]}, {points.y[i]}, {points.z[i]})[0];
+    ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
+  }
+}
+
+TEST(LocalWeight, BoundsHoldEveryValue) {
+  CounterRandom random(6);
+  int narrow = 0;
+  for (int k = 0; k < 300; ++k) {
+    const MetaballBody body = *halves(2 + k % 60, random.next()).body;
+    if (body.groups[0].spheres.empty() || body.groups[1].spheres.empty()) continue;
+    const LocalWeight weight({"left", std::pow(10.0, random.uniform(-3.0, -0.5))}, body);
+    const Vec3d corner{random.uniform(-0.7, 0.6), random.uniform(-0.5, 0.4), random.uniform(-0.5, 0.4)};
+    const double size = std::pow(10.0, random.uniform(-3.0, -0.5));
+    const Interval bound = weight.bound({corner, corner + Vec3d{size, size, size}});
+    narrow += bound.high - bound.low < 0.2;
+    Points points;
+    for (int i = 0; i < 50; ++i) {
+      points.add(corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()});
+    }
+    for (const float w : weights(weight, points.x, points.y, points.z)) {
+      ASSERT_GE(w, bound.low);
+      ASSERT_LE(w, bound.high);
+    }
+  }
+  EXPECT_GT(narrow, 100);
+}
+
+TEST(LocalWeight, AGroupOfAllSpheresIsEverywhere) {
+  Recipe recipe = testing::potato_recipe(5, 1);
+  recipe.body->groups = {{"all", {0, 1, 2, 3, 4}}};
+  Points points;
+  points.add({3, 0, 0});
+  EXPECT_EQ(weights(LocalWeight({"all", 1.0}, *recipe.body), points.x, points.y, points.z)[0], 1.0f);
+}
+
+TEST(LocalWeight, NeedsItsGroup) {
+  EXPECT_THROW(LocalWeight({"middle", 1.0}, *halves(10, 1).body), InputError);
+}
+
+// A layer on the left half leaves the far right as it is; no box is proved empty that is not.
+TEST(LocalWeight, KeepsLayersWhereTheyBelong) {
+  Recipe recipe = halves(60, 8);
+  const ImplicitField bare(recipe);
+  FractalLayer layer = testing::fractal_layer(0.1, 6.0, 2);
+  recipe.layers = {layer};
+  const ImplicitField everywhere(recipe);
+  layer.use.locality = Locality{"left", 0.003};
+  recipe.layers = {layer};
+  const ImplicitField left(recipe);
+  CounterRandom random(3);
+  int proved = 0;
+  for (int k = 0; k < 400; ++k) {
+    const Vec3d corner{random.uniform(-0.6, 0.5), random.uniform(-0.4, 0.3), random.uniform(-0.4, 0.3)};
+    const double size = std::pow(10.0, random.uniform(-2.5, -1.0));
+    const FieldBlock block = left.gather({corner, corner + Vec3d{size, size, size}});
+    const BlockContent content = block.content();
+    proved += content != BlockContent::kMixed;
+    for (int i = 0; i < 40; ++i) {
+      const Vec3d p = corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()};
+      if (content != BlockContent::kMixed) {
+        ASSERT_EQ(left.inside(p), content == BlockContent::kInside);
+      }
+      const double height = everywhere.value(p) - bare.value(p), local = left.value(p) - bare.value(p);
+      ASSERT_LE(std::fabs(local), std::fabs(height) + 1e-4);
+    }
+  }
+  EXPECT_GT(proved, 100);
+  const Vec3d far_left{-0.45, 0.0, 0.0}, far_right{0.45, 0.0, 0.0};
+  EXPECT_NEAR(left.value(far_left), everywhere.value(far_left), 0.02);
+  EXPECT_NEAR(left.value(far_right), bare.value(far_right), 0.02);
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,121 @@
+#include "synthesis/field/surface_labels.h"
+
+#include <cmath>
+#include <set>
+
+#include "synthesis/mesh/mesher.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+std::vector<MeshVertex> vertices_of(const Recipe& recipe) {
+  const ImplicitField field(recipe);
+  MeshCollector collector;
+  mesh_field(field, field.bounds(), 40, collector);
+  std::vector<MeshVertex> vertices;
+  for (const Vec3d& p : collector.mesh.vertices) {
+    vertices.push_back(
+        {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}, {0, 0, 1}});
+  }
+  return vertices;
+}
+
+std::vector<VertexLabel> labels_of(const Recipe& recipe, const std::vector<MeshVertex>& vertices,
+                                   const Vec3d& origin = {}) {
+  std::vector<VertexLabel> labels(vertices.size());
+  SurfaceLabels(recipe, "r").label(origin, vertices, labels);
+  return labels;
+}
+
+TEST(SurfaceLabels, ABareBodyIsLabelZeroAtNoHeight) {
+  const Recipe recipe = testing::sphere_recipe(1.0);
+  for (const VertexLabel& label : labels_of(recipe, vertices_of(recipe))) {
+    EXPECT_EQ(label.label, 0);
+    EXPECT_EQ(label.elevation, 0.0f);
+  }
+}
+
+// Two layers tied to the halves of a body: each has its half.
+TEST(SurfaceLabels, LocalLayersHaveTheirPlaces) {
+  Recipe recipe = testing::sphere_recipe(1.0, {-1.2, 0, 0});
+  recipe.body->spheres.push_back({{1.2, 0, 0}, 1.0});
+  recipe.body->groups = {{"left", {0}}, {"right", {1}}};
+  FractalLayer left = testing::fractal_layer(0.05, 2.0, 2), right = left;
+  left.use.locality = Locality{"left", 1e-4};
+  right.use.locality = Locality{"right", 1e-4};
+  recipe.layers = {left, right};
+  const std::vector<MeshVertex> vertices = vertices_of(recipe);
+  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  int wrong = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (std::fabs(vertices[i].position.x) < 0.2f) continue;
+    wrong += labels[i].label != (vertices[i].position.x < 0.0f ? 1 : 2);
+  }
+  // Where a layer is about 0 the far one's last thousandths may be more.
+  EXPECT_LT(wrong, static_cast<int>(vertices.size() / 50));
+}
+
+// On the surface s + elevation is 0.
+TEST(SurfaceLabels, ElevationsAreAboveTheBareBody) {
+  Recipe recipe = testing::sphere_recipe(1.0);
+  recipe.layers = {testing::fractal_layer(0.1, 1.0, 1)};
+  const std::vector<MeshVertex> vertices = vertices_of(recipe);
+  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  double highest = 0.0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3f& p = vertices[i].position;
+    const double r = std::sqrt(double{p.x} * p.x + double{p.y} * p.y + double{p.z} * p.z);
+    EXPECT_NEAR(labels[i].elevation, r - 1.0, 0.02);
+    highest = std::max(highest, std::fabs(r - 1.0));
+  }
+  EXPECT_GT(highest, 0.03);
+}
+
+TEST(SurfaceLabels, CratersBouldersAndNoiseAreTold) {
+  Recipe recipe = testing::sphere_recipe(1.0);
+  CraterLayer craters;
+  craters.name = "the pole's";
+  craters.craters.resize(1);
+  craters.craters[0].place = {{0, 0, 1}, true};
+  craters.craters[0].diameter = 0.8;
+  BoulderLayer boulders;
+  boulders.boulders.resize(1);
+  boulders.boulders[0].place = {{0, 0, -1}, true};
+  boulders.boulders[0].axes = {0.5, 0.4, 0.3};
+  FractalLayer grit = testing::fractal_layer(0.004, 3.0, 2);
+  recipe.layers = {boulders, craters, grit};
+  const std::vector<MeshVertex> vertices = vertices_of(recipe);
+  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  const auto label_near = [&](const Vec3f& p) {
+    std::size_t nearest = 0;
+    double least = 1e9;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const Vec3f d = vertices[i].position - p;
+      const double distance = double{d.x} * d.x + double{d.y} * d.y + double{d.z} * d.z;
+      if (distance < least) least = distance, nearest = i;
+    }
+    return labels[nearest].label;
+  };
+  EXPECT_EQ(label_near({0, 0, -1.2f}), 1);
+  EXPECT_EQ(label_near({0, 0, 0.9f}), 2);
+  EXPECT_EQ(label_near({1, 0, 0}), 3);
+  EXPECT_EQ(SurfaceLabels(recipe, "r").legend(),
+            (std::vector<std::string>{"label 0: the bare body", "label 1: boulders",
+                                      "label 2: craters \"the pole's\"", "label 3: simplex"}));
+}
+
+TEST(SurfaceLabels, AnOriginIsAdded) {
+  Recipe recipe = testing::potato_recipe(12, 2);
+  recipe.layers = {testing::fractal_layer(0.05, 3.0, 2), testing::fractal_layer(0.03, 9.0, 2)};
+  std::vector<MeshVertex> vertices = vertices_of(recipe);
+  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  for (MeshVertex& v : vertices) v.position.x -= 0.25f;
+  const std::vector<VertexLabel> moved = labels_of(recipe, vertices, {0.25, 0.0, 0.0});
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < labels.size(); ++i) same += labels[i].label == moved[i].label;
+  EXPECT_GE(same, labels.size() - labels.size() / 500);
+}
+
+}  // namespace
+}  // namespace astrolith

@@ -1,0 +1,151 @@
+#include "synthesis/finish/erosion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/finish/mascons.h"
+#include "synthesis/mesh/mesher.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+// Steep hills without overhangs all over a ball.
+Recipe hilly_ball() {
+  Recipe recipe = testing::sphere_recipe(0.5);
+  recipe.layers = {testing::fractal_layer(0.04, 3.0, 2)};
+  return recipe;
+}
+
+struct Eroded {
+  TriangleMesh before, after;
+  std::vector<Vec3d> up;
+  ErosionStatistics statistics;
+};
+
+Eroded eroded(const Recipe& recipe, int resolution, double talus_angle, int most_sweeps = 100000) {
+  const ImplicitField field(recipe);
+  MeshCollector collector;
+  mesh_field(field, field.bounds(), resolution, collector);
+  Eroded result{collector.mesh, collector.mesh, {}, {}};
+  result.up = vertical_directions(mascons_of(field, recipe.body->spheres), {}, result.before.vertices);
+  result.statistics = erode(result.after, result.up, talus_angle, most_sweeps);
+  return result;
+}
+
+// Of all edges, in degrees.
+double steepest_edge(const TriangleMesh& mesh, const std::vector<Vec3d>& up) {
+  double steepest = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      const Vec3d d = mesh.vertices[a] - mesh.vertices[b], vertical = normalized(up[a] + up[b]);
+      const double drop = dot(d, vertical);
+      steepest = std::max(steepest, std::atan2(std::abs(drop), norm(d - drop * vertical)));
+    }
+  }
+  return steepest * kDegrees;
+}
+
+TEST(Mascons, OverlapsCountOnce) {
+  Recipe recipe = testing::sphere_recipe(1.0);
+  recipe.body->blend_exponent = 40.0;
+  recipe.body->spheres = {{{0, 0, 0}, 1.0}, {{0, 0, 0}, 0.9}, {{0.05, 0, 0}, 0.9}, {{3, 0, 0}, 0.5}};
+  double volume = 0.0;
+  for (const Mascon& m : mascons_of(ImplicitField(recipe), recipe.body->spheres)) {
+    volume += 4.0 / 3.0 * std::numbers::pi * std::pow(m.radius, 3);
+  }
+  EXPECT_NEAR(volume, 4.0 / 3.0 * std::numbers::pi * (1.0 + 0.125), 0.15);
+}
+
+TEST(Mascons, VerticalsOfASphereAreItsNormalsAndTiltWithRotation) {
+  const Recipe recipe = testing::sphere_recipe(100.0, {10, -20, 30});
+  const std::vector<Mascon> mascons = mascons_of(ImplicitField(recipe), recipe.body->spheres);
+  ASSERT_EQ(mascons.size(), 1u);
+  const Vec3d normal = normalized(Vec3d{1.0, 0.5, 1.0});
+  const std::vector<Vec3d> points{Vec3d{10, -20, 30} + 100.0 * normal};
+  EXPECT_LT(norm(vertical_directions(mascons, {}, points)[0] - normal), 1e-3);
+  // g = 4/3 pi G rho r against w^2 times the distance from the axis.
+  const double period = 3.0, turn = 2 * std::numbers::pi / (3600 * period);
+  const double gravity = 4.0 / 3.0 * std::numbers::pi * 6.674e-11 * 2500.0 * 100.0;
+  const Vec3d force = gravity * normal - turn * turn * 100.0 * Vec3d{normal.x, normal.y, 0.0};
+  EXPECT_LT(norm(vertical_directions(mascons, {2500.0, period}, points)[0] - normalized(force)), 5e-3);
+}
+
+TEST(Mascons, SameBitsForAnyThreads) {
+  const Recipe recipe = hilly_ball();
+  const ImplicitField field(recipe);
+  std::vector<Vec3d> points;
+  for (int i = 0; i < 1000; ++i) points.push_back({std::sin(i), std::cos(1.7 * i), std::sin(2.9 * i + 1)});
+  const std::vector<Mascon> mascons = mascons_of(field, recipe.body->spheres);
+  const std::vector<Vec3d> many = vertical_directions(mascons, {2000.0, 4.0}, points);
+  const ThreadLimit limit(1);
+  const std::vector<Vec3d> one =
+      vertical_directions(mascons_of(field, recipe.body->spheres), {2000.0, 4.0}, points);
+  EXPECT_EQ(std::memcmp(one.data(), many.data(), one.size() * sizeof(Vec3d)), 0);
+}
+
+TEST(Erosion, EndsWithoutASlopeAboveTheTalusAngle) {
+  const Eroded e = eroded(hilly_ball(), 64, 30.0);
+  EXPECT_TRUE(e.statistics.settled);
+  EXPECT_GT(e.statistics.moved_vertices, 1000);
+  EXPECT_GT(e.statistics.steepest_before, 45.0);
+  EXPECT_LE(e.statistics.steepest_after, 30.0);
+  EXPECT_EQ(e.statistics.rock_vertices, 0);
+  EXPECT_LE(steepest_edge(e.after, e.up), 30.0);
+}
+
+TEST(Erosion, ConservesMass) {
+  const Eroded e = eroded(hilly_ball(), 64, 30.0);
+  EXPECT_GT(e.statistics.volume_moved, 1e-3 * volume(e.before));
+  EXPECT_NEAR(volume(e.after) / volume(e.before), 1.0, 1e-12);
+}
+
+// Faces that look up still do: what was a graph over the horizontal is one still.
+TEST(Erosion, StaysClosedAndDoesNotRunIntoItself) {
+  const Eroded e = eroded(hilly_ball(), 64, 25.0);
+  const MeshTopology topology = analyze_topology(e.after);
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
+  const auto upward = [&](const TriangleMesh& mesh, const Triangle& t) {
+    const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    return dot(normalized(cross(b - a, c - a)), e.up[t[0]]);
+  };
+  for (const Triangle& t : e.after.triangles) {
+    if (upward(e.before, t) > 0.1) {
+      ASSERT_GT(upward(e.after, t), 0.0);
+    }
+  }
+  for (const Vec3d& normal : e.after.normals) ASSERT_NEAR(norm(normal), 1.0, 1e-5);
+}
+
+TEST(Erosion, GentleSlopesAndRockStay) {
+  const Eroded gentle = eroded(testing::sphere_recipe(1.0), 32, 30.0);
+  EXPECT_EQ(gentle.statistics.moved_vertices, 0);
+  EXPECT_TRUE(gentle.statistics.settled);
+  TriangleMesh mesh = gentle.before;
+  const std::vector<Vec3d> nowhere(mesh.vertices.size());
+  const ErosionStatistics rock = erode(mesh, nowhere, 30.0, 10);
+  EXPECT_EQ(rock.rock_vertices, static_cast<std::int64_t>(mesh.vertices.size()));
+  EXPECT_EQ(rock.moved_vertices, 0);
+}
+
+TEST(Erosion, StopsAtItsSweepsAndRefusesNonsense) {
+  const Eroded e = eroded(hilly_ball(), 48, 20.0, 3);
+  EXPECT_FALSE(e.statistics.settled);
+  EXPECT_EQ(e.statistics.sweeps, 3);
+  TriangleMesh mesh = e.before;
+  EXPECT_THROW(erode(mesh, e.up, 0.0, 10), InputError);
+  EXPECT_THROW(erode(mesh, e.up, 90.0, 10), InputError);
+  EXPECT_THROW(erode(mesh, e.up, 20.0, 10, [](double, std::string_view) { return false; }), WorkError);
+}
+
+}  // namespace
+}  // namespace astrolith

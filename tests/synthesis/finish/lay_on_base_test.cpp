@@ -1,0 +1,77 @@
+#include "synthesis/finish/lay_on_base.h"
+
+#include "numerics/errors.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/noise/fractal_noise.h"
+
+namespace astrolith {
+namespace {
+
+Recipe in_unit(std::string unit) {
+  Recipe recipe;
+  recipe.length_unit = std::move(unit);
+  return recipe;
+}
+
+Recipe ball(const std::string& unit, double radius) {
+  Recipe recipe = in_unit(unit);
+  recipe.body = MetaballBody{};
+  recipe.body->spheres = {{{0, 0, 0}, radius}};
+  return recipe;
+}
+
+Recipe bumps(const std::string& unit, double scale) {
+  Recipe recipe = in_unit(unit);
+  FractalLayer layer;
+  layer.amplitude = 10.0 * scale;
+  layer.frequency = 0.01 / scale;
+  layer.octaves = 3;
+  layer.bias = Vec3d{5, 6, 7} * scale;
+  recipe.layers = {layer};
+  return recipe;
+}
+
+TEST(LayOnBase, LengthsInAnotherUnitMeanTheSameSurface) {
+  const ImplicitField in_km(lay_on_base(bumps("m", 1.0), "bumps", ball("km", 0.25), "ball"));
+  const ImplicitField native(lay_on_base(bumps("km", 1e-3), "bumps", ball("km", 0.25), "ball"));
+  for (const Vec3d& p : {Vec3d{0.25, 0, 0}, Vec3d{0.1, -0.2, 0.05}, Vec3d{0, 0.15, 0.2}}) {
+    EXPECT_NEAR(in_km.value(p), native.value(p), 1e-6);
+    EXPECT_NE(in_km.value(p), ImplicitField(ball("km", 0.25)).value(p));
+  }
+}
+
+TEST(LayOnBase, KeepsTheBaseAndAddsLayersAfterItsOwn) {
+  Recipe base = bumps("m", 1.0);
+  base.body = ball("m", 100.0).body;
+  base.seed = 77;
+  const Recipe result = lay_on_base(bumps("m", 0.1), "bumps", base, "base");
+  ASSERT_EQ(result.layers.size(), 2u);
+  EXPECT_EQ(std::get<FractalLayer>(result.layers[0]).amplitude, 10.0);
+  EXPECT_DOUBLE_EQ(std::get<FractalLayer>(result.layers[1]).amplitude, 1.0);
+  EXPECT_EQ(result.seed, 77u);
+}
+
+TEST(LayOnBase, GaborLayersKeepTheirShape) {
+  Recipe details = in_unit("m");
+  GaborLayer layer;
+  layer.pixel_size = 0.5;
+  layer.height_rms = 2.0;
+  details.layers = {layer};
+  const auto converted =
+      std::get<GaborLayer>(lay_on_base(details, "rock", ball("km", 1.0), "ball").layers.front());
+  EXPECT_DOUBLE_EQ(converted.pixel_size, 0.5e-3);
+  EXPECT_DOUBLE_EQ(converted.height_rms, 2e-3);
+}
+
+TEST(LayOnBase, PixelsAndMissingBodiesAreErrorsThatNameTheFile) {
+  try {
+    lay_on_base(bumps("px", 1.0), "rock.json", ball("km", 1.0), "ball.json");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("rock.json: length_unit"), std::string::npos);
+  }
+  EXPECT_THROW(lay_on_base(bumps("m", 1.0), "a", bumps("m", 1.0), "b"), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith

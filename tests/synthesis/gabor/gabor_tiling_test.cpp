@@ -1,0 +1,106 @@
+#include "synthesis/gabor/gabor_tiling.h"
+
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "synthesis/gabor/gabor_texture.h"
+
+namespace astrolith {
+namespace {
+
+GaborLayer layer_of(std::vector<GaborLobe> lobes) {
+  GaborLayer layer;
+  layer.height_rms = 1.0;
+  layer.lobes = std::move(lobes);
+  return layer;
+}
+
+double mean_square(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float v : values) sum += static_cast<double>(v) * static_cast<double>(v);
+  return sum / static_cast<double>(values.size());
+}
+
+// The ideal Gaussian's correlation is exp(-pi tau^2 / 2), and the window changes it little.
+TEST(GaborTiling, CorrelationIsTheGaussians) {
+  EXPECT_NEAR(gabor_profile_correlation(0.0), 1.0, 1e-6);
+  for (const double tau : {0.3, 0.7, 1.0, 1.5}) {
+    EXPECT_NEAR(gabor_profile_correlation(tau), std::exp(-M_PI * tau * tau / 2), 1e-2) << tau;
+  }
+  EXPECT_EQ(gabor_profile_correlation(2.81), 0.0);
+}
+
+TEST(GaborTiling, WideLobesKeepTheirVarianceAndNarrowOnesDependOnTheirFrequency) {
+  EXPECT_NEAR(tiled_variance(layer_of({{4, 0.11, 0.23, 1.0}}), 256, 300), 1.0, 1e-12);
+  // A lobe of half the width of the steps: all its variance on one frequency, or little on none.
+  EXPECT_GT(tiled_variance(layer_of({{7, 4.0 / 64, 0.0, 1.0}}), 64, 256), 1.5);
+  EXPECT_LT(tiled_variance(layer_of({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
+}
+
+// Every pixel equals the one a period away: twice the period in each direction shows it, wherever the inner
+// tiles of 64 pixels fall.
+TEST(GaborTiling, TheTextureRepeatsExactly) {
+  const GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}, {5, -0.03, 0.04, 2.0}, {6, 0.1, 0.02, 1.0}});
+  TextureOptions options{7};
+  options.period_width = 150;
+  options.period_height = 97;
+  const std::vector<float> t = synthesize_texture(layer, 300, 194, options);
+  double largest = 0.0;
+  for (std::size_t y = 0; y < 194; ++y) {
+    for (std::size_t x = 0; x < 300; ++x) {
+      const float other = t[y % 97 * 300 + x % 150];
+      largest = std::max(largest, static_cast<double>(std::fabs(t[y * 300 + x] - other)));
+    }
+  }
+  EXPECT_LT(largest, 2e-5);
+  EXPECT_GT(mean_square(t), 0.5);
+}
+
+// Across the border second differences are what they are inside, and a texture that does not repeat fails so.
+TEST(GaborTiling, TheBorderIsNoSeam) {
+  const GaborLayer layer = layer_of({{4, 0.05, 0.03, 1.0}});
+  constexpr std::size_t n = 128;
+  const auto roughness = [](const std::vector<float>& t, std::size_t column) {
+    double sum = 0.0;
+    for (std::size_t y = 0; y < n; ++y) {
+      const float* row = &t[y * n];
+      const double d =
+          static_cast<double>(row[(column + n - 1) % n] - 2 * row[column] + row[(column + 1) % n]);
+      sum += d * d / n;
+    }
+    return sum;
+  };
+  double border = 0.0, inside = 0.0, open_border = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<float> tile = synthesize_texture(layer, n, n, {seed, 0, n, n});
+    const std::vector<float> open = synthesize_texture(layer, n, n, {seed});
+    border += roughness(tile, 0) + roughness(tile, n - 1);
+    inside += roughness(tile, 40) + roughness(tile, 91);
+    open_border += roughness(open, 0);
+  }
+  EXPECT_NEAR(border / inside, 1.0, 0.2);
+  EXPECT_GT(open_border, 5 * inside);
+}
+
+TEST(GaborTiling, VarianceIsStatedWhateverThePeriod) {
+  const GaborLayer layer = layer_of({{3, 0.2, 0.1, 1.0}, {6, 0.05, 0.04, 1.0}, {6, 0.21, 0.01, 1.0}});
+  for (const int n : {48, 64, 100}) {
+    double sum = 0.0;
+    constexpr int kSeeds = 400;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      sum +=
+          mean_square(synthesize_texture(layer, n, n, {static_cast<std::uint64_t>(seed), 0, n, n})) / kSeeds;
+    }
+    EXPECT_NEAR(sum, 1.0, 0.06) << n;  // 3 standard deviations: few frequencies make a lobe
+  }
+}
+
+TEST(GaborTiling, PeriodsTooSmallForTheLobesAreRefused) {
+  const GaborLayer narrow = layer_of({{12, 0.1, 0.1, 1.0}});
+  EXPECT_THROW(synthesize_texture(narrow, 64, 64, {1, 0, 64, 64}), InputError);
+  EXPECT_THROW(synthesize_texture(narrow, 1, 1, {1, 0, 1, 1}), InputError);
+  EXPECT_NO_THROW(synthesize_texture(layer_of({{1, 0.0, 0.0, 1.0}}), 8, 8, {1, 0, 8, 8}));
+}
+
+}  // namespace
+}  // namespace astrolith

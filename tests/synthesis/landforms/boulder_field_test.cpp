@@ -1,0 +1,190 @@
+#include "synthesis/landforms/boulder_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/mesh/mesher.h"
+#include "tests/synthesis/bodies.h"
+#include "tests/synthesis/mesh_checks.h"
+
+namespace astrolith {
+namespace {
+
+Boulder boulder_towards(const Vec3d& direction, const Vec3d& axes, double burial) {
+  Boulder boulder;
+  boulder.place = {direction, true};
+  boulder.axes = axes;
+  boulder.burial = burial;
+  return boulder;
+}
+
+Recipe with_boulders(Recipe recipe, const BoulderLayer& layer) {
+  recipe.layers.emplace_back(layer);
+  return recipe;
+}
+
+// Highest point above a sphere about the origin.
+double summit(const ImplicitField& field, const Vec3d& direction, double radius) {
+  double low = 0.5 * radius, high = 3.0 * radius;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (field.inside(middle * normalized(direction)) ? low : high) = middle;
+  }
+  return low - radius;
+}
+
+TEST(BoulderField, BurialSaysHowMuchIsSeen) {
+  const Recipe sphere = testing::sphere_recipe(10.0);
+  for (const double burial : {0.0, 0.25, 0.5, 0.9}) {
+    BoulderLayer layer;
+    layer.boulders = {boulder_towards({1, 1, 0.5}, {2.0, 1.4, 1.0}, burial)};
+    EXPECT_NEAR(summit(ImplicitField(with_boulders(sphere, layer)), {1, 1, 0.5}, 10.0), 1.0 - burial, 1e-3);
+    layer.boulders[0].tilt = 90.0;  // axis b is upright
+    EXPECT_NEAR(summit(ImplicitField(with_boulders(sphere, layer)), {1, 1, 0.5}, 10.0), 1.4 * (1.0 - burial),
+                1e-3);
+  }
+}
+
+// However rough, tilted and shallow: no boulder hovers.
+TEST(BoulderField, EveryBoulderTouchesTheGround) {
+  BoulderLayer layer;
+  layer.roughness = 0.5;
+  BoulderPopulation& population = layer.population.emplace();
+  population.drawn.count = 60;
+  population.drawn.least_diameter = 0.5;
+  population.drawn.greatest_diameter = 3.0;
+  population.least_burial = 0.05;
+  population.greatest_burial = 0.2;
+  population.greatest_tilt = 90.0;
+  const ImplicitField field(with_boulders(testing::sphere_recipe(10.0), layer));
+  for (const PlacedBoulder& boulder : field.boulders()[0].boulders) {
+    const double height = norm(boulder.center) - 10.0;
+    for (double t = 0.0; t < height; t += 0.02) {
+      ASSERT_TRUE(field.inside(boulder.center - t * normalized(boulder.center))) << t << " of " << height;
+    }
+  }
+}
+
+// At the equator east is +y for a place on +x: axis a lies along it, or along north with a heading of 90.
+TEST(BoulderField, AxesLieAsTheHeadingSays) {
+  BoulderLayer layer;
+  layer.boulders = {boulder_towards({1, 0, 0}, {2.0, 1.0, 1.0}, 0.5)};
+  const Recipe sphere = testing::sphere_recipe(10.0);
+  const ImplicitField east(with_boulders(sphere, layer));
+  EXPECT_TRUE(east.inside({10.1, 0.9, 0.0}));
+  EXPECT_FALSE(east.inside({10.1, 0.0, 0.9}));
+  layer.boulders[0].heading = 90.0;
+  const ImplicitField north(with_boulders(sphere, layer));
+  EXPECT_FALSE(north.inside({10.1, 0.9, 0.0}));
+  EXPECT_TRUE(north.inside({10.1, 0.0, 0.9}));
+}
+
+// On the hill or in the crater that other layers make, before or after it in the recipe.
+TEST(BoulderField, StandsOnTheFinalSurface) {
+  Recipe recipe = testing::sphere_recipe(10.0);
+  BoulderLayer boulders;
+  boulders.boulders = {boulder_towards({0, 0, 1}, {0.6, 0.6, 0.6}, 0.5)};
+  recipe.layers.emplace_back(boulders);
+  CraterLayer craters;
+  craters.craters.emplace_back().place = {{0, 0, 1}, true};
+  craters.craters[0].diameter = 4.0;
+  recipe.layers.emplace_back(craters);
+  recipe.layers.emplace_back(testing::fractal_layer(0.1, 0.3, 2));
+  const ImplicitField with(recipe);
+  recipe.layers[0] = BoulderLayer{};  // others keep their numbers, which seed them
+  const ImplicitField without(recipe);
+  const double floor = summit(without, {0, 0, 1}, 10.0);
+  EXPECT_LT(floor, -0.2);
+  EXPECT_NEAR(summit(with, {0, 0, 1}, 10.0), floor + 0.3, 0.01);
+}
+
+TEST(BoulderField, UnionChangesNothingElsewhere) {
+  BoulderLayer layer;
+  layer.smoothing = 0.5;
+  layer.roughness = 0.2;
+  layer.boulders = {boulder_towards({0, 0, 1}, {2.0, 1.5, 1.0}, 0.5)};
+  const Recipe sphere = testing::sphere_recipe(10.0);
+  const ImplicitField with(with_boulders(sphere, layer)), without(sphere);
+  CounterRandom random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d p{random.uniform(-11, 11), random.uniform(-11, 11), random.uniform(-11, 11)};
+    ASSERT_GE(with.value(p), without.value(p));  // a union only adds
+    if (norm(p - Vec3d{0, 0, 10}) > 1.0 * (1.0 + 0.7) + 0.01) {
+      ASSERT_EQ(with.value(p), without.value(p));
+    }
+  }
+}
+
+BoulderLayer random_boulders(CounterRandom& random) {
+  BoulderLayer layer;
+  layer.smoothing = random.uniform();
+  layer.roughness = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 0.5);
+  BoulderPopulation& population = layer.population.emplace();
+  population.drawn.count = 1 + static_cast<int>(random.below(80));
+  population.drawn.least_diameter = 0.02;
+  population.drawn.greatest_diameter = 0.3;
+  population.greatest_tilt = 90.0 * random.uniform();
+  population.least_burial = 0.0;
+  population.greatest_burial = 1.0;
+  return layer;
+}
+
+Recipe random_body(std::uint64_t seed) {
+  CounterRandom random(seed);
+  Recipe recipe = testing::potato_recipe(20, seed, random.uniform(1.0, 8.0));
+  if (seed % 3 == 0) recipe.body->warp = Warp{0.1, 3.0, 2};
+  if (seed % 2 == 0) recipe.layers.emplace_back(testing::fractal_layer(0.03, 6.0, 4));
+  recipe.layers.emplace_back(random_boulders(random));
+  return recipe;
+}
+
+TEST(BoulderField, CulledBoxesHoldNoSurfaceAndBlocksGiveTheBitsOfTheField) {
+  int culled = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const ImplicitField field(random_body(seed));
+    CounterRandom random(seed + 100);
+    const Box bounds = field.bounds();
+    for (int b = 0; b < 300; ++b) {
+      const Vec3d e = bounds.extent();
+      const double size = std::pow(10.0, random.uniform(-2.0, -0.7)) * norm(e);
+      const Vec3d corner =
+          bounds.min + Vec3d{e.x * random.uniform(), e.y * random.uniform(), e.z * random.uniform()};
+      const Box box{corner, corner + Vec3d{size, size, size}};
+      const FieldBlock block = field.gather(box);
+      const BlockContent content = block.content();
+      std::vector<float> x, y, z, value(12);
+      for (int i = 0; i < 12; ++i) {
+        x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
+        y.push_back(static_cast<float>(random.uniform(box.min.y, box.max.y)));
+        z.push_back(static_cast<float>(random.uniform(box.min.z, box.max.z)));
+      }
+      block.evaluate(x, y, z, value);
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
+        if (content != BlockContent::kMixed) {
+          ASSERT_EQ(value[i] > 0.0f, content == BlockContent::kInside) << seed;
+        }
+      }
+      culled += content != BlockContent::kMixed;
+    }
+  }
+  EXPECT_GT(culled, 700);
+}
+
+TEST(BoulderField, MeshesAreClosedManifoldsAndTheSameForAnyThreads) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    testing::expect_closed_manifold_for_any_threads(random_body(seed));
+  }
+}
+
+TEST(BoulderField, BouldersLongerThanTheBodyAreRefused) {
+  BoulderLayer layer;
+  layer.boulders = {boulder_towards({0, 0, 1}, {3, 3, 3}, 0.5)};
+  EXPECT_THROW(ImplicitField(with_boulders(testing::sphere_recipe(1.0), layer)), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith

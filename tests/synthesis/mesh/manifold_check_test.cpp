@@ -1,0 +1,104 @@
+#include "synthesis/mesh/manifold_check.h"
+
+#include <algorithm>
+
+#include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
+#include "synthesis/mesh/mesher.h"
+#include "tests/synthesis/analytic_field.h"
+
+namespace astrolith {
+namespace {
+
+using testing::AnalyticField;
+using testing::cube;
+
+ManifoldReport check_at_once(std::size_t vertices, const std::vector<Triangle>& triangles) {
+  ManifoldCheck check;
+  check.add_vertices(std::vector<MeshVertex>(vertices));
+  check.add_triangles(triangles);
+  return check.finish();
+}
+
+std::vector<Triangle> tetrahedron(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  return {{a, b, c}, {a, c, d}, {a, d, b}, {b, d, c}};
+}
+
+TEST(ManifoldCheck, AgreesWithTheTopologyOfTheWholeMeshWhileItStreams) {
+  // Tubes along the edges of a lattice, inside a sphere: many handles and some loose pieces.
+  const auto tubes = [](const Vec3d& p) {
+    const auto wave = [](double v) { return std::cos(9.0 * v); };
+    return std::min(0.9 - norm(p), 0.1 * (wave(p.x) + wave(p.y) + wave(p.z) - 0.7));
+  };
+  const AnalyticField field(tubes, 1.6);
+  MeshCollector collector;
+  ManifoldCheck check;
+  mesh_field(field, cube(1.0), 60, collector);
+  mesh_field(field, cube(1.0), 60, check);
+  const ManifoldReport report = check.finish();
+  const MeshTopology topology = analyze_topology(collector.mesh);
+  EXPECT_TRUE(report.closed() && report.manifold());
+  EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
+  EXPECT_EQ(report.components, topology.components);
+  EXPECT_EQ(report.genus, topology.genus);
+  EXPECT_GT(report.genus, 3);
+  EXPECT_EQ(report.vertices, static_cast<std::int64_t>(collector.mesh.vertices.size()));
+}
+
+TEST(ManifoldCheck, SeesBoundaries) {
+  std::vector<Triangle> triangles = tetrahedron(0, 1, 2, 3);
+  EXPECT_TRUE(check_at_once(4, triangles).closed());
+  EXPECT_EQ(check_at_once(4, triangles).genus, 0);
+  triangles.pop_back();
+  const ManifoldReport open = check_at_once(4, triangles);
+  EXPECT_FALSE(open.closed());
+  EXPECT_TRUE(open.manifold());
+  EXPECT_EQ(open.open_vertices, 3);
+  EXPECT_EQ(open.genus, -1);
+}
+
+TEST(ManifoldCheck, SeesFlippedTriangles) {
+  std::vector<Triangle> triangles = tetrahedron(0, 1, 2, 3);
+  std::swap(triangles[0][0], triangles[0][1]);
+  const ManifoldReport report = check_at_once(4, triangles);
+  EXPECT_FALSE(report.closed() && report.manifold());
+}
+
+TEST(ManifoldCheck, SeesEdgesOfFourTrianglesAndVerticesOfTwoFans) {
+  std::vector<Triangle> edge = tetrahedron(0, 1, 2, 3);
+  for (const Triangle& t : tetrahedron(0, 1, 4, 5)) edge.push_back(t);
+  EXPECT_EQ(check_at_once(6, edge).non_manifold_vertices, 2);
+  std::vector<Triangle> vertex = tetrahedron(0, 1, 2, 3);
+  for (const Triangle& t : tetrahedron(0, 4, 5, 6)) vertex.push_back(t);
+  EXPECT_EQ(check_at_once(7, vertex).non_manifold_vertices, 1);
+  EXPECT_EQ(check_at_once(7, vertex).components, 1);
+  EXPECT_EQ(check_at_once(5, tetrahedron(0, 1, 2, 3)).non_manifold_vertices, 1) << "an unused vertex";
+}
+
+TEST(ManifoldCheck, RepeatedTrianglesAreNotManifold) {
+  std::vector<Triangle> triangles = tetrahedron(0, 1, 2, 3);
+  triangles.push_back(triangles[2]);
+  EXPECT_FALSE(check_at_once(4, triangles).manifold());
+}
+
+TEST(ManifoldCheck, TrianglesOutsideTheWindowAreNotVouchedFor) {
+  ManifoldCheck check;
+  check.add_vertices(std::vector<MeshVertex>(4));
+  check.add_triangles(tetrahedron(0, 1, 2, 3));
+  check.add_vertices(std::vector<MeshVertex>(4));
+  check.add_triangles(tetrahedron(4, 5, 6, 7));
+  check.add_vertices(std::vector<MeshVertex>(4));
+  check.add_triangles(tetrahedron(0, 9, 10, 11));
+  const ManifoldReport report = check.finish();
+  EXPECT_GT(report.late_triangles, 0);
+  EXPECT_FALSE(report.closed());
+}
+
+TEST(ManifoldCheck, NothingIsNotClosed) {
+  EXPECT_FALSE(check_at_once(0, {}).closed());
+  ManifoldCheck check;
+  EXPECT_THROW(check.add_triangles(std::vector<Triangle>{{0, 1, 2}}), WorkError);
+}
+
+}  // namespace
+}  // namespace astrolith

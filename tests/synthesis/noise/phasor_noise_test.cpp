@@ -1,0 +1,130 @@
+#include "synthesis/noise/phasor_noise.h"
+
+#include <array>
+#include <vector>
+
+#include "numerics/scalar_math.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+const Box kDomain{{-100, -100, -100}, {100, 100, 100}};
+
+PhasorLayer layer_of(PhasorProfile profile) {
+  PhasorLayer layer;
+  layer.amplitude = 2.0;
+  layer.frequency = 2.0;
+  layer.cell_size = 1.5;
+  layer.profile = profile;
+  return layer;
+}
+
+struct Points {
+  std::vector<float> x, y, z;
+  int size() const { return static_cast<int>(x.size()); }
+};
+
+Points scattered(int n) {
+  CounterRandom random(3);
+  Points p;
+  for (int i = 0; i < n; ++i) {
+    for (std::vector<float>* v : {&p.x, &p.y, &p.z})
+      v->push_back(static_cast<float>(random.uniform(-90, 90)));
+  }
+  return p;
+}
+
+TEST(PhasorNoise, PhasesAreUniform) {
+  const Points p = scattered(40000);
+  std::vector<float> turns(p.x.size());
+  PhasorNoise(layer_of(PhasorProfile::kSine), 1, 0, kDomain)
+      .evaluate_phase(p.size(), p.x.data(), p.y.data(), p.z.data(), turns.data());
+  std::array<int, 16> count{};
+  for (const float t : turns) {
+    ASSERT_TRUE(t >= -0.5f && t <= 0.5f);
+    ++count[std::min<std::size_t>(15, static_cast<std::size_t>(16.0f * (t + 0.5f)))];
+  }
+  double chi_squared = 0.0;
+  for (const int c : count) chi_squared += (c - 2500.0) * (c - 2500.0) / 2500.0;
+  EXPECT_LT(chi_squared, 37.7);  // 15 degrees of freedom, one in a thousand
+}
+
+TEST(PhasorNoise, ProfilesHaveTheirMeanVarianceAndRange) {
+  const Points p = scattered(40000);
+  const double variances[] = {0.5, 1.0 / 3.0, 1.0 / 3.0, 1.0};
+  for (const PhasorProfile profile : kPhasorProfiles) {
+    const PhasorNoise noise(layer_of(profile), 2, 0, kDomain);
+    std::vector<float> height(p.x.size());
+    noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), height.data());
+    double sum = 0.0, squares = 0.0;
+    for (const float h : height) {
+      ASSERT_LE(std::fabs(double{h}), noise.height_bound());
+      sum += double{h} / 2.0;
+      squares += double{h} * double{h} / 4.0;
+    }
+    EXPECT_NEAR(sum / p.size(), 0.0, 0.02) << profile_word(profile);
+    EXPECT_NEAR(squares / p.size(), variances[static_cast<int>(profile)], 0.015) << profile_word(profile);
+  }
+}
+
+// Along its direction the phase gains `frequency` turns a length unit; across it none.
+TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
+  PhasorLayer layer = layer_of(PhasorProfile::kSine);
+  layer.direction = {0, 3, 4};
+  layer.spread = 0.0;
+  const PhasorNoise noise(layer, 4, 0, kDomain);
+  const auto gain = [&](const Vec3d& u) {
+    const double h = 0.01;
+    double sum = 0.0;
+    const Points p = scattered(4000);
+    for (std::size_t i = 0; i < p.x.size(); ++i) {
+      std::array<float, 2> x, y, z, turns;
+      for (std::size_t k = 0; k < 2; ++k) {
+        x[k] = p.x[i] + static_cast<float>(h * static_cast<double>(k) * u.x);
+        y[k] = p.y[i] + static_cast<float>(h * static_cast<double>(k) * u.y);
+        z[k] = p.z[i] + static_cast<float>(h * static_cast<double>(k) * u.z);
+      }
+      noise.evaluate_phase(2, x.data(), y.data(), z.data(), turns.data());
+      const double step = double{turns[1]} - double{turns[0]};
+      sum += step - std::round(step);
+    }
+    return sum / (static_cast<double>(p.x.size()) * h);
+  };
+  EXPECT_NEAR(gain({0, 0.6, 0.8}), 2.0, 0.1);
+  EXPECT_NEAR(gain({1, 0, 0}), 0.0, 0.1);
+}
+
+// What sets it apart from Gabor noise: a sine reaches its full height in every wavelength.
+TEST(PhasorNoise, ContrastNeverFades) {
+  const PhasorNoise noise(layer_of(PhasorProfile::kSine), 6, 0, kDomain);
+  int full = 0, stretches = 0;
+  for (double start = -90.0; start < 90.0; start += 0.6) {
+    float highest = -2.0f, lowest = 2.0f;
+    for (double t = 0.0; t < 0.6; t += 0.02) {
+      const float x = static_cast<float>(start + t), y = 0.2f, z = -3.1f;
+      float h = 0.0f;
+      noise.evaluate(1, &x, &y, &z, &h);
+      highest = math::max(highest, h);
+      lowest = math::min(lowest, h);
+    }
+    ++stretches;
+    full += highest > 1.9f && lowest < -1.9f;
+  }
+  EXPECT_GT(full, stretches * 8 / 10);
+}
+
+TEST(PhasorNoise, BitsDependOnThePointAlone) {
+  const PhasorNoise noise(layer_of(PhasorProfile::kTriangle), 9, 1, kDomain);
+  const Points p = scattered(301);
+  std::vector<float> together(p.x.size());
+  noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), together.data());
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    float alone = 0.0f;
+    noise.evaluate(1, &p.x[i], &p.y[i], &p.z[i], &alone);
+    ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
+  }
+}
+
+}  // namespace
+}  // namespace astrolith

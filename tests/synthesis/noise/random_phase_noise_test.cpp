@@ -1,0 +1,146 @@
+#include "synthesis/noise/random_phase_noise.h"
+
+#include <complex>
+#include <cstdio>
+#include <vector>
+
+#include "numerics/scalar_math.h"
+#include "tests/synthesis/bodies.h"
+
+namespace astrolith {
+namespace {
+
+const Box kDomain{{-100, -100, -100}, {100, 100, 100}};
+
+RandomPhaseLayer layer_of(double randomness) {
+  RandomPhaseLayer layer;
+  layer.height_rms = 0.5;
+  layer.cell_size = 2.0;
+  layer.waves = 12;
+  layer.frequency_min = 1.5;
+  layer.frequency_max = 3.0;
+  layer.randomness = randomness;
+  return layer;
+}
+
+float height_at(const RandomPhaseNoise& noise, const Vec3d& p) {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  float height = 0.0f;
+  noise.evaluate(1, &x, &y, &z, &height);
+  return height;
+}
+
+// At a lattice point, in the middle of a cell and anywhere, whatever the cells share.
+TEST(RandomPhaseNoise, HasItsMeanAndVarianceEverywhere) {
+  for (const double randomness : {0.0, 0.6, 1.0}) {
+    for (const Vec3d& p : {Vec3d{2, 4, -6}, Vec3d{1, 3, 5}, Vec3d{0.3, 7.7, -1.2}}) {
+      double sum = 0.0, squares = 0.0, fourth = 0.0;
+      constexpr int kSeeds = 4000;
+      for (int seed = 0; seed < kSeeds; ++seed) {
+        const RandomPhaseNoise noise(layer_of(randomness), static_cast<std::uint64_t>(seed), 0, kDomain);
+        const double h = height_at(noise, p) / 0.5;
+        sum += h;
+        squares += h * h;
+        fourth += h * h * h * h;
+        ASSERT_LE(std::fabs(h), 6.0);
+      }
+      EXPECT_NEAR(sum / kSeeds, 0.0, 4.0 / std::sqrt(kSeeds));
+      const double variance = squares / kSeeds;
+      const double error = std::sqrt((fourth / kSeeds - variance * variance) / kSeeds);
+      EXPECT_NEAR(variance, 1.0, 4.0 * error) << randomness;
+    }
+  }
+}
+
+// All waves along x: a line along x shows the spectrum, the band widened by the windows' own spectrum.
+TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
+  RandomPhaseLayer layer = layer_of(1.0);
+  layer.waves = 48;
+  layer.spread = 0.0;
+  layer.direction = {2, 0, 0};
+  constexpr int kSamples = 1024, kSeeds = 60;
+  constexpr double kStep = 1.0 / 16, kResolution = 1.0 / (kSamples * kStep);  // 8 cycles up to Nyquist
+  std::vector<double> power(kSamples / 2);
+  std::vector<float> x(kSamples), y(kSamples), z(kSamples), height(kSamples);
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const RandomPhaseNoise noise(layer, seed, 3, kDomain);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      x[i] = static_cast<float>(kStep * (static_cast<double>(i) - 512.0));
+      y[i] = z[i] = 0.37f;
+    }
+    noise.evaluate(kSamples, x.data(), y.data(), z.data(), height.data());
+    for (std::size_t k = 8; k < power.size(); k += 4) {
+      std::complex<double> sum = 0.0;
+      for (std::size_t i = 0; i < kSamples; ++i) {
+        const double turns = static_cast<double>(k * i % kSamples) / kSamples;
+        sum += double{height[i]} *
+               std::pow(math::sin_turns(0.5 * (static_cast<double>(i) + 0.5) / kSamples), 2) *
+               std::complex<double>(math::cos_turns(turns), math::sin_turns(turns));
+      }
+      power[k] += std::norm(sum);
+    }
+  }
+  double total = 0.0, in_band = 0.0, lower_half = 0.0, upper_half = 0.0;
+  for (std::size_t k = 8; k < power.size(); k += 4) {
+    const double f = static_cast<double>(k) * kResolution;
+    total += power[k];
+    in_band += f > 1.5 - 0.5 && f < 3.0 + 0.5 ? power[k] : 0.0;
+    lower_half += f > 1.5 && f < 2.25 ? power[k] : 0.0;
+    upper_half += f > 2.25 && f < 3.0 ? power[k] : 0.0;
+  }
+  std::printf("power within the band and half a cell's frequency: %.4f; halves of the band: %.3f\n",
+              in_band / total, lower_half / upper_half);
+  EXPECT_GT(in_band / total, 0.97);
+  EXPECT_NEAR(lower_half / upper_half, 1.0, 0.15);
+}
+
+TEST(RandomPhaseNoise, WithoutRandomnessWavesRunThroughAllCells) {
+  RandomPhaseLayer layer = layer_of(0.0);
+  layer.waves = 1;
+  const RandomPhaseNoise noise(layer, 5, 0, kDomain);
+  const Wave& wave = noise.waves().at(0);
+  CounterRandom random(2);
+  // Only the sum of the windows, between 1 and sqrt 8, divides out exactly.
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d p{random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
+    const double turns =
+        dot(Vec3d{wave.frequency.x, wave.frequency.y, wave.frequency.z}, p) + double{wave.phase};
+    EXPECT_NEAR(height_at(noise, p), 0.5 * std::sqrt(2.0) * math::cos_turns(turns), 1e-3);
+  }
+}
+
+TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
+  RandomPhaseLayer layer = layer_of(1.0);
+  layer.exponent = 2.0;
+  layer.spread = 0.1;
+  layer.direction = {0, -3, 0};
+  const RandomPhaseNoise noise(layer, 1, 0, kDomain);
+  ASSERT_EQ(noise.waves().size(), 12u);
+  double variance = 0.0;
+  const auto length = [](const Wave& w) { return norm(Vec3d{w.frequency.x, w.frequency.y, w.frequency.z}); };
+  const double first = length(noise.waves()[0]) * double{noise.waves()[0].amplitude};
+  for (const Wave& w : noise.waves()) {
+    EXPECT_NEAR(length(w) * double{w.amplitude}, first, 1e-5);
+    EXPECT_GE(-double{w.frequency.y} / length(w), 0.9 - 1e-6);
+    variance += 0.5 * double{w.amplitude} * double{w.amplitude};
+  }
+  EXPECT_NEAR(variance, 0.25, 1e-6);
+}
+
+TEST(RandomPhaseNoise, BitsDependOnThePointAlone) {
+  const RandomPhaseNoise noise(layer_of(0.7), 9, 1, kDomain);
+  CounterRandom random(4);
+  std::vector<float> x, y, z, height(301);
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    x.push_back(static_cast<float>(random.uniform(-120, 120)));
+    y.push_back(static_cast<float>(random.uniform(-20, 20)));
+    z.push_back(static_cast<float>(random.uniform(-20, 20)));
+  }
+  noise.evaluate(301, x.data(), y.data(), z.data(), height.data());
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    ASSERT_EQ(math::bits_of(height[i]), math::bits_of(height_at(noise, {x[i], y[i], z[i]})));
+  }
+}
+
+}  // namespace
+}  // namespace astrolith

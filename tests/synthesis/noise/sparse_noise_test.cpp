@@ -1,0 +1,145 @@
+#include "synthesis/noise/sparse_noise.h"
+
+#include <cmath>
+
+#include "numerics/hash_random.h"
+
+namespace astrolith {
+namespace {
+
+const Box kDomain{{-50, -50, -50}, {50, 50, 50}};
+
+SparseLayer one_level(double probability) {
+  SparseLayer layer;
+  layer.amplitude = 1.0;
+  layer.levels = 1;
+  layer.probability = probability;
+  layer.threshold = 0.0;
+  return layer;
+}
+
+float height_at(const SparseNoise& noise, float x, float y, float z) {
+  float h = 0.0f;
+  noise.evaluate(1, &x, &y, &z, &h);
+  return h;
+}
+
+// The method itself, in one dimension: an image doubled eight times by quadratic interpolation (the
+// corner-cutting rule 3/4, 1/4) becomes the bump that is evaluated directly.
+TEST(SparseNoise, RepeatedUpscalingConvergesToTheBump) {
+  std::vector<double> image(9, 0.0);
+  image[4] = 1.0;
+  double first = 0.0, step = 1.0;  // position of the first pixel from the lone one, and between pixels
+  first = -4.0;
+  for (int doubling = 0; doubling < 8; ++doubling) {
+    std::vector<double> finer;
+    for (std::size_t i = 0; i + 1 < image.size(); ++i) {
+      finer.push_back(0.75 * image[i] + 0.25 * image[i + 1]);
+      finer.push_back(0.25 * image[i] + 0.75 * image[i + 1]);
+    }
+    first += 0.25 * step;
+    step *= 0.5;
+    image = finer;
+  }
+  double worst = 0.0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const double x = first + step * static_cast<double>(i), cell = std::floor(x + 0.5);
+    if (std::fabs(x) > 1.5) {
+      ASSERT_EQ(image[i], 0.0);
+      continue;
+    }
+    const BumpWeights w = bump_weights(static_cast<float>(x - cell));
+    const float bump = cell == 0.0 ? w.at : cell > 0.0 ? w.below : w.above;
+    worst = std::max(worst, std::fabs(static_cast<double>(bump) - image[i]));
+  }
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST(SparseNoise, ShareOfCellsIsTheProbability) {
+  int hit = 0;
+  double sum = 0.0;
+  const int n = 40;
+  for (int x = 0; x < n; ++x) {
+    for (int y = 0; y < n; ++y) {
+      for (int z = 0; z < n; ++z) {
+        const float v = sparse_value(float(x), float(y), float(z), 77u, 0.03f, 1.0f / 0.03f);
+        hit += v > 0.0f;
+        sum += double{v};
+      }
+    }
+  }
+  const double cells = n * n * n;
+  EXPECT_NEAR(hit, 0.03 * cells, 4.0 * std::sqrt(0.03 * cells));
+  EXPECT_NEAR(sum / hit, 0.5, 4.0 / std::sqrt(12.0 * hit));
+}
+
+// All cells occupied by u in [0, 1): the mean of n is that of the values, as bumps add up to one.
+TEST(SparseNoise, BumpsAddUpToOne) {
+  const SparseNoise noise(one_level(1.0), 5, 0, kDomain);
+  CounterRandom random(2);
+  double sum = 0.0;
+  const int n = 4000;
+  for (int i = 0; i < n; ++i) {
+    const auto c = [&] { return static_cast<float>(random.uniform(-40, 40)); };
+    sum -= double{height_at(noise, c(), c(), c())};
+  }
+  EXPECT_NEAR(sum / n, 0.5 * 64.0 / 27.0, 0.03);
+}
+
+TEST(SparseNoise, ThresholdCutsMostOfTheSurfaceFlat) {
+  SparseLayer layer = one_level(0.02);
+  layer.levels = 3;
+  for (const bool merged : {false, true}) {
+    layer.merged = merged;
+    layer.threshold = 0.3;
+    const SparseNoise noise(layer, 5, 0, kDomain);
+    CounterRandom random(3);
+    int flat = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const auto c = [&] { return static_cast<float>(random.uniform(-40, 40)); };
+      const float h = height_at(noise, c(), c(), c());
+      ASSERT_LE(h, 0.0f);
+      flat += h == 0.0f;
+    }
+    EXPECT_GT(flat, 1700);
+    EXPECT_LT(flat, 1999);
+  }
+}
+
+TEST(SparseNoise, BoundsOverBoxesAreNeverWrongAndGroupsDoNotMatter) {
+  CounterRandom random(7);
+  int tight = 0;
+  for (int k = 0; k < 300; ++k) {
+    SparseLayer layer = one_level(random.uniform(0.0, 0.3));
+    layer.amplitude = random.uniform(-1.0, 1.0);
+    layer.cell_size = std::pow(10.0, random.uniform(-1.0, 1.0));
+    layer.levels = 1 + static_cast<int>(random.below(4));
+    layer.threshold = random.uniform();
+    layer.merged = random.uniform() < 0.5;
+    const SparseNoise noise(layer, random.next(), 1, kDomain);
+    const double size = layer.cell_size * std::pow(10.0, random.uniform(-2.0, 1.0));
+    const Vec3d corner{random.uniform(-52, 50), random.uniform(-20, 20), random.uniform(-20, 20)};
+    const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};
+    const Interval bound = noise.bound_heights(box);
+    std::vector<float> x, y, z, h(64);
+    for (std::size_t i = 0; i < h.size(); ++i) {
+      x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
+      y.push_back(static_cast<float>(random.uniform(box.min.y, box.max.y)));
+      z.push_back(static_cast<float>(random.uniform(box.min.z, box.max.z)));
+    }
+    noise.evaluate(64, x.data(), y.data(), z.data(), h.data());
+    for (std::size_t i = 0; i < h.size(); ++i) {
+      ASSERT_GE(double{h[i]}, bound.low);
+      ASSERT_LE(double{h[i]}, bound.high);
+      ASSERT_LE(double{std::fabs(h[i])}, noise.height_bound());
+      if (i % 9 == 0) {
+        ASSERT_EQ(h[i], height_at(noise, x[i], y[i], z[i]));
+      }
+    }
+    tight += bound.high - bound.low < 0.3 * noise.height_bound();
+  }
+  EXPECT_GT(tight, 80);
+}
+
+}  // namespace
+}  // namespace astrolith
