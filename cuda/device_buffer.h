@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cuda/machine.h"
+#include "cuda/backend.h"
 
 namespace astrolith {
 

@@ -1,9 +1,9 @@
 // What this folder offers in a build that found no CUDA compiler: the probe says so, and all else is an error
 // of whoever did not ask it.
+#include "cuda/candidate_evaluator.h"
+#include "cuda/candidates_on_gpu.h"
 #include "cuda/device.h"
 #include "cuda/pair_count.h"
-#include "cuda/swarm.h"
-#include "cuda/swarm_on_gpu.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -24,6 +24,6 @@ std::vector<std::uint64_t> count_pairs_on_gpu(std::span<const Vec3d>, std::span<
   refuse();
 }
 
-std::unique_ptr<SwarmMachine> swarm_on_gpu() { refuse(); }
+std::unique_ptr<CandidateEvaluator> candidates_on_gpu() { refuse(); }
 
 }  // namespace astrolith

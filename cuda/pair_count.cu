@@ -1,6 +1,6 @@
 #include "cuda/pair_count.h"
 
-#include "cuda/device_machine.h"
+#include "cuda/device_backend.h"
 #include "cuda/pair_tiles.h"
 
 namespace astrolith {
@@ -8,8 +8,8 @@ namespace astrolith {
 std::vector<std::uint64_t> count_pairs_on_gpu(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                                               std::span<const std::int32_t> local, int num_local, int bins,
                                               const Progress& progress) {
-  DeviceMachine machine;
-  return count_pairs_on(machine, points, normals, local, num_local, bins, progress);
+  DeviceBackend backend;
+  return count_pairs_on(backend, points, normals, local, num_local, bins, progress);
 }
 
 }  // namespace astrolith

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "cuda/machine.h"
+#include "cuda/backend.h"
 #include "descriptor/shape_histogram.h"
 #include "descriptor/surflet_arrays.h"
 #include "numerics/progress.h"
@@ -131,62 +131,62 @@ struct SurfletSets {
 // Tiles in one launch; a report follows.
 inline constexpr std::size_t kTilesPerLaunch = 16384;
 
-template <int kBins, class Machine>
-std::vector<std::uint64_t> count_tiles(Machine& machine, const SurfletSets& sets, const Progress& progress) {
-  const auto points = machine.upload(std::span<const float>(sets.surflets));
-  const auto list = machine.upload(std::span<const PairTile>(sets.tiles));
+template <int kBins, class Backend>
+std::vector<std::uint64_t> count_tiles(Backend& backend, const SurfletSets& sets, const Progress& progress) {
+  const auto points = backend.upload(std::span<const float>(sets.surflets));
+  const auto list = backend.upload(std::span<const PairTile>(sets.tiles));
   std::vector<std::uint64_t> counts(sets.num_codes *
                                     static_cast<std::size_t>(bin_count(PairFeatures::wahl, kBins)));
-  auto totals = machine.template allocate<std::uint64_t>(counts.size());
-  machine.fill_zero(totals);
+  auto totals = backend.template allocate<std::uint64_t>(counts.size());
+  backend.fill_zero(totals);
   for (std::size_t first = 0; first < sets.tiles.size(); first += kTilesPerLaunch) {
     const std::size_t size = std::min(kTilesPerLaunch, sets.tiles.size() - first);
-    machine.launch_groups(
+    backend.launch_groups(
         "counting pairs", size, kTileRows,
         CountPairTiles<kBins>{list.data() + first, points.data(), sets.stride, totals.data()});
-    machine.wait();
+    backend.wait();
     const double done = static_cast<double>(first + size) / static_cast<double>(sets.tiles.size());
     if (!report(progress, done, "")) throw WorkError("stopped; nothing was written");
   }
-  machine.download(totals, std::span(counts));
+  backend.download(totals, std::span(counts));
   return counts;
 }
 
 // count_pairs (descriptor/pair_count.h) of each set, one after the other: the same counts.
-template <class Machine>
-std::vector<std::uint64_t> count_sets_on(Machine& machine, std::span<const SurfletArrays> arrays, int bins,
+template <class Backend>
+std::vector<std::uint64_t> count_sets_on(Backend& backend, std::span<const SurfletArrays> arrays, int bins,
                                          const Progress& progress) {
   const SurfletSets sets(arrays);
   static_assert(kMinBins == 2 && kMaxBins == 10);
   switch (bins) {
     case 2:
-      return count_tiles<2>(machine, sets, progress);
+      return count_tiles<2>(backend, sets, progress);
     case 3:
-      return count_tiles<3>(machine, sets, progress);
+      return count_tiles<3>(backend, sets, progress);
     case 4:
-      return count_tiles<4>(machine, sets, progress);
+      return count_tiles<4>(backend, sets, progress);
     case 6:
-      return count_tiles<6>(machine, sets, progress);
+      return count_tiles<6>(backend, sets, progress);
     case 7:
-      return count_tiles<7>(machine, sets, progress);
+      return count_tiles<7>(backend, sets, progress);
     case 8:
-      return count_tiles<8>(machine, sets, progress);
+      return count_tiles<8>(backend, sets, progress);
     case 9:
-      return count_tiles<9>(machine, sets, progress);
+      return count_tiles<9>(backend, sets, progress);
     case 10:
-      return count_tiles<10>(machine, sets, progress);
+      return count_tiles<10>(backend, sets, progress);
     default:
-      return count_tiles<5>(machine, sets, progress);
+      return count_tiles<5>(backend, sets, progress);
   }
 }
 
-// count_pairs on a machine.
-template <class Machine>
-std::vector<std::uint64_t> count_pairs_on(Machine& machine, std::span<const Vec3d> points,
+// count_pairs on a backend.
+template <class Backend>
+std::vector<std::uint64_t> count_pairs_on(Backend& backend, std::span<const Vec3d> points,
                                           std::span<const Vec3d> normals, std::span<const std::int32_t> local,
                                           int num_local, int bins, const Progress& progress) {
   const SurfletArrays surflets(points, normals, local, num_local);
-  return count_sets_on(machine, std::span(&surflets, 1), bins, progress);
+  return count_sets_on(backend, std::span(&surflets, 1), bins, progress);
 }
 
 }  // namespace astrolith

@@ -83,7 +83,7 @@ inline constexpr int kMaxOperations = 256;    // in a whole recipe
 //
 // The other kernels are scaled to the same two values: f_i is e^a at the centre and 1 where |p - c_i|^2 is
 // a/b r_i^2. They end continuously: where their own support does or, lowered by what is left there, at
-// cutoff_radii, whichever comes first (synthesis/body/kernel_profile.h). That needs a tension of
+// cutoff_radii, whichever comes first (synthesis/body/compact_kernel.h). That needs a tension of
 // least_tension(body) at least. Their blend is a p-norm with m >= 1.
 //
 // Spheres can also take away: with g_j their kernels and T the iso-value,

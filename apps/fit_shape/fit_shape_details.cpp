@@ -4,8 +4,8 @@
 
 #include "apps/option_checks.h"
 #include "apps/variations.h"
-#include "cuda/swarm.h"
-#include "cuda/swarm_on_gpu.h"
+#include "cuda/candidate_evaluator.h"
+#include "cuda/candidates_on_gpu.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -118,7 +118,8 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
   details.fitness.recipe_seed = recipe.seed;
   details.log = &log;
   const ChosenDevice chosen = arguments.device.choose(program);
-  const std::unique_ptr<SwarmMachine> swarm = chosen ? swarm_on_gpu() : std::unique_ptr<SwarmMachine>();
+  const std::unique_ptr<CandidateEvaluator> swarm =
+      chosen ? candidates_on_gpu() : std::unique_ptr<CandidateEvaluator>();
   details.swarm = swarm.get();
   DetailsFitResult result = fit_details(target, in_target_frame(target, *recipe.body), details, progress);
   for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))

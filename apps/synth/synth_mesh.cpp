@@ -15,7 +15,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/sha256.h"
-#include "synthesis/field/feature_list.h"
+#include "synthesis/field/landform_list.h"
 #include "synthesis/field/surface_labels.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "synthesis/mesh/mesh_components.h"
@@ -62,9 +62,9 @@ void check_outputs(const Program& program, const MeshRequest& request, const fs:
   if (request.points || request.labels) require_extension(output, {".ply"});
   require_writable(output);
   check_preview(program, request.preview);
-  if (request.features.empty()) return;
-  require_extension(request.features, {".csv", ".json"});
-  require_writable(request.features);
+  if (request.landforms.empty()) return;
+  require_extension(request.landforms, {".csv", ".json"});
+  require_writable(request.landforms);
 }
 
 void summarize_mesh(Program& program, const Region& region, const MeshStatistics& statistics,
@@ -175,7 +175,7 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
   request.device.add_to(program.app);
   declare_preview_options(program, request.preview);
   program.app
-      .add_option("--feature-list", request.features,
+      .add_option("--feature-list", request.landforms,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
                   "sizes, ages and angles (degrees), in the recipe's unit")
       ->option_text("FILE.csv|FILE.json");
@@ -234,7 +234,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
     write_mesh(collector.mesh, output, info);
   }
   if (use.preview) write_preview(program, request.preview, collector.mesh);
-  if (!request.features.empty()) write_feature_list(field, recipe.length_unit, request.features);
+  if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
   summarize_mesh(program, region, statistics, report);
   summarize_output(program, output);
   program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);

@@ -16,10 +16,10 @@ namespace astrolith {
 struct MeshRequest {
   MeshSizeRequest size;
   PreviewRequest preview;
-  std::filesystem::path features;  // list of craters and boulders; empty = none
-  std::string tile;                // "3/16"; empty = the whole
-  std::vector<double> patch;       // centre and side; empty = the whole
-  double least_component = 0.0;    // share of the largest one's volume; 0 = all stay
+  std::filesystem::path landforms;  // list of craters and boulders; empty = none
+  std::string tile;                 // "3/16"; empty = the whole
+  std::vector<double> patch;        // centre and side; empty = the whole
+  double least_component = 0.0;     // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
   DeviceOption device;

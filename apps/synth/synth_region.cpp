@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "cuda/mesher/machine_mesher.h"
+#include "cuda/mesher/backend_mesher.h"
 #include "cuda/mesher/mesh_field.h"
 #include "numerics/errors.h"
 #include "numerics/interval.h"

@@ -1,4 +1,4 @@
-// Meshes one batch of blocks on a machine: samples, counts, vertices, normals and triangles, each a launch
+// Meshes one batch of blocks on a backend: samples, counts, vertices, normals and triangles, each a launch
 // over all blocks together, and the results on the host.
 #pragma once
 
@@ -16,9 +16,9 @@ struct MeshedLayers {
 };
 
 // The last layer of the batch before.
-template <class Machine>
+template <class Backend>
 struct KeptLayer {
-  typename Machine::template Array<MeshBlock> blocks;
+  typename Backend::template Array<MeshBlock> blocks;
   std::size_t first = 0;  // in blocks
   std::vector<BlockColumn> columns;
   LayerIndex index;
@@ -33,17 +33,17 @@ struct KeptLayer {
   fail_at_open_side();
 }
 
-template <class Machine>
+template <class Backend>
 class BatchMesher {
  public:
   template <typename T>
-  using Array = typename Machine::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
-  // `failure` is a MeshFailure in the machine's memory, which may hold one already. Numbers of vertices begin
+  // `failure` is a MeshFailure in the backend's memory, which may hold one already. Numbers of vertices begin
   // at first_number.
-  BatchMesher(Machine& machine, const MeshBatch& batch, const std::vector<BlockPlace>& places,
-              const KeptLayer<Machine>& kept, Array<std::uint32_t>& failure)
-      : machine_(machine),
+  BatchMesher(Backend& backend, const MeshBatch& batch, const std::vector<BlockPlace>& places,
+              const KeptLayer<Backend>& kept, Array<std::uint32_t>& failure)
+      : backend_(backend),
         batch_(batch),
         n_(places.size()),
         places_(places),
@@ -52,45 +52,45 @@ class BatchMesher {
 
   // `layer_sizes` are in blocks. Throws what the CPU's mesher throws, and OutOfDeviceMemory.
   void mesh(std::span<const std::size_t> layer_sizes, std::uint32_t first_number, MeshedLayers& out) {
-    auto counters = zeros_on<std::uint64_t>(machine_, 2);  // evaluations, cut vertices
+    auto counters = zeros_on<std::uint64_t>(backend_, 2);  // evaluations, cut vertices
     sample(counters);
     check_sides();
-    auto vertex_rows = zeros_on<std::uint32_t>(machine_, n_ * MeshBatch::kRows + 1);
-    auto triangle_rows = zeros_on<std::uint32_t>(machine_, n_ * MeshBatch::kRows + 1);
-    machine_.launch("counting triangles", n_ * MeshBatch::kRows,
+    auto vertex_rows = zeros_on<std::uint32_t>(backend_, n_ * MeshBatch::kRows + 1);
+    auto triangle_rows = zeros_on<std::uint32_t>(backend_, n_ * MeshBatch::kRows + 1);
+    backend_.launch("counting triangles", n_ * MeshBatch::kRows,
                     CountRows{batch_, vertex_rows.data(), triangle_rows.data(), counters.data() + 1});
-    machine_.running_sum(vertex_rows);
-    machine_.running_sum(triangle_rows);
+    backend_.running_sum(vertex_rows);
+    backend_.running_sum(triangle_rows);
     pick_starts(layer_sizes, vertex_rows, triangle_rows, out);
     require_success();
     emit(vertex_rows, triangle_rows, first_number, out);
     std::array<std::uint64_t, 2> counted;
-    machine_.download(counters, std::span<std::uint64_t>(counted));
+    backend_.download(counters, std::span<std::uint64_t>(counted));
     out.evaluations = counted[0] + 4 * std::uint64_t{out.first_vertex.back()};
     out.cut_vertices = counted[1];
   }
 
  private:
   void sample(Array<std::uint64_t>& counters) {
-    machine_.launch("starting blocks", n_, StartBlocks{batch_, counters.data()});
+    backend_.launch("starting blocks", n_, StartBlocks{batch_, counters.data()});
     const auto band = static_cast<float>(kSampleBand * batch_.grid.samples.step);
-    machine_.launch_groups("evaluating samples", n_, EvaluateSamples::kThreads,
+    backend_.launch_groups("evaluating samples", n_, EvaluateSamples::kThreads,
                            EvaluateSamples{batch_, band});
-    machine_.launch("borrowing samples", n_ * MeshBlock::kSamples, BorrowSamples{batch_});
-    machine_.launch("taking signs", n_ * TakeSigns::kRows, TakeSigns{batch_});
+    backend_.launch("filling the halo of samples", n_ * MeshBlock::kSamples, FillSampleHalo{batch_});
+    backend_.launch("taking signs", n_ * TakeSigns::kRows, TakeSigns{batch_});
   }
 
   // Of this batch, and of the layer before it now that the one above it is known.
   void check_sides() {
-    machine_.launch("checking sides", 6 * n_, CheckSides{batch_, batch_.blocks, nullptr, 0});
+    backend_.launch("checking sides", 6 * n_, CheckSides{batch_, batch_.blocks, nullptr, 0});
     if (kept_.columns.empty()) return;
     LayerIndex above(batch_.grid.blocks(0), batch_.grid.blocks(1));
     for (const BlockPlace& p : places_) {
       if (p.z == kept_.z + 1) above.set(p.x, p.y, 0);
     }
     const std::vector<std::uint32_t> lacking = lacking_above(kept_.columns, above);
-    const auto array = machine_.upload(std::span<const std::uint32_t>(lacking));
-    machine_.launch("checking sides", 6 * lacking.size(),
+    const auto array = backend_.upload(std::span<const std::uint32_t>(lacking));
+    backend_.launch("checking sides", 6 * lacking.size(),
                     CheckSides{batch_, batch_.below, array.data(), kept_.z});
   }
 
@@ -100,16 +100,16 @@ class BatchMesher {
     for (const std::size_t size : layer_sizes) {
       rows.push_back(rows.back() + static_cast<std::uint32_t>(MeshBatch::kRows * size));
     }
-    const auto row_array = machine_.upload(std::span<const std::uint32_t>(rows));
-    auto vertices = machine_.template allocate<std::uint32_t>(rows.size());
-    auto triangles = machine_.template allocate<std::uint32_t>(rows.size());
-    machine_.launch("finding layers", rows.size(),
+    const auto row_array = backend_.upload(std::span<const std::uint32_t>(rows));
+    auto vertices = backend_.template allocate<std::uint32_t>(rows.size());
+    auto triangles = backend_.template allocate<std::uint32_t>(rows.size());
+    backend_.launch("finding layers", rows.size(),
                     PickStarts{vertex_rows.data(), triangle_rows.data(), row_array.data(), vertices.data(),
                                triangles.data()});
     out.first_vertex.resize(rows.size());
     out.first_triangle.resize(rows.size());
-    machine_.download(vertices, std::span(out.first_vertex));
-    machine_.download(triangles, std::span(out.first_triangle));
+    backend_.download(vertices, std::span(out.first_vertex));
+    backend_.download(triangles, std::span(out.first_triangle));
   }
 
   void emit(const Array<std::uint32_t>& vertex_rows, const Array<std::uint32_t>& triangle_rows,
@@ -118,33 +118,33 @@ class BatchMesher {
     if (first_number + num_vertices > std::numeric_limits<std::uint32_t>::max()) {
       throw WorkError("mesher: more than 2^32 vertices; lower the resolution");
     }
-    auto vertices = machine_.template allocate<MeshVertex>(num_vertices);
-    auto triangles = machine_.template allocate<Triangle>(num_triangles);
-    machine_.launch("placing vertices", n_ * MeshBatch::kRows,
+    auto vertices = backend_.template allocate<MeshVertex>(num_vertices);
+    auto triangles = backend_.template allocate<Triangle>(num_triangles);
+    backend_.launch("placing vertices", n_ * MeshBatch::kRows,
                     PlaceVertices{batch_, vertex_rows.data(), first_number, vertices.data()});
-    machine_.launch_groups("taking normals", n_, TakeNormals::kThreads,
+    backend_.launch_groups("taking normals", n_, TakeNormals::kThreads,
                            TakeNormals{batch_, static_cast<float>(0.25 * batch_.grid.samples.step),
                                        vertex_rows.data(), vertices.data()});
-    machine_.launch("borrowing vertices", n_ * MeshBlock::kSamples, BorrowVertices{batch_});
-    machine_.launch("making triangles", n_ * MeshBatch::kRows,
+    backend_.launch("filling the halo of vertices", n_ * MeshBlock::kSamples, FillVertexHalo{batch_});
+    backend_.launch("making triangles", n_ * MeshBatch::kRows,
                     MakeTriangles{batch_, triangle_rows.data(), triangles.data()});
     out.vertices.resize(num_vertices);
     out.triangles.resize(num_triangles);
-    machine_.download(vertices, std::span(out.vertices));
-    machine_.download(triangles, std::span(out.triangles));
+    backend_.download(vertices, std::span(out.vertices));
+    backend_.download(triangles, std::span(out.triangles));
     require_success();
   }
 
   void require_success() {
-    const auto why = static_cast<MeshFailure>(machine_.read(failure_, 0));
+    const auto why = static_cast<MeshFailure>(backend_.read(failure_, 0));
     if (why != MeshFailure::kNone) fail_as(why);
   }
 
-  Machine& machine_;
+  Backend& backend_;
   MeshBatch batch_;
   std::size_t n_;
   const std::vector<BlockPlace>& places_;
-  const KeptLayer<Machine>& kept_;
+  const KeptLayer<Backend>& kept_;
   const Array<std::uint32_t>& failure_;
 };
 

@@ -1,36 +1,36 @@
-// Finds the blocks of some layers that the surface may cross, on a machine: the blocks of mixed_blocks
+// Finds the blocks of some layers that the surface may cross, on a backend: the blocks of mixed_blocks
 // (synthesis/mesh/block_culling.h), with lists of what of the field reaches each.
 #pragma once
 
 #include <bit>
 #include <vector>
 
-#include "cuda/field_on_machine.h"
+#include "cuda/field_on_backend.h"
 #include "cuda/mesher/cull_steps.h"
 
 namespace astrolith {
 
 // Blocks in the order of layers, rows and columns.
-template <class Machine>
+template <class Backend>
 struct CulledBlocks {
-  typename Machine::template Array<CullNode> nodes;
-  typename Machine::template Array<FlatRange> ranges;       // (nodes, lists) of the numbers
-  typename Machine::template Array<std::uint32_t> numbers;  // of metaballs, craters and boulders
+  typename Backend::template Array<CullNode> nodes;
+  typename Backend::template Array<FlatRange> ranges;       // (nodes, lists) of the numbers
+  typename Backend::template Array<std::uint32_t> numbers;  // of metaballs, craters and boulders
   std::vector<CullNode> on_host;
 
   CullNodes view() const { return {nodes.data(), ranges.data(), numbers.data()}; }
 };
 
-template <class Machine>
+template <class Backend>
 class BlockCuller {
  public:
   template <typename T>
-  using Array = typename Machine::template Array<T>;
+  using Array = typename Backend::template Array<T>;
 
   // Lists of the metaballs as far as `wide_margin` around where points are projected, unless that is 0.
-  BlockCuller(Machine& machine, const FlatFieldData& data, const FlatField& field, const MeshGrid& grid,
+  BlockCuller(Backend& backend, const FlatFieldData& data, const FlatField& field, const MeshGrid& grid,
               double wide_margin)
-      : machine_(machine),
+      : backend_(backend),
         field_(field),
         grid_(grid),
         lists_{static_cast<std::uint32_t>(data.leaves.size()), static_cast<std::uint32_t>(data.lists),
@@ -49,20 +49,20 @@ class BlockCuller {
     for (const std::uint32_t layer : data.crater_layers) add(0, data.layers[layer].parts.count);
     add(0, static_cast<std::uint32_t>(data.boulders.size()));
     if (lists_.wide != 0) add_leaves();
-    all_ranges_ = machine.upload(std::span<const FlatRange>(ranges));
-    all_numbers_ = machine.upload(std::span<const std::uint32_t>(numbers));
+    all_ranges_ = backend.upload(std::span<const FlatRange>(ranges));
+    all_numbers_ = backend.upload(std::span<const std::uint32_t>(numbers));
   }
 
   const NodeLists& lists() const { return lists_; }
 
   // Of layers first_z .. first_z + count - 1. `failure` becomes a MeshFailure where the body fills the
   // border.
-  CulledBlocks<Machine> cull(int first_z, int count, Array<std::uint32_t>& failure) {
+  CulledBlocks<Backend> cull(int first_z, int count, Array<std::uint32_t>& failure) {
     const auto longest = static_cast<unsigned>(std::max(grid_.blocks(0), grid_.blocks(1)));
     const int size = std::max(2, static_cast<int>(std::bit_ceil(longest)));
     std::vector<CullNode> roots;
     for (int z = first_z; z < first_z + count; ++z) roots.push_back({0, 0, z, size});
-    Level level{machine_.upload(std::span<const CullNode>(roots)), {}, {}};
+    Level level{backend_.upload(std::span<const CullNode>(roots)), {}, {}};
     narrow(CullNodes{nullptr, all_ranges_.data(), all_numbers_.data()},
            static_cast<std::uint32_t>(roots.size()), level);
     for (int s = size; s > 1 && level.nodes.size() != 0; s /= 2) level = mixed_quarters(level, failure);
@@ -82,54 +82,54 @@ class BlockCuller {
   void narrow(const CullNodes& parents, std::uint32_t nodes_a_parent, Level& level) {
     const std::size_t lists = level.nodes.size() * lists_.count();
     auto narrowed = write_lists<std::uint32_t>(
-        machine_, "narrowing lists", lists,
+        backend_, "narrowing lists", lists,
         NarrowLists{field_, grid_, lists_, wide_margin_, level.nodes.data(), parents, nodes_a_parent});
-    level.ranges = machine_.template allocate<FlatRange>(lists);
-    machine_.launch("finding lists", lists, MakeRanges{narrowed.first.data(), level.ranges.data()});
+    level.ranges = backend_.template allocate<FlatRange>(lists);
+    backend_.launch("finding lists", lists, MakeRanges{narrowed.first.data(), level.ranges.data()});
     level.numbers = std::move(narrowed.items);
   }
 
   Level mixed_quarters(const Level& level, Array<std::uint32_t>& failure) {
     const std::size_t n = 4 * level.nodes.size();
-    Level quarters{machine_.template allocate<CullNode>(n), {}, {}};
-    machine_.launch("quartering nodes", n, MakeQuarters{grid_, level.nodes.data(), quarters.nodes.data()});
+    Level quarters{backend_.template allocate<CullNode>(n), {}, {}};
+    backend_.launch("quartering nodes", n, MakeQuarters{grid_, level.nodes.data(), quarters.nodes.data()});
     narrow(level.view(), 4, quarters);
-    auto scratch = machine_.template allocate<KernelInterval>(quarters.numbers.size());
-    auto flags = zeros_on<std::uint32_t>(machine_, n + 1);
-    machine_.launch(
+    auto scratch = backend_.template allocate<KernelInterval>(quarters.numbers.size());
+    auto flags = zeros_on<std::uint32_t>(backend_, n + 1);
+    backend_.launch(
         "bounding nodes", n,
         FlagMixed{field_, grid_, lists_, quarters.view(), scratch.data(), flags.data(), failure.data()});
-    machine_.running_sum(flags);
-    const std::size_t kept = machine_.read(flags, n);
-    Level mixed{machine_.template allocate<CullNode>(kept),
-                machine_.template allocate<FlatRange>(kept * lists_.count()),
+    backend_.running_sum(flags);
+    const std::size_t kept = backend_.read(flags, n);
+    Level mixed{backend_.template allocate<CullNode>(kept),
+                backend_.template allocate<FlatRange>(kept * lists_.count()),
                 {}};
-    machine_.launch(
+    backend_.launch(
         "keeping nodes", n,
         KeepMixed{lists_.count(), quarters.view(), flags.data(), mixed.nodes.data(), mixed.ranges.data()});
     mixed.numbers = std::move(quarters.numbers);
     return mixed;
   }
 
-  CulledBlocks<Machine> ordered(Level& level, int first_z, int count) {
+  CulledBlocks<Backend> ordered(Level& level, int first_z, int count) {
     const std::size_t n = level.nodes.size();
-    auto marks = zeros_on<std::uint32_t>(machine_, static_cast<std::size_t>(count) *
+    auto marks = zeros_on<std::uint32_t>(backend_, static_cast<std::size_t>(count) *
                                                        static_cast<std::size_t>(grid_.blocks(0)) *
                                                        static_cast<std::size_t>(grid_.blocks(1)));
     const MarkBlocks mark{grid_, first_z, level.nodes.data(), marks.data()};
-    machine_.launch("marking blocks", n, mark);
-    machine_.running_sum(marks);
-    CulledBlocks<Machine> blocks{machine_.template allocate<CullNode>(n),
-                                 machine_.template allocate<FlatRange>(n * lists_.count()),
+    backend_.launch("marking blocks", n, mark);
+    backend_.running_sum(marks);
+    CulledBlocks<Backend> blocks{backend_.template allocate<CullNode>(n),
+                                 backend_.template allocate<FlatRange>(n * lists_.count()),
                                  std::move(level.numbers), std::vector<CullNode>(n)};
-    machine_.launch(
+    backend_.launch(
         "ordering blocks", n,
         OrderBlocks{mark, lists_.count(), level.ranges.data(), blocks.nodes.data(), blocks.ranges.data()});
-    machine_.download(blocks.nodes, std::span(blocks.on_host));
+    backend_.download(blocks.nodes, std::span(blocks.on_host));
     return blocks;
   }
 
-  Machine& machine_;
+  Backend& backend_;
   FlatField field_;
   MeshGrid grid_;
   NodeLists lists_;

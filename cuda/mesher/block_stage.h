@@ -2,7 +2,7 @@
 // read the same metaballs and impulses. Lists that do not fit stay where they are.
 #pragma once
 
-#include "cuda/machine.h"
+#include "cuda/backend.h"
 #include "synthesis/field/flat_field.h"
 
 namespace astrolith {
@@ -58,14 +58,14 @@ class BlockStage {
         left_(kBytes),
         spheres_(from_.spheres, from_.first_sphere, blocks.leaves, kBytes, left_),
         impulses_(from_.impulses, from_.first_impulse, blocks.sizes, kBytes, left_),
-        features_(from_.features, from_.first_feature, blocks.lists, kBytes, left_),
+        landforms_(from_.landforms, from_.first_landform, blocks.lists, kBytes, left_),
         gabor_(from_.gabor, from_.first_gabor, blocks.bands, kBytes, left_) {}
 
   // Every thread of the group copies its share; `shared` is aligned to four bytes.
   ASTROLITH_HD void copy(char* shared, unsigned thread, unsigned threads) const {
     spheres_.copy(shared, thread, threads);
     impulses_.copy(shared, thread, threads);
-    features_.copy(shared, thread, threads);
+    landforms_.copy(shared, thread, threads);
     gabor_.copy(shared, thread, threads);
   }
   // The block, once all have copied.
@@ -73,7 +73,7 @@ class BlockStage {
     FlatBlock staged = from_;
     spheres_.point_to(shared, staged.spheres, staged.first_sphere);
     impulses_.point_to(shared, staged.impulses, staged.first_impulse);
-    features_.point_to(shared, staged.features, staged.first_feature);
+    landforms_.point_to(shared, staged.landforms, staged.first_landform);
     gabor_.point_to(shared, staged.gabor, staged.first_gabor);
     return staged;
   }
@@ -83,7 +83,7 @@ class BlockStage {
   std::size_t left_;
   StagedLists<MetaballSphere<float>> spheres_;
   StagedLists<SpotImpulse> impulses_;
-  StagedLists<std::uint32_t> features_;
+  StagedLists<std::uint32_t> landforms_;
   StagedLists<GaborImpulse> gabor_;
 };
 

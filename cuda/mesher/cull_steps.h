@@ -1,10 +1,10 @@
-// The steps in which a machine finds the blocks that the surface may cross, by quadtrees over layers of
+// The steps in which a backend finds the blocks that the surface may cross, by quadtrees over layers of
 // blocks: mixed_blocks (synthesis/mesh/block_culling.h) for many nodes at once, with the bounds of
 // synthesis/field/flat_bounds.h. A node carries lists of what of the field reaches it, chosen from its
 // parent's.
 #pragma once
 
-#include "cuda/machine_lists.h"
+#include "cuda/backend_lists.h"
 #include "cuda/mesher/mesh_batch.h"
 #include "synthesis/field/flat_bounds.h"
 
@@ -18,12 +18,12 @@ struct CullNode {
 // Lists of a node, in this order: metaballs of each leaf, craters of each layer of such, boulders. Where
 // Gabor noise is, metaballs of each leaf again, now those that reach its cells around the block.
 struct NodeLists {
-  std::uint32_t leaves, features, wide;
+  std::uint32_t leaves, landforms, wide;
 
-  ASTROLITH_HD std::uint32_t count() const { return leaves + features + wide; }
+  ASTROLITH_HD std::uint32_t count() const { return leaves + landforms + wide; }
 };
 
-// Nodes in a machine's memory, and their lists.
+// Nodes in a backend's memory, and their lists.
 struct CullNodes {
   const CullNode* nodes;
   const FlatRange* ranges;  // (nodes, lists)
@@ -59,22 +59,22 @@ struct NarrowLists {
     const Box box = grid.box(node.x, node.y, node.z, node.size);
     if (list < lists.leaves) return flat_leaf_box(field, list, box);
     if (list == lists.leaves + field.boulder_list) return box;
-    if (list < lists.leaves + lists.features) {
+    if (list < lists.leaves + lists.landforms) {
       return farthest_projected_box(flat_body_box(field, box), field.height_bound);
     }
     const Box at = farthest_projected_box(flat_body_box(field, box), field.height_bound);
     return field.num_steps == 0
                ? widened(at, wide_margin)
-               : flat_leaf_box(field, list - lists.leaves - lists.features, widened(at, wide_margin));
+               : flat_leaf_box(field, list - lists.leaves - lists.landforms, widened(at, wide_margin));
   }
   ASTROLITH_HD bool reaches(std::uint32_t list, std::uint32_t number, const Box& box) const {
     if (list < lists.leaves) return metaball_reaches(field, list, number, box);
     if (list == lists.leaves + field.boulder_list) return boulder_reaches(field, number, box);
-    if (list < lists.leaves + lists.features) {
+    if (list < lists.leaves + lists.landforms) {
       const FlatLayer& layer = field.layers[field.crater_layers[list - lists.leaves]];
       return boxes_touch(crater_reach(field.craters[layer.parts.first + number]), box);
     }
-    return metaball_reaches(field, list - lists.leaves - lists.features, number, box);
+    return metaball_reaches(field, list - lists.leaves - lists.landforms, number, box);
   }
   template <typename Writer>
   ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {

@@ -1,5 +1,5 @@
 // The lists that blocks are evaluated with (FlatBlocks of synthesis/field/flat_field.h), written on a
-// machine: each struct writes list number i, by the rules of FieldBlock::lists().
+// backend: each struct writes list number i, by the rules of FieldBlock::lists().
 #pragma once
 
 #include "cuda/mesher/cull_steps.h"
@@ -38,12 +38,13 @@ struct GatherMetaballs {
 };
 
 // The numbers of craters and boulders.
-struct GatherFeatures {
+struct GatherLandforms {
   GatherFrom from;
 
   template <typename Writer>
   ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
-    const FlatRange range = from.range(i / from.lists.features, from.lists.leaves + i % from.lists.features);
+    const FlatRange range =
+        from.range(i / from.lists.landforms, from.lists.leaves + i % from.lists.landforms);
     for (std::uint32_t k = range.first; k < range.first + range.count; ++k) write(from.blocks.numbers[k]);
   }
 };

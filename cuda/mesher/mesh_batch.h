@@ -15,7 +15,7 @@ namespace astrolith {
 using MeshBlock = LayerBlock<kBlockCells>;
 using MeshGrid = BlockGrid<kBlockCells>;
 
-// Why a batch could not be meshed; as a number in the machine's memory.
+// Why a batch could not be meshed; as a number in the backend's memory.
 enum class MeshFailure : std::uint32_t { kNone, kBorder, kMissingBlock, kOpenSide };
 
 struct BlockPlace {

@@ -2,13 +2,13 @@
 // row or vertex is the function that LayeredMesher (synthesis/mesh/mesher.h) calls in its loops.
 #pragma once
 
-#include "cuda/machine.h"
+#include "cuda/backend.h"
 #include "cuda/mesher/mesh_batch.h"
 #include "synthesis/field/flat_value.h"
 
 namespace astrolith {
 
-// A batch in a machine's memory.
+// A batch in a backend's memory.
 struct MeshBatch {
   static constexpr std::size_t kRows = std::size_t{kBlockCells} * kBlockCells;
 
@@ -81,17 +81,17 @@ struct StartBlocks {
 };
 
 // A thread a sample.
-struct BorrowSamples {
+struct FillSampleHalo {
   MeshBatch batch;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
     const SampleThread t(thread);
     if (owner_of(t.x, t.y, t.z) == 0) return;
-    borrow_sample(batch.owners(t.block), t.x, t.y, t.z, batch.blocks[t.block]);
+    fill_halo_sample(batch.owners(t.block), t.x, t.y, t.z, batch.blocks[t.block]);
   }
 };
 
-// A thread a row of samples, borrowed ones included.
+// A thread a row of samples, the halo included.
 struct TakeSigns {
   static constexpr std::size_t kRows = std::size_t{MeshBlock::kSide} * MeshBlock::kSide;
   MeshBatch batch;
@@ -157,13 +157,13 @@ struct PlaceVertices {
 };
 
 // A thread a sample.
-struct BorrowVertices {
+struct FillVertexHalo {
   MeshBatch batch;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
     const SampleThread t(thread);
     if (owner_of(t.x, t.y, t.z) == 0) return;
-    const bool found = borrow_vertices_at(batch.owners(t.block), batch.window(t.block), t.x, t.y, t.z,
+    const bool found = fill_halo_vertices(batch.owners(t.block), batch.window(t.block), t.x, t.y, t.z,
                                           batch.blocks[t.block]);
     if (!found) batch.fail(MeshFailure::kMissingBlock);
   }

@@ -155,12 +155,12 @@ Interval bound_distance(const PreparedBody& body, const Box& box, double height)
   return s;
 }
 
-double body_stretch(const PreparedBody& body) {
-  double stretch = body.warp ? body.warp->stretch() : 1.0;
+double lipschitz_bound_of(const PreparedBody& body) {
+  double lipschitz_bound = body.warp ? body.warp->lipschitz_bound() : 1.0;
   for (const PreparedOperation& o : body.operations) {
-    stretch = std::max(stretch, body_stretch(o.operand)) * slope_of(o.parameters);
+    lipschitz_bound = std::max(lipschitz_bound, lipschitz_bound_of(o.operand)) * slope_of(o.parameters);
   }
-  return stretch;
+  return lipschitz_bound;
 }
 
 }  // namespace astrolith

@@ -50,6 +50,6 @@ void evaluate_body(const PreparedBody& body, int n, const float* x, const float*
 Interval bound_distance(const PreparedBody& body, const Box& box, double height);
 
 // How much faster than a distance s may change because of operators and warps; at least 1.
-double body_stretch(const PreparedBody& body);
+double lipschitz_bound_of(const PreparedBody& body);
 
 }  // namespace astrolith

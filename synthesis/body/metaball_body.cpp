@@ -12,15 +12,17 @@ namespace {
 constexpr double kNegligibleExponent = 20.0;
 
 // Of a kernel other than the Gaussian, all but the gradient's floor.
-MetaballParameters<float> profile_parameters(const MetaballBody& body) {
+MetaballParameters<float> compact_parameters(const MetaballBody& body) {
   double cutoff_squared = body.cutoff_radii * body.cutoff_radii;
-  const KernelProfile<double> profile = scaled_kernel(body.kernel, body.a, body.a / body.b, cutoff_squared);
+  const CompactKernel<double> compact_kernel =
+      scaled_kernel(body.kernel, body.a, body.a / body.b, cutoff_squared);
   MetaballParameters<float> parameters;
   parameters.m = static_cast<float>(body.blend_exponent);
   parameters.inverse_m = static_cast<float>(1.0 / body.blend_exponent);
   parameters.cutoff_squared = static_cast<float>(cutoff_squared);
-  parameters.profile = {profile.kernel, static_cast<float>(profile.scale), static_cast<float>(profile.low),
-                        static_cast<float>(profile.height / body.iso_value)};
+  parameters.compact_kernel = {compact_kernel.kernel, static_cast<float>(compact_kernel.scale),
+                               static_cast<float>(compact_kernel.low),
+                               static_cast<float>(compact_kernel.height / body.iso_value)};
   return parameters;
 }
 
@@ -45,7 +47,7 @@ PreparedMetaballs prepare_metaballs(const MetaballBody& body) {
   }
   const double gradient_floor = 1e-3 / largest_radius;
   if (body.kernel != Kernel::kGaussian) {
-    prepared.parameters = profile_parameters(body);
+    prepared.parameters = compact_parameters(body);
     prepared.parameters.gradient_floor = static_cast<float>(gradient_floor * gradient_floor);
     return prepared;
   }

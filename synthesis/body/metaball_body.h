@@ -20,13 +20,13 @@ struct PreparedMetaballs {
   std::vector<MetaballSphere<float>> spheres;
 
   // The two kinds.
-  std::span<const MetaballSphere<float>> adding() const { return {spheres.begin(), first_taking()}; }
-  std::span<const MetaballSphere<float>> taking() const { return {first_taking(), spheres.end()}; }
+  std::span<const MetaballSphere<float>> adding() const { return {spheres.begin(), first_subtractive()}; }
+  std::span<const MetaballSphere<float>> taking() const { return {first_subtractive(), spheres.end()}; }
 
  private:
-  std::vector<MetaballSphere<float>>::const_iterator first_taking() const {
+  std::vector<MetaballSphere<float>>::const_iterator first_subtractive() const {
     return std::partition_point(spheres.begin(), spheres.end(),
-                                [](const MetaballSphere<float>& s) { return !s.takes_away(); });
+                                [](const MetaballSphere<float>& s) { return !s.subtractive(); });
   }
 };
 

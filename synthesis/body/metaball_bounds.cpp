@@ -1,4 +1,4 @@
-#include "synthesis/body/profile_bounds.h"
+#include "synthesis/body/compact_kernel_bounds.h"
 
 namespace astrolith {
 namespace {

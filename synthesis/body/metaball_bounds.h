@@ -1,5 +1,5 @@
 // What is certain about metaballs over a box: plain code for CPU and GPU, which must agree on it bit by bit.
-// Kernels other than the Gaussian: profile_bounds.h.
+// Kernels other than the Gaussian: compact_kernel_bounds.h.
 #pragma once
 
 #include <algorithm>
@@ -46,17 +46,17 @@ struct KernelIntervals {
   }
 };
 
-// Of a body, with A = P / (1 + N) as in metaballs.h: P + floor <= added.sum_max, 1 + N <= taken.sum_max.
+// Of a body, with A = P / (1 + N) as in metaballs.h: P + floor <= added.sum_max, 1 + N <= subtracted.sum_max.
 struct BodyIntervals {
-  KernelIntervals added, taken;
+  KernelIntervals added, subtracted;
 
   // Of A + floor.
-  ASTROLITH_HD double net_min() const { return added.sum_min / taken.sum_max; }
+  ASTROLITH_HD double net_min() const { return added.sum_min / subtracted.sum_max; }
   ASTROLITH_HD double net_max() const {
-    if (!takes_away()) return added.sum_max;
-    return (added.sum_max - double{kKernelFloor}) / taken.sum_min + double{kKernelFloor};
+    if (!subtractive()) return added.sum_max;
+    return (added.sum_max - double{kKernelFloor}) / subtracted.sum_min + double{kKernelFloor};
   }
-  ASTROLITH_HD bool takes_away() const { return taken.count != 0; }
+  ASTROLITH_HD bool subtractive() const { return subtracted.count != 0; }
 };
 
 // `interval_of(sphere, kernel)` is false for spheres that do not reach the box. Expects those that take away
@@ -67,12 +67,12 @@ ASTROLITH_HD BodyIntervals bound_kernels(const MetaballList& spheres, KernelInte
   BodyIntervals bounds{{kernels, 0, double{kKernelFloor}, double{kKernelFloor}}, {nullptr, 0, 1.0, 1.0}};
   std::uint32_t i = 0;
   KernelInterval kernel;
-  for (; i < spheres.count && !spheres[i].takes_away(); ++i) {
+  for (; i < spheres.count && !spheres[i].subtractive(); ++i) {
     if (interval_of(spheres[i], kernel)) bounds.added.add(kernel);
   }
-  bounds.taken.kernels = kernels + bounds.added.count;
+  bounds.subtracted.kernels = kernels + bounds.added.count;
   for (; i < spheres.count; ++i) {
-    if (interval_of(spheres[i], kernel)) bounds.taken.add(kernel);
+    if (interval_of(spheres[i], kernel)) bounds.subtracted.add(kernel);
   }
   return bounds;
 }
@@ -165,20 +165,20 @@ ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameter
                                                          double height, KernelInterval* scratch) {
   const double m = 1.0 / static_cast<double>(body.inverse_m);
   const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
-  const double of_taken = largest_gaussian_gradient(bounds.taken);
-  const double steepest = largest_gaussian_gradient(bounds.added) + of_taken;
+  const double of_subtracted = largest_gaussian_gradient(bounds.subtracted);
+  const double steepest = largest_gaussian_gradient(bounds.added) + of_subtracted;
   double gradient = steepest;
   if (height < std::numeric_limits<double>::infinity()) {
     sort_steepest_first(bounds.added.kernels, bounds.added.count);
     // There A is at least e^(-m height |grad L|), and P that times 1 + N.
     for (int pass = 0; pass < 3; ++pass) {
       const double net = 0.999 * portable::exp(-m * height * metaball_divisor(body, gradient));
-      const double sum = net * bounds.taken.sum_min;
-      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + of_taken);
+      const double sum = net * bounds.subtracted.sum_min;
+      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + of_subtracted);
     }
   }
   // Float rounding: of the exponents and the logarithm, and of the coordinates.
-  const double kinds = bounds.takes_away() ? 2.0 : 1.0;
+  const double kinds = bounds.subtractive() ? 2.0 : 1.0;
   const double slack = kinds * (3e-5 + 1e-6 * std::fabs(static_cast<double>(body.m_a))) / m +
                        1e-6 * largest_coordinate(box) * steepest;
   return {portable::log(bounds.net_min()) / m - slack, portable::log(bounds.net_max()) / m + slack,
@@ -191,7 +191,7 @@ ASTROLITH_HD inline Vec3d gaussians_outward(const MetaballParameters<float>& bod
   Vec3d sum;
   for (std::uint32_t i = 0; i < spheres.count; ++i) {
     const MetaballSphere<float>& s = spheres[i];
-    if (s.takes_away()) break;
+    if (s.subtractive()) break;
     const double inverse = static_cast<double>(s.inverse_radius_squared);
     const Vec3d d = p - Vec3d{s.center.x, s.center.y, s.center.z};
     const double q = squared_norm(d) * inverse;
@@ -213,9 +213,9 @@ ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<f
   const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
   const KernelIntervals& added = bounds.added;
   // Weights are f_i / (P + floor (1 + N)).
-  const double floor_max = double{kKernelFloor} * bounds.taken.sum_max;
+  const double floor_max = double{kKernelFloor} * bounds.subtracted.sum_max;
   const double sum_max =
-      bounds.takes_away() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
+      bounds.subtractive() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
   // The component along one direction, of each grad log f_i / m and of their weighted mean.
   const Vec3d center = box.center(), u = gaussians_outward(body, spheres, center);
   const double spread = spread_along(box, u);
@@ -231,8 +231,8 @@ ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<f
     sharpest = std::max(sharpest, inverse);
   }
   if (added.count == 0) least = 0.0;
-  for (std::uint32_t i = 0; i < bounds.taken.count; ++i) {
-    sharpest = std::max(sharpest, inverse_square(*bounds.taken.kernels[i].sphere));
+  for (std::uint32_t i = 0; i < bounds.subtracted.count; ++i) {
+    sharpest = std::max(sharpest, inverse_square(*bounds.subtracted.kernels[i].sphere));
   }
   const double floor_weight = std::min(1.0, floor_max / added.sum_min);  // of what has no gradient
   const double coordinate = norm(center) + 0.5 * norm(box.extent());
@@ -240,7 +240,7 @@ ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<f
   const double gradient =
       std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
   return std::max(std::sqrt(static_cast<double>(body.gradient_floor)) * (1.0 - kDistanceSlack),
-                  gradient - rounding - largest_gaussian_gradient(bounds.taken));
+                  gradient - rounding - largest_gaussian_gradient(bounds.subtracted));
 }
 
 }  // namespace astrolith

@@ -27,10 +27,10 @@ namespace {
     }                                                                                                       \
   }
 ASTROLITH_SPHERES_LOOP(add_gaussians, accumulate_gaussian)
-ASTROLITH_SPHERES_LOOP(add_metaballs, accumulate_profile<Kernel::kMetaball>)
-ASTROLITH_SPHERES_LOOP(add_soft_objects, accumulate_profile<Kernel::kSoftObject>)
-ASTROLITH_SPHERES_LOOP(add_wyvill, accumulate_profile<Kernel::kWyvill>)
-ASTROLITH_SPHERES_LOOP(add_cauchy, accumulate_profile<Kernel::kCauchy>)
+ASTROLITH_SPHERES_LOOP(add_metaballs, accumulate_compact<Kernel::kMetaball>)
+ASTROLITH_SPHERES_LOOP(add_soft_objects, accumulate_compact<Kernel::kSoftObject>)
+ASTROLITH_SPHERES_LOOP(add_wyvill, accumulate_compact<Kernel::kWyvill>)
+ASTROLITH_SPHERES_LOOP(add_cauchy, accumulate_compact<Kernel::kCauchy>)
 #undef ASTROLITH_SPHERES_LOOP
 
 auto adder_of(Kernel kernel) {
@@ -55,9 +55,10 @@ struct TakenSums {
 };
 
 // Turns the sums of what is added into the net sums.
-ASTROLITH_SIMD_CLONES void take_away(const TakenSums& taken, int n, float* __restrict kernel,
+ASTROLITH_SIMD_CLONES void take_away(const TakenSums& subtracted, int n, float* __restrict kernel,
                                      float* __restrict wx, float* __restrict wy, float* __restrict wz) {
-  const float *tk = taken.kernel.data(), *tx = taken.wx.data(), *ty = taken.wy.data(), *tz = taken.wz.data();
+  const float *tk = subtracted.kernel.data(), *tx = subtracted.wx.data(), *ty = subtracted.wy.data(),
+              *tz = subtracted.wz.data();
   _Pragma("omp simd") for (int i = 0; i < n; ++i) {
     const MetaballSums<float> net = net_sums(MetaballSums<float>{kernel[i], {wx[i], wy[i], wz[i]}},
                                              MetaballSums<float>{tk[i], {tx[i], ty[i], tz[i]}});
@@ -83,7 +84,7 @@ ASTROLITH_SIMD_CLONES void take_away(const TakenSums& taken, int n, float* __res
     }                                                                                                     \
   }
 ASTROLITH_FINISH_LOOP(finish_gaussians, gaussian_distance)
-ASTROLITH_FINISH_LOOP(finish_profiles, profile_distance)
+ASTROLITH_FINISH_LOOP(finish_compact, compact_distance)
 #undef ASTROLITH_FINISH_LOOP
 
 std::vector<MetaballSphere<float>> as_adding(std::span<const MetaballSphere<float>> taking) {
@@ -100,18 +101,18 @@ void evaluate_metaballs(const PreparedMetaballs& metaballs, int n, const float* 
   const MetaballParameters<float>& body = metaballs.parameters;
   const std::span<const MetaballSphere<float>> adding = metaballs.adding();
   const std::vector<MetaballSphere<float>> taking = as_adding(metaballs.taking());
-  const auto add = adder_of(body.profile.kernel);
-  const auto finish = body.profile.kernel == Kernel::kGaussian ? finish_gaussians : finish_profiles;
+  const auto add = adder_of(body.compact_kernel.kernel);
+  const auto finish = body.compact_kernel.kernel == Kernel::kGaussian ? finish_gaussians : finish_compact;
   for (float* sum : {distance, gradient_x, gradient_y, gradient_z}) std::fill(sum, sum + n, 0.0f);
   for (int begin = 0; begin < n; begin += kPointsAtOnce) {
     const int size = std::min(kPointsAtOnce, n - begin);
     float *s = distance + begin, *gx = gradient_x + begin, *gy = gradient_y + begin, *gz = gradient_z + begin;
     add(body, adding.data(), adding.size(), size, x + begin, y + begin, z + begin, s, gx, gy, gz);
     if (!taking.empty()) {
-      TakenSums taken;
-      add(body, taking.data(), taking.size(), size, x + begin, y + begin, z + begin, taken.kernel.data(),
-          taken.wx.data(), taken.wy.data(), taken.wz.data());
-      take_away(taken, size, s, gx, gy, gz);
+      TakenSums subtracted;
+      add(body, taking.data(), taking.size(), size, x + begin, y + begin, z + begin, subtracted.kernel.data(),
+          subtracted.wx.data(), subtracted.wy.data(), subtracted.wz.data());
+      take_away(subtracted, size, s, gx, gy, gz);
     }
     finish(body, size, s, gx, gy, gz);
   }

@@ -17,7 +17,7 @@ struct SumDerivatives {
   void add(const MetaballParameters<double>& body, const MetaballSphere<float>& sphere, const Vec3d& p) {
     const double inverse = sphere.inverse_radius_squared;
     const Vec3d d = p - Vec3d{sphere.center.x, sphere.center.y, sphere.center.z}, u = d * inverse;
-    const ProfileValue<double> f = kernel_power(body, squared_norm(d) * inverse);
+    const KernelDerivatives<double> f = kernel_power(body, squared_norm(d) * inverse);
     value += f.value;
     gradient += -2.0 * f.slope * u;
     curvature_ += -2.0 * f.slope * inverse;
@@ -48,15 +48,16 @@ SumDerivatives sum_over(std::span<const MetaballSphere<float>> spheres,
 Vec3d distance_gradient(const PreparedMetaballs& metaballs, const Vec3d& p) {
   const MetaballParameters<double> body = in_double(metaballs.parameters);
   const SumDerivatives added = sum_over(metaballs.adding(), body, p),
-                       taken = sum_over(metaballs.taking(), body, p);
-  const double part = 1.0 / (1.0 + taken.value), net = added.value * part, total = net + double{kKernelFloor};
-  const Vec3d net_gradient = part * (added.gradient - net * taken.gradient);
+                       subtracted = sum_over(metaballs.taking(), body, p);
+  const double part = 1.0 / (1.0 + subtracted.value), net = added.value * part,
+               total = net + double{kKernelFloor};
+  const Vec3d net_gradient = part * (added.gradient - net * subtracted.gradient);
   const auto net_hessian_times = [&](const Vec3d& v) {
-    return part * (added.hessian_times(v) - net * taken.hessian_times(v) -
-                   dot(taken.gradient, v) * net_gradient - dot(net_gradient, v) * taken.gradient);
+    return part * (added.hessian_times(v) - net * subtracted.hessian_times(v) -
+                   dot(subtracted.gradient, v) * net_gradient - dot(net_gradient, v) * subtracted.gradient);
   };
   // L and M - 1 differ in what A's second derivatives are joined by.
-  const bool gaussian = body.profile.kernel == Kernel::kGaussian;
+  const bool gaussian = body.compact_kernel.kernel == Kernel::kGaussian;
   const double norm = gaussian ? 1.0 : std::pow(total, body.inverse_m);
   const double level = gaussian ? std::log(total) * body.inverse_m : norm - 1.0;
   const double factor = norm * body.inverse_m / total,

@@ -8,8 +8,8 @@
 // positive inside, in length units. Layers add heights to s, which is eq. 5.1 with every n_i multiplied by
 // |grad m|: amplitudes are then lengths, the same beside a large sphere and a small one.
 //
-// The other kernels (kernel_profile.h) end where their supports do, so that log m has no slope worth the name
-// there. With them s is taken from the p-norm itself,
+// The other kernels (compact_kernel.h) end where their supports do, so that log m has no slope worth the name
+// there. With them s is subtracted from the p-norm itself,
 //   M(p) = (sum_i K_i^m)^(1/m) / T,    s(p) = (M(p) - 1) / |grad M(p)|,
 //   grad M = -2 M / (sum_i K_i^m) sum_i K_i^m (-K_i'/K_i) (p - c_i) / r_i^2,     K_i' = dK_i/dq.
 //
@@ -25,7 +25,7 @@
 #include "numerics/host_device.h"
 #include "numerics/scalar_math.h"
 #include "numerics/vec3.h"
-#include "synthesis/body/kernel_profile.h"
+#include "synthesis/body/compact_kernel.h"
 
 namespace astrolith {
 
@@ -36,7 +36,7 @@ inline constexpr float kKernelFloor = 9.3576e-14f;
 // Largest exponent of a kernel: deep inside sharp bodies the field saturates, so that float sums stay finite.
 inline constexpr float kLargestExponent = 60.0f;
 
-// The least kernel that a logarithm is taken of.
+// The least kernel that a logarithm is subtracted of.
 inline constexpr float kLeastKernel = 1e-30f;
 
 // Parameters of a body, ready for evaluation in scalar type T.
@@ -48,12 +48,12 @@ struct MetaballParameters {
   T log_iso{};         // log T, of Gaussians alone
   T cutoff_squared{};  // squared support in radii
   T gradient_floor{};  // squared; keeps s finite where its divisor vanishes: (1e-3 / largest radius)^2
-  KernelProfile<T> profile{};  // of the other kernels, 1/T included in its height
-  T m{};                       // of the other kernels
+  CompactKernel<T> compact_kernel{};  // of the other kernels, 1/T included in its height
+  T m{};                              // of the other kernels
 };
 
 inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) {
-  const KernelProfile<float>& k = b.profile;
+  const CompactKernel<float>& k = b.compact_kernel;
   return {b.m_a,
           b.m_b,
           b.inverse_m,
@@ -69,10 +69,10 @@ struct MetaballSphere {
   Vec3<T> center{};
   T inverse_radius_squared{};  // with a minus where the sphere takes away
 
-  ASTROLITH_HD bool takes_away() const { return inverse_radius_squared < T(0); }
+  ASTROLITH_HD bool subtractive() const { return inverse_radius_squared < T(0); }
   // The same sphere, adding.
   ASTROLITH_HD MetaballSphere as_adding() const {
-    return {center, takes_away() ? -inverse_radius_squared : inverse_radius_squared};
+    return {center, subtractive() ? -inverse_radius_squared : inverse_radius_squared};
   }
 };
 
@@ -101,9 +101,9 @@ ASTROLITH_KERNEL void accumulate_gaussian(const MetaballParameters<T>& body, con
   sums.weighted.z = math::fma(weight, dz, sums.weighted.z);
 }
 
-// `kernel` is body.profile.kernel, not the Gaussian.
+// `kernel` is body.compact_kernel.kernel, not the Gaussian.
 template <Kernel kernel, typename T>
-ASTROLITH_KERNEL void accumulate_profile(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
+ASTROLITH_KERNEL void accumulate_compact(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                          const Vec3<T>& p, MetaballSums<T>& sums) {
   using math::exp;
   using math::log;
@@ -112,7 +112,7 @@ ASTROLITH_KERNEL void accumulate_profile(const MetaballParameters<T>& body, cons
   const T dz = p.z - sphere.center.z;
   const T q = math::fma(dx, dx, math::fma(dy, dy, dz * dz)) * sphere.inverse_radius_squared;
   const T inside_support = q < body.cutoff_squared ? T(1) : T(0);
-  const ProfileValue<T> k = kernel_value<kernel>(body.profile, q);
+  const KernelDerivatives<T> k = kernel_value<kernel>(body.compact_kernel, q);
   const T positive = k.value > T(kLeastKernel) ? k.value : T(kLeastKernel);
   const T exponent = body.m * log(positive);
   const T value = inside_support * exp(exponent < T(kLargestExponent) ? exponent : T(kLargestExponent));
@@ -127,44 +127,46 @@ ASTROLITH_KERNEL void accumulate_profile(const MetaballParameters<T>& body, cons
 template <typename T>
 ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                           const Vec3<T>& p, MetaballSums<T>& sums) {
-  switch (body.profile.kernel) {
+  switch (body.compact_kernel.kernel) {
     case Kernel::kGaussian:
       return accumulate_gaussian(body, sphere, p, sums);
     case Kernel::kMetaball:
-      return accumulate_profile<Kernel::kMetaball>(body, sphere, p, sums);
+      return accumulate_compact<Kernel::kMetaball>(body, sphere, p, sums);
     case Kernel::kSoftObject:
-      return accumulate_profile<Kernel::kSoftObject>(body, sphere, p, sums);
+      return accumulate_compact<Kernel::kSoftObject>(body, sphere, p, sums);
     case Kernel::kWyvill:
-      return accumulate_profile<Kernel::kWyvill>(body, sphere, p, sums);
+      return accumulate_compact<Kernel::kWyvill>(body, sphere, p, sums);
     case Kernel::kCauchy:
-      return accumulate_profile<Kernel::kCauchy>(body, sphere, p, sums);
+      return accumulate_compact<Kernel::kCauchy>(body, sphere, p, sums);
   }
 }
 
 // The sum A, and what its gradient is made of, from those of P and of N.
 template <typename T>
-ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const MetaballSums<T>& taken) {
-  const T part = T(1) / (T(1) + taken.kernel);
+ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const MetaballSums<T>& subtracted) {
+  const T part = T(1) / (T(1) + subtracted.kernel);
   const T kernel = added.kernel * part;
-  const auto net = [&](T of_added, T of_taken) { return of_added * part - of_taken * part * kernel; };
+  const auto net = [&](T of_added, T of_subtracted) {
+    return of_added * part - of_subtracted * part * kernel;
+  };
   return {kernel,
-          {net(added.weighted.x, taken.weighted.x), net(added.weighted.y, taken.weighted.y),
-           net(added.weighted.z, taken.weighted.z)}};
+          {net(added.weighted.x, subtracted.weighted.x), net(added.weighted.y, subtracted.weighted.y),
+           net(added.weighted.z, subtracted.weighted.z)}};
 }
 
 // Running sums over spheres of both kinds.
 template <typename T>
 struct MetaballTotals {
-  MetaballSums<T> added, taken;
+  MetaballSums<T> added, subtracted;
 
-  ASTROLITH_HD MetaballSums<T> net() const { return net_sums(added, taken); }
+  ASTROLITH_HD MetaballSums<T> net() const { return net_sums(added, subtracted); }
 };
 
 template <typename T>
 ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                           const Vec3<T>& p, MetaballTotals<T>& totals) {
-  if (sphere.takes_away()) {
-    accumulate_metaball(body, sphere.as_adding(), p, totals.taken);
+  if (sphere.subtractive()) {
+    accumulate_metaball(body, sphere.as_adding(), p, totals.subtracted);
   } else {
     accumulate_metaball(body, sphere, p, totals.added);
   }
@@ -189,7 +191,7 @@ ASTROLITH_KERNEL SurfaceDistance<T> gaussian_distance(const MetaballParameters<T
 
 // Of every kernel but the Gaussian.
 template <typename T>
-ASTROLITH_KERNEL SurfaceDistance<T> profile_distance(const MetaballParameters<T>& body,
+ASTROLITH_KERNEL SurfaceDistance<T> compact_distance(const MetaballParameters<T>& body,
                                                      const MetaballSums<T>& sums) {
   const T total = sums.kernel + T(kKernelFloor);
   const T norm = math::exp(math::log(total) * body.inverse_m);
@@ -202,19 +204,19 @@ ASTROLITH_KERNEL SurfaceDistance<T> profile_distance(const MetaballParameters<T>
 template <typename T>
 ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T>& body,
                                                       const MetaballSums<T>& sums) {
-  return body.profile.kernel == Kernel::kGaussian ? gaussian_distance(body, sums)
-                                                  : profile_distance(body, sums);
+  return body.compact_kernel.kernel == Kernel::kGaussian ? gaussian_distance(body, sums)
+                                                         : compact_distance(body, sums);
 }
 
 // f(q) = K(q)^m of one sphere for derivatives by its centre, its radius and the point: f, -df/dq and
 // d^2f/dq^2 in double precision. Where the Gaussian's value saturates they go on in proportion to it.
-inline ProfileValue<double> kernel_power(const MetaballParameters<double>& body, double q) {
+inline KernelDerivatives<double> kernel_power(const MetaballParameters<double>& body, double q) {
   if (!(q < body.cutoff_squared)) return {0.0, 0.0, 0.0};
-  if (body.profile.kernel == Kernel::kGaussian) {
+  if (body.compact_kernel.kernel == Kernel::kGaussian) {
     const double f = std::exp(std::min(body.m_a - body.m_b * q, double{kLargestExponent}));
     return {f, body.m_b * f, body.m_b * body.m_b * f};
   }
-  const ProfileValue<double> k = kernel_value(body.profile, q);
+  const KernelDerivatives<double> k = kernel_value(body.compact_kernel, q);
   if (!(k.value > double{kLeastKernel})) return {0.0, 0.0, 0.0};
   const double lower = std::pow(k.value, body.m - 1.0);
   return {lower * k.value, body.m * lower * k.slope,

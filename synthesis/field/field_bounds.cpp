@@ -48,7 +48,8 @@ Interval bound_elevation(const Noise& noise, const LayerJoin& join, const LayerB
     const double slack = kHeightSlack * join.height_bound;
     kept[static_cast<std::size_t>(join.keeps)] = plus(heights, {-slack, slack});
   }
-  return join.changes_elevation() ? joined(join.how, bound_weight(join, box, kept), before, heights) : before;
+  return join.changes_elevation() ? join_bounds(join.how, bound_weight(join, box, kept), before, heights)
+                                  : before;
 }
 Interval bound_elevation(const CraterRelief& relief, const LayerJoin&, const LayerBox& at, const Box&,
                          const Interval& before, KeptIntervals&) {

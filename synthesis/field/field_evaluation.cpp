@@ -109,9 +109,10 @@ void evaluate_batch(const FieldModel& model, const PreparedBody& body, const Dra
   if (model.warp) {
     model.warp->evaluate(n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
     metaballs_at = {b.mx.data(), b.my.data(), b.mz.data()};
-    band *= static_cast<float>(model.warp->stretch());  // s changes so much faster than a distance does
+    band *=
+        static_cast<float>(model.warp->lipschitz_bound());  // s changes so much faster than a distance does
   }
-  if (!body.plain()) band *= model.stretch;
+  if (!body.plain()) band *= model.lipschitz_bound;
   if (near != nullptr) b.origin = &near->origin;
   if (near != nullptr && body.plain()) {
     evaluate_body_near(body.metaballs, n, *near, at, metaballs_at, b);

@@ -40,7 +40,7 @@ inline Box layer_box(const PlacedLayer& layer, const Box& box) {
 struct FieldModel {
   PreparedBody body;
   std::optional<CoordinateWarp> warp;  // of the coordinates of a body without operations
-  float stretch = 1.0f;                // of a body with operations
+  float lipschitz_bound = 1.0f;        // of a body with operations
   std::vector<PlacedLayer> layers;     // in the recipe's order
   double height_bound = 0.0;           // of the |elevation| that all layers make
   int kept_heights = 0;                // slots for heights that masks ask for

@@ -24,7 +24,7 @@ void FlatBlocksData::add(const FieldBlock& block, const BlockLists& of_block) {
   };
   append_all(of_block.spots, impulses, first_impulse);
   append_all(of_block.gabor, gabor, first_gabor);
-  append_all(of_block.features, features, first_feature);
+  append_all(of_block.landforms, landforms, first_landform);
 }
 
 void FlatBlocksData::add(std::span<const FieldBlock* const> blocks) {
@@ -38,9 +38,9 @@ void FlatBlocksData::add(std::span<const FieldBlock* const> blocks) {
 
 FlatBlocks FlatBlocksData::view() const {
   const auto number = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-  return {spheres.data(), first_sphere.data(), impulses.data(), first_impulse.data(),
-          gabor.data(),   first_gabor.data(),  features.data(), first_feature.data(),
-          number(leaves), number(sizes),       number(bands),   number(lists)};
+  return {spheres.data(), first_sphere.data(), impulses.data(),  first_impulse.data(),
+          gabor.data(),   first_gabor.data(),  landforms.data(), first_landform.data(),
+          number(leaves), number(sizes),       number(bands),    number(lists)};
 }
 
 }  // namespace astrolith

@@ -33,8 +33,8 @@ struct FlatBlocksData {
   std::vector<std::uint32_t> first_impulse{0};  // (blocks * sizes + 1)
   std::vector<GaborImpulse> gabor;
   std::vector<std::uint32_t> first_gabor{0};  // (blocks * bands + 1)
-  std::vector<std::uint32_t> features;
-  std::vector<std::uint32_t> first_feature{0};  // (blocks * lists + 1)
+  std::vector<std::uint32_t> landforms;
+  std::vector<std::uint32_t> first_landform{0};  // (blocks * lists + 1)
 
  private:
   void add(const PreparedBody& body);

@@ -27,11 +27,11 @@ ASTROLITH_HD inline SurfaceDistance<float> flat_leaf(const FlatField& f, const F
   std::uint32_t j = block.first_sphere[leaf];
   const std::uint32_t end = block.first_sphere[leaf + 1];
   MetaballTotals<float> totals{};
-  for (; j < end && !block.spheres[j].takes_away(); ++j) {
+  for (; j < end && !block.spheres[j].subtractive(); ++j) {
     accumulate_metaball(body, block.spheres[j], p, totals.added);
   }
   if (j == end) return metaball_distance(body, totals.added);
-  for (; j < end; ++j) accumulate_metaball(body, block.spheres[j].as_adding(), p, totals.taken);
+  for (; j < end; ++j) accumulate_metaball(body, block.spheres[j].as_adding(), p, totals.subtracted);
   return metaball_distance(body, totals.net());
 }
 

@@ -2,8 +2,8 @@
 // and GPU. A box comes with lists of what of the field reaches it.
 #pragma once
 
+#include "synthesis/body/compact_kernel_bounds.h"
 #include "synthesis/body/operator_bounds.h"
-#include "synthesis/body/profile_bounds.h"
 #include "synthesis/field/content_bounds.h"
 #include "synthesis/field/flat_field.h"
 #include "synthesis/field/join_bounds.h"

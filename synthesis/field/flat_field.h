@@ -139,7 +139,7 @@ struct FlatField {
   const FlatBoulder* boulders;
   std::uint32_t num_layers, num_leaves, num_steps;
   std::uint32_t boulder_list;  // of boulders that reach a block
-  float stretch;               // s changes so much faster than a distance
+  float lipschitz_bound;       // s changes so much faster than a distance
   float height_reach;          // no elevation exceeds it
   float longest_step;          // on the way to the bare surface
   double height_bound;         // of the |elevation| that all layers make
@@ -152,9 +152,9 @@ struct FlatBlock {
   const SpotImpulse* impulses;
   const std::uint32_t* first_impulse;  // by kind of spots
   const GaborImpulse* gabor;
-  const std::uint32_t* first_gabor;    // by band
-  const std::uint32_t* features;       // numbers of craters and boulders
-  const std::uint32_t* first_feature;  // by list
+  const std::uint32_t* first_gabor;     // by band
+  const std::uint32_t* landforms;       // numbers of craters and boulders
+  const std::uint32_t* first_landform;  // by list
 };
 
 // Of many boxes, as arrays.
@@ -165,13 +165,13 @@ struct FlatBlocks {
   const std::uint32_t* first_impulse;  // (blocks * sizes + 1)
   const GaborImpulse* gabor;
   const std::uint32_t* first_gabor;  // (blocks * bands + 1)
-  const std::uint32_t* features;
-  const std::uint32_t* first_feature;  // (blocks * lists + 1)
+  const std::uint32_t* landforms;
+  const std::uint32_t* first_landform;  // (blocks * lists + 1)
   std::uint32_t leaves, sizes, bands, lists;
 
   ASTROLITH_HD FlatBlock block(std::size_t i) const {
-    return {spheres, first_sphere + i * leaves, impulses, first_impulse + i * sizes,
-            gabor,   first_gabor + i * bands,   features, first_feature + i * lists};
+    return {spheres, first_sphere + i * leaves, impulses,  first_impulse + i * sizes,
+            gabor,   first_gabor + i * bands,   landforms, first_landform + i * lists};
   }
 };
 

@@ -211,7 +211,8 @@ std::string obstacle_to_flattening(const ImplicitField& field, double block_side
 FlatFieldData::FlatFieldData(const ImplicitField& field) : values{} {
   const FieldModel& model = field.model();
   add_body(model, *this);
-  values.stretch = model.warp ? static_cast<float>(model.warp->stretch()) : model.stretch;
+  values.lipschitz_bound =
+      model.warp ? static_cast<float>(model.warp->lipschitz_bound()) : model.lipschitz_bound;
   values.height_reach = height_reach(model);
   values.longest_step = static_cast<float>(model.height_bound);
   values.height_bound = model.height_bound;

@@ -124,8 +124,8 @@ ASTROLITH_HD inline void flat_gabor_tetrahedron(const FlatField& f, const FlatLa
 // What the craters that reach a block make of the elevation at a point of the bare surface.
 ASTROLITH_HD inline float flat_cratered(const FlatField& f, const FlatLayer& layer, const FlatBlock& block,
                                         const Vec3f& p, float elevation) {
-  for (std::uint32_t k = block.first_feature[layer.list]; k < block.first_feature[layer.list + 1]; ++k) {
-    const CraterKernel& crater = f.craters[layer.parts.first + block.features[k]];
+  for (std::uint32_t k = block.first_landform[layer.list]; k < block.first_landform[layer.list + 1]; ++k) {
+    const CraterKernel& crater = f.craters[layer.parts.first + block.landforms[k]];
     elevation = cratered(crater, crater_distance_squared(crater, p.x, p.y, p.z), elevation);
   }
   return math::clamp(elevation, -layer.clip, layer.clip);

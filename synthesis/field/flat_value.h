@@ -55,9 +55,9 @@ ASTROLITH_HD inline void flat_apply(const FlatField& f, const FlatLayer& layer, 
 // Whether a boulder that reaches the block may change F at the point.
 ASTROLITH_HD inline bool flat_boulders_reach(const FlatField& f, const FlatBlock& block, const Vec3f& p) {
   const auto within = [](float c, double low, double high) { return double{c} >= low && double{c} <= high; };
-  for (std::uint32_t k = block.first_feature[f.boulder_list]; k < block.first_feature[f.boulder_list + 1];
+  for (std::uint32_t k = block.first_landform[f.boulder_list]; k < block.first_landform[f.boulder_list + 1];
        ++k) {
-    const FlatBoulder& b = f.boulders[block.features[k]];
+    const FlatBoulder& b = f.boulders[block.landforms[k]];
     if (within(p.x, b.low.x, b.high.x) && within(p.y, b.low.y, b.high.y) && within(p.z, b.low.z, b.high.z)) {
       return true;
     }
@@ -84,16 +84,16 @@ ASTROLITH_HD inline float flat_terrain(const FlatField& f, const FlatBlock& bloc
 
 ASTROLITH_HD inline float flat_with_boulders(const FlatField& f, const FlatBlock& block, const Vec3f& p,
                                              float value) {
-  for (std::uint32_t k = block.first_feature[f.boulder_list]; k < block.first_feature[f.boulder_list + 1];
+  for (std::uint32_t k = block.first_landform[f.boulder_list]; k < block.first_landform[f.boulder_list + 1];
        ++k) {
-    value = joined(f.boulders[block.features[k]].kernel, p.x, p.y, p.z, value);
+    value = join_boulder(f.boulders[block.landforms[k]].kernel, p.x, p.y, p.z, value);
   }
   return value;
 }
 
 // F(p) as FieldBlock::evaluate has it for the same band; `block` must hold what reaches p.
 ASTROLITH_HD inline float flat_value(const FlatField& f, const FlatBlock& block, const Vec3f& p, float band) {
-  return flat_with_boulders(f, block, p, flat_terrain(f, block, p, band * f.stretch));
+  return flat_with_boulders(f, block, p, flat_terrain(f, block, p, band * f.lipschitz_bound));
 }
 
 // F at the corners of a small tetrahedron, as FieldBlock::evaluate_tetrahedra has it.

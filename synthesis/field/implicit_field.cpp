@@ -27,11 +27,11 @@ BlockLists FieldBlock::lists() const {
     } else if (const auto* gabor = std::get_if<GaborSurfaceNoise>(&noise)) {
       for (std::size_t b = 0; b < gabor->num_bands(); ++b) all.gabor.push_back(gabor->impulses(b, projected));
     } else if (const auto* craters = std::get_if<CraterRelief>(&noise)) {
-      all.features.push_back(craters->reaching(projected));
+      all.landforms.push_back(craters->reaching(projected));
     }
   }
-  all.features.push_back(model_->boulders.empty() ? std::vector<std::uint32_t>()
-                                                  : model_->boulders.reaching(box_));
+  all.landforms.push_back(model_->boulders.empty() ? std::vector<std::uint32_t>()
+                                                   : model_->boulders.reaching(box_));
   return all;
 }
 
@@ -106,7 +106,7 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
   }
   FieldModel model;
   model.body = prepare_body(*recipe.body, recipe.seed);
-  model.stretch = static_cast<float>(body_stretch(model.body));
+  model.lipschitz_bound = static_cast<float>(lipschitz_bound_of(model.body));
   if (recipe.body->warp && model.body.plain()) {
     model.warp.emplace(*recipe.body->warp, body_warp_seed(recipe.seed, 0), support_bounds(model.body));
   }

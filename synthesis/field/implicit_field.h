@@ -8,7 +8,7 @@
 // F(p) = s(p) + elevation (synthesis/body/metaballs.h), and the surface is F = 0. Layers add their heights to
 // the elevation, or change what is there as craters do. A positive one lies along the outward normal and
 // enlarges the body. Boulders join the result as a union. Near the surface F is a distance to first order.
-// Where the body has a warp, s is taken at p + warp(p), and F is steeper or flatter than a distance.
+// Where the body has a warp, s is subtracted at p + warp(p), and F is steeper or flatter than a distance.
 //
 // Every value is computed in float from float coordinates by the functions that blocks and GPUs run, so a
 // single point, a block of any size and any thread count give the same bits.
@@ -37,9 +37,9 @@ using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
 
 // What of a field's layers reaches a box, as lists.
 struct BlockLists {
-  std::vector<std::vector<SpotImpulse>> spots;       // by layer of spots, then size
-  std::vector<std::vector<GaborImpulse>> gabor;      // by Gabor layer, then band
-  std::vector<std::vector<std::uint32_t>> features;  // numbers of craters, by layer of such; of boulders
+  std::vector<std::vector<SpotImpulse>> spots;        // by layer of spots, then size
+  std::vector<std::vector<GaborImpulse>> gabor;       // by Gabor layer, then band
+  std::vector<std::vector<std::uint32_t>> landforms;  // numbers of craters, by layer of such; of boulders
 };
 
 // The part of a field that reaches a box. Lives no longer than its field. All members may be called from

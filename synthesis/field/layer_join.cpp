@@ -46,8 +46,8 @@ void join_elevation(const Combination& how, int n, const float* weight, float* h
   }
 }
 
-Interval joined(const Combination& how, const Interval& weight, const Interval& before,
-                const Interval& height) {
+Interval join_bounds(const Combination& how, const Interval& weight, const Interval& before,
+                     const Interval& height) {
   return bound_joined({how.kind, how.intersection, how.width}, weight, before, height);
 }
 

@@ -68,7 +68,7 @@ double elevation_bound(const Combination& how, double before, double height);
 void join_elevation(const Combination& how, int n, const float* weight, float* height, float* elevation);
 
 // The same for intervals.
-Interval joined(const Combination& how, const Interval& weight, const Interval& before,
-                const Interval& height);
+Interval join_bounds(const Combination& how, const Interval& weight, const Interval& before,
+                     const Interval& height);
 
 }  // namespace astrolith

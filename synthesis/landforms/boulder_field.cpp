@@ -64,7 +64,7 @@ void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t s
           const std::string& where, std::vector<Placement>& out) {
   const BoulderPopulation& population = *layer.population;
   expect_on_body(population.drawn.greatest_diameter, surface, where + ".greatest_diameter");
-  for (DrawnFeature& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
+  for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
     CounterRandom& random = drawn.random;
     const auto spread = [&](double ratio) {
       const double factor = 1.0 + population.ratio_spread * random.uniform(-1.0, 1.0);
@@ -135,7 +135,7 @@ ASTROLITH_SIMD_CLONES void join_boulder(const BoulderKernel& kernel, int n, cons
                                         float* __restrict field) {
   const BoulderKernel boulder = kernel;
 #pragma omp simd
-  for (int i = 0; i < n; ++i) field[i] = joined(boulder, x[i], y[i], z[i], field[i]);
+  for (int i = 0; i < n; ++i) field[i] = join_boulder(boulder, x[i], y[i], z[i], field[i]);
 }
 
 }  // namespace

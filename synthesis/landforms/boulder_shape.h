@@ -34,7 +34,7 @@ ASTROLITH_KERNEL float squared_length(float x, float y, float z) {
   return math::fma(x, x, math::fma(y, y, z * z));
 }
 
-// Two octaves in [-1, 1], with features as wide as a half axis.
+// Two octaves in [-1, 1], with landforms as wide as a half axis.
 ASTROLITH_KERNEL float boulder_noise(const Vec3f& u, std::uint32_t seed) {
   const float wide = simplex_noise(1.2f * u.x, 1.2f * u.y, 1.2f * u.z, seed);
   const float narrow = simplex_noise(2.9f * u.x, 2.9f * u.y, 2.9f * u.z, seed + 1u);
@@ -52,7 +52,7 @@ ASTROLITH_KERNEL float boulder_distance(const BoulderKernel& b, const Vec3f& u) 
 }
 
 // What becomes of F.
-ASTROLITH_KERNEL float joined(const BoulderKernel& b, float x, float y, float z, float field) {
+ASTROLITH_KERNEL float join_boulder(const BoulderKernel& b, float x, float y, float z, float field) {
   const Vec3f u = boulder_coordinates(b, x, y, z);
   const float together = smooth_max(field, boulder_distance(b, u), b.smoothing);
   return squared_length(u.x, u.y, u.z) < b.reach_squared ? together : field;

@@ -46,7 +46,7 @@ void place_drawn(const CraterLayer& layer, const BareSurface& surface, std::uint
                  const std::string& where, std::vector<PlacedCrater>& out) {
   const CraterPopulation& population = *layer.population;
   expect_on_body(population.drawn.greatest_diameter, surface, where + ".greatest_");
-  for (DrawnFeature& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
+  for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
     const double age_share = drawn.random.uniform();
     PlacedCrater crater = sized_crater(layer, drawn.diameter, population.greatest_age * age_share);
     crater.position = drawn.position;

@@ -8,11 +8,11 @@
 namespace astrolith {
 namespace {
 
-constexpr std::uint64_t kPopulationStream = std::uint64_t{0x706f70} << 40;  // layer and feature follow
+constexpr std::uint64_t kPopulationStream = std::uint64_t{0x706f70} << 40;  // layer and landform follow
 constexpr std::uint64_t kCountOfLayer = 0xffffffffu;
 
-CounterRandom stream_of(std::uint64_t seed, int layer_index, std::uint64_t feature) {
-  return CounterRandom(seed, kPopulationStream + (static_cast<std::uint64_t>(layer_index) << 32) + feature);
+CounterRandom stream_of(std::uint64_t seed, int layer_index, std::uint64_t landform) {
+  return CounterRandom(seed, kPopulationStream + (static_cast<std::uint64_t>(layer_index) << 32) + landform);
 }
 
 // By the waiting times between events.
@@ -47,22 +47,22 @@ double power_law_diameter(const Population& population, double u) {
   return population.least_diameter * std::pow(1.0 - u * left_out, -1.0 / population.exponent);
 }
 
-std::vector<DrawnFeature> draw_population(const Population& population, const BareSurface& surface,
-                                          std::uint64_t seed, int layer_index, const std::string& where) {
+std::vector<DrawnLandform> draw_population(const Population& population, const BareSurface& surface,
+                                           std::uint64_t seed, int layer_index, const std::string& where) {
   const int number = number_of(population, surface, stream_of(seed, layer_index, kCountOfLayer), where);
-  std::vector<DrawnFeature> features(static_cast<std::size_t>(number));
-  std::vector<Vec3d> random(features.size());
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    DrawnFeature& feature = features[i];
-    feature.random = stream_of(seed, layer_index, i);
-    feature.diameter = power_law_diameter(population, feature.random.uniform());
-    random[i].x = feature.random.uniform();
-    random[i].y = feature.random.uniform();
-    random[i].z = feature.random.uniform();
+  std::vector<DrawnLandform> landforms(static_cast<std::size_t>(number));
+  std::vector<Vec3d> random(landforms.size());
+  for (std::size_t i = 0; i < landforms.size(); ++i) {
+    DrawnLandform& landform = landforms[i];
+    landform.random = stream_of(seed, layer_index, i);
+    landform.diameter = power_law_diameter(population, landform.random.uniform());
+    random[i].x = landform.random.uniform();
+    random[i].y = landform.random.uniform();
+    random[i].z = landform.random.uniform();
   }
   const std::vector<Vec3d> points = surface.scatter(random);
-  for (std::size_t i = 0; i < points.size(); ++i) features[i].position = points[i];
-  return features;
+  for (std::size_t i = 0; i < points.size(); ++i) landforms[i].position = points[i];
+  return landforms;
 }
 
 }  // namespace astrolith

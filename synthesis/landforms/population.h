@@ -10,7 +10,7 @@
 
 namespace astrolith {
 
-struct DrawnFeature {
+struct DrawnLandform {
   Vec3d position;  // on the bare surface
   double diameter = 0.0;
   CounterRandom random{0};  // for whatever else there is to draw
@@ -21,7 +21,7 @@ double power_law_diameter(const Population& population, double u);
 
 // Feature i is the same whatever the count. Throws InputError, naming `where`, when a density would draw more
 // than kMaxDrawnFeatures.
-std::vector<DrawnFeature> draw_population(const Population& population, const BareSurface& surface,
-                                          std::uint64_t seed, int layer_index, const std::string& where);
+std::vector<DrawnLandform> draw_population(const Population& population, const BareSurface& surface,
+                                           std::uint64_t seed, int layer_index, const std::string& where);
 
 }  // namespace astrolith

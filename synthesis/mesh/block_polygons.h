@@ -265,10 +265,10 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
   return evaluations;
 }
 
-// Copies the numbers of the vertices on edges that end at a borrowed sample. False where the owner of one was
+// Copies the numbers of the vertices on edges that end at a halo samples. False where the owner of one was
 // left out.
 template <int B>
-ASTROLITH_HD bool borrow_vertices_at(const Owners<B>& owners, const BlockWindow<B>& window, int x, int y,
+ASTROLITH_HD bool fill_halo_vertices(const Owners<B>& owners, const BlockWindow<B>& window, int x, int y,
                                      int z, LayerBlock<B>& block) {
   const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
   for (int axis = 0; axis < 3; ++axis) {
@@ -289,11 +289,11 @@ ASTROLITH_HD bool borrow_vertices_at(const Owners<B>& owners, const BlockWindow<
   throw WorkError("mesher: an edge of the surface lies in a block that was left out");
 }
 
-// Of all borrowed samples.
+// Of all halo samples.
 template <int B>
-void borrow_vertices(const Owners<B>& owners, const BlockWindow<B>& window, LayerBlock<B>& block) {
-  for_each_borrowed<B>([&](int x, int y, int z, unsigned) {
-    if (!borrow_vertices_at(owners, window, x, y, z, block)) fail_at_missing_block();
+void fill_vertex_halo(const Owners<B>& owners, const BlockWindow<B>& window, LayerBlock<B>& block) {
+  for_each_halo_sample<B>([&](int x, int y, int z, unsigned) {
+    if (!fill_halo_vertices(owners, window, x, y, z, block)) fail_at_missing_block();
   });
 }
 

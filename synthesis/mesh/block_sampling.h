@@ -125,7 +125,7 @@ std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block
 
 // Calls visit(x, y, z, owner) for every sample that a lower neighbour owns.
 template <int B, typename Visit>
-void for_each_borrowed(const Visit& visit) {
+void for_each_halo_sample(const Visit& visit) {
   for (int z = 0; z <= B; ++z) {
     for (int y = 0; y <= B; ++y) {
       const bool inner_row = y != 0 && z != 0;
@@ -134,7 +134,7 @@ void for_each_borrowed(const Visit& visit) {
   }
 }
 
-// Where the owner of a borrowed sample keeps it.
+// Where the owner of a halo samples keeps it.
 template <int B>
 ASTROLITH_HD std::size_t owned_sample(int x, int y, int z) {
   return LayerBlock<B>::sample(x == 0 ? B : x, y == 0 ? B : y, z == 0 ? B : z);
@@ -142,15 +142,15 @@ ASTROLITH_HD std::size_t owned_sample(int x, int y, int z) {
 
 // Copies a sample from the lower neighbour that owns it, where that is active.
 template <int B>
-ASTROLITH_HD void borrow_sample(const Owners<B>& owners, int x, int y, int z, LayerBlock<B>& block) {
+ASTROLITH_HD void fill_halo_sample(const Owners<B>& owners, int x, int y, int z, LayerBlock<B>& block) {
   const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
   if (owner == nullptr) return;
   block.values[LayerBlock<B>::sample(x, y, z)] = owner->values[owned_sample<B>(x, y, z)];
 }
 
 template <int B>
-void borrow_samples(const Owners<B>& owners, LayerBlock<B>& block) {
-  for_each_borrowed<B>([&](int x, int y, int z, unsigned) { borrow_sample(owners, x, y, z, block); });
+void fill_sample_halo(const Owners<B>& owners, LayerBlock<B>& block) {
+  for_each_halo_sample<B>([&](int x, int y, int z, unsigned) { fill_halo_sample(owners, x, y, z, block); });
 }
 
 // Of row number sign_row(y, z).

@@ -136,7 +136,7 @@ class LayeredMesher {
     });
     statistics_.cut_vertices += for_each_block(layer, [&](std::size_t i) {
       LayerBlock<B>& block = layer.blocks[i];
-      borrow_samples(find_owners(layer, below, block), block);
+      fill_sample_halo(find_owners(layer, below, block), block);
       take_signs(block);
       return count_rows(grid_.window_of(block.x, block.y, z), block);
     });
@@ -161,7 +161,7 @@ class LayeredMesher {
     for_each_block(layer, [&](std::size_t i) {
       LayerBlock<B>& block = layer.blocks[i];
       const BlockWindow<B> window = grid_.window_of(block.x, block.y, z);
-      borrow_vertices(find_owners(layer, below, block), window, block);
+      fill_vertex_halo(find_owners(layer, below, block), window, block);
       make_triangles(block, window, std::span(triangles_));
       return std::int64_t{0};
     });

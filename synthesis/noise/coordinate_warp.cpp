@@ -34,7 +34,7 @@ CoordinateWarp::CoordinateWarp(const Warp& warp, std::uint32_t seed, const Box& 
   }
   bound_ = sum_bound(octaves_[0]) * (1.0 + 1e-5) + 1e-6 * farthest;
   // The three displacements' gradients are the rows of the derivative.
-  stretch_ = 1.0 + std::sqrt(3.0) * slope_bound(Noise::kSimplex, octaves_[0]);
+  lipschitz_bound_ = 1.0 + std::sqrt(3.0) * slope_bound(Noise::kSimplex, octaves_[0]);
 }
 
 void CoordinateWarp::evaluate(int n, const float* x, const float* y, const float* z, float* wx, float* wy,

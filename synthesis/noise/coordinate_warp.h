@@ -23,7 +23,7 @@ class CoordinateWarp {
   // No coordinate is displaced by more, in length units.
   double bound() const { return bound_; }
   // |p + warp(p) - q - warp(q)| <= stretch |p - q|, in exact arithmetic.
-  double stretch() const { return stretch_; }
+  double lipschitz_bound() const { return lipschitz_bound_; }
 
   // Holds p + warp(p) for every float point p of a box.
   Box image(const Box& box) const;
@@ -37,7 +37,7 @@ class CoordinateWarp {
  private:
   std::array<std::vector<NoiseOctave>, 3> octaves_;  // of the displacement along x, y, z
   Vec3f domain_min_, domain_max_;
-  double bound_, stretch_;
+  double bound_, lipschitz_bound_;
 };
 
 }  // namespace astrolith

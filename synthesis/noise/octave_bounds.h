@@ -30,7 +30,7 @@ ASTROLITH_HD inline NoiseRange range_of(Noise noise) {
 }
 
 // One octave's noise over a box: its value at the centre and its greatest slope tell more than its range
-// where the box is small beside the noise's features.
+// where the box is small beside the noise's landforms.
 ASTROLITH_HD inline Interval bound_noise(Noise noise, const NoiseOctave& octave, const Box& box) {
   const NoiseRange range = range_of(noise);
   const double f = static_cast<double>(octave.frequency);

@@ -52,7 +52,7 @@ ASTROLITH_KERNEL CubeCorners perlin_corners(const PerlinCell& c) {
        gradient_product(corner_hash(c, 6), c.x, y1, z1), gradient_product(corner_hash(c, 7), x1, y1, z1)}};
 }
 
-// In [-1, 1], zero mean, standard deviation 0.260, about one feature a unit length; |x|, |y|, |z| <= 2^20.
+// In [-1, 1], zero mean, standard deviation 0.260, about one landform a unit length; |x|, |y|, |z| <= 2^20.
 ASTROLITH_KERNEL float perlin_noise(float x, float y, float z, std::uint32_t seed) {
   const PerlinCell cell = perlin_cell(x, y, z, seed);
   return kPerlinScale *

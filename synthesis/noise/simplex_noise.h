@@ -58,7 +58,7 @@ ASTROLITH_KERNEL float simplex_corner(std::uint32_t corner, const Vec3f& d) {
   return fade2 * fade2 * gradient_product(lattice_hash(corner), d.x, d.y, d.z);
 }
 
-// In [-1, 1], zero mean, standard deviation 0.389, about one feature a unit length; |x|, |y|, |z| <= 2^20.
+// In [-1, 1], zero mean, standard deviation 0.389, about one landform a unit length; |x|, |y|, |z| <= 2^20.
 ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t seed) {
   const SimplexCell cell = simplex_cell(x, y, z, seed);
   const float n0 = simplex_corner(cell.corner[0], cell.from[0]);

@@ -1,5 +1,5 @@
 // Three-dimensional Worley noise (Worley 1996): the distances from a point to the nearest and the second
-// nearest of random feature points, one in each cell of a cubic lattice.
+// nearest of random landform points, one in each cell of a cubic lattice.
 //
 // Feature points keep to the inner 80 % of their cells' sides, and distances are cut at 1.1 cells: what is
 // nearer than that lies in the 27 cells around the point, so the noise is exact and continuous. The nearest
@@ -12,7 +12,7 @@
 
 namespace astrolith {
 
-inline constexpr float kWorleyJitter = 0.8f;           // side of a feature point's range, in cells
+inline constexpr float kWorleyJitter = 0.8f;           // side of a landform point's range, in cells
 inline constexpr float kWorleyFarthest = 1.1f;         // 3/2 - jitter/2 cells
 inline constexpr float kWorleyScale = 1.0f / 1.1001f;  // to [0, 1]; rounded down
 inline constexpr float kWorleyMeanF1 = 0.4629f;        // of distances in units of kWorleyFarthest, measured
@@ -28,8 +28,8 @@ ASTROLITH_KERNEL float one_to_two(std::uint32_t bits) {
   return math::float_of(static_cast<std::int32_t>((bits & 0x007fffffu) | 0x3f800000u));
 }
 
-// Squared distance to a cell's feature point, which lies at jitter (m - 3/2) + 1/2 in the cell, m in [1, 2)^3
-// by its hash; (x, y, z) is the point in that cell plus 3/2 jitter - 1/2, so that one fma makes each
+// Squared distance to a cell's landform point, which lies at jitter (m - 3/2) + 1/2 in the cell, m in [1,
+// 2)^3 by its hash; (x, y, z) is the point in that cell plus 3/2 jitter - 1/2, so that one fma makes each
 // difference.
 ASTROLITH_KERNEL float feature_distance(std::uint32_t cell, float x, float y, float z) {
   std::uint32_t h = short_lattice_hash(cell);

@@ -10,14 +10,14 @@
 #include <cstdio>
 #include <string>
 
+#include "cuda/candidate_evaluator.h"
+#include "cuda/candidates_on_gpu.h"
 #include "cuda/device.h"
-#include "cuda/device_machine.h"
-#include "cuda/field_on_machine.h"
+#include "cuda/device_backend.h"
+#include "cuda/field_on_backend.h"
 #include "cuda/mesher/mesh_field.h"
 #include "cuda/pair_count.h"
 #include "cuda/pair_tiles.h"
-#include "cuda/swarm.h"
-#include "cuda/swarm_on_gpu.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -70,21 +70,21 @@ struct FmaChains {
   }
 };
 
-Limits measure_limits(DeviceMachine& machine) {
+Limits measure_limits(DeviceBackend& backend) {
   Limits limits{};
-  auto out = machine.allocate<float>(1);
+  auto out = backend.allocate<float>(1);
   const std::size_t threads = std::size_t{1} << 22;
-  const double s = seconds_of([&] { machine.launch("fma", threads, FmaChains{out.data()}); });
+  const double s = seconds_of([&] { backend.launch("fma", threads, FmaChains{out.data()}); });
   limits.instructions = static_cast<double>(threads) * 8.0 * 1024.0 / s;
   row("limit: fused multiply-adds", limits.instructions / 1e9, "G fma/s", s, 1.0, "itself");
   const std::size_t bytes = std::size_t{1} << 30;
-  auto from = machine.allocate<char>(bytes), to = machine.allocate<char>(bytes);
+  auto from = backend.allocate<char>(bytes), to = backend.allocate<char>(bytes);
   const double c = seconds_of(
       [&] { check_cuda(cudaMemcpy(to.data(), from.data(), bytes, cudaMemcpyDeviceToDevice), "copying"); });
   limits.memory_bytes = 2.0 * static_cast<double>(bytes) / c;
   row("limit: memory, read and written", limits.memory_bytes / 1e9, "GB/s", c, 1.0, "itself");
   std::vector<char> host(bytes / 4);
-  const double h = seconds_of([&] { machine.download(from, std::span(host)); });
+  const double h = seconds_of([&] { backend.download(from, std::span(host)); });
   limits.bytes_to_host = static_cast<double>(host.size()) / h;
   row("limit: to the host", limits.bytes_to_host / 1e9, "GB/s", h, 1.0, "itself");
   return limits;
@@ -103,10 +103,10 @@ struct EvaluateNoise {
 };
 
 template <auto noise>
-void measure_noise(DeviceMachine& machine, const char* name, const Limits& limits, double instructions) {
-  auto out = machine.allocate<float>(kPoints);
+void measure_noise(DeviceBackend& backend, const char* name, const Limits& limits, double instructions) {
+  auto out = backend.allocate<float>(kPoints);
   const EvaluateNoise<noise> body{{3.0f, 1.0f, 1.0f, 7u, {}}, out.data()};
-  const double s = seconds_of([&] { machine.launch(name, kPoints, body); });
+  const double s = seconds_of([&] { backend.launch(name, kPoints, body); });
   const double rate = static_cast<double>(kPoints) / s;
   row(name, rate / 1e6, "M points/s", s, rate * instructions / limits.instructions, "arithmetic");
 }
@@ -150,30 +150,30 @@ struct OneMetaball {
 };
 
 // Runs both once, so that they are compiled.
-void run_counted_kernels(DeviceMachine& machine) {
-  auto surflets = machine.allocate<float>(9 * 65);
-  machine.fill_zero(surflets);
-  auto codes = machine.allocate<std::int64_t>(64);
-  machine.launch("one pair", 64, OnePair{surflets.data(), 65, codes.data()});
-  auto sums = machine.allocate<MetaballSums<float>>(64);
-  machine.fill_zero(sums);
-  machine.launch("one metaball", 64, OneMetaball{{}, {}, sums.data()});
-  machine.wait();
+void run_counted_kernels(DeviceBackend& backend) {
+  auto surflets = backend.allocate<float>(9 * 65);
+  backend.fill_zero(surflets);
+  auto codes = backend.allocate<std::int64_t>(64);
+  backend.launch("one pair", 64, OnePair{surflets.data(), 65, codes.data()});
+  auto sums = backend.allocate<MetaballSums<float>>(64);
+  backend.fill_zero(sums);
+  backend.launch("one metaball", 64, OneMetaball{{}, {}, sums.data()});
+  backend.wait();
 }
 
-void measure_field(DeviceMachine& machine, const ImplicitField& field, const Limits& limits) {
+void measure_field(DeviceBackend& backend, const ImplicitField& field, const Limits& limits) {
   const FlatFieldData data(field);
-  const FieldOnMachine<DeviceMachine> on_device(machine, data);
+  const FieldOnBackend<DeviceBackend> on_device(backend, data);
   const Vec3d c = field.bounds().center();
   const Vec3d half = 0.02 * field.bounds().extent();
   FlatBlocksData blocks(data);
   blocks.add(field.gather({c - half, c + half}));
-  const BlocksOnMachine<DeviceMachine> parts(machine, blocks);
+  const BlocksOnBackend<DeviceBackend> parts(backend, blocks);
   const std::size_t n = std::size_t{1} << 24;
-  auto out = machine.allocate<float>(n);
+  auto out = backend.allocate<float>(n);
   const auto single = [](const Vec3d& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
   const EvaluateField body{on_device.view(), parts.view(), single(c - half), single(2.0 * half), out.data()};
-  const double s = seconds_of([&] { machine.launch("field", n, body); });
+  const double s = seconds_of([&] { backend.launch("field", n, body); });
   const auto metaballs = static_cast<double>(blocks.spheres.size());
   const double rate = static_cast<double>(n) / s;
   row("body and layers, " + std::to_string(blocks.spheres.size()) + " metaballs", rate / 1e6, "M points/s", s,
@@ -254,7 +254,7 @@ void measure_swarm(const Limits& limits) {
     }
     sets.emplace_back(points, normals, std::vector<std::int32_t>(kSamples, 0), 25);
   }
-  const std::unique_ptr<SwarmMachine> swarm = swarm_on_gpu();
+  const std::unique_ptr<CandidateEvaluator> swarm = candidates_on_gpu();
   const double s = seconds_of([&] {
     for (std::size_t g = 0; g < kGenerations; ++g) {
       swarm->heights(lines, candidates);
@@ -268,16 +268,16 @@ void measure_swarm(const Limits& limits) {
 }
 
 void measure_all() {
-  DeviceMachine machine;
-  const Limits limits = measure_limits(machine);
-  run_counted_kernels(machine);
-  measure_noise<simplex_noise>(machine, "simplex noise", limits, cost::kSimplex);
-  measure_noise<perlin_noise>(machine, "Perlin noise", limits, cost::kPerlin);
-  measure_noise<worley_f1>(machine, "Worley noise, nearest", limits, cost::kWorleyF1);
-  measure_noise<worley_f2_minus_f1>(machine, "Worley noise, second less nearest", limits,
+  DeviceBackend backend;
+  const Limits limits = measure_limits(backend);
+  run_counted_kernels(backend);
+  measure_noise<simplex_noise>(backend, "simplex noise", limits, cost::kSimplex);
+  measure_noise<perlin_noise>(backend, "Perlin noise", limits, cost::kPerlin);
+  measure_noise<worley_f1>(backend, "Worley noise, nearest", limits, cost::kWorleyF1);
+  measure_noise<worley_f2_minus_f1>(backend, "Worley noise, second less nearest", limits,
                                     cost::kWorleyF2MinusF1);
   const ImplicitField field(asteroid());
-  measure_field(machine, field, limits);
+  measure_field(backend, field, limits);
   measure_mesh(field, limits);
   measure_pairs(100000, limits);
   measure_pairs(1000000, limits);

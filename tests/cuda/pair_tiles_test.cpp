@@ -2,7 +2,7 @@
 #include "cuda/pair_tiles.h"
 
 #include "cuda/device.h"
-#include "cuda/host_machine.h"
+#include "cuda/host_backend.h"
 #include "cuda/pair_count.h"
 #include "numerics/errors.h"
 #include "tests/descriptor/surflets.h"
@@ -47,8 +47,8 @@ Counts on_cpu(const Surflets& s, int num_local, int bins) {
   return count_pairs(s.points, s.normals, s.local, num_local, bins, {});
 }
 Counts on_twin(const Surflets& s, int num_local, int bins) {
-  HostMachine machine;
-  return count_pairs_on(machine, s.points, s.normals, s.local, num_local, bins, {});
+  HostBackend backend;
+  return count_pairs_on(backend, s.points, s.normals, s.local, num_local, bins, {});
 }
 
 TEST(PairTiles, HoldEveryPairOnce) {
@@ -88,8 +88,8 @@ TEST(PairTiles, CountWhatTheCpuCounts) {
 TEST(PairTiles, TakeThreadsInAnyOrder) {
   const Surflets s = random_input(700, 4, 12);
   for (const std::size_t seed : {1, 2, 31}) {
-    HostMachine machine(std::size_t{1} << 30, {seed});
-    EXPECT_EQ(count_pairs_on(machine, s.points, s.normals, s.local, 4, 5, {}), on_cpu(s, 4, 5));
+    HostBackend backend(std::size_t{1} << 30, {seed});
+    EXPECT_EQ(count_pairs_on(backend, s.points, s.normals, s.local, 4, 5, {}), on_cpu(s, 4, 5));
   }
 }
 
@@ -118,16 +118,16 @@ TEST(PairTiles, CountSetsTogetherAsOneByOne) {
     const Counts counts = on_cpu(s, 9, 5);
     one_by_one.insert(one_by_one.end(), counts.begin(), counts.end());
   }
-  HostMachine machine;
-  EXPECT_EQ(count_sets_on(machine, sets, 5, {}), one_by_one);
+  HostBackend backend;
+  EXPECT_EQ(count_sets_on(backend, sets, 5, {}), one_by_one);
 }
 
 TEST(PairTiles, StopWhenAskedTo) {
-  HostMachine machine;
+  HostBackend backend;
   const Surflets s = random_input(300, 1, 9);
   const Progress stop = [](double, std::string_view) { return false; };
-  EXPECT_THROW(count_pairs_on(machine, s.points, s.normals, s.local, 1, 5, stop), WorkError);
-  HostMachine small(1000);
+  EXPECT_THROW(count_pairs_on(backend, s.points, s.normals, s.local, 1, 5, stop), WorkError);
+  HostBackend small(1000);
   EXPECT_THROW(count_pairs_on(small, s.points, s.normals, s.local, 1, 5, {}), OutOfDeviceMemory);
 }
 

@@ -96,8 +96,8 @@ DetailScore DetailFitness::score(std::span<const FractalLayer> layers) const {
 }
 
 std::vector<DetailScore> DetailFitness::scores(std::span<const std::vector<FractalLayer>> candidates,
-                                               SwarmMachine& machine) const {
-  const auto heights = probe_.heights(machine, candidates, options_.recipe_seed);
+                                               CandidateEvaluator& evaluator) const {
+  const auto heights = probe_.heights(evaluator, candidates, options_.recipe_seed);
   const std::size_t n = candidates.size();
   std::vector<PairInput> inputs(n);
   std::vector<std::optional<SurfletArrays>> arrays(n);
@@ -108,7 +108,7 @@ std::vector<DetailScore> DetailFitness::scores(std::span<const std::vector<Fract
   });
   std::vector<SurfletArrays> sets;
   for (auto& array : arrays) sets.push_back(std::move(*array));
-  const auto counts = machine.count(sets, kDefaultBins);
+  const auto counts = evaluator.count(sets, kDefaultBins);
   std::vector<DetailScore> scores;
   for (std::size_t i = 0; i < n; ++i) {
     scores.push_back(score_of(ahd_histogram(inputs[i], counts[i]), heights[i], candidates[i]));

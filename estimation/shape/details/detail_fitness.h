@@ -56,7 +56,7 @@ class DetailFitness {
 
   // The same of a whole swarm, in a few launches of a machine: the same bits.
   std::vector<DetailScore> scores(std::span<const std::vector<FractalLayer>> candidates,
-                                  SwarmMachine& machine) const;
+                                  CandidateEvaluator& evaluator) const;
 
   // Of the search, by what the target shows.
   const DetailRanges& ranges() const { return ranges_; }

@@ -56,7 +56,7 @@ Start best_plain_noise(const DetailFitness& fitness) {
 // Halves the swarm where the machine's memory ends.
 std::vector<DetailScore> scores_of(const DetailFitness& fitness,
                                    std::span<const std::vector<FractalLayer>> candidates,
-                                   SwarmMachine& swarm) {
+                                   CandidateEvaluator& swarm) {
   try {
     return fitness.scores(candidates, swarm);
   } catch (const OutOfDeviceMemory&) {
@@ -70,7 +70,7 @@ std::vector<DetailScore> scores_of(const DetailFitness& fitness,
 }
 
 std::vector<double> fitness_of(const DetailFitness& fitness, std::span<const std::vector<double>> points,
-                               SwarmMachine* swarm) {
+                               CandidateEvaluator* swarm) {
   std::vector<std::vector<FractalLayer>> candidates;
   for (const std::vector<double>& x : points) candidates.push_back(detail_layers(x, fitness.ranges()));
   std::vector<double> values(points.size());

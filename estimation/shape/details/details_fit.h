@@ -21,7 +21,7 @@ struct DetailsFitOptions {
   std::uint64_t seed = 1;
   FitnessOptions fitness;
   EvaluationLog* log = nullptr;  // of the search: a log that holds values begins where it ended
-  SwarmMachine* swarm =
+  CandidateEvaluator* swarm =
       nullptr;  // measures whole generations of the search; null: the CPU does, with the same bits
 };
 

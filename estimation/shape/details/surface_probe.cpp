@@ -123,7 +123,7 @@ void SurfaceProbe::add_lines(const Block& block) {
   lines_.metaballs.add(std::span<const MetaballSphere<float>>(block.metaballs.spheres));
 }
 
-std::vector<std::vector<double>> SurfaceProbe::heights(SwarmMachine& machine,
+std::vector<std::vector<double>> SurfaceProbe::heights(CandidateEvaluator& evaluator,
                                                        std::span<const std::vector<FractalLayer>> candidates,
                                                        std::uint64_t seed) const {
   std::vector<CandidateLayers> noises;
@@ -131,7 +131,7 @@ std::vector<std::vector<double>> SurfaceProbe::heights(SwarmMachine& machine,
     noises.push_back(prepare(layers, seed, domain_));
   }
   std::vector<std::vector<double>> result;
-  for (const std::vector<float>& t : machine.heights(lines_, noises)) {
+  for (const std::vector<float>& t : evaluator.heights(lines_, noises)) {
     std::vector<double>& heights = result.emplace_back(size_);
     std::size_t line = 0;
     for (const Block& block : blocks_) {

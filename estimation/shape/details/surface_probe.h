@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "cuda/swarm.h"
+#include "cuda/candidate_evaluator.h"
 #include "geometry/surface/surface_tree.h"
 #include "recipe/recipe.h"
 #include "synthesis/body/metaball_body.h"
@@ -36,7 +36,7 @@ class SurfaceProbe {
   std::vector<double> heights(std::span<const FractalLayer> layers, std::uint64_t seed) const;
 
   // The same of each candidate, by another machine: the same bits.
-  std::vector<std::vector<double>> heights(SwarmMachine& machine,
+  std::vector<std::vector<double>> heights(CandidateEvaluator& evaluator,
                                            std::span<const std::vector<FractalLayer>> candidates,
                                            std::uint64_t seed) const;
 

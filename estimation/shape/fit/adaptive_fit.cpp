@@ -6,8 +6,8 @@
 #include <limits>
 #include <tuple>
 
+#include "estimation/shape/fit/component_repair.h"
 #include "estimation/shape/fit/fit_check.h"
-#include "estimation/shape/fit/part_repair.h"
 #include "estimation/shape/fit/sphere_growth.h"
 
 namespace astrolith {
@@ -131,17 +131,18 @@ class AdaptiveFit {
     const int missing = wanted - static_cast<int>(spheres.size());
     const int count = (missing + rounds_left - 1) / rounds_left;
     const std::vector<ModelSphere> grown = spheres_for_largest_errors(
-        summary_.model, samples_, {target_.area, options_.spheres, count, more_taking()});
+        summary_.model, samples_, {target_.area, options_.spheres, count, more_subtractive()});
     spheres.insert(spheres.end(), grown.begin(), grown.end());
   }
 
   // How many more spheres may take away.
-  int more_taking() const {
+  int more_subtractive() const {
     if (summary_.model.kernel != Kernel::kGaussian) return 0;
     const std::vector<ModelSphere>& spheres = summary_.model.spheres;
-    const auto taking =
-        std::count_if(spheres.begin(), spheres.end(), [](const ModelSphere& s) { return s.takes_away; });
-    return std::max(0, static_cast<int>(options_.taking * options_.spheres) - static_cast<int>(taking));
+    const auto subtractive =
+        std::count_if(spheres.begin(), spheres.end(), [](const ModelSphere& s) { return s.subtractive; });
+    return std::max(
+        0, static_cast<int>(options_.subtractive * options_.spheres) - static_cast<int>(subtractive));
   }
 
   // Looks for islands, cavities and bridges, and mends them: islands lose their spheres, cavities are filled,

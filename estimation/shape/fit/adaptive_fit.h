@@ -23,7 +23,7 @@ struct AdaptiveFitOptions {
   int relocations = 40;       // rounds of them, at most
   int relocation_iterations = 20;
   int last_iterations = 60;     // at the end, on all samples
-  double taking = 0.5;          // share of the spheres that may take away, at most; Gaussians alone
+  double subtractive = 0.5;     // share of the spheres that may take away, at most; Gaussians alone
   double relocated = 0.15;      // share of the spheres that a relocation takes elsewhere, at first
   int samples_per_sphere = 60;  // seen before the end
   double tolerance = 0.0;       // stops growing at this mean |s| over the samples, fraction of the diagonal

@@ -4,7 +4,7 @@
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/shape_description.h"
-#include "estimation/shape/fit/blend_search.h"
+#include "estimation/shape/fit/global_parameter_search.h"
 #include "estimation/shape/packing/sphere_packing.h"
 #include "numerics/errors.h"
 
@@ -67,9 +67,9 @@ Packing pack(const TargetBody& target, const ShapeFitOptions& options, const Pro
   return result;
 }
 
-BlendSearchSummary search(const TargetBody& target, const Packing& packing, const ShapeFitOptions& options,
-                          const Progress& progress) {
-  BlendSearchOptions search_options;
+GlobalParameterSearchSummary search(const TargetBody& target, const Packing& packing,
+                                    const ShapeFitOptions& options, const Progress& progress) {
+  GlobalParameterSearchOptions search_options;
   search_options.max_spheres = static_cast<int>(packing.spheres.size());
   search_options.kernel = options.kernel;
   search_options.optimize.algorithm = options.optimizer;
@@ -78,7 +78,7 @@ BlendSearchSummary search(const TargetBody& target, const Packing& packing, cons
   search_options.optimize.seed = options.seed;
   const SurfaceSamples samples =
       sample_poisson_disk(target.surface, kSearchSamples, stream_seed(options.seed, kSearch));
-  return search_blend(packing.spheres, samples, search_options, progress);
+  return search_global_parameters(packing.spheres, samples, search_options, progress);
 }
 
 AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& start,
@@ -97,7 +97,7 @@ AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& s
   AdaptiveFitOptions adaptive;
   adaptive.spheres = options.spheres;
   adaptive.tolerance = options.tolerance;
-  adaptive.taking = options.subtract;
+  adaptive.subtractive = options.subtract;
   adaptive.repair_resolution = options.check_resolution;
   if (options.spheres >= kManySpheres) {
     adaptive.relocations /= 3;
@@ -142,7 +142,7 @@ ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& option
   check_options(options);
   ShapeFitResult result;
   const Packing packing = pack(target, options, progress("pack"));
-  const BlendSearchSummary base = search(target, packing, options, progress("search"));
+  const GlobalParameterSearchSummary base = search(target, packing, options, progress("search"));
   AdaptiveFitSummary fit = refine_model(target, base.model, options, progress("refine"));
   result.body = body_in_file_frame(fit.model, target);
   result.filling_rate = packing.filling_rate;

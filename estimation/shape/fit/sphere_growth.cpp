@@ -96,15 +96,15 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
 }
 
 // Marks the spheres of one kind that hold `share` of its sum at one of the points.
-void mark_holding(const MetaballModel& model, bool takes_away, const std::vector<Vec3d>& points, double share,
-                  std::vector<bool>& marks) {
+void mark_holding(const MetaballModel& model, bool subtractive, const std::vector<Vec3d>& points,
+                  double share, std::vector<bool>& marks) {
   const ModelEvaluation parameters = evaluation_parameters(model);
   std::vector<std::vector<std::int32_t>> holding(points.size());  // a list a point, merged afterwards
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
     std::vector<double> shares;
     totals_with_shares(model, parameters, neighbours, points[p], shares);
     for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      const bool of_kind = model.spheres[static_cast<std::size_t>(neighbours[j])].takes_away == takes_away;
+      const bool of_kind = model.spheres[static_cast<std::size_t>(neighbours[j])].subtractive == subtractive;
       if (of_kind && shares[j] >= share) holding[p].push_back(neighbours[j]);
     }
   });
@@ -135,7 +135,7 @@ int keep_only(MetaballModel& model, const std::vector<bool>& wanted) {
   for (std::size_t i = 0; i < model.spheres.size(); ++i) {
     if (wanted[i]) kept.push_back(model.spheres[i]);
   }
-  const auto adds = [](const ModelSphere& s) { return !s.takes_away; };
+  const auto adds = [](const ModelSphere& s) { return !s.subtractive; };
   if (std::none_of(kept.begin(), kept.end(), adds)) return 0;
   const auto removed = static_cast<int>(model.spheres.size() - kept.size());
   model.spheres = std::move(kept);
@@ -177,7 +177,7 @@ std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, 
   const double depth = radius * radii_at_kernel(model, kStartShare);
   std::vector<ModelSphere> grown;
   std::vector<Vec3d> occupied;
-  int taking = 0;
+  int num_subtractive = 0;
   for (const std::size_t i : order) {
     if (grown.size() >= static_cast<std::size_t>(options.count)) break;
     const Vec3d& p = samples.points[i];
@@ -185,9 +185,9 @@ std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, 
                                    [&](const Vec3d& q) { return squared_norm(p - q) < 4.0 * patch * patch; });
     if (!free) continue;
     occupied.push_back(p);
-    const bool takes_away = errors[i].mean > 0.0 && taking < options.taking;
-    if (takes_away) ++taking;
-    grown.emplace_back(p + samples.normals[i] * (takes_away ? depth : -depth), radius, takes_away);
+    const bool subtractive = errors[i].mean > 0.0 && num_subtractive < options.subtractive;
+    if (subtractive) ++num_subtractive;
+    grown.emplace_back(p + samples.normals[i] * (subtractive ? depth : -depth), radius, subtractive);
   }
   return grown;
 }
@@ -218,7 +218,7 @@ void remove_least_useful_spheres(MetaballModel& model, const std::vector<Vec3d>&
 int remove_outside_spheres(MetaballModel& model, const SurfaceTree& target, double margin) {
   std::vector<bool> inside;
   for (const ModelSphere& s : model.spheres) {
-    inside.push_back(s.takes_away || target.signed_distance(s.center) >= -margin);
+    inside.push_back(s.subtractive || target.signed_distance(s.center) >= -margin);
   }
   return keep_only(model, inside);
 }

@@ -14,10 +14,10 @@ namespace astrolith {
 std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points);
 
 struct GrowthOptions {
-  double area = 0.0;  // of the target's surface
-  int budget = 0;     // spheres in all: each of them has a patch of the surface to itself
-  int count = 0;      // new spheres at most
-  int taking = 0;     // of them that may take away, at most
+  double area = 0.0;    // of the target's surface
+  int budget = 0;       // spheres in all: each of them has a patch of the surface to itself
+  int count = 0;        // new spheres at most
+  int subtractive = 0;  // of them that may take away, at most
 };
 
 // Spheres where s^2, averaged over patches, is largest; no two in one patch. Where the model lies under the

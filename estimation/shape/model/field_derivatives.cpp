@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "estimation/shape/model/profile_derivatives_internal.h"
+#include "estimation/shape/model/compact_kernel_derivatives_internal.h"
 
 namespace astrolith {
 namespace {
@@ -15,7 +15,7 @@ MetaballTotals<double> totals_at(const MetaballModel& model, const ModelEvaluati
   MetaballTotals<double> totals;
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
     const ModelSphere& s = model.spheres[static_cast<std::size_t>(neighbours[j])];
-    MetaballSums<double>& sums = s.takes_away ? totals.taken : totals.added;
+    MetaballSums<double>& sums = s.subtractive ? totals.subtracted : totals.added;
     const double v = 1.0 / (s.radius * s.radius);
     const Vec3d d = p - s.center;
     const double q = squared_norm(d) * v;
@@ -41,19 +41,19 @@ class SignedTerms {
  public:
   explicit SignedTerms(const MetaballTotals<double>& totals)
       : added_(terms_of(totals.added, 1.0 / (totals.added.kernel + double{kKernelFloor}))),
-        taken_(terms_of(totals.taken, 1.0 / (1.0 + totals.taken.kernel))) {
-    taken_.weight *= -1.0;
+        subtracted_(terms_of(totals.subtracted, 1.0 / (1.0 + totals.subtracted.kernel))) {
+    subtracted_.weight *= -1.0;
   }
 
-  const KindTerms& of(const ModelSphere& sphere) const { return sphere.takes_away ? taken_ : added_; }
-  Vec3d weighted_mean() const { return added_.mean - taken_.mean; }  // G
+  const KindTerms& of(const ModelSphere& sphere) const { return sphere.subtractive ? subtracted_ : added_; }
+  Vec3d weighted_mean() const { return added_.mean - subtracted_.mean; }  // G
 
  private:
   static KindTerms terms_of(const MetaballSums<double>& sums, double weight) {
     return {weight, sums.weighted * weight};
   }
 
-  KindTerms added_, taken_;
+  KindTerms added_, subtracted_;
 };
 
 }  // namespace
@@ -62,7 +62,7 @@ double distance_with_derivatives(const MetaballModel& model, const ModelEvaluati
                                  std::span<const std::int32_t> neighbours, const Vec3d& p,
                                  std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
   if (model.kernel != Kernel::kGaussian) {
-    return profile_distance(model, parameters, neighbours, p, by_sphere, by_log_sharpness);
+    return compact_distance(model, parameters, neighbours, p, by_sphere, by_log_sharpness);
   }
   const MetaballTotals<double> totals = totals_at(model, parameters, neighbours, p, by_sphere);
   const double s = metaball_distance(parameters, totals.net()).distance;
@@ -97,7 +97,7 @@ double level_with_derivatives(const MetaballModel& model, const ModelEvaluation&
                               std::span<const std::int32_t> neighbours, const Vec3d& p,
                               std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
   if (model.kernel != Kernel::kGaussian) {
-    return profile_level(model, parameters, neighbours, p, by_sphere, by_log_sharpness);
+    return compact_level(model, parameters, neighbours, p, by_sphere, by_log_sharpness);
   }
   const MetaballTotals<double> totals = totals_at(model, parameters, neighbours, p, by_sphere);
   const double level = level_of(model, totals.net().kernel);

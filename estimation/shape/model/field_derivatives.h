@@ -1,6 +1,6 @@
 // First-order signed distance and level of a metaball model at one point, with exact derivatives by every
 // sphere and by the sharpness: the rows of the fit's Jacobian. Other kernels than the Gaussian are in
-// profile_derivatives_internal.h.
+// compact_kernel_derivatives_internal.h.
 //
 // With u_i = (p - c_i) / r_i^2, q_i = |p - c_i|^2 / r_i^2, w = softmax(k) and G = sum_i w_i u_i,
 //   L = Lambda / kappa,  Lambda = log sum_i exp k_i,      s = L / N,  N = sqrt(4 |G|^2 + floor)

@@ -46,7 +46,7 @@ class Projector {
     double nearest = 1e300;
     for (const ModelSphere& s : model_.spheres) {
       const double distance = norm(p - s.center) - s.radius;
-      if (s.takes_away || distance >= nearest) continue;
+      if (s.subtractive || distance >= nearest) continue;
       nearest = distance;
       direction = normalized(p - s.center);
     }

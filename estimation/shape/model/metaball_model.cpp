@@ -21,17 +21,17 @@ constexpr double kCutoffRadii = 5.0;
 // where slopes are steeper, all but what it was.
 double slope_floor(Kernel kernel) { return kernel == Kernel::kGaussian ? 1e-3 : 0.5; }
 
-KernelProfile<double> profile_of(Kernel kernel, double tension, double& cutoff_squared) {
+CompactKernel<double> compact_kernel_of(Kernel kernel, double tension, double& cutoff_squared) {
   cutoff_squared = kCutoffRadii * kCutoffRadii;
   return scaled_kernel(kernel, tension, 1.0, cutoff_squared);
 }
 
-// By differences: a profile's scale is found by bisection, and this is done once for all points.
-ProfileTension tension_derivatives(Kernel kernel, double tension) {
+// By differences: a compact_kernel's scale is found by bisection, and this is done once for all points.
+CompactKernelTension tension_derivatives(Kernel kernel, double tension) {
   const double h = 1e-4;
   double cutoff_squared = 0.0;
-  const KernelProfile<double> more = profile_of(kernel, tension + h, cutoff_squared);
-  const KernelProfile<double> less = profile_of(kernel, tension - h, cutoff_squared);
+  const CompactKernel<double> more = compact_kernel_of(kernel, tension + h, cutoff_squared);
+  const CompactKernel<double> less = compact_kernel_of(kernel, tension - h, cutoff_squared);
   return {std::log(more.scale / less.scale) / (2.0 * h), std::log(more.height / less.height) / (2.0 * h),
           (more.low - less.low) / (2.0 * h)};
 }
@@ -41,7 +41,7 @@ ProfileTension tension_derivatives(Kernel kernel, double tension) {
 double largest_radius(const MetaballModel& model) {
   double largest = 0.0;
   for (const ModelSphere& s : model.spheres) {
-    if (!s.takes_away) largest = std::max(largest, s.radius);
+    if (!s.subtractive) largest = std::max(largest, s.radius);
   }
   return largest;
 }
@@ -58,7 +58,7 @@ ModelEvaluation evaluation_parameters(const MetaballModel& model) {
     return evaluation;
   }
   evaluation.m = evaluation.inverse_m = 1.0;
-  evaluation.profile = profile_of(model.kernel, model.sharpness, evaluation.cutoff_squared);
+  evaluation.compact_kernel = compact_kernel_of(model.kernel, model.sharpness, evaluation.cutoff_squared);
   evaluation.tension = tension_derivatives(model.kernel, model.sharpness);
   return evaluation;
 }
@@ -66,7 +66,7 @@ ModelEvaluation evaluation_parameters(const MetaballModel& model) {
 double support_radii(const MetaballModel& model) {
   if (model.kernel == Kernel::kGaussian) return gaussian_support(model.sharpness);
   double cutoff_squared = 0.0;
-  profile_of(model.kernel, model.sharpness, cutoff_squared);
+  compact_kernel_of(model.kernel, model.sharpness, cutoff_squared);
   return std::sqrt(cutoff_squared);
 }
 
@@ -91,7 +91,7 @@ MetaballBody metaball_body(const MetaballModel& model) {
     body.cutoff_radii = kCutoffRadii;
   }
   for (const ModelSphere& s : model.spheres) {
-    (s.takes_away ? body.subtract : body.spheres)
+    (s.subtractive ? body.subtract : body.spheres)
         .push_back({{rounded(s.center.x), rounded(s.center.y), rounded(s.center.z)}, rounded(s.radius)});
   }
   return body;

@@ -5,7 +5,7 @@
 // works with a = b = 1 and m = kappa,
 //   k_i(p) = kappa (1 - |p - c_i|^2 / r_i^2),     L(p) = log(sum_i exp k_i) / kappa.
 // The other kernels are summed as they are, m = 1, and their sharpness is the tension a = b:
-//   L(p) = sum_i K(|p - c_i|^2 / r_i^2) - 1,      K(0) = e^a, K(1) = 1     (synthesis/body/kernel_profile.h).
+//   L(p) = sum_i K(|p - c_i|^2 / r_i^2) - 1,      K(0) = e^a, K(1) = 1     (synthesis/body/compact_kernel.h).
 // Either way a lone sphere's surface, L = 0, has its own radius.
 //
 // Gaussians may also take away (synthesis/body/metaballs.h): the sum is then A = P / (1 + N).
@@ -19,10 +19,12 @@
 namespace astrolith {
 
 struct ModelSphere : Sphere {
-  bool takes_away = false;  // Gaussians alone
+  bool subtractive = false;  // Gaussians alone
 
-  ModelSphere(const Sphere& sphere, bool takes = false) : Sphere(sphere), takes_away(takes) {}
-  ModelSphere(const Vec3d& at, double r, bool takes = false) : Sphere{at, r}, takes_away(takes) {}
+  ModelSphere(const Sphere& sphere, bool is_subtractive = false)
+      : Sphere(sphere), subtractive(is_subtractive) {}
+  ModelSphere(const Vec3d& at, double r, bool is_subtractive = false)
+      : Sphere{at, r}, subtractive(is_subtractive) {}
 };
 
 struct MetaballModel {
@@ -34,17 +36,17 @@ struct MetaballModel {
 // As synthesis takes it.
 inline MetaballSphere<double> kernel_of(const ModelSphere& s) {
   const double inverse_square = 1.0 / (s.radius * s.radius);
-  return {s.center, s.takes_away ? -inverse_square : inverse_square};
+  return {s.center, s.subtractive ? -inverse_square : inverse_square};
 }
 
 // Derivatives of K's scale, of the logarithm of its height, and of its end by the tension.
-struct ProfileTension {
+struct CompactKernelTension {
   double log_scale = 0.0, log_height = 0.0, low = 0.0;
 };
 
 // A model ready to be evaluated, in double precision.
 struct ModelEvaluation : MetaballParameters<double> {
-  ProfileTension tension;  // of kernels other than the Gaussian
+  CompactKernelTension tension;  // of kernels other than the Gaussian
 };
 
 // Of the spheres that add.

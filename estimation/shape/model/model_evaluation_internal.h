@@ -55,13 +55,14 @@ inline MetaballTotals<double> totals_with_shares(const MetaballModel& model,
   for (std::size_t j = 0; j < spheres.size(); ++j) {
     MetaballTotals<double> own;
     accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(spheres[j])]), p, own);
-    shares[j] = own.added.kernel + own.taken.kernel;
+    shares[j] = own.added.kernel + own.subtracted.kernel;
     add_sums(own.added, totals.added);
-    add_sums(own.taken, totals.taken);
+    add_sums(own.subtracted, totals.subtracted);
   }
-  const double added = totals.added.kernel + double{kKernelFloor}, taken = 1.0 + totals.taken.kernel;
+  const double added = totals.added.kernel + double{kKernelFloor},
+               subtracted = 1.0 + totals.subtracted.kernel;
   for (std::size_t j = 0; j < spheres.size(); ++j) {
-    shares[j] /= model.spheres[static_cast<std::size_t>(spheres[j])].takes_away ? taken : added;
+    shares[j] /= model.spheres[static_cast<std::size_t>(spheres[j])].subtractive ? subtracted : added;
   }
   return totals;
 }

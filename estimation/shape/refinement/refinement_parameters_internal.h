@@ -22,14 +22,14 @@ struct RefinementParameters {
     sharpness = half * std::atanh(std::clamp(part, -0.99, 0.99));
     for (const ModelSphere& s : model.spheres) {
       spheres.push_back({s.center.x, s.center.y, s.center.z, std::log(s.radius)});
-      takes_away.push_back(s.takes_away);
+      subtractive.push_back(s.subtractive);
     }
   }
   MetaballModel model() const {
     MetaballModel m{std::exp(middle + half * std::tanh(sharpness / half)), {}, kernel};
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       const SphereDerivatives& s = spheres[i];
-      m.spheres.emplace_back(Vec3d{s[0], s[1], s[2]}, std::exp(s[3]), takes_away[i]);
+      m.spheres.emplace_back(Vec3d{s[0], s[1], s[2]}, std::exp(s[3]), subtractive[i]);
     }
     return m;
   }
@@ -50,8 +50,8 @@ struct RefinementParameters {
   Kernel kernel;
   double middle, half;
   std::vector<SphereDerivatives> spheres;
-  std::vector<bool> takes_away;  // by sphere; fixed
-  double sharpness = 0.0;        // t
+  std::vector<bool> subtractive;  // by sphere; fixed
+  double sharpness = 0.0;         // t
 };
 
 }  // namespace astrolith

@@ -49,7 +49,7 @@ std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const M
 }
 
 CenterCondition center_condition(const SurfaceTree& target, double weight, const ModelSphere& sphere) {
-  if (sphere.takes_away) return {};
+  if (sphere.subtractive) return {};
   const ClosestPoint closest = target.closest(sphere.center);
   const double sign = dot(sphere.center - closest.point, closest.normal) > 0.0 ? -1.0 : 1.0;
   const double depth = kCenterDepth * sphere.radius;

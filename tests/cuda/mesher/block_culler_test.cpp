@@ -1,10 +1,10 @@
-// The blocks that a machine finds, and what reaches each, against the CPU's.
+// The blocks that a backend finds, and what reaches each, against the CPU's.
 #include "cuda/mesher/block_parts.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "cuda/host_machine.h"
+#include "cuda/host_backend.h"
 #include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/random_recipes.h"
 
@@ -37,14 +37,14 @@ void expect_same(const std::vector<T>& cpu, const T* twin, const char* what) {
   EXPECT_TRUE(cpu.empty() || std::memcmp(cpu.data(), twin, cpu.size() * sizeof(T)) == 0) << what;
 }
 
-// Gabor impulses are compared by what they make: a machine may hold some more that add nothing.
+// Gabor impulses are compared by what they make: a backend may hold some more that add nothing.
 void expect_same_lists(const FlatBlocksData& cpu, const FlatBlocks& twin) {
   expect_same(cpu.first_sphere, twin.first_sphere, "metaballs");
   expect_same(cpu.spheres, twin.spheres, "metaballs");
   expect_same(cpu.first_impulse, twin.first_impulse, "spots");
   expect_same(cpu.impulses, twin.impulses, "spots");
-  expect_same(cpu.first_feature, twin.first_feature, "craters and boulders");
-  expect_same(cpu.features, twin.features, "craters and boulders");
+  expect_same(cpu.first_landform, twin.first_landform, "craters and boulders");
+  expect_same(cpu.landforms, twin.landforms, "craters and boulders");
 }
 
 void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& order) {
@@ -53,20 +53,20 @@ void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& o
   std::vector<int> layers;
   const auto cpu = blocks_of_cpu(field, grid, layers);
 
-  HostMachine machine(std::size_t{1} << 34, order);
+  HostBackend backend(std::size_t{1} << 34, order);
   const FlatFieldData data(field);
-  const FieldOnMachine<HostMachine> on_machine(machine, data);
-  BlockCuller<HostMachine> culler(machine, data, on_machine.view(), grid, gabor_margin(data));
-  auto failure = zeros_on<std::uint32_t>(machine, 1);
-  const CulledBlocks<HostMachine> twin = culler.cull(0, grid.blocks(2), failure);
-  ASSERT_EQ(machine.read(failure, 0), 0u);
+  const FieldOnBackend<HostBackend> on_machine(backend, data);
+  BlockCuller<HostBackend> culler(backend, data, on_machine.view(), grid, gabor_margin(data));
+  auto failure = zeros_on<std::uint32_t>(backend, 1);
+  const CulledBlocks<HostBackend> twin = culler.cull(0, grid.blocks(2), failure);
+  ASSERT_EQ(backend.read(failure, 0), 0u);
   ASSERT_EQ(twin.on_host.size(), cpu.size());
   for (std::size_t i = 0; i < cpu.size(); ++i) {
     ASSERT_EQ(twin.on_host[i].x, cpu[i].x) << i;
     ASSERT_EQ(twin.on_host[i].y, cpu[i].y) << i;
     ASSERT_EQ(twin.on_host[i].z, layers[i]) << i;
   }
-  const BlockParts<HostMachine> parts(machine, data, {on_machine.view(), grid, culler.lists(), twin.view()},
+  const BlockParts<HostBackend> parts(backend, data, {on_machine.view(), grid, culler.lists(), twin.view()},
                                       cpu.size());
   FlatBlocksData lists(data);
   for (const auto& node : cpu) lists.add(node.field);
@@ -89,13 +89,13 @@ TEST(BlockCuller, SaysWhereTheBodyFillsTheBorder) {
   const ImplicitField field(testing::sphere_recipe(1.0));
   const SampleGrid samples = make_sample_grid({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
   const MeshGrid grid{samples, window_of_tile<kBlockCells>(samples, {}), true};
-  HostMachine machine;
+  HostBackend backend;
   const FlatFieldData data(field);
-  const FieldOnMachine<HostMachine> on_machine(machine, data);
-  BlockCuller<HostMachine> culler(machine, data, on_machine.view(), grid, 0.0);
-  auto failure = zeros_on<std::uint32_t>(machine, 1);
+  const FieldOnBackend<HostBackend> on_machine(backend, data);
+  BlockCuller<HostBackend> culler(backend, data, on_machine.view(), grid, 0.0);
+  auto failure = zeros_on<std::uint32_t>(backend, 1);
   culler.cull(0, grid.blocks(2), failure);
-  EXPECT_EQ(machine.read(failure, 0), static_cast<std::uint32_t>(MeshFailure::kBorder));
+  EXPECT_EQ(backend.read(failure, 0), static_cast<std::uint32_t>(MeshFailure::kBorder));
 }
 
 }  // namespace

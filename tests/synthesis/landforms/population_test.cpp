@@ -43,7 +43,7 @@ TEST(Population, ExponentsAreRecovered) {
     for (const double greatest : {0.2, 5.0}) {
       const Population population = population_of(5000, 0.1, greatest, exponent);
       std::vector<double> diameters;
-      for (const DrawnFeature& f : draw_population(population, surface, 3, 0, "r")) {
+      for (const DrawnLandform& f : draw_population(population, surface, 3, 0, "r")) {
         ASSERT_TRUE(f.diameter >= 0.1 && f.diameter <= greatest);
         diameters.push_back(f.diameter);
       }
@@ -92,7 +92,7 @@ TEST(Population, PlacesAreUniformOverTheArea) {
   EXPECT_NEAR(surface.area(), 0.5 * area, 1e-3 * area);
   int seen = 0, upper = 0;
   const int n = 20000;
-  for (const DrawnFeature& f : draw_population(population_of(n, 0.1, 0.2, 2.0), surface, 9, 0, "r")) {
+  for (const DrawnLandform& f : draw_population(population_of(n, 0.1, 0.2, 2.0), surface, 9, 0, "r")) {
     ASSERT_NEAR(field.value(f.position), 0.0, 1e-5);
     seen += f.position.x > 1.0;
     upper += f.position.z > 0.0;
@@ -108,7 +108,7 @@ TEST(Population, PlacesAreIndependent) {
   constexpr int kRings = 16, kSectors = 32;
   const double mean = 20.0;
   std::vector<double> counts(kRings * kSectors);
-  for (const DrawnFeature& f : draw_population(
+  for (const DrawnLandform& f : draw_population(
            population_of(static_cast<int>(mean) * kRings * kSectors, 0.1, 0.2, 2.0), surface, 4, 2, "r")) {
     const int ring = std::min(kRings - 1, static_cast<int>((f.position.z + 1.0) / 2.0 * kRings));
     const double turn = std::atan2(f.position.y, f.position.x) / (2.0 * std::numbers::pi) + 0.5;

@@ -66,7 +66,7 @@ TEST(CoordinateWarp, StretchesNoMoreThanItSays) {
   for (int i = 0; i < 50000; ++i) {
     const Vec3f p = testing::random_place(random, 4.0), q = p + testing::random_place(random, 0.05);
     ASSERT_LE(norm(warped(warp, p) - warped(warp, q)),
-              warp.stretch() * norm(to_double(p) - to_double(q)) + 1e-5);
+              warp.lipschitz_bound() * norm(to_double(p) - to_double(q)) + 1e-5);
   }
 }
 

@@ -39,7 +39,7 @@ double worst_dependence(const Hash& hash, int shift) {
 TEST(LatticeNoise, NeighboursHashesAreIndependent) {
   EXPECT_LT(worst_dependence(lattice_hash, 28), 5.0);
   EXPECT_LT(worst_dependence(short_lattice_hash, 28), 5.0);
-  // A feature point's fields: bits 9 to 31, 0 to 22 and 0 to 12.
+  // A landform point's fields: bits 9 to 31, 0 to 22 and 0 to 12.
   const auto mixed = [](std::uint32_t point) {
     const std::uint32_t h = short_lattice_hash(point);
     return h ^ (h >> 15);

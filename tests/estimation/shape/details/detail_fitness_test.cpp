@@ -1,8 +1,8 @@
 #include "estimation/shape/details/detail_fitness.h"
 
+#include "cuda/candidates_on_gpu.h"
 #include "cuda/device.h"
-#include "cuda/host_machine.h"
-#include "cuda/swarm_on_gpu.h"
+#include "cuda/host_backend.h"
 #include "tests/estimation/shape/details/known_details.h"
 
 namespace astrolith {
@@ -32,7 +32,7 @@ std::vector<std::vector<FractalLayer>> swarm() {
   return candidates;
 }
 
-void expect_the_scores_of_the_cpu(SwarmMachine& machine) {
+void expect_the_scores_of_the_cpu(CandidateEvaluator& machine) {
   const TargetBody target = with_details({layer_of(Noise::kSimplex, 0.03, 4.0)}, 50);
   FitnessOptions options;
   options.samples = 500;
@@ -50,14 +50,14 @@ void expect_the_scores_of_the_cpu(SwarmMachine& machine) {
 }
 
 TEST(DetailFitness, ASwarmHasTheScoresOfItsCandidates) {
-  SwarmOn<HostMachine> twin{HostMachine()};
+  CandidateEvaluatorOn<HostBackend> twin{HostBackend()};
   expect_the_scores_of_the_cpu(twin);
 }
 
 TEST(DetailFitnessOnGpu, ASwarmHasTheScoresOfItsCandidates) {
   const DeviceStatus status = probe_device();
   if (!status.usable) GTEST_SKIP() << "no GPU here: " << status.reason;
-  expect_the_scores_of_the_cpu(*swarm_on_gpu());
+  expect_the_scores_of_the_cpu(*candidates_on_gpu());
 }
 
 }  // namespace

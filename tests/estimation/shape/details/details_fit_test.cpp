@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "cuda/host_machine.h"
+#include "cuda/host_backend.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/implicit_field.h"
@@ -66,7 +66,7 @@ TEST(DetailsFit, SameLayersByAnotherMachine) {
     options.optimizer = optimizer;
     options.fitness.samples = 300;
     const DetailsFitResult by_cpu = fit_details(target, base, options);
-    SwarmOn<HostMachine> twin{HostMachine()};
+    CandidateEvaluatorOn<HostBackend> twin{HostBackend()};
     options.swarm = &twin;
     const DetailsFitResult by_twin = fit_details(target, base, options);
     EXPECT_EQ(by_twin.optimization.x, by_cpu.optimization.x);

@@ -22,7 +22,7 @@ TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {
   ASSERT_EQ(grown.size(), 1u);
   EXPECT_GT(normalized(grown[0].center).x, 0.9);
   EXPECT_LT(norm(grown[0].center), 1.0);
-  EXPECT_FALSE(grown[0].takes_away);
+  EXPECT_FALSE(grown[0].subtractive);
 }
 
 TEST(SphereGrowth, WhereTheModelSticksOutNewSpheresTakeAway) {
@@ -32,14 +32,14 @@ TEST(SphereGrowth, WhereTheModelSticksOutNewSpheresTakeAway) {
   }
   MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
   const SurfaceSamples samples = sample_surface(mesh, 2000, 1, SampleNormals::interpolated);
-  const auto grown = [&](int taking) {
-    return spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1, taking}).at(0);
+  const auto grown = [&](int subtractive) {
+    return spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1, subtractive}).at(0);
   };
   const ModelSphere dent = grown(1);
-  EXPECT_TRUE(dent.takes_away);
+  EXPECT_TRUE(dent.subtractive);
   EXPECT_GT(normalized(dent.center).x, 0.9);
   EXPECT_GT(norm(dent.center), 0.85);
-  EXPECT_FALSE(grown(0).takes_away);
+  EXPECT_FALSE(grown(0).subtractive);
   const std::vector<Vec3d> dented{{0.85, 0, 0}};
   const double before = model_distances(model, dented)[0];
   model.spheres.push_back(dent);

@@ -21,7 +21,7 @@ MetaballModel random_model(std::uint64_t seed, int count, double sharpness,
 
 // Every third sphere takes away.
 MetaballModel dented(MetaballModel model) {
-  for (std::size_t i = 2; i < model.spheres.size(); i += 3) model.spheres[i].takes_away = true;
+  for (std::size_t i = 2; i < model.spheres.size(); i += 3) model.spheres[i].subtractive = true;
   return model;
 }
 

@@ -16,11 +16,11 @@
 
 namespace astrolith {
 
-double profile_distance(const MetaballModel& model, const ModelEvaluation& parameters,
+double compact_distance(const MetaballModel& model, const ModelEvaluation& parameters,
                         std::span<const std::int32_t> neighbours, const Vec3d& p,
                         std::span<SphereDerivatives> by_sphere, double* by_log_sharpness);
 
-double profile_level(const MetaballModel& model, const ModelEvaluation& parameters,
+double compact_level(const MetaballModel& model, const ModelEvaluation& parameters,
                      std::span<const std::int32_t> neighbours, const Vec3d& p,
                      std::span<SphereDerivatives> by_sphere, double* by_log_sharpness);
 

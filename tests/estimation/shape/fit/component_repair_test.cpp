@@ -1,4 +1,4 @@
-#include "estimation/shape/fit/part_repair.h"
+#include "estimation/shape/fit/component_repair.h"
 
 #include "estimation/shape/fit/fit_check.h"
 #include "estimation/shape/model/model_evaluation_internal.h"
@@ -43,7 +43,7 @@ TEST(PartRepair, WhatTakesTooMuchAwayGoes) {
   EXPECT_TRUE(before.strays[0].cavity);
   fill_cavities(model, before.strays, sample_surface(target.mesh, 500, 1).points);
   EXPECT_TRUE(std::none_of(model.spheres.begin(), model.spheres.end(),
-                           [](const ModelSphere& s) { return s.takes_away; }));
+                           [](const ModelSphere& s) { return s.subtractive; }));
   EXPECT_TRUE(parts_of(target, model).strays.empty());
 }
 

@@ -1,5 +1,5 @@
 // The five kernels: what they are, where they end, what is certain about them over boxes.
-#include "synthesis/body/kernel_profile.h"
+#include "synthesis/body/compact_kernel.h"
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
@@ -14,7 +14,8 @@ namespace {
 
 using testing::evaluate_one;
 using testing::PointValue;
-constexpr Kernel kProfiles[] = {Kernel::kMetaball, Kernel::kSoftObject, Kernel::kWyvill, Kernel::kCauchy};
+constexpr Kernel kCompactKernels[] = {Kernel::kMetaball, Kernel::kSoftObject, Kernel::kWyvill,
+                                      Kernel::kCauchy};
 
 double unit_value(Kernel kernel, double x) { return kernel_value<double>({kernel, 1.0, 0.0, 1.0}, x).value; }
 
@@ -29,14 +30,15 @@ TEST(Kernels, AreTheThesisFormulas) {
 }
 
 TEST(Kernels, SlopesAndCurvaturesAreDerivatives) {
-  for (const Kernel kernel : kProfiles) {
+  for (const Kernel kernel : kCompactKernels) {
     SCOPED_TRACE(kernel_word(kernel));
-    const KernelProfile<double> profile{kernel, 0.7, 0.01, 2.5};
+    const CompactKernel<double> compact_kernel{kernel, 0.7, 0.01, 2.5};
     double slope_before = 1e9;
     for (double q = 0.01; q < 1.4; q += 0.0437) {
       const double h = 1e-5;
-      const ProfileValue<double> k = kernel_value(profile, q), more = kernel_value(profile, q + h),
-                                 less = kernel_value(profile, q - h);
+      const KernelDerivatives<double> k = kernel_value(compact_kernel, q),
+                                      more = kernel_value(compact_kernel, q + h),
+                                      less = kernel_value(compact_kernel, q - h);
       EXPECT_NEAR(k.slope, (less.value - more.value) / (2 * h), 1e-7);
       EXPECT_NEAR(k.curvature, (less.slope - more.slope) / (2 * h), 1e-4);
       EXPECT_LE(k.slope, slope_before);  // the bounds over boxes rest on it
@@ -68,11 +70,11 @@ TEST(Kernels, ALoneSphereKeepsItsRadiusForAnyTension) {
 
 // e^tension at the centre, 1 at the surface, 0 at the end, whether that is the kernel's own or the cut-off.
 TEST(Kernels, EndContinuously) {
-  for (const Kernel kernel : kProfiles) {
+  for (const Kernel kernel : kCompactKernels) {
     for (const double cutoff : {1.7, 3.0, 25.0, 1e6}) {
       for (const double tension : {1.0, 3.0, 9.0}) {
         double end = cutoff;
-        const KernelProfile<double> k = scaled_kernel(kernel, tension, 1.0, end);
+        const CompactKernel<double> k = scaled_kernel(kernel, tension, 1.0, end);
         EXPECT_LE(end, cutoff);
         EXPECT_NEAR(kernel_value(k, 0.0).value, std::exp(tension), 1e-9 * std::exp(tension));
         EXPECT_NEAR(kernel_value(k, 1.0).value, 1.0, 1e-9);
@@ -84,7 +86,7 @@ TEST(Kernels, EndContinuously) {
 
 MetaballBody random_body(CounterRandom& random, int spheres) {
   MetaballBody body = *testing::potato_recipe(spheres, random.next()).body;
-  body.kernel = kProfiles[random.below(4)];
+  body.kernel = kCompactKernels[random.below(4)];
   body.blend_exponent = random.uniform(1.0, 6.0);
   body.cutoff_radii = random.uniform(1.2, 5.0);
   body.b = std::pow(10.0, random.uniform(-0.3, 0.9));
@@ -122,7 +124,7 @@ TEST(Kernels, PowersHaveTheDerivativesOfACentreAndARadius) {
   for (int k = 0; k < 100; ++k) {
     const MetaballParameters<double> body = in_double(prepare_metaballs(random_body(random, 1)).parameters);
     const double q = random.uniform(0.01, 0.9) * body.cutoff_squared, h = 1e-6;
-    const ProfileValue<double> f = kernel_power(body, q);
+    const KernelDerivatives<double> f = kernel_power(body, q);
     const double slope = (kernel_power(body, q - h).value - kernel_power(body, q + h).value) / (2 * h);
     EXPECT_NEAR(f.slope, slope, 1e-5 * (1.0 + std::fabs(slope)));
   }

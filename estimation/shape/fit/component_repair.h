@@ -6,7 +6,7 @@
 
 #include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/refinement/refinement.h"
-#include "estimation/shape/target/surface_parts.h"
+#include "estimation/shape/target/surface_components.h"
 #include "estimation/shape/target/target_body.h"
 
 namespace astrolith {

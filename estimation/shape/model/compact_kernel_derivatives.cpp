@@ -1,4 +1,4 @@
-#include "estimation/shape/model/profile_derivatives_internal.h"
+#include "estimation/shape/model/compact_kernel_derivatives_internal.h"
 
 #include <cmath>
 
@@ -8,8 +8,8 @@ namespace {
 // One sphere as seen from a point.
 struct Term {
   Vec3d u;
-  double q, inverse_square;  // of the radius
-  ProfileValue<double> k;    // K, D, C; all 0 beyond the support
+  double q, inverse_square;     // of the radius
+  KernelDerivatives<double> k;  // K, D, C; all 0 beyond the support
 };
 
 Term term_of(const MetaballModel& model, const ModelEvaluation& parameters, std::int32_t sphere,
@@ -19,7 +19,8 @@ Term term_of(const MetaballModel& model, const ModelEvaluation& parameters, std:
   const Vec3d d = p - s.center;
   const double q = squared_norm(d) * v;
   const bool reached = q < parameters.cutoff_squared;
-  return {d * v, q, v, reached ? kernel_value(parameters.profile, q) : ProfileValue<double>{0.0, 0.0, 0.0}};
+  return {d * v, q, v,
+          reached ? kernel_value(parameters.compact_kernel, q) : KernelDerivatives<double>{0.0, 0.0, 0.0}};
 }
 
 struct Sums {
@@ -40,15 +41,16 @@ Sums sums_at(const MetaballModel& model, const ModelEvaluation& parameters,
 
 double value_by_tension(const ModelEvaluation& parameters, const Term& t) {
   if (t.k.value == 0.0) return 0.0;
-  const ProfileTension& by = parameters.tension;
-  return by.log_height * t.k.value - by.log_scale * t.k.slope * t.q - parameters.profile.height * by.low;
+  const CompactKernelTension& by = parameters.tension;
+  return by.log_height * t.k.value - by.log_scale * t.k.slope * t.q -
+         parameters.compact_kernel.height * by.low;
 }
 
 // d(by_level L + by_gradient . g) by every sphere and by the logarithm of the tension.
 void add_up(const MetaballModel& model, const ModelEvaluation& parameters,
             std::span<const std::int32_t> neighbours, const Vec3d& p, double by_level,
             const Vec3d& by_gradient, std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
-  const ProfileTension& by = parameters.tension;
+  const CompactKernelTension& by = parameters.tension;
   double by_tension = 0.0;
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
     const Term t = term_of(model, parameters, neighbours[j], p);
@@ -65,7 +67,7 @@ void add_up(const MetaballModel& model, const ModelEvaluation& parameters,
 
 }  // namespace
 
-double profile_distance(const MetaballModel& model, const ModelEvaluation& parameters,
+double compact_distance(const MetaballModel& model, const ModelEvaluation& parameters,
                         std::span<const std::int32_t> neighbours, const Vec3d& p,
                         std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
   const Sums sums = sums_at(model, parameters, neighbours, p);
@@ -77,7 +79,7 @@ double profile_distance(const MetaballModel& model, const ModelEvaluation& param
   return s;
 }
 
-double profile_level(const MetaballModel& model, const ModelEvaluation& parameters,
+double compact_level(const MetaballModel& model, const ModelEvaluation& parameters,
                      std::span<const std::int32_t> neighbours, const Vec3d& p,
                      std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
   const Sums sums = sums_at(model, parameters, neighbours, p);

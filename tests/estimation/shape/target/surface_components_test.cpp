@@ -1,4 +1,4 @@
-#include "estimation/shape/target/surface_parts.h"
+#include "estimation/shape/target/surface_components.h"
 
 #include "tests/support/meshes.h"
 

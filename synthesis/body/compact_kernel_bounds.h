@@ -13,8 +13,8 @@ namespace astrolith {
 
 inline constexpr double kKernelRounding = 4e-6;  // of a kernel in float, over its height at the centre
 
-ASTROLITH_HD inline KernelProfile<double> profile_in_double(const MetaballParameters<float>& body) {
-  const KernelProfile<float>& k = body.profile;
+ASTROLITH_HD inline CompactKernel<double> kernel_in_double(const MetaballParameters<float>& body) {
+  const CompactKernel<float>& k = body.compact_kernel;
   return {k.kernel, double{k.scale}, double{k.low}, double{k.height}};
 }
 
@@ -23,21 +23,21 @@ ASTROLITH_HD inline double kernel_to_power(double k, double m) {
   return k > 0.0 ? std::min(portable::pow(k, m), portable::exp(double{kLargestExponent})) : 0.0;
 }
 
-ASTROLITH_HD inline BodyIntervals bound_profile_kernels(const MetaballParameters<float>& body,
+ASTROLITH_HD inline BodyIntervals bound_compact_kernels(const MetaballParameters<float>& body,
                                                         const MetaballList& spheres, const Box& box,
                                                         KernelInterval* kernels) {
-  const KernelProfile<double> profile = profile_in_double(body);
-  const double rounding = kKernelRounding * profile.height, m = double{body.m},
+  const CompactKernel<double> compact_kernel = kernel_in_double(body);
+  const double rounding = kKernelRounding * compact_kernel.height, m = double{body.m},
                cutoff = double{body.cutoff_squared};
   return bound_kernels(spheres, kernels, [&](const MetaballSphere<float>& s, KernelInterval& kernel) {
     const Interval q = squared_radii(s, box);
     if (q.low >= cutoff) return false;
     const bool inside = q.high < cutoff;
-    const ProfileValue<double> near = kernel_value(profile, q.low);
-    const ProfileValue<double> far = kernel_value(profile, inside ? q.high : cutoff);
+    const KernelDerivatives<double> near = kernel_value(compact_kernel, q.low);
+    const KernelDerivatives<double> far = kernel_value(compact_kernel, inside ? q.high : cutoff);
     const double power_max = kernel_to_power(std::max(near.value, 0.0) + rounding, m);
     const double power_min = inside ? kernel_to_power(far.value - rounding, m) : 0.0;
-    const double slope_max = near.slope * (1.0 + kKernelRounding) + rounding * profile.scale;
+    const double slope_max = near.slope * (1.0 + kKernelRounding) + rounding * compact_kernel.scale;
     const double radii = std::sqrt(std::min(q.high, cutoff) * inverse_square(s));
     kernel = {
         &s,       power_min, power_max, 2.0 * slope_max * radii, inside ? far.slope * (1.0 - 1e-5) : 0.0,
@@ -47,12 +47,12 @@ ASTROLITH_HD inline BodyIntervals bound_profile_kernels(const MetaballParameters
 }
 
 // Of w_i, from K_i^m and the sum of all.
-ASTROLITH_HD inline double profile_weight(double power, double sum, double m) {
+ASTROLITH_HD inline double compact_weight(double power, double sum, double m) {
   return portable::pow(std::min(1.0, power / sum), 1.0 - 1.0 / m);
 }
 
 // Of |grad M| of one kind where the sum of K^m is at least `sum`; the second bound is Hoelder's inequality.
-ASTROLITH_HD inline double largest_profile_gradient(const KernelIntervals& bounds, double sum, double m) {
+ASTROLITH_HD inline double largest_compact_gradient(const KernelIntervals& bounds, double sum, double m) {
   double weighted = 0.0, powers = 0.0, steepest = 0.0;
   for (std::uint32_t i = 0; i < bounds.count; ++i) {
     steepest = std::max(steepest, bounds.kernels[i].gradient_max);
@@ -60,7 +60,7 @@ ASTROLITH_HD inline double largest_profile_gradient(const KernelIntervals& bound
   if (steepest == 0.0) return 0.0;
   for (std::uint32_t i = 0; i < bounds.count; ++i) {
     const KernelInterval& k = bounds.kernels[i];
-    weighted += profile_weight(k.max, std::max(sum, bounds.sum_min - k.min + k.max), m) * k.gradient_max;
+    weighted += compact_weight(k.max, std::max(sum, bounds.sum_min - k.min + k.max), m) * k.gradient_max;
     powers += portable::pow(k.gradient_max / steepest, m);
   }
   return std::min(weighted, steepest * portable::pow(powers, 1.0 / m)) * (1.0 + 3.0 * kDistanceSlack);
@@ -69,10 +69,10 @@ ASTROLITH_HD inline double largest_profile_gradient(const KernelIntervals& bound
 // Of |grad M| where the sum of K^m of the spheres that add is at least `sum` and M at most `largest`.
 ASTROLITH_HD inline double largest_net_gradient(const BodyIntervals& bounds, double sum, double largest,
                                                 double m) {
-  const double of_added = largest_profile_gradient(bounds.added, sum, m);
-  if (!bounds.takes_away()) return of_added;
-  const double of_taken = largest_profile_gradient(bounds.taken, bounds.taken.sum_min, m);
-  return (of_added + largest * of_taken) / portable::pow(bounds.taken.sum_min, 1.0 / m) *
+  const double of_added = largest_compact_gradient(bounds.added, sum, m);
+  if (!bounds.subtractive()) return of_added;
+  const double of_subtracted = largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
+  return (of_added + largest * of_subtracted) / portable::pow(bounds.subtracted.sum_min, 1.0 / m) *
          (1.0 + kDistanceSlack);
 }
 
@@ -82,11 +82,11 @@ ASTROLITH_HD inline double coordinate_rounding(const Box& box) {
 }
 
 // bound_gaussian_body with M(p) - 1 and |grad M| in the place of L and |grad L|.
-ASTROLITH_HD inline MetaballInterval bound_profile_body(const MetaballParameters<float>& body,
+ASTROLITH_HD inline MetaballInterval bound_compact_body(const MetaballParameters<float>& body,
                                                         const MetaballList& spheres, const Box& box,
                                                         double height, KernelInterval* scratch) {
   const double m = double{body.m};
-  const BodyIntervals bounds = bound_profile_kernels(body, spheres, box, scratch);
+  const BodyIntervals bounds = bound_compact_kernels(body, spheres, box, scratch);
   const double largest = portable::pow(bounds.net_max(), 1.0 / m);
   const double steepest = largest_net_gradient(bounds, bounds.added.sum_min, largest, m);
   double gradient = steepest;
@@ -96,30 +96,30 @@ ASTROLITH_HD inline MetaballInterval bound_profile_body(const MetaballParameters
       const double change = height * metaball_divisor(body, gradient);
       const double least = 0.999 * (1.0 - change) - 1e-4, most = 1.001 * (1.0 + change) + 1e-4;
       if (least <= 0.0) break;
-      const double sum = portable::pow(least, m) * bounds.taken.sum_min;
+      const double sum = portable::pow(least, m) * bounds.subtracted.sum_min;
       gradient = std::min(gradient, largest_net_gradient(bounds, sum, std::min(largest, most), m));
     }
   }
   // Float rounding: of the sums, the powers and the logarithms, and of the coordinates.
-  const double kinds = bounds.takes_away() ? 2.0 : 1.0;
+  const double kinds = bounds.subtractive() ? 2.0 : 1.0;
   const double slack = 2e-6 + kinds * (1e-5 + 1e-4 / m) * largest + coordinate_rounding(box) * steepest;
   return {portable::pow(bounds.net_min(), 1.0 / m) - 1.0 - slack, largest - 1.0 + slack,
           metaball_divisor(body, gradient)};
 }
 
 // The direction in which P falls fastest at a point.
-ASTROLITH_HD inline Vec3d profiles_outward(const MetaballParameters<float>& body, const MetaballList& spheres,
-                                           const Vec3d& p) {
-  const KernelProfile<double> profile = profile_in_double(body);
+ASTROLITH_HD inline Vec3d compact_outward(const MetaballParameters<float>& body, const MetaballList& spheres,
+                                          const Vec3d& p) {
+  const CompactKernel<double> compact_kernel = kernel_in_double(body);
   Vec3d sum;
   for (std::uint32_t i = 0; i < spheres.count; ++i) {
     const MetaballSphere<float>& s = spheres[i];
-    if (s.takes_away()) break;
+    if (s.subtractive()) break;
     const double inverse = double{s.inverse_radius_squared};
     const Vec3d d = p - Vec3d{s.center.x, s.center.y, s.center.z};
     const double q = squared_norm(d) * inverse;
     if (!(q < double{body.cutoff_squared})) continue;
-    const ProfileValue<double> k = kernel_value(profile, q);
+    const KernelDerivatives<double> k = kernel_value(compact_kernel, q);
     if (!(k.value > double{kLeastKernel})) continue;
     const double slope = double{body.m} * portable::pow(k.value, double{body.m} - 1.0) * k.slope;
     sum += slope * inverse * d;
@@ -129,24 +129,24 @@ ASTROLITH_HD inline Vec3d profiles_outward(const MetaballParameters<float>& body
 
 // Of |grad M| where |grad P^(1/m)| is at least `of_added`.
 ASTROLITH_HD inline double least_net_gradient(const BodyIntervals& bounds, double of_added, double m) {
-  const double of_taken = portable::pow(bounds.net_max(), 1.0 / m) *
-                          largest_profile_gradient(bounds.taken, bounds.taken.sum_min, m);
+  const double of_subtracted = portable::pow(bounds.net_max(), 1.0 / m) *
+                               largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
   // Where next to nothing is left, floor hides the slope of A.
   const double floor_weight =
-      std::min(1.0, double{kKernelFloor} * bounds.taken.sum_max / bounds.added.sum_min);
-  const double least = of_added * (1.0 - floor_weight) - of_taken * (1.0 + kDistanceSlack);
-  return std::max(0.0, least) / portable::pow(bounds.taken.sum_max, 1.0 / m);
+      std::min(1.0, double{kKernelFloor} * bounds.subtracted.sum_max / bounds.added.sum_min);
+  const double least = of_added * (1.0 - floor_weight) - of_subtracted * (1.0 + kDistanceSlack);
+  return std::max(0.0, least) / portable::pow(bounds.subtracted.sum_max, 1.0 / m);
 }
 
-ASTROLITH_HD inline double smallest_profile_gradient(const MetaballParameters<float>& body,
+ASTROLITH_HD inline double smallest_compact_gradient(const MetaballParameters<float>& body,
                                                      const MetaballList& spheres, const Box& box,
                                                      KernelInterval* scratch) {
   const double m = double{body.m}, saturation = portable::exp(double{kLargestExponent});
   const Box rounded = widened(box, coordinate_rounding(box));
-  const BodyIntervals bounds = bound_profile_kernels(body, spheres, rounded, scratch);
+  const BodyIntervals bounds = bound_compact_kernels(body, spheres, rounded, scratch);
   const KernelIntervals& added = bounds.added;
   // The component along one direction, of each grad K_i and so of their weighted sum.
-  const Vec3d center = box.center(), u = profiles_outward(body, spheres, center);
+  const Vec3d center = box.center(), u = compact_outward(body, spheres, center);
   const double spread = spread_along(box, u) + coordinate_rounding(box);
   double component = 0.0;
   for (std::uint32_t i = 0; i < added.count; ++i) {
@@ -154,13 +154,13 @@ ASTROLITH_HD inline double smallest_profile_gradient(const MetaballParameters<fl
     const Vec3d c{k.sphere->center.x, k.sphere->center.y, k.sphere->center.z};
     const double along = 2.0 * double{k.sphere->inverse_radius_squared} * (dot(center - c, u) - spread);
     if (along <= 0.0) {
-      component += along * k.slope_max * profile_weight(k.max, added.sum_min - k.min + k.max, m);
+      component += along * k.slope_max * compact_weight(k.max, added.sum_min - k.min + k.max, m);
     } else if (k.max < saturation) {
-      component += along * k.slope_min * profile_weight(k.min, added.sum_max - k.max + k.min, m);
+      component += along * k.slope_min * compact_weight(k.min, added.sum_max - k.max + k.min, m);
     }
   }
   component *= 1.0 - 1e-4;
-  if (bounds.takes_away()) component = least_net_gradient(bounds, component, m);
+  if (bounds.subtractive()) component = least_net_gradient(bounds, component, m);
   return std::max(std::sqrt(double{body.gradient_floor}), component) * (1.0 - kDistanceSlack);
 }
 
@@ -168,14 +168,16 @@ ASTROLITH_HD inline double smallest_profile_gradient(const MetaballParameters<fl
 ASTROLITH_HD inline MetaballInterval bound_metaballs(const MetaballParameters<float>& body,
                                                      const MetaballList& spheres, const Box& box,
                                                      double height, KernelInterval* scratch) {
-  return body.profile.kernel == Kernel::kGaussian ? bound_gaussian_body(body, spheres, box, height, scratch)
-                                                  : bound_profile_body(body, spheres, box, height, scratch);
+  return body.compact_kernel.kernel == Kernel::kGaussian
+             ? bound_gaussian_body(body, spheres, box, height, scratch)
+             : bound_compact_body(body, spheres, box, height, scratch);
 }
 ASTROLITH_HD inline double smallest_gradient(const MetaballParameters<float>& body,
                                              const MetaballList& spheres, const Box& box,
                                              KernelInterval* scratch) {
-  return body.profile.kernel == Kernel::kGaussian ? smallest_gaussian_gradient(body, spheres, box, scratch)
-                                                  : smallest_profile_gradient(body, spheres, box, scratch);
+  return body.compact_kernel.kernel == Kernel::kGaussian
+             ? smallest_gaussian_gradient(body, spheres, box, scratch)
+             : smallest_compact_gradient(body, spheres, box, scratch);
 }
 
 }  // namespace astrolith

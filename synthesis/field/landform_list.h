@@ -14,7 +14,7 @@ namespace astrolith {
 // axis_c, heading, tilt and burial of boulders. Lengths are in the recipe's unit, angles in degrees. .json
 // holds
 // {"length_unit", "features": [objects]}, anything else is CSV with a header.
-void write_feature_list(const ImplicitField& field, const std::string& length_unit,
-                        const std::filesystem::path& file);
+void write_landform_list(const ImplicitField& field, const std::string& length_unit,
+                         const std::filesystem::path& file);
 
 }  // namespace astrolith

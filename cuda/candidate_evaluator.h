@@ -1,12 +1,12 @@
 // The fitness of a whole swarm of candidates for a body's details in a few launches: where lines meet the
-// surface of each, and the pair counts of each one's samples. A machine that is a GPU, or its twin on the
+// surface of each, and the pair counts of each one's samples. A backend that is a GPU, or its twin on the
 // host.
 #pragma once
 
 #include <algorithm>
 #include <memory>
 
-#include "cuda/field_on_machine.h"
+#include "cuda/field_on_backend.h"
 #include "cuda/pair_tiles.h"
 
 namespace astrolith {
@@ -24,9 +24,9 @@ struct ProbeLines {
 // Layers of a candidate, which add their heights.
 using CandidateLayers = std::vector<FractalNoise>;
 
-class SwarmMachine {
+class CandidateEvaluator {
  public:
-  virtual ~SwarmMachine() = default;
+  virtual ~CandidateEvaluator() = default;
   // t of every line (candidates, lines).
   virtual std::vector<std::vector<float>> heights(const ProbeLines& lines,
                                                   std::span<const CandidateLayers> candidates) = 0;
@@ -64,10 +64,10 @@ struct ProbeLine {
   }
 };
 
-template <class Machine>
-class SwarmOn : public SwarmMachine {
+template <class Backend>
+class CandidateEvaluatorOn : public CandidateEvaluator {
  public:
-  explicit SwarmOn(Machine machine) : machine_(std::move(machine)) {}
+  explicit CandidateEvaluatorOn(Backend backend) : backend_(std::move(backend)) {}
 
   std::vector<std::vector<float>> heights(const ProbeLines& lines,
                                           std::span<const CandidateLayers> candidates) override {
@@ -79,23 +79,23 @@ class SwarmOn : public SwarmMachine {
       for (const FractalNoise& noise : layers) data.add(noise);
     }
     const std::size_t n = lines.start.size();
-    const FieldOnMachine<Machine> field(machine_, data);
-    const BlocksOnMachine<Machine> parts(machine_, lines.metaballs);
-    const auto ranges = machine_.upload(std::span<const FlatRange>(layers_of));
-    const auto start = machine_.upload(std::span<const Vec3f>(lines.start));
-    const auto direction = machine_.upload(std::span<const Vec3f>(lines.direction));
-    const auto block = machine_.upload(std::span<const std::uint32_t>(lines.block));
-    auto heights = machine_.template allocate<float>(n * candidates.size());
-    machine_.launch("probing surfaces", heights.size(),
+    const FieldOnBackend<Backend> field(backend_, data);
+    const BlocksOnBackend<Backend> parts(backend_, lines.metaballs);
+    const auto ranges = backend_.upload(std::span<const FlatRange>(layers_of));
+    const auto start = backend_.upload(std::span<const Vec3f>(lines.start));
+    const auto direction = backend_.upload(std::span<const Vec3f>(lines.direction));
+    const auto block = backend_.upload(std::span<const std::uint32_t>(lines.block));
+    auto heights = backend_.template allocate<float>(n * candidates.size());
+    backend_.launch("probing surfaces", heights.size(),
                     ProbeLine{field.view(), ranges.data(), parts.view(), start.data(), direction.data(),
                               block.data(), n, lines.reach, lines.steps, heights.data()});
     std::vector<float> all(heights.size());
-    machine_.download(heights, std::span(all));
+    backend_.download(heights, std::span(all));
     return parts_of(all, candidates.size());
   }
 
   std::vector<std::vector<std::uint64_t>> count(std::span<const SurfletArrays> sets, int bins) override {
-    return parts_of(count_sets_on(machine_, sets, bins, {}), sets.size());
+    return parts_of(count_sets_on(backend_, sets, bins, {}), sets.size());
   }
 
  private:
@@ -109,7 +109,7 @@ class SwarmOn : public SwarmMachine {
     return parts;
   }
 
-  Machine machine_;
+  Backend backend_;
 };
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-#include "estimation/shape/fit/blend_search.h"
+#include "estimation/shape/fit/global_parameter_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,15 +43,17 @@ MetaballBody body_at(const std::vector<Sphere>& packing, Kernel kernel, std::spa
 
 }  // namespace
 
-BlendSearchSummary search_blend(const std::vector<Sphere>& packing, const SurfaceSamples& samples,
-                                const BlendSearchOptions& options, const Progress& progress) {
+GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>& packing,
+                                                      const SurfaceSamples& samples,
+                                                      const GlobalParameterSearchOptions& options,
+                                                      const Progress& progress) {
   const ShapeHistogram wanted = surflet_histogram(samples.points, samples.normals);
   const Objective dissimilarity = [&](std::span<const double> x) {
     const SurfaceSamples projected =
         project_onto_isosurface(model_of(body_at(packing, options.kernel, x)), samples.points);
     return 1.0 - similarity(wanted, surflet_histogram(projected.points, projected.normals));
   };
-  BlendSearchSummary summary;
+  GlobalParameterSearchSummary summary;
   summary.optimization =
       minimize(dissimilarity, search_bounds(static_cast<int>(packing.size()), options.max_spheres),
                options.optimize, progress);

@@ -1,4 +1,4 @@
-#include "estimation/shape/fit/part_repair.h"
+#include "estimation/shape/fit/component_repair.h"
 
 #include <algorithm>
 
@@ -29,20 +29,20 @@ std::size_t count_cavities(const std::vector<StrayPart>& strays) {
 
 // Which spheres, in which strays.
 struct Culprits {
-  bool cavities, taking;
+  bool cavities, subtractive;
 };
 
 // Those whose centre is in such a stray. At least one that adds stays.
 void remove_within(MetaballModel& model, const std::vector<StrayPart>& strays, const Culprits& culprits) {
   const auto is_culprit = [&](const ModelSphere& s) {
-    return s.takes_away == culprits.taking &&
+    return s.subtractive == culprits.subtractive &&
            std::any_of(strays.begin(), strays.end(), [&](const StrayPart& stray) {
              return stray.cavity == culprits.cavities && norm(s.center - stray.center) < stray.radius;
            });
   };
   std::vector<ModelSphere> kept;
   std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), is_culprit);
-  const auto adds = [](const ModelSphere& s) { return !s.takes_away; };
+  const auto adds = [](const ModelSphere& s) { return !s.subtractive; };
   if (std::any_of(kept.begin(), kept.end(), adds)) model.spheres = std::move(kept);
 }
 
@@ -66,7 +66,7 @@ void InsideWatch::add_dips(const MetaballModel& model, std::vector<Vec3d>& insid
 
 void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
                    const std::vector<Vec3d>& on_surface) {
-  remove_within(model, strays, {.cavities = true, .taking = true});
+  remove_within(model, strays, {.cavities = true, .subtractive = true});
   const std::size_t before = model.spheres.size();
   const std::size_t wanted = std::min(count_cavities(strays), before - 1);
   remove_least_useful_spheres(model, on_surface, static_cast<int>(wanted));
@@ -80,7 +80,7 @@ void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
 }
 
 void remove_islands(MetaballModel& model, const std::vector<StrayPart>& strays) {
-  remove_within(model, strays, {.cavities = false, .taking = false});
+  remove_within(model, strays, {.cavities = false, .subtractive = false});
 }
 
 }  // namespace astrolith

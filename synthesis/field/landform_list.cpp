@@ -1,4 +1,4 @@
-#include "synthesis/field/feature_list.h"
+#include "synthesis/field/landform_list.h"
 
 #include <array>
 #include <charconv>
@@ -98,8 +98,8 @@ std::string json_of(const std::vector<Row>& rows, const std::string& length_unit
 
 }  // namespace
 
-void write_feature_list(const ImplicitField& field, const std::string& length_unit,
-                        const std::filesystem::path& file) {
+void write_landform_list(const ImplicitField& field, const std::string& length_unit,
+                         const std::filesystem::path& file) {
   const std::vector<Row> rows = rows_of(field);
   const std::string text = file.extension() == ".json" ? json_of(rows, length_unit) : csv_of(rows);
   OutputFile output(file);

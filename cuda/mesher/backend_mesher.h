@@ -1,6 +1,6 @@
-// LayeredMesher (synthesis/mesh/mesher.h) on a machine: the same vertices and triangles in the same order.
+// LayeredMesher (synthesis/mesh/mesher.h) on a backend: the same vertices and triangles in the same order.
 // Some layers of blocks at a time are culled, gathered, sampled, numbered and polygonised together, and
-// handed to the sink, so that a mesh may be larger than the machine's memory.
+// handed to the sink, so that a mesh may be larger than the backend's memory.
 #pragma once
 
 #include <utility>
@@ -9,17 +9,17 @@
 
 namespace astrolith {
 
-template <class Machine>
-class MachineMesher {
+template <class Backend>
+class BackendMesher {
  public:
   // Expects a field without obstacle_to_flattening().
-  MachineMesher(Machine& machine, const ImplicitField& field, const MeshGrid& grid, MeshSink& sink)
-      : machine_(machine),
+  BackendMesher(Backend& backend, const ImplicitField& field, const MeshGrid& grid, MeshSink& sink)
+      : backend_(backend),
         grid_(grid),
         data_(field),
-        field_(machine, data_),
-        culler_(machine, data_, field_.view(), grid, gabor_margin(data_)),
-        cells_(machine.upload(std::span<const CellTriangles>(marching_cubes_table()))),
+        field_(backend, data_),
+        culler_(backend, data_, field_.view(), grid, gabor_margin(data_)),
+        cells_(backend.upload(std::span<const CellTriangles>(marching_cubes_table()))),
         sink_(sink) {
     statistics_.step = grid.samples.step;
     statistics_.total_blocks = std::int64_t{grid.blocks(0)} * grid.blocks(1) * grid.blocks(2);
@@ -39,7 +39,7 @@ class MachineMesher {
 
  private:
   template <typename T>
-  using Array = typename Machine::template Array<T>;
+  using Array = typename Backend::template Array<T>;
   static constexpr std::size_t kMostBlocks = 32768;  // in a batch: 400 MB
 
   // Meshes the layers from `first` on that go together; returns how many. Where memory ends, half as many.
@@ -70,22 +70,22 @@ class MachineMesher {
   // As many of `wanted` layers as hold most_blocks_, at least one. Nothing has happened where it throws
   // OutOfDeviceMemory.
   int mesh_layers(int first_z, int wanted) {
-    auto failure = zeros_on<std::uint32_t>(machine_, 1);
-    const CulledBlocks<Machine> culled = culler_.cull(first_z, wanted, failure);
-    if (machine_.read(failure, 0) != 0) fail_at_border();
+    auto failure = zeros_on<std::uint32_t>(backend_, 1);
+    const CulledBlocks<Backend> culled = culler_.cull(first_z, wanted, failure);
+    if (backend_.read(failure, 0) != 0) fail_at_border();
     const std::vector<std::vector<BlockColumn>> columns = columns_of(culled.on_host, first_z, wanted);
-    KeptLayer<Machine> last{{}, 0, columns.back(), {}, first_z + static_cast<int>(columns.size()) - 1};
+    KeptLayer<Backend> last{{}, 0, columns.back(), {}, first_z + static_cast<int>(columns.size()) - 1};
     const std::vector<BlockPlace> places = place_blocks(grid_, first_z, columns, kept_.index, last.index);
     last.first = places.size() - columns.back().size();
-    const BlockParts<Machine> parts(machine_, data_, {field_.view(), grid_, culler_.lists(), culled.view()},
+    const BlockParts<Backend> parts(backend_, data_, {field_.view(), grid_, culler_.lists(), culled.view()},
                                     places.size());
-    const auto place_array = machine_.upload(std::span<const BlockPlace>(places));
-    last.blocks = machine_.template allocate<MeshBlock>(places.size());
+    const auto place_array = backend_.upload(std::span<const BlockPlace>(places));
+    last.blocks = backend_.template allocate<MeshBlock>(places.size());
     const MeshBatch batch{grid_,        field_.view(), parts.view(),  place_array.data(), last.blocks.data(),
                           kept_.data(), cells_.data(), failure.data()};
     std::vector<std::size_t> sizes;
     for (const auto& layer : columns) sizes.push_back(layer.size());
-    BatchMesher<Machine>(machine_, batch, places, kept_, failure)
+    BatchMesher<Backend>(backend_, batch, places, kept_, failure)
         .mesh(sizes, static_cast<std::uint32_t>(statistics_.vertices), made_);
     pour();
     add_up(places.size());
@@ -127,27 +127,27 @@ class MachineMesher {
     statistics_.working_bytes = std::max(statistics_.working_bytes, static_cast<std::int64_t>(bytes));
   }
 
-  Machine& machine_;
+  Backend& backend_;
   MeshGrid grid_;
   FlatFieldData data_;
-  FieldOnMachine<Machine> field_;
-  BlockCuller<Machine> culler_;
+  FieldOnBackend<Backend> field_;
+  BlockCuller<Backend> culler_;
   Array<CellTriangles> cells_;
   MeshSink& sink_;
   MeshStatistics statistics_;
   int layers_at_once_ = 8;
   std::size_t most_blocks_ = kMostBlocks;
-  KeptLayer<Machine> kept_;
+  KeptLayer<Backend> kept_;
   MeshedLayers made_;  // kept for its memory
 };
 
-// mesh_field (synthesis/mesh/mesher.h) on a machine: the same bytes. Expects a field without
+// mesh_field (synthesis/mesh/mesher.h) on a backend: the same bytes. Expects a field without
 // obstacle_to_flattening().
-template <class Machine>
-MeshStatistics mesh_field_on(Machine& machine, const ImplicitField& field, const Box& bounds, int resolution,
+template <class Backend>
+MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const Box& bounds, int resolution,
                              MeshSink& sink, const Progress& progress, MeshTile tile) {
   const SampleGrid grid = make_sample_grid(bounds, resolution);
-  return MachineMesher<Machine>(machine, field, {grid, window_of_tile<kBlockCells>(grid, tile), true}, sink)
+  return BackendMesher<Backend>(backend, field, {grid, window_of_tile<kBlockCells>(grid, tile), true}, sink)
       .run(progress);
 }
 

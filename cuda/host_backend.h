@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "cuda/machine.h"
+#include "cuda/backend.h"
 
 namespace astrolith {
 
@@ -53,10 +53,10 @@ class HostGroup {
   HostOrder order_;
 };
 
-class HostMachine {
+class HostBackend {
  public:
   // Bytes of its arrays together.
-  explicit HostMachine(std::size_t memory = std::numeric_limits<std::size_t>::max(), HostOrder order = {})
+  explicit HostBackend(std::size_t memory = std::numeric_limits<std::size_t>::max(), HostOrder order = {})
       : left_(std::make_shared<std::size_t>(memory)), order_(order) {}
 
   template <typename T>
@@ -76,7 +76,7 @@ class HostMachine {
     std::size_t size() const { return values_.size(); }
 
    private:
-    friend class HostMachine;
+    friend class HostBackend;
     Array(std::vector<T> values, std::shared_ptr<std::size_t> left)
         : values_(std::move(values)), left_(std::move(left)) {}
     void swap(Array& other) {

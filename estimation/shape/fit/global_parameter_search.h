@@ -15,13 +15,13 @@
 
 namespace astrolith {
 
-struct BlendSearchOptions {
+struct GlobalParameterSearchOptions {
   int max_spheres = 100;  // upper bound of the number of spheres, > 0
   Kernel kernel = Kernel::kGaussian;
   OptimizeOptions optimize;  // algorithm, population, evaluations, seed
 };
 
-struct BlendSearchSummary {
+struct GlobalParameterSearchSummary {
   MetaballModel model;  // the winner; its radii include sqrt(a/b)
   double a = 1.0, b = 1.0, blend_exponent = 1.0;
   double similarity = 0.0;  // of the winner
@@ -29,7 +29,9 @@ struct BlendSearchSummary {
 };
 
 // `packing` is ordered largest first and not empty; `samples` are points and normals of the target's surface.
-BlendSearchSummary search_blend(const std::vector<Sphere>& packing, const SurfaceSamples& samples,
-                                const BlendSearchOptions& options, const Progress& progress = {});
+GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>& packing,
+                                                      const SurfaceSamples& samples,
+                                                      const GlobalParameterSearchOptions& options,
+                                                      const Progress& progress = {});
 
 }  // namespace astrolith

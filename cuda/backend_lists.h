@@ -1,11 +1,11 @@
-// Lists of unknown lengths on a machine, one after the other in one array: each is written twice, the first
+// Lists of unknown lengths on a backend, one after the other in one array: each is written twice, the first
 // time only to count.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 
-#include "cuda/machine.h"
+#include "cuda/backend.h"
 
 namespace astrolith {
 
@@ -45,34 +45,34 @@ struct WriteItems {
   }
 };
 
-template <class Machine, typename T>
-struct MachineLists {
-  typename Machine::template Array<T> items;
-  typename Machine::template Array<std::uint32_t> first;  // (lists + 1)
+template <class Backend, typename T>
+struct BackendLists {
+  typename Backend::template Array<T> items;
+  typename Backend::template Array<std::uint32_t> first;  // (lists + 1)
 };
 
-template <typename T, class Machine>
-typename Machine::template Array<T> zeros_on(Machine& machine, std::size_t count) {
-  auto array = machine.template allocate<T>(count);
-  machine.fill_zero(array);
+template <typename T, class Backend>
+typename Backend::template Array<T> zeros_on(Backend& backend, std::size_t count) {
+  auto array = backend.template allocate<T>(count);
+  backend.fill_zero(array);
   return array;
 }
 
 // Throws OutOfDeviceMemory as well where an item's number would need more than 32 bits.
-template <typename T, class Machine, typename Write>
-MachineLists<Machine, T> write_lists(Machine& machine, const char* what, std::size_t lists,
+template <typename T, class Backend, typename Write>
+BackendLists<Backend, T> write_lists(Backend& backend, const char* what, std::size_t lists,
                                      const Write& write) {
-  MachineLists<Machine, T> result;
-  result.first = zeros_on<std::uint32_t>(machine, lists + 1);
-  auto total = zeros_on<std::uint64_t>(machine, 1);
-  machine.launch(what, lists, CountItems<T, Write>{write, result.first.data(), total.data()});
-  const std::uint64_t count = machine.read(total, 0);
+  BackendLists<Backend, T> result;
+  result.first = zeros_on<std::uint32_t>(backend, lists + 1);
+  auto total = zeros_on<std::uint64_t>(backend, 1);
+  backend.launch(what, lists, CountItems<T, Write>{write, result.first.data(), total.data()});
+  const std::uint64_t count = backend.read(total, 0);
   if (count > std::numeric_limits<std::uint32_t>::max()) {
     throw OutOfDeviceMemory("GPU: lists of more than 2^32 items");
   }
-  machine.running_sum(result.first);
-  result.items = machine.template allocate<T>(static_cast<std::size_t>(count));
-  machine.launch(what, lists, WriteItems<T, Write>{write, result.first.data(), result.items.data()});
+  backend.running_sum(result.first);
+  result.items = backend.template allocate<T>(static_cast<std::size_t>(count));
+  backend.launch(what, lists, WriteItems<T, Write>{write, result.first.data(), result.items.data()});
   return result;
 }
 

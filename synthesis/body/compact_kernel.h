@@ -19,12 +19,12 @@ namespace astrolith {
 
 // k and its derivatives: k(x), -k'(x) >= 0 and k''(x).
 template <typename T>
-struct ProfileValue {
+struct KernelDerivatives {
   T value, slope, curvature;
 };
 
 template <Kernel kernel, typename T>
-ASTROLITH_KERNEL ProfileValue<T> unit_profile(T x) {
+ASTROLITH_KERNEL KernelDerivatives<T> unit_kernel(T x) {
   const T rest = x < T(1) ? T(1) - x : T(0);
   if constexpr (kernel == Kernel::kMetaball) {
     const bool core = x < T(1) / T(9);
@@ -46,37 +46,38 @@ ASTROLITH_KERNEL ProfileValue<T> unit_profile(T x) {
 
 // Which kernel, and how it is scaled.
 template <typename T>
-struct KernelProfile {
+struct CompactKernel {
   Kernel kernel = Kernel::kGaussian;
   T scale{}, low{}, height{};
 };
 
 // K(q), -dK/dq and d^2K/dq^2.
 template <Kernel kernel, typename T>
-ASTROLITH_KERNEL ProfileValue<T> kernel_value(const KernelProfile<T>& profile, T q) {
-  const ProfileValue<T> k = unit_profile<kernel>(q * profile.scale);
-  const T per_q = profile.height * profile.scale;
-  return {profile.height * (k.value - profile.low), per_q * k.slope, per_q * profile.scale * k.curvature};
+ASTROLITH_KERNEL KernelDerivatives<T> kernel_value(const CompactKernel<T>& compact_kernel, T q) {
+  const KernelDerivatives<T> k = unit_kernel<kernel>(q * compact_kernel.scale);
+  const T per_q = compact_kernel.height * compact_kernel.scale;
+  return {compact_kernel.height * (k.value - compact_kernel.low), per_q * k.slope,
+          per_q * compact_kernel.scale * k.curvature};
 }
 
 // The same for a kernel that is known at run time only; not the Gaussian.
 template <typename T>
-ASTROLITH_KERNEL ProfileValue<T> kernel_value(const KernelProfile<T>& profile, T q) {
-  switch (profile.kernel) {
+ASTROLITH_KERNEL KernelDerivatives<T> kernel_value(const CompactKernel<T>& compact_kernel, T q) {
+  switch (compact_kernel.kernel) {
     case Kernel::kMetaball:
-      return kernel_value<Kernel::kMetaball>(profile, q);
+      return kernel_value<Kernel::kMetaball>(compact_kernel, q);
     case Kernel::kSoftObject:
-      return kernel_value<Kernel::kSoftObject>(profile, q);
+      return kernel_value<Kernel::kSoftObject>(compact_kernel, q);
     case Kernel::kWyvill:
-      return kernel_value<Kernel::kWyvill>(profile, q);
+      return kernel_value<Kernel::kWyvill>(compact_kernel, q);
     default:
-      return kernel_value<Kernel::kCauchy>(profile, q);
+      return kernel_value<Kernel::kCauchy>(compact_kernel, q);
   }
 }
 
 // A kernel that is e^tension at its centre and 1 where q = surface, and ends at `cutoff_squared` or before;
 // that becomes its own end. Expects what validation does: 0 < surface < cutoff_squared and
 // e^-tension < 1 - surface / cutoff_squared, the flattest kernel with that end.
-KernelProfile<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared);
+CompactKernel<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared);
 
 }  // namespace astrolith

@@ -1,11 +1,11 @@
-// The GPU as a Machine (machine.h). For .cu files only.
+// The GPU as a Backend (backend.h). For .cu files only.
 #pragma once
 
 #include <cub/device/device_scan.cuh>
 #include <limits>
 
+#include "cuda/backend.h"
 #include "cuda/device_buffer.h"
-#include "cuda/machine.h"
 
 namespace astrolith {
 
@@ -46,7 +46,7 @@ __global__ void run_groups(Body body) {
   body(DeviceGroup(blockIdx.x, shared));
 }
 
-class DeviceMachine {
+class DeviceBackend {
  public:
   template <typename T>
   using Array = DeviceBuffer<T>;

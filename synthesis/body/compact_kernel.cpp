@@ -1,11 +1,11 @@
-#include "synthesis/body/kernel_profile.h"
+#include "synthesis/body/compact_kernel.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace astrolith {
 
-KernelProfile<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared) {
+CompactKernel<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared) {
   const bool ends = kernel != Kernel::kCauchy;
   const auto unit = [kernel](double x) { return kernel_value<double>({kernel, 1.0, 0.0, 1.0}, x).value; };
   const auto low_at = [&](double scale) {

@@ -1,11 +1,11 @@
 // The GPU's mesher on the host, thread by thread, against the CPU's.
-#include "cuda/mesher/machine_mesher.h"
+#include "cuda/mesher/backend_mesher.h"
 
 #include <cstring>
 #include <filesystem>
 
 #include "cuda/device.h"
-#include "cuda/host_machine.h"
+#include "cuda/host_backend.h"
 #include "cuda/mesher/mesh_field.h"
 #include "recipe/recipe_json.h"
 #include "tests/support/test_size.h"
@@ -32,9 +32,9 @@ Made on_cpu(const ImplicitField& field, int resolution, MeshTile tile = {}) {
   return {statistics, std::move(sink.mesh)};
 }
 Made on_twin(const ImplicitField& field, int resolution, MeshTile tile = {},
-             HostMachine machine = HostMachine()) {
+             HostBackend backend = HostBackend()) {
   MeshCollector sink;
-  const MeshStatistics statistics = mesh_field_on(machine, field, field.bounds(), resolution, sink, {}, tile);
+  const MeshStatistics statistics = mesh_field_on(backend, field, field.bounds(), resolution, sink, {}, tile);
   return {statistics, std::move(sink.mesh)};
 }
 
@@ -70,7 +70,7 @@ Recipe asteroid() {
   return recipe;
 }
 
-TEST(MachineMesher, MakesTheMeshOfTheCpu) {
+TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   for (const int resolution : {4, 9, 10, 11, 33, 64}) {
     const ImplicitField field(asteroid());
     expect_same(on_twin(field, std::max(resolution, 9)), on_cpu(field, std::max(resolution, 9)));
@@ -85,7 +85,7 @@ TEST(MachineMesher, MakesTheMeshOfTheCpu) {
 }
 
 // Samples whose field is exactly zero, and cells with many of them.
-TEST(MachineMesher, TreatsTiesAsTheCpu) {
+TEST(BackendMesher, TreatsTiesAsTheCpu) {
   Recipe recipe = sphere_recipe(1.0);
   recipe.body->spheres.push_back({{2.0, 0.0, 0.0}, 1.0});
   recipe.body->blend_exponent = 1.0;
@@ -94,7 +94,7 @@ TEST(MachineMesher, TreatsTiesAsTheCpu) {
     expect_same(on_twin(field, resolution), on_cpu(field, resolution));
 }
 
-TEST(MachineMesher, MakesTheTilesOfTheCpu) {
+TEST(BackendMesher, MakesTheTilesOfTheCpu) {
   const ImplicitField field(asteroid());
   for (int i = 0; i < 3; ++i) expect_same(on_twin(field, 50, {i, 3}), on_cpu(field, 50, {i, 3}));
 }
@@ -106,7 +106,7 @@ std::filesystem::path examples() {
 }
 
 // Every example of a recipe that the GPU can mesh, on a coarse grid.
-TEST(MachineMesher, MeshesTheExamplesAsTheCpu) {
+TEST(BackendMesher, MeshesTheExamplesAsTheCpu) {
   if (!std::filesystem::exists(examples())) GTEST_SKIP() << "the examples are not here";
   int meshed = 0;
   for (const auto& entry : std::filesystem::directory_iterator(examples())) {
@@ -121,31 +121,31 @@ TEST(MachineMesher, MeshesTheExamplesAsTheCpu) {
 }
 
 // Threads come at the same time on a GPU: whatever their order, the bytes are the same.
-TEST(MachineMesher, TakesThreadsInAnyOrder) {
+TEST(BackendMesher, TakesThreadsInAnyOrder) {
   const ImplicitField field(asteroid());
   const Made cpu = on_cpu(field, 33);
   for (const std::size_t seed : {1, 2, 31}) {
-    expect_same(on_twin(field, 33, {}, HostMachine(std::size_t{1} << 34, {seed})), cpu);
+    expect_same(on_twin(field, 33, {}, HostBackend(std::size_t{1} << 34, {seed})), cpu);
   }
 }
 
 // Less memory means smaller batches, down to a layer each, and the same mesh.
-TEST(MachineMesher, HalvesTheBatchWhereMemoryEnds) {
+TEST(BackendMesher, HalvesTheBatchWhereMemoryEnds) {
   const ImplicitField field(asteroid());
   const Made cpu = on_cpu(field, 50);
   for (const std::size_t megabytes : {12, 8, 5, 4}) {
-    expect_same(on_twin(field, 50, {}, HostMachine(megabytes << 20)), cpu);
+    expect_same(on_twin(field, 50, {}, HostBackend(megabytes << 20)), cpu);
   }
-  EXPECT_THROW(on_twin(field, 50, {}, HostMachine(std::size_t{1} << 19)), WorkError);
+  EXPECT_THROW(on_twin(field, 50, {}, HostBackend(std::size_t{1} << 19)), WorkError);
 }
 
-TEST(MachineMesher, FailsAsTheCpuAtWrongBounds) {
+TEST(BackendMesher, FailsAsTheCpuAtWrongBounds) {
   const ImplicitField field(sphere_recipe(1.0));
   MeshDiscard sink;
-  HostMachine machine;
+  HostBackend backend;
   const Box half{{-2, -2, -2}, {0.1, 2, 2}};
   EXPECT_THROW(mesh_field(field, half, 30, sink), WorkError);
-  EXPECT_THROW(mesh_field_on(machine, field, half, 30, sink, {}, {}), WorkError);
+  EXPECT_THROW(mesh_field_on(backend, field, half, 30, sink, {}, {}), WorkError);
 }
 
 TEST(MeshFieldOnGpu, MakesTheMeshOfTheCpu) {
