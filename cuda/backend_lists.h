@@ -9,6 +9,11 @@
 
 namespace astrolith {
 
+// A list in an array that holds many: elements first .. first + count - 1.
+struct ListRange {
+  std::uint32_t first = 0, count = 0;
+};
+
 // Where the items of a list go; without an array they are only counted.
 template <typename T>
 struct ListWriter {

@@ -6,39 +6,56 @@
 #include <algorithm>
 #include <memory>
 
+#include "cuda/backend_lists.h"
 #include "cuda/field_on_backend.h"
 #include "cuda/pair_tiles.h"
+#include "synthesis/body/body_at_point.h"
 
 namespace astrolith {
 
 // Points that move along lines, t <- t + F(start + t direction), from 0 and within +- reach.
 struct ProbeLines {
   std::vector<Vec3f> start, direction;   // (points)
-  std::vector<std::uint32_t> block;      // (points): where its metaballs are in `metaballs`
-  FlatBlocksData metaballs;              // those that reach the lines of each block
-  MetaballParameters<float> parameters;  // of them all
-  float reach = 0.0f;
+  std::vector<std::uint32_t> block;      // (points): which block of `metaballs` a point's are in
+  BlockListStore metaballs;              // those that reach the lines of each block
+  MetaballParameters<float> parameters;  // of all metaballs
+  float reach = 0.0f;                    // length units
   int steps = 0;
 };
 
-// Layers of a candidate, which add their heights.
-using CandidateLayers = std::vector<FractalNoise>;
+// The layers of candidates for a body's details, which add their heights, as tables.
+struct Candidates {
+  ArrayStore arrays;
+  std::vector<FractalNoise> noises;
+  std::vector<ListRange> of_candidate;  // in `noises`
+
+  // `seed` is the recipe's; layers are numbered from 0. The surface lies in `domain`.
+  void add(std::span<const FractalLayer> layers, std::uint64_t seed, const Box& domain) {
+    of_candidate.push_back(
+        {static_cast<std::uint32_t>(noises.size()), static_cast<std::uint32_t>(layers.size())});
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      noises.push_back(make_noise(layers[i], seed, static_cast<int>(i), domain, arrays));
+    }
+  }
+  std::size_t size() const { return of_candidate.size(); }
+};
 
 class CandidateEvaluator {
  public:
   virtual ~CandidateEvaluator() = default;
   // t of every line (candidates, lines).
-  virtual std::vector<std::vector<float>> heights(const ProbeLines& lines,
-                                                  std::span<const CandidateLayers> candidates) = 0;
+  virtual std::vector<std::vector<float>> heights(const ProbeLines& lines, const Candidates& candidates) = 0;
   // count_pairs (descriptor/pair_count.h) of each set.
   virtual std::vector<std::vector<std::uint64_t>> count(std::span<const SurfletArrays> sets, int bins) = 0;
 };
 
 // A thread a line of a candidate, candidate by candidate.
 struct ProbeLine {
-  FlatField field;             // with the layers of all candidates
-  const FlatRange* layers_of;  // by candidate
-  FlatBlocks parts;
+  ArrayView arrays;
+  BodyTables body;             // of metaballs alone
+  const FractalNoise* noises;  // of all candidates
+  const ListRange* of_candidate;
+  BlockListArrays blocks;
   const Vec3f *start, *direction;
   const std::uint32_t* block;
   std::size_t lines;
@@ -47,17 +64,15 @@ struct ProbeLine {
   float* heights;  // (candidates, lines)
 
   ASTROLITH_HD void operator()(std::size_t i) const {
-    const FlatRange layers = layers_of[i / lines];
+    const ListRange own = of_candidate[i / lines];
     const std::size_t line = i % lines;
-    const FlatBlock near = parts.block(block[line]);
+    const LeafLists metaballs = blocks.block(block[line]).metaballs;
     const Vec3f from = start[line], along = direction[line];
     float t = 0.0f;
     for (int step = 0; step < steps; ++step) {
       const Vec3f p{from.x + t * along.x, from.y + t * along.y, from.z + t * along.z};
-      float f = flat_body(field, near, p).distance;
-      for (std::uint32_t l = layers.first; l < layers.first + layers.count; ++l) {
-        f += flat_fractal(field, field.layers[l], p);
-      }
+      float f = body_at(body, arrays, metaballs, p).distance;
+      for (std::uint32_t k = own.first; k < own.first + own.count; ++k) f += height_at(noises[k], arrays, p);
       t = std::clamp(t + f, -reach, reach);
     }
     heights[i] = t;
@@ -69,44 +84,51 @@ class CandidateEvaluatorOn : public CandidateEvaluator {
  public:
   explicit CandidateEvaluatorOn(Backend backend) : backend_(std::move(backend)) {}
 
-  std::vector<std::vector<float>> heights(const ProbeLines& lines,
-                                          std::span<const CandidateLayers> candidates) override {
-    FlatFieldData data(lines.parameters);
-    std::vector<FlatRange> layers_of;
-    for (const CandidateLayers& layers : candidates) {
-      layers_of.push_back(
-          {static_cast<std::uint32_t>(data.layers.size()), static_cast<std::uint32_t>(layers.size())});
-      for (const FractalNoise& noise : layers) data.add(noise);
-    }
-    const std::size_t n = lines.start.size();
-    const FieldOnBackend<Backend> field(backend_, data);
-    const BlocksOnBackend<Backend> parts(backend_, lines.metaballs);
-    const auto ranges = backend_.upload(std::span<const FlatRange>(layers_of));
+  std::vector<std::vector<float>> heights(const ProbeLines& lines, const Candidates& candidates) override {
+    ArrayStore store = candidates.arrays;
+    BodyTables body;
+    body.leaves = store.add(std::vector<BodyLeaf>{{lines.parameters, false, {}, {}}});
+    const ArrayView view = store.view();
+    const auto arrays = backend_.upload(std::span(view.bytes, view.size));
+    const auto noises = backend_.upload(std::span<const FractalNoise>(candidates.noises));
+    const auto of_candidate = backend_.upload(std::span<const ListRange>(candidates.of_candidate));
+    const BlocksOnBackend<Backend> blocks(backend_, lines.metaballs);
     const auto start = backend_.upload(std::span<const Vec3f>(lines.start));
     const auto direction = backend_.upload(std::span<const Vec3f>(lines.direction));
     const auto block = backend_.upload(std::span<const std::uint32_t>(lines.block));
+    const std::size_t n = lines.start.size();
     auto heights = backend_.template allocate<float>(n * candidates.size());
     backend_.launch("probing surfaces", heights.size(),
-                    ProbeLine{field.view(), ranges.data(), parts.view(), start.data(), direction.data(),
-                              block.data(), n, lines.reach, lines.steps, heights.data()});
+                    ProbeLine{{arrays.data(), view.size},
+                              body,
+                              noises.data(),
+                              of_candidate.data(),
+                              blocks.view(),
+                              start.data(),
+                              direction.data(),
+                              block.data(),
+                              n,
+                              lines.reach,
+                              lines.steps,
+                              heights.data()});
     std::vector<float> all(heights.size());
     backend_.download(heights, std::span(all));
-    return parts_of(all, candidates.size());
+    return split(all, candidates.size());
   }
 
   std::vector<std::vector<std::uint64_t>> count(std::span<const SurfletArrays> sets, int bins) override {
-    return parts_of(count_sets_on(backend_, sets, bins, {}), sets.size());
+    return split(count_sets_on(backend_, sets, bins, {}), sets.size());
   }
 
  private:
   template <typename T>
-  static std::vector<std::vector<T>> parts_of(const std::vector<T>& all, std::size_t count) {
-    std::vector<std::vector<T>> parts;
+  static std::vector<std::vector<T>> split(const std::vector<T>& all, std::size_t count) {
+    std::vector<std::vector<T>> lists;
     for (std::size_t i = 0; i < count; ++i) {
       const auto first = all.begin() + static_cast<std::ptrdiff_t>(i * (all.size() / count));
-      parts.emplace_back(first, first + static_cast<std::ptrdiff_t>(all.size() / count));
+      lists.emplace_back(first, first + static_cast<std::ptrdiff_t>(all.size() / count));
     }
-    return parts;
+    return lists;
   }
 
   Backend backend_;

@@ -1,40 +1,55 @@
-// The plain arrays of a field (synthesis/field/flat_field.h) in a backend's memory.
+// A field's tables (synthesis/field/field_tables.h) and lists of blocks in a backend's memory.
 #pragma once
 
 #include "cuda/backend.h"
-#include "synthesis/field/flat_blocks_data.h"
+#include "synthesis/field/block_lists.h"
 
 namespace astrolith {
 
 template <class Backend>
 class FieldOnBackend {
  public:
-  FieldOnBackend(Backend& backend, const FlatFieldData& data)
-      : view_(data.view()),
-        layers_(upload(backend, data.layers, view_.layers)),
-        leaves_(upload(backend, data.leaves, view_.leaves)),
-        spheres_(upload(backend, data.spheres, view_.spheres)),
-        steps_(upload(backend, data.steps, view_.steps)),
-        octaves_(upload(backend, data.octaves, view_.octaves)),
-        weight_spheres_(upload(backend, data.weight_spheres, view_.weight_spheres)),
-        sparse_levels_(upload(backend, data.sparse_levels, view_.sparse_levels)),
-        spots_(upload(backend, data.spots, view_.spots)),
-        spot_thresholds_(upload(backend, data.spot_thresholds, view_.spot_thresholds)),
-        waves_(upload(backend, data.waves, view_.waves)),
-        bands_(upload(backend, data.bands, view_.bands)),
-        lobes_(upload(backend, data.lobes, view_.lobes)),
-        craters_(upload(backend, data.craters, view_.craters)),
-        crater_layers_(upload(backend, data.crater_layers, view_.crater_layers)),
-        boulders_(upload(backend, data.boulders, view_.boulders)) {}
+  FieldOnBackend(Backend& backend, const FieldView& field)
+      : arrays_(backend.upload(std::span(field.arrays.bytes, field.arrays.size))),
+        layers_(backend.upload(std::span(field.layers, field.num_layers))),
+        view_(field) {
+    view_.arrays.bytes = arrays_.data();
+    view_.layers = layers_.data();
+  }
 
-  // With the backend's arrays.
-  const FlatField& view() const { return view_; }
+  // The tables with the backend's pointers.
+  const FieldView& view() const { return view_; }
 
  private:
   template <typename T>
   using Array = typename Backend::template Array<T>;
 
-  // And lets the view point there.
+  Array<unsigned char> arrays_;
+  Array<FieldLayer> layers_;
+  FieldView view_;
+};
+
+template <class Backend>
+class BlocksOnBackend {
+ public:
+  BlocksOnBackend(Backend& backend, const BlockListStore& store)
+      : view_(store.view()),
+        metaballs_(upload(backend, store.metaballs, view_.metaballs)),
+        first_metaball_(upload(backend, store.first_metaball, view_.first_metaball)),
+        spots_(upload(backend, store.spots, view_.spots)),
+        first_spot_(upload(backend, store.first_spot, view_.first_spot)),
+        gabor_(upload(backend, store.gabor, view_.gabor)),
+        first_gabor_(upload(backend, store.first_gabor, view_.first_gabor)),
+        landforms_(upload(backend, store.landforms, view_.landforms)),
+        first_landform_(upload(backend, store.first_landform, view_.first_landform)) {}
+
+  BlockListArrays view() const { return view_; }
+
+ private:
+  template <typename T>
+  using Array = typename Backend::template Array<T>;
+
+  // Uploads the values and lets the view point to them.
   template <typename T>
   static Array<T> upload(Backend& backend, const std::vector<T>& values, const T*& pointer) {
     Array<T> array = backend.upload(std::span<const T>(values));
@@ -42,53 +57,11 @@ class FieldOnBackend {
     return array;
   }
 
-  FlatField view_;
-  Array<FlatLayer> layers_;
-  Array<FlatLeaf> leaves_;
-  Array<MetaballSphere<float>> spheres_;
-  Array<FlatStep> steps_;
-  Array<NoiseOctave> octaves_;
-  Array<WeightSphere> weight_spheres_;
-  Array<SparseLevel> sparse_levels_;
-  Array<FlatSpots> spots_;
-  Array<std::uint32_t> spot_thresholds_;
-  Array<Wave> waves_;
-  Array<FlatBand> bands_;
-  Array<GaborLobeShare> lobes_;
-  Array<CraterKernel> craters_;
-  Array<std::uint32_t> crater_layers_;
-  Array<FlatBoulder> boulders_;
-};
-
-template <class Backend>
-class BlocksOnBackend {
- public:
-  BlocksOnBackend(Backend& backend, const FlatBlocksData& data)
-      : view_(data.view()),
-        spheres_(backend.upload(std::span<const MetaballSphere<float>>(data.spheres))),
-        first_sphere_(backend.upload(std::span<const std::uint32_t>(data.first_sphere))),
-        impulses_(backend.upload(std::span<const SpotImpulse>(data.impulses))),
-        first_impulse_(backend.upload(std::span<const std::uint32_t>(data.first_impulse))),
-        gabor_(backend.upload(std::span<const GaborImpulse>(data.gabor))),
-        first_gabor_(backend.upload(std::span<const std::uint32_t>(data.first_gabor))),
-        landforms_(backend.upload(std::span<const std::uint32_t>(data.landforms))),
-        first_landform_(backend.upload(std::span<const std::uint32_t>(data.first_landform))) {}
-
-  FlatBlocks view() const {
-    return {spheres_.data(), first_sphere_.data(), impulses_.data(),  first_impulse_.data(),
-            gabor_.data(),   first_gabor_.data(),  landforms_.data(), first_landform_.data(),
-            view_.leaves,    view_.sizes,          view_.bands,       view_.lists};
-  }
-
- private:
-  template <typename T>
-  using Array = typename Backend::template Array<T>;
-
-  FlatBlocks view_;
-  Array<MetaballSphere<float>> spheres_;
-  Array<std::uint32_t> first_sphere_;
-  Array<SpotImpulse> impulses_;
-  Array<std::uint32_t> first_impulse_;
+  BlockListArrays view_;
+  Array<MetaballSphere<float>> metaballs_;
+  Array<std::uint32_t> first_metaball_;
+  Array<SpotImpulse> spots_;
+  Array<std::uint32_t> first_spot_;
   Array<GaborImpulse> gabor_;
   Array<std::uint32_t> first_gabor_;
   Array<std::uint32_t> landforms_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "numerics/host_device.h"
+#include "numerics/scalar_math.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
@@ -28,6 +29,9 @@ ASTROLITH_HD inline double clamped(double v, double low, double high) {
 ASTROLITH_HD inline Vec3d moved_into(const Vec3d& p, const Vec3f& low, const Vec3f& high) {
   return {clamped(p.x, double{low.x}, double{high.x}), clamped(p.y, double{low.y}, double{high.y}),
           clamped(p.z, double{low.z}, double{high.z})};
+}
+ASTROLITH_HD inline Vec3f moved_into(const Vec3f& p, const Vec3f& low, const Vec3f& high) {
+  return {math::clamp(p.x, low.x, high.x), math::clamp(p.y, low.y, high.y), math::clamp(p.z, low.z, high.z)};
 }
 // What the points of a box become that are moved into the domain low .. high.
 ASTROLITH_HD inline Box moved_into(const Box& box, const Vec3f& low, const Vec3f& high) {

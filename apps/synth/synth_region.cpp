@@ -6,11 +6,11 @@
 #include <cstdio>
 
 #include "cuda/mesher/backend_mesher.h"
+#include "cuda/mesher/gpu_obstacle.h"
 #include "cuda/mesher/mesh_field.h"
 #include "numerics/errors.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
-#include "synthesis/field/flat_field_data.h"
 #include "synthesis/field/patch_field.h"
 
 namespace astrolith {
@@ -71,12 +71,12 @@ Region parse_region(const std::string& tile, const std::vector<double>& patch) {
 
 std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
   if (region.is_patch) return "patches";
-  return obstacle_to_flattening(field, block_side(field.bounds(), resolution));
+  return obstacle_on_gpu(field.tables(), block_side(field.bounds(), resolution));
 }
 
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device) {
-  if (region.is_patch && !field.has_near_form()) check_cells(field, region, resolution);
+  if (region.is_patch && !field.has_local_form()) check_cells(field, region, resolution);
   if (region.is_patch) {
     return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
   }

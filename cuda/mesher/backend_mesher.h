@@ -6,19 +6,19 @@
 #include <utility>
 
 #include "cuda/mesher/batch_mesher.h"
+#include "synthesis/field/implicit_field.h"
 
 namespace astrolith {
 
 template <class Backend>
 class BackendMesher {
  public:
-  // Expects a field without obstacle_to_flattening().
+  // Expects a field without obstacle_on_gpu().
   BackendMesher(Backend& backend, const ImplicitField& field, const MeshGrid& grid, MeshSink& sink)
       : backend_(backend),
         grid_(grid),
-        data_(field),
-        field_(backend, data_),
-        culler_(backend, data_, field_.view(), grid, gabor_margin(data_)),
+        field_(backend, field.tables()),
+        culler_(backend, field.tables(), field_.view(), grid, gabor_margin(field.tables())),
         cells_(backend.upload(std::span<const CellTriangles>(marching_cubes_table()))),
         sink_(sink) {
     statistics_.step = grid.samples.step;
@@ -77,11 +77,11 @@ class BackendMesher {
     KeptLayer<Backend> last{{}, 0, columns.back(), {}, first_z + static_cast<int>(columns.size()) - 1};
     const std::vector<BlockPlace> places = place_blocks(grid_, first_z, columns, kept_.index, last.index);
     last.first = places.size() - columns.back().size();
-    const BlockParts<Backend> parts(backend_, data_, {field_.view(), grid_, culler_.lists(), culled.view()},
-                                    places.size());
+    const GatheredLists<Backend> lists(backend_, {field_.view(), grid_, culler_.lists(), culled.view()},
+                                       places.size());
     const auto place_array = backend_.upload(std::span<const BlockPlace>(places));
     last.blocks = backend_.template allocate<MeshBlock>(places.size());
-    const MeshBatch batch{grid_,        field_.view(), parts.view(),  place_array.data(), last.blocks.data(),
+    const MeshBatch batch{grid_,        field_.view(), lists.view(),  place_array.data(), last.blocks.data(),
                           kept_.data(), cells_.data(), failure.data()};
     std::vector<std::size_t> sizes;
     for (const auto& layer : columns) sizes.push_back(layer.size());
@@ -129,7 +129,6 @@ class BackendMesher {
 
   Backend& backend_;
   MeshGrid grid_;
-  FlatFieldData data_;
   FieldOnBackend<Backend> field_;
   BlockCuller<Backend> culler_;
   Array<CellTriangles> cells_;
@@ -142,7 +141,7 @@ class BackendMesher {
 };
 
 // mesh_field (synthesis/mesh/mesher.h) on a backend: the same bytes. Expects a field without
-// obstacle_to_flattening().
+// obstacle_on_gpu().
 template <class Backend>
 MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const Box& bounds, int resolution,
                              MeshSink& sink, const Progress& progress, MeshTile tile) {
@@ -151,7 +150,7 @@ MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const
       .run(progress);
 }
 
-// The side of a block of that grid, as obstacle_to_flattening() asks for it.
+// The side of a block of that grid, as obstacle_on_gpu() asks for it.
 inline double block_side(const Box& bounds, int resolution) {
   return (kBlockCells + 1) * make_sample_grid(bounds, resolution).step;
 }

@@ -14,7 +14,7 @@ namespace astrolith {
 template <class Backend>
 struct CulledBlocks {
   typename Backend::template Array<CullNode> nodes;
-  typename Backend::template Array<FlatRange> ranges;       // (nodes, lists) of the numbers
+  typename Backend::template Array<ListRange> ranges;       // (nodes, lists) of the numbers
   typename Backend::template Array<std::uint32_t> numbers;  // of metaballs, craters and boulders
   std::vector<CullNode> on_host;
 
@@ -27,29 +27,31 @@ class BlockCuller {
   template <typename T>
   using Array = typename Backend::template Array<T>;
 
-  // Lists of the metaballs as far as `wide_margin` around where points are projected, unless that is 0.
-  BlockCuller(Backend& backend, const FlatFieldData& data, const FlatField& field, const MeshGrid& grid,
+  // `field` is on the host, `on_backend` in the backend's memory. Where wide_margin is not 0, nodes also get
+  // lists of the metaballs that come as close as that to where their points are projected.
+  BlockCuller(Backend& backend, const FieldView& field, const FieldView& on_backend, const MeshGrid& grid,
               double wide_margin)
       : backend_(backend),
-        field_(field),
+        field_(on_backend),
         grid_(grid),
-        lists_{static_cast<std::uint32_t>(data.leaves.size()), static_cast<std::uint32_t>(data.lists),
-               wide_margin > 0.0 ? static_cast<std::uint32_t>(data.leaves.size()) : 0},
+        lists_{field.body.leaves.count, field.num_landform_lists(),
+               wide_margin > 0.0 ? field.body.leaves.count : 0},
         wide_margin_(wide_margin) {
-    std::vector<FlatRange> ranges;
+    std::vector<ListRange> ranges;
     std::vector<std::uint32_t> numbers;
-    const auto add = [&](std::uint32_t first, std::uint32_t count) {
+    const auto add_all = [&](std::uint32_t count) {
       ranges.push_back({static_cast<std::uint32_t>(numbers.size()), count});
-      for (std::uint32_t k = 0; k < count; ++k) numbers.push_back(first + k);
+      for (std::uint32_t k = 0; k < count; ++k) numbers.push_back(k);
     };
     const auto add_leaves = [&] {
-      for (const FlatLeaf& leaf : data.leaves) add(leaf.spheres.first, leaf.spheres.count);
+      for (std::uint32_t leaf = 0; leaf < lists_.leaves; ++leaf) add_all(field.leaf(leaf).spheres.count);
     };
     add_leaves();
-    for (const std::uint32_t layer : data.crater_layers) add(0, data.layers[layer].parts.count);
-    add(0, static_cast<std::uint32_t>(data.boulders.size()));
+    for (std::uint32_t list = 0; list < field.crater_layers.count; ++list)
+      add_all(field.craters(list).craters.count);
+    add_all(field.boulders.count);
     if (lists_.wide != 0) add_leaves();
-    all_ranges_ = backend.upload(std::span<const FlatRange>(ranges));
+    all_ranges_ = backend.upload(std::span<const ListRange>(ranges));
     all_numbers_ = backend.upload(std::span<const std::uint32_t>(numbers));
   }
 
@@ -72,7 +74,7 @@ class BlockCuller {
  private:
   struct Level {
     Array<CullNode> nodes;
-    Array<FlatRange> ranges;
+    Array<ListRange> ranges;
     Array<std::uint32_t> numbers;
 
     CullNodes view() const { return {nodes.data(), ranges.data(), numbers.data()}; }
@@ -84,7 +86,7 @@ class BlockCuller {
     auto narrowed = write_lists<std::uint32_t>(
         backend_, "narrowing lists", lists,
         NarrowLists{field_, grid_, lists_, wide_margin_, level.nodes.data(), parents, nodes_a_parent});
-    level.ranges = backend_.template allocate<FlatRange>(lists);
+    level.ranges = backend_.template allocate<ListRange>(lists);
     backend_.launch("finding lists", lists, MakeRanges{narrowed.first.data(), level.ranges.data()});
     level.numbers = std::move(narrowed.items);
   }
@@ -102,7 +104,7 @@ class BlockCuller {
     backend_.running_sum(flags);
     const std::size_t kept = backend_.read(flags, n);
     Level mixed{backend_.template allocate<CullNode>(kept),
-                backend_.template allocate<FlatRange>(kept * lists_.count()),
+                backend_.template allocate<ListRange>(kept * lists_.count()),
                 {}};
     backend_.launch(
         "keeping nodes", n,
@@ -120,7 +122,7 @@ class BlockCuller {
     backend_.launch("marking blocks", n, mark);
     backend_.running_sum(marks);
     CulledBlocks<Backend> blocks{backend_.template allocate<CullNode>(n),
-                                 backend_.template allocate<FlatRange>(n * lists_.count()),
+                                 backend_.template allocate<ListRange>(n * lists_.count()),
                                  std::move(level.numbers), std::vector<CullNode>(n)};
     backend_.launch(
         "ordering blocks", n,
@@ -130,11 +132,11 @@ class BlockCuller {
   }
 
   Backend& backend_;
-  FlatField field_;
+  FieldView field_;
   MeshGrid grid_;
   NodeLists lists_;
   double wide_margin_;
-  Array<FlatRange> all_ranges_;
+  Array<ListRange> all_ranges_;
   Array<std::uint32_t> all_numbers_;
 };
 

@@ -1,9 +1,9 @@
-// What of the field reaches a block, copied into the memory that a group of threads shares: all its points
-// read the same metaballs and impulses. Lists that do not fit stay where they are.
+// The lists of a block, copied into the memory that a group of threads shares: all points of the block read
+// the same metaballs and impulses. Lists that do not fit stay where they are.
 #pragma once
 
 #include "cuda/backend.h"
-#include "synthesis/field/flat_field.h"
+#include "synthesis/field/field_tables.h"
 
 namespace astrolith {
 
@@ -23,7 +23,7 @@ class StagedLists {
     if (is_staged_) left -= bytes;
   }
 
-  // A thread's share.
+  // Copies a thread's share.
   ASTROLITH_HD void copy(char* shared, unsigned thread, unsigned threads) const {
     if (!is_staged_) return;
     for (std::uint32_t k = thread; k <= lists_; k += threads) offsets(shared)[k] = first_[k] - first_[0];
@@ -53,36 +53,36 @@ class BlockStage {
   // A third of what a group may have: more groups at a time on a multiprocessor.
   static constexpr std::size_t kBytes = 24 * 1024;
 
-  ASTROLITH_HD BlockStage(const FlatBlocks& blocks, std::size_t block)
+  ASTROLITH_HD BlockStage(const BlockListArrays& blocks, std::size_t block)
       : from_(blocks.block(block)),
         left_(kBytes),
-        spheres_(from_.spheres, from_.first_sphere, blocks.leaves, kBytes, left_),
-        impulses_(from_.impulses, from_.first_impulse, blocks.sizes, kBytes, left_),
-        landforms_(from_.landforms, from_.first_landform, blocks.lists, kBytes, left_),
-        gabor_(from_.gabor, from_.first_gabor, blocks.bands, kBytes, left_) {}
+        metaballs_(from_.metaballs.spheres, from_.metaballs.first, blocks.leaves, kBytes, left_),
+        spots_(from_.spots, from_.first_spot, blocks.spot_lists, kBytes, left_),
+        landforms_(from_.landforms, from_.first_landform, blocks.landform_lists, kBytes, left_),
+        gabor_(from_.gabor, from_.first_gabor, blocks.gabor_lists, kBytes, left_) {}
 
   // Every thread of the group copies its share; `shared` is aligned to four bytes.
   ASTROLITH_HD void copy(char* shared, unsigned thread, unsigned threads) const {
-    spheres_.copy(shared, thread, threads);
-    impulses_.copy(shared, thread, threads);
+    metaballs_.copy(shared, thread, threads);
+    spots_.copy(shared, thread, threads);
     landforms_.copy(shared, thread, threads);
     gabor_.copy(shared, thread, threads);
   }
   // The block, once all have copied.
-  ASTROLITH_HD FlatBlock block(char* shared) const {
-    FlatBlock staged = from_;
-    spheres_.point_to(shared, staged.spheres, staged.first_sphere);
-    impulses_.point_to(shared, staged.impulses, staged.first_impulse);
+  ASTROLITH_HD BlockLists block(char* shared) const {
+    BlockLists staged = from_;
+    metaballs_.point_to(shared, staged.metaballs.spheres, staged.metaballs.first);
+    spots_.point_to(shared, staged.spots, staged.first_spot);
     landforms_.point_to(shared, staged.landforms, staged.first_landform);
     gabor_.point_to(shared, staged.gabor, staged.first_gabor);
     return staged;
   }
 
  private:
-  FlatBlock from_;
+  BlockLists from_;
   std::size_t left_;
-  StagedLists<MetaballSphere<float>> spheres_;
-  StagedLists<SpotImpulse> impulses_;
+  StagedLists<MetaballSphere<float>> metaballs_;
+  StagedLists<SpotImpulse> spots_;
   StagedLists<std::uint32_t> landforms_;
   StagedLists<GaborImpulse> gabor_;
 };

@@ -1,12 +1,14 @@
 // The steps in which a backend finds the blocks that the surface may cross, by quadtrees over layers of
 // blocks: mixed_blocks (synthesis/mesh/block_culling.h) for many nodes at once, with the bounds of
-// synthesis/field/flat_bounds.h. A node carries lists of what of the field reaches it, chosen from its
-// parent's.
+// synthesis/field/field_content.h. A node carries lists of the elements of the field that reach it, chosen
+// from the lists of its parent.
 #pragma once
 
 #include "cuda/backend_lists.h"
 #include "cuda/mesher/mesh_batch.h"
-#include "synthesis/field/flat_bounds.h"
+#include "synthesis/field/field_at_point.h"
+#include "synthesis/field/field_content.h"
+#include "synthesis/field/gathering.h"
 
 namespace astrolith {
 
@@ -15,18 +17,27 @@ struct CullNode {
   int x, y, z, size;
 };
 
-// Lists of a node, in this order: metaballs of each leaf, craters of each layer of such, boulders. Where
-// Gabor noise is, metaballs of each leaf again, now those that reach its cells around the block.
+// The lists of a node, in this order: metaballs of each leaf, craters of each layer of craters, boulders.
+// Where there is Gabor noise, metaballs of each leaf follow again, now those that reach its cells around the
+// block.
 struct NodeLists {
   std::uint32_t leaves, landforms, wide;
 
   ASTROLITH_HD std::uint32_t count() const { return leaves + landforms + wide; }
+  ASTROLITH_HD bool is_boulders(std::uint32_t list) const { return list + 1 == leaves + landforms; }
+  ASTROLITH_HD bool is_craters(std::uint32_t list) const {
+    return list >= leaves && list + 1 < leaves + landforms;
+  }
+  // The leaf of a list of metaballs.
+  ASTROLITH_HD std::uint32_t leaf(std::uint32_t list) const {
+    return list < leaves ? list : list - leaves - landforms;
+  }
 };
 
 // Nodes in a backend's memory, and their lists.
 struct CullNodes {
   const CullNode* nodes;
-  const FlatRange* ranges;  // (nodes, lists)
+  const ListRange* ranges;  // (nodes, lists)
   const std::uint32_t* numbers;
 };
 
@@ -47,7 +58,7 @@ struct MakeQuarters {
 
 // Writes the numbers in list i % lists of node i / lists, from those in its parent's.
 struct NarrowLists {
-  FlatField field;
+  FieldView field;
   MeshGrid grid;
   NodeLists lists;
   double wide_margin;
@@ -55,26 +66,20 @@ struct NarrowLists {
   CullNodes parents;
   std::uint32_t nodes_a_parent;
 
+  // Where the elements of a list must reach to be kept.
   ASTROLITH_HD Box box_of(const CullNode& node, std::uint32_t list) const {
     const Box box = grid.box(node.x, node.y, node.z, node.size);
-    if (list < lists.leaves) return flat_leaf_box(field, list, box);
-    if (list == lists.leaves + field.boulder_list) return box;
-    if (list < lists.leaves + lists.landforms) {
-      return farthest_projected_box(flat_body_box(field, box), field.height_bound);
-    }
-    const Box at = farthest_projected_box(flat_body_box(field, box), field.height_bound);
-    return field.num_steps == 0
-               ? widened(at, wide_margin)
-               : flat_leaf_box(field, list - lists.leaves - lists.landforms, widened(at, wide_margin));
+    if (lists.is_boulders(list)) return box;
+    if (lists.is_craters(list)) return projected_block(field, box);
+    const Box at = list < lists.leaves ? body_box(field.body, field.arrays, box)
+                                       : widened(projected_block(field, box), wide_margin);
+    return leaf_box(field.body, field.arrays, lists.leaf(list), at);
   }
   ASTROLITH_HD bool reaches(std::uint32_t list, std::uint32_t number, const Box& box) const {
-    if (list < lists.leaves) return metaball_reaches(field, list, number, box);
-    if (list == lists.leaves + field.boulder_list) return boulder_reaches(field, number, box);
-    if (list < lists.leaves + lists.landforms) {
-      const FlatLayer& layer = field.layers[field.crater_layers[list - lists.leaves]];
-      return boxes_touch(crater_reach(field.craters[layer.parts.first + number]), box);
-    }
-    return metaball_reaches(field, list - lists.leaves - lists.landforms, number, box);
+    if (lists.is_boulders(list)) return boulder_reaches(field, number, box);
+    if (lists.is_craters(list)) return crater_reaches(field, list - lists.leaves, number, box);
+    const BodyLeaf& leaf = field.leaf(lists.leaf(list));
+    return metaball_reaches(leaf, field.arrays[leaf.spheres][number], box);
   }
   template <typename Writer>
   ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {
@@ -82,7 +87,7 @@ struct NarrowLists {
     const auto list = static_cast<std::uint32_t>(i % lists.count());
     if (nodes[n].size == 0) return;
     const Box box = box_of(nodes[n], list);
-    const FlatRange of_parent = parents.ranges[n / nodes_a_parent * lists.count() + list];
+    const ListRange of_parent = parents.ranges[n / nodes_a_parent * lists.count() + list];
     for (std::uint32_t k = of_parent.first; k < of_parent.first + of_parent.count; ++k) {
       if (reaches(list, parents.numbers[k], box)) write(parents.numbers[k]);
     }
@@ -92,13 +97,41 @@ struct NarrowLists {
 // A thread a list: where it is, from where it begins and the next one does.
 struct MakeRanges {
   const std::uint32_t* first;
-  FlatRange* ranges;
+  ListRange* ranges;
   ASTROLITH_HD void operator()(std::size_t i) const { ranges[i] = {first[i], first[i + 1] - first[i]}; }
+};
+
+// The lists of one node, as field_content() asks for them.
+struct ListsOfNode {
+  const FieldView& field;
+  const std::uint32_t* numbers;
+  const ListRange* ranges;  // by list
+
+  ASTROLITH_HD MetaballList metaballs(std::uint32_t leaf) const {
+    return {field.arrays[field.leaf(leaf).spheres], numbers + ranges[leaf].first, ranges[leaf].count};
+  }
+  ASTROLITH_HD Interval bound_spots(const SpotNoise& noise, std::uint32_t, const Box& box) const {
+    return bound_heights(noise, field.arrays, box);
+  }
+  template <class Visit>
+  ASTROLITH_HD void for_each_crater(const CraterRelief& relief, const Box& box, const Visit& visit) const {
+    const ListRange range = ranges[field.body.leaves.count + relief.list];
+    for (std::uint32_t k = range.first; k < range.first + range.count; ++k) {
+      if (crater_reaches(field, relief.list, numbers[k], box)) visit(numbers[k]);
+    }
+  }
+  ASTROLITH_HD bool boulder_reaches(const Box& box) const {
+    const ListRange range = ranges[field.body.leaves.count + field.boulder_list()];
+    for (std::uint32_t k = range.first; k < range.first + range.count; ++k) {
+      if (astrolith::boulder_reaches(field, numbers[k], box)) return true;
+    }
+    return false;
+  }
 };
 
 // A thread a node: 1 where the surface may cross it.
 struct FlagMixed {
-  FlatField field;
+  FieldView field;
   MeshGrid grid;
   NodeLists lists;
   CullNodes nodes;
@@ -110,9 +143,10 @@ struct FlagMixed {
     const CullNode node = nodes.nodes[i];
     flags[i] = 0;
     if (node.size == 0) return;
-    const FlatNear near{nodes.numbers, nodes.ranges + i * lists.count()};
-    const BlockContent content = flat_content(field, near, grid.box(node.x, node.y, node.z, node.size),
-                                              scratch + near.ranges[0].first);
+    const ListsOfNode of_node{field, nodes.numbers, nodes.ranges + i * lists.count()};
+    Interval kept[kMostKeptHeights];
+    const BlockContent content = field_content(field, of_node, grid.box(node.x, node.y, node.z, node.size),
+                                               {scratch + of_node.ranges[0].first, kept});
     if (content == BlockContent::kInside && grid.closed && is_at_border(node)) {
       *failure = static_cast<std::uint32_t>(MeshFailure::kBorder);
     }
@@ -132,7 +166,7 @@ struct KeepMixed {
   CullNodes from;
   const std::uint32_t* place;  // running sum of the flags, one more than there are nodes
   CullNode* nodes;
-  FlatRange* ranges;
+  ListRange* ranges;
 
   ASTROLITH_HD void operator()(std::size_t i) const {
     const std::uint32_t to = place[i];
@@ -161,9 +195,9 @@ struct MarkBlocks {
 struct OrderBlocks {
   MarkBlocks places;
   std::uint32_t lists;
-  const FlatRange* from_ranges;
+  const ListRange* from_ranges;
   CullNode* nodes;
-  FlatRange* ranges;
+  ListRange* ranges;
 
   ASTROLITH_HD void operator()(std::size_t i) const {
     const CullNode node = places.nodes[i];

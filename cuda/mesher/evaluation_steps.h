@@ -1,5 +1,5 @@
 // The two steps of meshing a batch that evaluate the field: a group of threads a block, whose points read
-// what reaches the block from the memory that the group shares.
+// the block's lists from the memory that the group shares.
 #pragma once
 
 #include "cuda/mesher/block_stage.h"
@@ -16,19 +16,19 @@ struct EvaluateSamples {
 
   template <class Group>
   ASTROLITH_HD void operator()(const Group& group) const {
-    const BlockStage stage(batch.parts, group.index());
+    const BlockStage stage(batch.lists, group.index());
     char* shared = static_cast<char*>(group.shared());
     group.each_thread([&](unsigned thread) { stage.copy(shared, thread, kThreads); });
-    const FlatBlock near = stage.block(shared);
+    const BlockLists lists = stage.block(shared);
     group.each_thread([&](unsigned thread) {
       for (std::size_t i = thread; i < MeshBlock::kSamples; i += kThreads) {
-        evaluate(SampleThread(group.index() * MeshBlock::kSamples + i), near);
+        evaluate(SampleThread(group.index() * MeshBlock::kSamples + i), lists);
       }
     });
   }
 
  private:
-  ASTROLITH_HD void evaluate(const SampleThread& t, const FlatBlock& near) const {
+  ASTROLITH_HD void evaluate(const SampleThread& t, const BlockLists& lists) const {
     MeshBlock& block = batch.blocks[t.block];
     const int layer_z = batch.places[t.block].z;
     const SampleRow row = row_to_evaluate(batch.grid, layer_z, batch.owners(t.block), block, t.y, t.z);
@@ -38,7 +38,7 @@ struct EvaluateSamples {
       const int gx = block.x * kBlockCells + t.x, gy = block.y * kBlockCells + t.y,
                 gz = layer_z * kBlockCells + t.z;
       const Vec3f p{samples.x(gx), samples.y(gy), samples.z(gz)};
-      value = flat_value(batch.field, near, p, band);
+      value = field_at(batch.field, lists, p, band);
       if (batch.grid.closed && value > 0.0f && on_border(batch.grid, gx, gy, gz)) {
         batch.fail(MeshFailure::kBorder);
       }
@@ -59,7 +59,7 @@ struct TakeNormals {
 
   template <class Group>
   ASTROLITH_HD void operator()(const Group& group) const {
-    const BlockStage stage(batch.parts, group.index());
+    const BlockStage stage(batch.lists, group.index());
     char* shared = static_cast<char*>(group.shared());
     // Of each row: where its vertices begin in the batch, and how many the block has before it.
     auto* begin = reinterpret_cast<std::uint32_t*>(shared + BlockStage::kBytes);
@@ -79,22 +79,22 @@ struct TakeNormals {
       before[0] = 0;
       for (std::uint32_t r = 0; r < kRows; ++r) before[r + 1] += before[r];
     });
-    const FlatBlock near = stage.block(shared);
+    const BlockLists lists = stage.block(shared);
     group.each_thread([&](unsigned thread) {
       std::uint32_t r = 0;
       for (std::uint32_t k = thread; k < before[kRows]; k += kThreads) {
         while (before[r + 1] <= k) ++r;
-        take(near, vertices[begin[r] + (k - before[r])]);
+        take(lists, vertices[begin[r] + (k - before[r])]);
       }
     });
   }
 
  private:
-  ASTROLITH_HD void take(const FlatBlock& near, MeshVertex& vertex) const {
+  ASTROLITH_HD void take(const BlockLists& lists, MeshVertex& vertex) const {
     Vec3f corners[4];
     for (int k = 0; k < 4; ++k) corners[k] = normal_probe(vertex.position, h, k);
     float values[4];
-    flat_tetrahedron(batch.field, near, corners, values);
+    field_at_tetrahedron(batch.field, lists, corners, values);
     take_normal(values, vertex);
   }
 };

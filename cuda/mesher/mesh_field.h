@@ -6,7 +6,7 @@
 
 namespace astrolith {
 
-// Expects a field without obstacle_to_flattening() (synthesis/field/flat_field_data.h). Throws as mesh_field
+// Expects a field without obstacle_on_gpu() (gpu_obstacle.h). Throws as mesh_field
 // does, and WorkError, with CUDA's words, when the device fails or has too little memory for one layer of
 // blocks; see probe_device().
 MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, int resolution,

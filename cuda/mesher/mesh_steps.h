@@ -4,7 +4,7 @@
 
 #include "cuda/backend.h"
 #include "cuda/mesher/mesh_batch.h"
-#include "synthesis/field/flat_value.h"
+#include "synthesis/field/field_at_point.h"
 
 namespace astrolith {
 
@@ -13,8 +13,8 @@ struct MeshBatch {
   static constexpr std::size_t kRows = std::size_t{kBlockCells} * kBlockCells;
 
   MeshGrid grid;
-  FlatField field;
-  FlatBlocks parts;  // of the field, that reach each block
+  FieldView field;
+  BlockListArrays lists;  // the elements of the field that reach each block
   const BlockPlace* places;
   MeshBlock* blocks;
   const MeshBlock* below;  // the last layer of the batch before

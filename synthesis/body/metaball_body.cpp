@@ -74,7 +74,7 @@ PreparedMetaballs metaballs_reaching(const PreparedMetaballs& metaballs, const B
   return reaching;
 }
 
-Box support_bounds(const PreparedMetaballs& metaballs) {
+Box support_bounds(const MetaballsView& metaballs) {
   Box box;
   for (const MetaballSphere<float>& s : metaballs.adding()) {
     const double reach =

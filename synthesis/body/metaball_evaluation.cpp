@@ -50,13 +50,13 @@ auto adder_of(Kernel kernel) {
 
 // Four sums at up to this many points: they stay in the first cache over all spheres.
 constexpr int kPointsAtOnce = 256;
-struct TakenSums {
+struct SubtractedSums {
   std::array<float, kPointsAtOnce> kernel{}, wx{}, wy{}, wz{};
 };
 
 // Turns the sums of what is added into the net sums.
-ASTROLITH_SIMD_CLONES void take_away(const TakenSums& subtracted, int n, float* __restrict kernel,
-                                     float* __restrict wx, float* __restrict wy, float* __restrict wz) {
+ASTROLITH_SIMD_CLONES void subtract_sums(const SubtractedSums& subtracted, int n, float* __restrict kernel,
+                                         float* __restrict wx, float* __restrict wy, float* __restrict wz) {
   const float *tk = subtracted.kernel.data(), *tx = subtracted.wx.data(), *ty = subtracted.wy.data(),
               *tz = subtracted.wz.data();
   _Pragma("omp simd") for (int i = 0; i < n; ++i) {
@@ -87,20 +87,19 @@ ASTROLITH_FINISH_LOOP(finish_gaussians, gaussian_distance)
 ASTROLITH_FINISH_LOOP(finish_compact, compact_distance)
 #undef ASTROLITH_FINISH_LOOP
 
-std::vector<MetaballSphere<float>> as_adding(std::span<const MetaballSphere<float>> taking) {
+std::vector<MetaballSphere<float>> as_adding(std::span<const MetaballSphere<float>> subtractive) {
   std::vector<MetaballSphere<float>> spheres;
-  for (const MetaballSphere<float>& s : taking) spheres.push_back(s.as_adding());
+  for (const MetaballSphere<float>& s : subtractive) spheres.push_back(s.as_adding());
   return spheres;
 }
 
 }  // namespace
 
-void evaluate_metaballs(const PreparedMetaballs& metaballs, int n, const float* x, const float* y,
-                        const float* z, float* distance, float* gradient_x, float* gradient_y,
-                        float* gradient_z) {
+void evaluate_metaballs(const MetaballsView& metaballs, int n, const float* x, const float* y, const float* z,
+                        float* distance, float* gradient_x, float* gradient_y, float* gradient_z) {
   const MetaballParameters<float>& body = metaballs.parameters;
   const std::span<const MetaballSphere<float>> adding = metaballs.adding();
-  const std::vector<MetaballSphere<float>> taking = as_adding(metaballs.taking());
+  const std::vector<MetaballSphere<float>> subtractive = as_adding(metaballs.subtractive());
   const auto add = adder_of(body.compact_kernel.kernel);
   const auto finish = body.compact_kernel.kernel == Kernel::kGaussian ? finish_gaussians : finish_compact;
   for (float* sum : {distance, gradient_x, gradient_y, gradient_z}) std::fill(sum, sum + n, 0.0f);
@@ -108,11 +107,11 @@ void evaluate_metaballs(const PreparedMetaballs& metaballs, int n, const float* 
     const int size = std::min(kPointsAtOnce, n - begin);
     float *s = distance + begin, *gx = gradient_x + begin, *gy = gradient_y + begin, *gz = gradient_z + begin;
     add(body, adding.data(), adding.size(), size, x + begin, y + begin, z + begin, s, gx, gy, gz);
-    if (!taking.empty()) {
-      TakenSums subtracted;
-      add(body, taking.data(), taking.size(), size, x + begin, y + begin, z + begin, subtracted.kernel.data(),
-          subtracted.wx.data(), subtracted.wy.data(), subtracted.wz.data());
-      take_away(subtracted, size, s, gx, gy, gz);
+    if (!subtractive.empty()) {
+      SubtractedSums subtracted;
+      add(body, subtractive.data(), subtractive.size(), size, x + begin, y + begin, z + begin,
+          subtracted.kernel.data(), subtracted.wx.data(), subtracted.wy.data(), subtracted.wz.data());
+      subtract_sums(subtracted, size, s, gx, gy, gz);
     }
     finish(body, size, s, gx, gy, gz);
   }

@@ -45,10 +45,10 @@ SumDerivatives sum_over(std::span<const MetaballSphere<float>> spheres,
 
 }  // namespace
 
-Vec3d distance_gradient(const PreparedMetaballs& metaballs, const Vec3d& p) {
+Vec3d distance_gradient(const MetaballsView& metaballs, const Vec3d& p) {
   const MetaballParameters<double> body = in_double(metaballs.parameters);
   const SumDerivatives added = sum_over(metaballs.adding(), body, p),
-                       subtracted = sum_over(metaballs.taking(), body, p);
+                       subtracted = sum_over(metaballs.subtractive(), body, p);
   const double part = 1.0 / (1.0 + subtracted.value), net = added.value * part,
                total = net + double{kKernelFloor};
   const Vec3d net_gradient = part * (added.gradient - net * subtracted.gradient);

@@ -19,7 +19,7 @@ struct Batch {
   std::array<float, kBatch> px, py, pz;  // projected on the bare surface
   bool is_projected = false;             // for the first layer that asks
   const SpotImpulses* spots = nullptr;   // of the layer, that reach the points; null where none were drawn
-  std::array<float, kBatch> lx, ly, lz;  // of points near an origin: their local coordinates
+  std::array<float, kBatch> lx, ly, lz;  // coordinates local to an origin, where there is one
   const Vec3d* origin = nullptr;         // null: there is none
   std::array<float, kBatch> weight;
   // Displacements by the layers that warp those after them, and displaced coordinates; of a model with such.
@@ -33,8 +33,8 @@ struct PointArrays {
   const float *x, *y, *z;
 };
 
-// The same points in coordinates local to an origin.
-struct NearPoints {
+// Points in coordinates local to an origin.
+struct LocalPoints {
   Vec3d origin;
   PointArrays local;
 };
@@ -45,14 +45,17 @@ struct Accuracy {
   bool tetrahedra = false;
 };
 
-// Joins a layer's heights to what those before it made of the elevation of a batch
-// (synthesis/field/layer_join.h).
-void apply_layer(const FieldModel& model, const PlacedLayer& layer, Batch& b);
+// What reaches the points of a block, as lists; null spots of a layer are drawn.
+struct BatchLists {
+  LeafLists metaballs;
+  const DrawnSpots& spots;
+};
 
-// value[i] = F at n <= kBatch points of a block, whose body and spots are given; `near` has them near an
-// origin.
-void evaluate_batch(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots, int n,
-                    const PointArrays& at, const Accuracy& accuracy, float* value,
-                    const NearPoints* near = nullptr);
+// Joins a layer's heights to what those before it made of the elevation of a batch (layer_join.h).
+void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
+
+// value[i] = F at n <= kBatch points of a block; `local` has them in coordinates local to an origin.
+void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                    const Accuracy& accuracy, float* value, const LocalPoints* local = nullptr);
 
 }  // namespace astrolith

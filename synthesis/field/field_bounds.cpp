@@ -1,81 +1,57 @@
-// What is certain about a field over whole boxes.
+// What is certain about a field over whole boxes, on the CPU.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
-#include "synthesis/field/content_bounds.h"
+#include "synthesis/field/field_content.h"
 #include "synthesis/field/field_model_internal.h"
 
 namespace astrolith {
 namespace {
 
-// A box as a layer needs it.
-struct LayerBox {
-  const Box& box;
-  const Box& projected;       // where its points are projected on the bare surface
-  const SpotImpulses* spots;  // of the layer, that reach the box; null where none were drawn
+// The elements of a model that reach a box, as field_content() asks for them.
+struct ModelLists {
+  const FieldModel& model;
+  const ReachingMetaballs& reaching;
+  const DrawnSpots& spots;
+
+  MetaballList metaballs(std::uint32_t leaf) const {
+    const std::uint32_t first = reaching.first[leaf];
+    return {reaching.spheres.data() + first, nullptr, reaching.first[leaf + 1] - first};
+  }
+  Interval bound_spots(const SpotNoise& noise, std::uint32_t layer, const Box& box) const {
+    return bound_heights(noise, model.tables.arrays, box, spots_of(spots, layer));
+  }
+  template <class Visit>
+  void for_each_crater(const CraterRelief& relief, const Box& box, const Visit& visit) const {
+    for (const std::uint32_t number : model.crater_trees[relief.list].touching(box)) visit(number);
+  }
+  bool boulder_reaches(const Box& box) const { return model.boulder_tree.any_touching(box); }
 };
 
-// A layer's heights over a box.
-template <typename Noise>
-Interval bound_layer(const Noise& noise, const LayerBox& at) {
-  return noise.bound_heights(at.box);
-}
-Interval bound_layer(const SpotNoise& noise, const LayerBox& at) {
-  return noise.bound_heights(at.box, at.spots);
-}
-Interval bound_layer(const GaborSurfaceNoise& noise, const LayerBox&) {
-  return {-noise.height_bound(), noise.height_bound()};
+// Arrays for the bounds of one box; reused, since thousands of boxes are bounded.
+BoundScratch scratch_for(const FieldModel& model, const ReachingMetaballs& metaballs) {
+  thread_local std::vector<KernelInterval> kernels;
+  thread_local std::vector<Interval> kept;
+  kernels.resize(std::max(kernels.size(), metaballs.spheres.size()));
+  kept.assign(model.num_kept_heights, {});
+  return {kernels.data(), kept.data()};
 }
 
-// Heights over a box that masks ask for, by slot.
-using KeptIntervals = std::vector<Interval>;
-
-// Weights over a box; neither is below 0.
-Interval bound_weight(const LayerJoin& join, const Box& box, const KeptIntervals& kept) {
-  const Interval all{1.0, 1.0};
-  return product(join.locality ? join.locality->bound(box) : all,
-                 join.mask ? join.mask->bound(kept[static_cast<std::size_t>(join.mask->slot)]) : all);
-}
-
-// Elevations over a box from those that the layers before made.
-template <typename Noise>
-Interval bound_elevation(const Noise& noise, const LayerJoin& join, const LayerBox& at, const Box& box,
-                         const Interval& before, KeptIntervals& kept) {
-  const Interval heights = bound_layer(noise, at);
-  if (join.keeps >= 0) {
-    const double slack = kHeightSlack * join.height_bound;
-    kept[static_cast<std::size_t>(join.keeps)] = plus(heights, {-slack, slack});
+// The content of a box by the bound of all heights everywhere, which costs nothing. `at` is its body_box().
+BlockContent content_by_height_bound(const FieldModel& model, const ReachingMetaballs& metaballs,
+                                     const Box& at) {
+  const FieldView& f = model.tables;
+  const ModelLists lists{model, metaballs, {}};
+  KernelInterval* scratch = scratch_for(model, metaballs).kernels;
+  if (f.body.plain()) {
+    constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+    return content_by_height_bound(
+        bound_metaballs(f.leaf(0).metaballs, lists.metaballs(0), at, kEverywhere, scratch),
+        model.height_bound);
   }
-  return join.changes_elevation() ? join_bounds(join.how, bound_weight(join, box, kept), before, heights)
-                                  : before;
-}
-Interval bound_elevation(const CraterRelief& relief, const LayerJoin&, const LayerBox& at, const Box&,
-                         const Interval& before, KeptIntervals&) {
-  return relief.bound(at.projected, before);
-}
-
-Interval bound_heights(const FieldModel& model, const DrawnSpots& spots, const Box& box,
-                       const Box& projected) {
-  Interval elevation;
-  KeptIntervals kept(static_cast<std::size_t>(model.kept_heights));
-  for (std::size_t i = 0; i < model.layers.size(); ++i) {
-    const PlacedLayer& layer = model.layers[i];
-    const Box where = layer_box(layer, box);
-    const LayerBox at{where, projected, spots_of(spots, i)};
-    elevation = std::visit(
-        [&](const auto& l) { return bound_elevation(l, layer.join, at, box, elevation, kept); }, layer.noise);
-  }
-  const double slack = kHeightSlack * model.height_bound;
-  return {elevation.low - slack, elevation.high + slack};
-}
-
-// By the bound of all heights everywhere, which costs nothing; near the surface or far.
-BlockContent content_by_height_bound(const FieldModel& model, const PreparedBody& body, const Box& at) {
-  if (body.plain()) return content_by_height_bound(bound_metaballs(body.metaballs, at), model.height_bound);
   const double height = model.height_bound * (1.0 + kHeightSlack);
-  return content_by_distance(bound_distance(body, at, height), {-height, height});
+  return content_by_distance(bound_distance(f.body, f.arrays, lists, at, height, scratch), {-height, height});
 }
 
 std::array<Box, 8> octants(const Box& box) {
@@ -96,11 +72,12 @@ bool within(const Box& inner, const Box& outer) {
 
 // Extends `bounds` by the smallest boxes of an octree that are not proved empty. The grid of a mesh depends
 // on the result: it is a promise that it does not change.
-void extend_bounds(const FieldModel& model, const PreparedBody& body, const Box& box, int depth,
+void extend_bounds(const FieldModel& model, const LeafLists& metaballs, const Box& box, int depth,
                    Box& bounds) {
   if (!bounds.empty() && within(box, bounds)) return;
-  const Box at = body_box(model, box);
-  const PreparedBody reaching = body_reaching(body, at);
+  const FieldView& f = model.tables;
+  const Box at = body_box(f.body, f.arrays, box);
+  const ReachingMetaballs reaching = metaballs_reaching(f.body, f.arrays, metaballs, at);
   const BlockContent content = content_by_height_bound(model, reaching, at);
   if (content == BlockContent::kOutside) return;
   if (depth == 0 || content == BlockContent::kInside) {
@@ -108,54 +85,25 @@ void extend_bounds(const FieldModel& model, const PreparedBody& body, const Box&
     bounds.extend(box.max);
     return;
   }
-  for (const Box& child : octants(box)) extend_bounds(model, reaching, child, depth - 1, bounds);
+  for (const Box& child : octants(box)) extend_bounds(model, reaching.lists(), child, depth - 1, bounds);
 }
 
 }  // namespace
 
-Box body_box(const FieldModel& model, const Box& box) { return model.warp ? model.warp->image(box) : box; }
-
-namespace {
-
-BlockContent content_of_combined(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,
-                                 const Box& box) {
-  const double height = model.height_bound * (1.0 + kHeightSlack);
-  const Interval distance = bound_distance(body, box, height);
-  const BlockContent content = content_by_distance(distance, {-height, height});
-  if (content != BlockContent::kMixed || model.layers.empty()) return content;
-  const Box projected = projected_box(box, distance, height);
-  return content_by_distance(distance, bound_heights(model, spots, box, projected));
-}
-
-BlockContent content_without_boulders(const FieldModel& model, const PreparedBody& body,
-                                      const DrawnSpots& spots, const Box& box) {
-  if (!body.plain()) return content_of_combined(model, body, spots, box);
-  const Box at = body_box(model, box);
-  const MetaballInterval bound = bound_metaballs(body.metaballs, at, model.height_bound);
-  const BlockContent content = content_by_height_bound(bound, model.height_bound);
-  if (content != BlockContent::kMixed || model.layers.empty()) return content;
-  const auto divisor = [&] { return smallest_gradient(body.metaballs, at); };
-  const Box projected = model.craters.empty() ? at : projected_box(at, bound, model.height_bound, divisor());
-  return content_by_heights(bound, bound_heights(model, spots, box, projected), divisor);
-}
-
-}  // namespace
-
-// A union only adds.
-BlockContent content_of(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots,
+BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
                         const Box& box) {
-  const BlockContent content = content_without_boulders(model, body, spots, box);
-  const bool boulders = content == BlockContent::kOutside && model.boulders.touches(box);
-  return boulders ? BlockContent::kMixed : content;
+  return field_content(model.tables, ModelLists{model, metaballs, spots}, box, scratch_for(model, metaballs));
 }
 
 DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger) {
   DrawnSpots spots;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
-    const auto* noise = std::get_if<SpotNoise>(&model.layers[i].noise);
+    const FieldLayer& layer = model.layers[i];
+    const SpotNoise* noise = layer.noise.get_if<SpotNoise>();
     if (noise == nullptr) continue;
     spots.resize(model.layers.size());
-    spots[i] = noise->gather(layer_box(model.layers[i], box), spots_of(of_larger, i));
+    spots[i] = gather_spots(*noise, model.tables.arrays, displaced_layer_box(box, layer.join.displaced),
+                            spots_of(of_larger, i));
   }
   return spots;
 }
@@ -163,19 +111,20 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
 // Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
 Box surface_bounds(const FieldModel& model) {
   constexpr int kDepth = 6;
-  Box box = support_bounds(model.body);
-  if (model.warp) box = widened(box, model.warp->bound());
+  const BodyLeaf& first = model.tables.leaf(0);
+  Box box = model.body.supports;
+  if (model.body.plain() && first.warped) box = widened(box, first.warp.bound);
   for (int pass = 0; pass < 4; ++pass) {
     Box tighter;
-    extend_bounds(model, model.body, box, kDepth, tighter);
+    extend_bounds(model, model.metaballs.lists(), box, kDepth, tighter);
     if (tighter.empty()) return tighter;
     const bool shrunk = norm(tighter.extent()) < 0.7 * norm(box.extent());
     box = tighter;
     if (!shrunk) break;
   }
   if (!model.boulders.empty()) {
-    box.extend(model.boulders.bounds().min);
-    box.extend(model.boulders.bounds().max);
+    box.extend(model.boulder_tree.bounds().min);
+    box.extend(model.boulder_tree.bounds().max);
   }
   return box;
 }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "synthesis/body/metaballs_near.h"
+#include "synthesis/body/local_metaballs.h"
 #include "synthesis/field/field_batch_internal.h"
 
 namespace astrolith {
@@ -11,7 +11,7 @@ namespace {
 // metaballs were evaluated for them; returns how many, and where they were.
 template <typename Reach>
 int keep_near_surface(int n, float reach, const Reach& boulders_reach, const PointArrays& at,
-                      const PointArrays& metaballs_at, const NearPoints* near, Batch& b,
+                      const PointArrays& metaballs_at, const LocalPoints* local, Batch& b,
                       std::array<int, kBatch>& origin) {
   int kept = 0;
   for (int i = 0; i < n; ++i) {
@@ -20,8 +20,8 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
     b.x[to] = at.x[i], b.y[to] = at.y[i], b.z[to] = at.z[i];
     b.mx[to] = metaballs_at.x[i], b.my[to] = metaballs_at.y[i], b.mz[to] = metaballs_at.z[i];
     for (auto* a : {&b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
-    if (near != nullptr) {
-      b.lx[to] = near->local.x[i], b.ly[to] = near->local.y[i], b.lz[to] = near->local.z[i];
+    if (local != nullptr) {
+      b.lx[to] = local->local.x[i], b.ly[to] = local->local.y[i], b.lz[to] = local->local.z[i];
     }
     origin[to] = i;
     ++kept;
@@ -56,88 +56,89 @@ void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::arr
   b.n = kept;
 }
 
-// s and grad L of the body near an origin; `metaballs_at` holds the points `at` displaced by the body's warp.
-void evaluate_body_near(const PreparedMetaballs& metaballs, int n, const NearPoints& near,
-                        const PointArrays& at, const PointArrays& metaballs_at, Batch& b) {
-  const auto displaced = [n](const float* local, const float* from, const float* to, float* out) {
-    for (int i = 0; i < n; ++i) out[i] = local[i] + (to[i] - from[i]);
+// s and grad L of the body to the digits of local coordinates; `metaballs_at` holds the points `at` displaced
+// by the body's warp.
+void evaluate_local_body(const MetaballsView& metaballs, int n, const LocalPoints& local,
+                         const PointArrays& at, const PointArrays& metaballs_at, Batch& b) {
+  const auto displaced = [n](const float* p, const float* from, const float* to, float* out) {
+    for (int i = 0; i < n; ++i) out[i] = p[i] + (to[i] - from[i]);
   };
-  displaced(near.local.x, at.x, metaballs_at.x, b.lx.data());
-  displaced(near.local.y, at.y, metaballs_at.y, b.ly.data());
-  displaced(near.local.z, at.z, metaballs_at.z, b.lz.data());
-  evaluate_metaballs_near(metaballs, near.origin, n, b.lx.data(), b.ly.data(), b.lz.data(), b.distance.data(),
-                          b.gx.data(), b.gy.data(), b.gz.data());
+  displaced(local.local.x, at.x, metaballs_at.x, b.lx.data());
+  displaced(local.local.y, at.y, metaballs_at.y, b.ly.data());
+  displaced(local.local.z, at.z, metaballs_at.z, b.lz.data());
+  evaluate_local_metaballs(metaballs, local.origin, n, b.lx.data(), b.ly.data(), b.lz.data(),
+                           b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
 }
 
-// What reaches the points of a block.
-struct BlockParts {
-  const DrawnSpots& spots;
-  std::vector<std::uint32_t> boulders;
-};
+// Numbers of the boulders that may change F at the points.
+std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const PointArrays& at) {
+  if (model.boulders.empty()) return {};
+  Box box;
+  for (int i = 0; i < n; ++i) box.extend({at.x[i], at.y[i], at.z[i]});
+  return model.boulder_tree.touching(box);
+}
 
 // Adds what the layers make of the surface, near to it and wherever boulders reach.
-void add_elevations(const FieldModel& model, const BlockParts& parts, const PointArrays& at,
-                    const PointArrays& metaballs_at, const NearPoints* near, float band, Batch& b,
-                    float* value) {
+void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<const std::uint32_t> boulders,
+                    const PointArrays& at, const PointArrays& metaballs_at, const LocalPoints* local,
+                    float band, Batch& b, float* value) {
   std::array<int, kBatch> origin;
-  const float reach = height_reach(model) + band;
   const auto boulders_reach = [&](int i) {
-    return model.boulders.reach(parts.boulders, at.x[i], at.y[i], at.z[i]);
+    return std::any_of(boulders.begin(), boulders.end(), [&](std::uint32_t k) {
+      return boulder_reaches(model.boulders[k], at.x[i], at.y[i], at.z[i]);
+    });
   };
-  b.n = keep_near_surface(b.n, reach, boulders_reach, at, metaballs_at, near, b, origin);
+  b.n = keep_near_surface(b.n, model.tables.height_reach + band, boulders_reach, at, metaballs_at, local, b,
+                          origin);
   if (b.n == 0) return;
   std::fill_n(b.elevation.data(), b.n, 0.0f);
-  b.kept.resize(static_cast<std::size_t>(model.kept_heights));
+  b.kept.resize(model.num_kept_heights);
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
-    keep_undecided(change_bound(model, i) + band, boulders_reach, b, origin, value);
+    const FieldLayer& layer = model.layers[i];
+    keep_undecided(layer.join.remaining_change + band, boulders_reach, b, origin, value);
     if (b.n == 0) return;
-    b.spots = spots_of(parts.spots, i);
-    apply_layer(model, model.layers[i], b);
+    b.spots = spots_of(lists.spots, i);
+    apply_layer(model, layer, b);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }
 
 }  // namespace
 
-void evaluate_batch(const FieldModel& model, const PreparedBody& body, const DrawnSpots& spots, int n,
-                    const PointArrays& at, const Accuracy& accuracy, float* value, const NearPoints* near) {
-  float band = accuracy.band;
+void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                    const Accuracy& accuracy, float* value, const LocalPoints* local) {
+  const FieldView& f = model.tables;
+  const BodyLeaf& first = f.leaf(0);
+  const bool plain = f.body.plain();
+  // s changes so much faster than a distance does.
+  const float band = accuracy.band * static_cast<float>(f.body.lipschitz_bound);
   Batch b;
   b.n = n;
   b.tetrahedra = accuracy.tetrahedra;
   PointArrays metaballs_at = at;
-  if (model.warp) {
-    model.warp->evaluate(n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
+  if (plain && first.warped) {
+    warp_points(first.warp, f.arrays, n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
     metaballs_at = {b.mx.data(), b.my.data(), b.mz.data()};
-    band *=
-        static_cast<float>(model.warp->lipschitz_bound());  // s changes so much faster than a distance does
   }
-  if (!body.plain()) band *= model.lipschitz_bound;
-  if (near != nullptr) b.origin = &near->origin;
-  if (near != nullptr && body.plain()) {
-    evaluate_body_near(body.metaballs, n, *near, at, metaballs_at, b);
+  if (local != nullptr) b.origin = &local->origin;
+  if (local != nullptr && plain) {
+    const std::uint32_t* list = lists.metaballs.first;
+    const MetaballsView metaballs{first.metaballs, {lists.metaballs.spheres + list[0], list[1] - list[0]}};
+    evaluate_local_body(metaballs, n, *local, at, metaballs_at, b);
   } else {
-    evaluate_body(body, n, metaballs_at.x, metaballs_at.y, metaballs_at.z, b.distance.data(), b.gx.data(),
-                  b.gy.data(), b.gz.data());
+    evaluate_body(f.body, f.arrays, lists.metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z,
+                  b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
   }
   std::copy_n(b.distance.data(), n, value);
-  const BlockParts parts{spots, model.boulders.near(n, at.x, at.y, at.z)};
-  if (!model.layers.empty()) add_elevations(model, parts, at, metaballs_at, near, band, b, value);
-  model.boulders.join(parts.boulders, n, at.x, at.y, at.z, value);
-}
-
-float height_reach(const FieldModel& model) { return static_cast<float>(model.height_bound * (1.0 + 1e-5)); }
-
-float change_bound(const FieldModel& model, std::size_t first) {
-  double bound = 0.0;
-  for (std::size_t i = first; i < model.layers.size(); ++i) bound += model.layers[i].join.change_bound;
-  return static_cast<float>(bound * (1.0 + 1e-5));
+  const std::vector<std::uint32_t> boulders = boulders_around(model, n, at);
+  if (!model.layers.empty()) add_elevations(model, lists, boulders, at, metaballs_at, local, band, b, value);
+  for (const std::uint32_t k : boulders) join_boulder(model.boulders[k].kernel, n, at.x, at.y, at.z, value);
 }
 
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;
-  evaluate_batch(model, model.body, {}, 1, {&x, &y, &z}, {}, &f);
+  evaluate_batch(model, {model.metaballs.lists(), {}}, 1, {&x, &y, &z}, {}, &f);
   return f;
 }
 

@@ -20,27 +20,20 @@
 #include <vector>
 
 #include "recipe/recipe.h"
-#include "synthesis/body/combined_body.h"
-#include "synthesis/gabor/gabor_kernel.h"
+#include "synthesis/body/body_tables.h"
 #include "synthesis/mesh/block_field.h"
 #include "synthesis/spots/spot_noise.h"
 
 namespace astrolith {
 
 struct FieldModel;     // what the field and its blocks share
+struct FieldView;      // synthesis/field/field_tables.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
 struct LayerBoulders;  // synthesis/landforms/boulder_field.h
 
-// What of each layer of spots reaches a box, by layer; null where nothing was drawn. Empty without such
-// layers.
+// The spots of each layer that reach a box, by layer; null where nothing was drawn. Empty without layers of
+// spots.
 using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
-
-// What of a field's layers reaches a box, as lists.
-struct BlockLists {
-  std::vector<std::vector<SpotImpulse>> spots;        // by layer of spots, then size
-  std::vector<std::vector<GaborImpulse>> gabor;       // by Gabor layer, then band
-  std::vector<std::vector<std::uint32_t>> landforms;  // numbers of craters, by layer of such; of boulders
-};
 
 // The part of a field that reaches a box. Lives no longer than its field. All members may be called from
 // many threads.
@@ -57,30 +50,28 @@ class FieldBlock {
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band = kExactEverywhere) const;
 
-  // The same everywhere at the corners of small tetrahedra, four after four, whose differences give the slope
+  // F everywhere at the corners of small tetrahedra, four after four, whose differences give the slope
   // of F: what is dear is evaluated once for all four, to first order about their centre.
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                            std::span<float> value) const;
 
-  // The first at the points origin + (x, y, z), which are within the box but for the rounding of its
-  // coordinates to float. A body that has_near_form() and fractal layers are evaluated to the digits of x, y
-  // and z, other bodies and layers to those of float coordinates in the body's frame.
-  void evaluate_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
-                     std::span<const float> z, std::span<float> value, float band) const;
-  void evaluate_tetrahedra_near(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
-                                std::span<const float> z, std::span<float> value) const;
+  // value[i] = F(origin + (x, y, z)) for points within the box but for the rounding of its coordinates to
+  // float. A body that has_local_form() and fractal layers are evaluated to the digits of x, y and z; other
+  // bodies and layers are evaluated to the digits of float coordinates in the body's frame.
+  void evaluate_local(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
+                      std::span<const float> z, std::span<float> value, float band) const;
+  void evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
+                                 std::span<const float> z, std::span<float> value) const;
 
   const Box& box() const { return box_; }
-  const PreparedBody& body() const { return body_; }
-  BlockLists lists() const;
 
  private:
   friend class ImplicitField;
-  FieldBlock(const FieldModel& model, PreparedBody body, DrawnSpots spots, const Box& box)
-      : model_(&model), body_(std::move(body)), spots_(std::move(spots)), box_(box) {}
+  FieldBlock(const FieldModel& model, ReachingMetaballs metaballs, DrawnSpots spots, const Box& box)
+      : model_(&model), metaballs_(std::move(metaballs)), spots_(std::move(spots)), box_(box) {}
 
   const FieldModel* model_;
-  PreparedBody body_;
+  ReachingMetaballs metaballs_;
   DrawnSpots spots_;
   Box box_;
 };
@@ -93,29 +84,31 @@ class ImplicitField {
 
   double value(const Vec3d& p) const;
   bool inside(const Vec3d& p) const { return value(p) > 0.0; }
-  // Of F, pointing inwards. Analytic for a bare body; with layers, central differences over gradient_step().
+  // The gradient of F, pointing inwards. Analytic for a bare body; with layers, central differences over
+  // gradient_step().
   Vec3d gradient(const Vec3d& p) const;
-  // 2^-11 of the longest side of bounds(), in length units.
+  // The step of those differences: 2^-11 of the longest side of bounds(), in length units.
   double gradient_step() const;
 
-  // Whether the body can be evaluated to the digits of coordinates near an origin: not where operations
+  // Whether the body can be evaluated to the digits of coordinates local to an origin: not where operations
   // combine bodies.
-  bool has_near_form() const;
+  bool has_local_form() const;
 
   // Holds the whole surface, within about 1/64 of its longest side; empty where the body is.
   Box bounds() const;
   // The |elevation| never exceeds this, in length units.
   double height_bound() const;
 
-  // Of each layer of craters, those listed and those drawn, from the oldest to the youngest.
+  // The craters of each layer, listed and drawn, from the oldest to the youngest.
   std::span<const LayerCraters> craters() const;
 
-  // Of each layer of boulders, those listed, then those drawn.
+  // The boulders of each layer: those listed, then those drawn.
   std::span<const LayerBoulders> boulders() const;
 
   FieldBlock gather(const Box& box) const;
 
-  const FieldModel& model() const { return *model_; }
+  // The field's tables, for whoever evaluates them on a GPU. They live as long as the field.
+  const FieldView& tables() const;
 
  private:
   std::shared_ptr<const FieldModel> model_;

@@ -29,7 +29,7 @@ void project(const FieldModel& model, Batch& b) {
   if (b.is_projected) return;
   b.is_projected = true;
   std::array<float, kBatch> length;
-  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.body.metaballs.parameters.gradient_floor,
+  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
                    length.data());
   const float longest_step = static_cast<float>(model.height_bound);
   const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
@@ -52,46 +52,57 @@ PointArrays displaced(Batch& b, const PointArrays& p) {
 }
 PointArrays layer_points(Batch& b) { return displaced(b, {b.x.data(), b.y.data(), b.z.data()}); }
 
-void layer_heights(const FieldModel&, const FractalNoise& noise, Batch& b) {
-  if (b.origin != nullptr && noise.has_near_form()) {
+// The heights of one layer at the points of a batch; visits the layer's noise.
+struct LayerHeights {
+  const FieldModel& model;
+  const FieldLayer& layer;
+  Batch& b;
+
+  void operator()(const FractalNoise& noise) const {
+    if (b.origin == nullptr || !noise.has_local_form()) return evaluate(noise);
     const PointArrays p = displaced(b, {b.lx.data(), b.ly.data(), b.lz.data()});
-    noise.evaluate_near(*b.origin, b.n, p.x, p.y, p.z, b.height.data());
-  } else {
+    evaluate_local_heights(noise, arrays(), *b.origin, b.n, p.x, p.y, p.z, b.height.data());
+  }
+  void operator()(const SpotNoise& noise) const {
     const PointArrays p = layer_points(b);
-    noise.evaluate(b.n, p.x, p.y, p.z, b.height.data());
+    evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data(), b.spots);
   }
-}
-
-// Of a noise in space.
-template <typename Noise>
-void layer_heights(const FieldModel&, const Noise& noise, Batch& b) {
-  const PointArrays p = layer_points(b);
-  noise.evaluate(b.n, p.x, p.y, p.z, b.height.data());
-}
-
-void layer_heights(const FieldModel&, const SpotNoise& noise, Batch& b) {
-  const PointArrays p = layer_points(b);
-  noise.evaluate(b.n, p.x, p.y, p.z, b.height.data(), b.spots);
-}
-
-void layer_heights(const FieldModel& model, const GaborSurfaceNoise& noise, Batch& b) {
-  project(model, b);
-  if (b.tetrahedra) {
-    noise.evaluate_tetrahedra(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
-  } else {
-    noise.evaluate(b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+  void operator()(const GaborSurfaceNoise& noise) const {
+    project(model, b);
+    const GaborGround ground{model.body, arrays(), model.metaballs.lists()};
+    const GaborTileCache* caches = model.gabor_caches.data() + layer.first_list;
+    if (b.tetrahedra) {
+      evaluate_tetrahedron_heights(noise, ground, caches, b.n, b.px.data(), b.py.data(), b.pz.data(),
+                                   b.height.data());
+    } else {
+      evaluate_heights(noise, ground, caches, b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+    }
   }
-}
+  void operator()(const CraterRelief&) const {}  // falls on elevations, and has no heights of its own
+  template <class Noise>
+  void operator()(const Noise& noise) const {
+    evaluate(noise);
+  }
+
+ private:
+  const ArrayView& arrays() const { return model.tables.arrays; }
+  template <class Noise>
+  void evaluate(const Noise& noise) const {
+    const PointArrays p = layer_points(b);
+    evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
+  }
+};
 
 // Null where the layer counts fully everywhere.
-const float* layer_weights(const LayerJoin& join, Batch& b) {
-  if (!join.locality && !join.mask) return nullptr;
+const float* layer_weights(const FieldModel& model, const LayerJoin& join, Batch& b) {
+  if (!join.weighted()) return nullptr;
   std::fill_n(b.weight.data(), b.n, 1.0f);
-  if (join.mask) {
-    join.mask->multiply(b.n, b.kept[static_cast<std::size_t>(join.mask->slot)].data(), b.weight.data());
+  if (join.mask >= 0) {
+    multiply_by_mask(join, b.n, b.kept[static_cast<std::size_t>(join.mask)].data(), b.weight.data());
   }
-  if (join.locality) {
-    join.locality->multiply(b.n, b.x.data(), b.y.data(), b.z.data(), b.weight.data());
+  if (join.local) {
+    multiply_by_weight(join.locality, model.tables.arrays, b.n, b.x.data(), b.y.data(), b.z.data(),
+                       b.weight.data());
   }
   return b.weight.data();
 }
@@ -112,26 +123,26 @@ void displace(const Vec3d& direction, const float* weight, Batch& b) {
   along(direction.z, b.dz);
 }
 
-template <typename Noise>
-void apply_layer(const FieldModel& model, const Noise& noise, const LayerJoin& join, Batch& b) {
-  layer_heights(model, noise, b);
+void join_heights(const FieldModel& model, const LayerJoin& join, Batch& b) {
   if (join.keeps >= 0) {
     std::copy_n(b.height.data(), b.n, b.kept[static_cast<std::size_t>(join.keeps)].data());
   }
-  const float* weight = layer_weights(join, b);
+  const float* weight = layer_weights(model, join, b);
   if (join.how.kind == Combine::kWarp) displace(join.how.direction, weight, b);
-  if (join.changes_elevation()) join_elevation(join.how, b.n, weight, b.height.data(), b.elevation.data());
-}
-
-void apply_layer(const FieldModel& model, const CraterRelief& craters, const LayerJoin&, Batch& b) {
-  project(model, b);
-  craters.apply(b.n, b.px.data(), b.py.data(), b.pz.data(), b.elevation.data());
+  if (join.changes_elevation()) join_elevations(join.how, b.n, weight, b.height.data(), b.elevation.data());
 }
 
 }  // namespace
 
-void apply_layer(const FieldModel& model, const PlacedLayer& layer, Batch& b) {
-  std::visit([&](const auto& noise) { apply_layer(model, noise, layer.join, b); }, layer.noise);
+void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
+  if (const CraterRelief* relief = layer.noise.get_if<CraterRelief>()) {
+    project(model, b);
+    apply_craters(*relief, model.tables.arrays, model.crater_trees[relief->list], b.n, b.px.data(),
+                  b.py.data(), b.pz.data(), b.elevation.data());
+    return;
+  }
+  layer.noise.visit(LayerHeights{model, layer, b});
+  join_heights(model, layer.join, b);
 }
 
 }  // namespace astrolith

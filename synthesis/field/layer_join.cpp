@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/scalar_math.h"
-#include "synthesis/field/join_bounds.h"
-
 namespace astrolith {
 namespace {
 
@@ -23,11 +20,9 @@ ASTROLITH_SIMD_CLONES void blend(int n, float sign, float width, const float* __
 
 }  // namespace
 
-void HeightMask::multiply(int n, const float* height, float* weight) const {
-  multiply_by_steps(n, height, from, 1.0f / (to - from), weight);
+void multiply_by_mask(const LayerJoin& join, int n, const float* height, float* weight) {
+  multiply_by_steps(n, height, join.mask_from, join.mask_inverse_range, weight);
 }
-
-Interval HeightMask::bound(const Interval& heights) const { return bound_mask(from, to, heights); }
 
 double elevation_bound(const Combination& how, double before, double height) {
   if (how.kind == Combine::kAdd) return before + height;
@@ -35,7 +30,7 @@ double elevation_bound(const Combination& how, double before, double height) {
   return how.kind == Combine::kBlend ? std::max(before, height) + 0.5 * how.width : before;
 }
 
-void join_elevation(const Combination& how, int n, const float* weight, float* height, float* elevation) {
+void join_elevations(const Combination& how, int n, const float* weight, float* height, float* elevation) {
   if (how.kind == Combine::kBlend) {
     blend(n, how.intersection ? -1.0f : 1.0f, static_cast<float>(how.width), elevation, height);
   }
@@ -44,11 +39,6 @@ void join_elevation(const Combination& how, int n, const float* weight, float* h
     elevation[i] = weight == nullptr ? joined_elevation(is_change, height[i], elevation[i])
                                      : joined_elevation(is_change, weight[i], height[i], elevation[i]);
   }
-}
-
-Interval join_bounds(const Combination& how, const Interval& weight, const Interval& before,
-                     const Interval& height) {
-  return bound_joined({how.kind, how.intersection, how.width}, weight, before, height);
 }
 
 }  // namespace astrolith

@@ -2,8 +2,6 @@
 // what weight (Locality and LayerMask).
 #pragma once
 
-#include <optional>
-
 #include "numerics/interval.h"
 #include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
@@ -11,7 +9,7 @@
 
 namespace astrolith {
 
-// From 0 where a height is `from` to 1.
+// The weight of a mask: from 0 where a height is `from` to 1 where the range ends.
 ASTROLITH_KERNEL float smooth_step(float height, float from, float inverse_range) {
   const float t = math::clamp((height - from) * inverse_range, 0.0f, 1.0f);
   return t * t * math::fma(-2.0f, t, 3.0f);
@@ -37,38 +35,80 @@ ASTROLITH_KERNEL float joined_elevation(bool is_change, float weight, float heig
   return elevation + weight * (is_change ? height : height - elevation);
 }
 
-// Where a layer counts, by the heights of another, as they were there.
-struct HeightMask {
-  int slot = 0;  // where the other's heights are kept
-  float from = 0.0f, to = 1.0f;
-
-  // weight[i] *= t^2 (3 - 2t), which lies in [0, 1].
-  void multiply(int n, const float* height, float* weight) const;
-  // The weight for all heights of an interval.
-  Interval bound(const Interval& heights) const;
-};
-
 struct LayerJoin {
   Combination how;
-  std::optional<LocalWeight> locality;
-  std::optional<HeightMask> mask;
-  int keeps = -1;             // the slot where its own heights are kept for masks; -1: they are not
-  Vec3d displaced;            // its coordinates are at most so far from the points, by axis
-  double change_bound = 0.0;  // of what it makes of an elevation
-  double height_bound = 0.0;  // of its heights, times what they weigh
+  bool local = false;  // whether the layer is tied to a group of spheres
+  LocalWeight locality;
+  int keeps = -1;  // the slot where the layer's heights are kept for masks; -1: they are not
+  int mask = -1;   // the slot of the heights that mask the layer; -1: none
+  float mask_from = 0.0f, mask_to = 1.0f, mask_inverse_range = 1.0f;
+  Vec3d displaced;                // the layer's coordinates are at most so far from the points, by axis
+  double height_bound = 0.0;      // of the layer's heights, length units
+  double change_bound = 0.0;      // by which the layer changes an elevation at most, length units
+  float remaining_change = 0.0f;  // by which this layer and all after it change an elevation at most
 
-  bool changes_elevation() const { return how.kind != Combine::kWarp && how.kind != Combine::kMask; }
+  ASTROLITH_HD bool changes_elevation() const {
+    return how.kind != Combine::kWarp && how.kind != Combine::kMask;
+  }
+  ASTROLITH_HD bool weighted() const { return local || mask >= 0; }
 };
 
 // The most |elevation| after a layer whose heights are at most `height`, where it was at most `before`.
 double elevation_bound(const Combination& how, double before, double height);
 
-// elevation[i] becomes what the layer makes of it; `weight` is null where it counts fully everywhere.
-// `height` is used up. Expects a layer that changes elevations.
-void join_elevation(const Combination& how, int n, const float* weight, float* height, float* elevation);
+// What a height makes of an elevation at one point. `weight` counts where the join is weighted. Expects a
+// layer that changes elevations.
+ASTROLITH_HD inline float join_elevation(const LayerJoin& join, float weight, float height, float elevation) {
+  const Combination& how = join.how;
+  const bool is_change = how.kind == Combine::kAdd;
+  if (how.kind == Combine::kBlend) {
+    height =
+        blended_height(how.intersection ? -1.0f : 1.0f, static_cast<float>(how.width), elevation, height);
+  }
+  return join.weighted() ? joined_elevation(is_change, weight, height, elevation)
+                         : joined_elevation(is_change, height, elevation);
+}
 
-// The same for intervals.
-Interval join_bounds(const Combination& how, const Interval& weight, const Interval& before,
-                     const Interval& height);
+// weight[i] *= the weight of the mask for height[i].
+void multiply_by_mask(const LayerJoin& join, int n, const float* height, float* weight);
+
+// elevation[i] becomes what the layer makes of it: the bits of join_elevation at one point, vectorised.
+// `weight` is null where the layer counts fully everywhere; `height` is used up.
+void join_elevations(const Combination& how, int n, const float* weight, float* height, float* elevation);
+
+ASTROLITH_HD inline double rounded_max(double a, double b, double width) {
+  const double d = std::fabs(a - b);
+  return std::max(a, b) + 0.5 * (std::sqrt(d * d + width * width) - d);
+}
+
+// What a layer makes of one elevation where its weight is 1.
+ASTROLITH_HD inline double joined_fully(const Combination& how, double before, double height) {
+  if (how.kind == Combine::kAdd) return before + height;
+  if (how.kind == Combine::kReplace) return height;
+  if (how.kind != Combine::kBlend) return before;
+  const double sign = how.intersection ? -1.0 : 1.0;
+  return sign * rounded_max(sign * before, sign * height, how.width);
+}
+
+// What a layer makes of intervals of elevations; it is monotonic in the elevation before, in the height and
+// in the weight.
+ASTROLITH_HD inline Interval join_bounds(const Combination& how, const Interval& weight,
+                                         const Interval& before, const Interval& height) {
+  const double low = joined_fully(how, before.low, height.low);
+  const double high = joined_fully(how, before.high, height.high);
+  const auto mixed = [](double w, double a, double b) { return (1.0 - w) * a + w * b; };
+  return {std::min(mixed(weight.low, before.low, low), mixed(weight.high, before.low, low)),
+          std::max(mixed(weight.low, before.high, high), mixed(weight.high, before.high, high))};
+}
+
+// The weight of a mask for heights of an interval.
+ASTROLITH_HD inline Interval bound_mask(float from, float to, const Interval& heights) {
+  const auto at = [&](double height) {
+    const double t = clamped((height - double{from}) / (double{to} - double{from}), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+  };
+  const double a = at(heights.low), b = at(heights.high);
+  return {std::max(0.0, std::min(a, b) - 1e-5), std::min(1.0, std::max(a, b) + 1e-5)};
+}
 
 }  // namespace astrolith

@@ -24,67 +24,97 @@ std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d>
   return elevations;
 }
 
-// One by one.
+// Adds a recipe's layers to the field model in the recipe's order.
 class LayerStack {
  public:
   LayerStack(const Recipe& recipe, const std::string& name, FieldModel& model)
-      : recipe_(recipe),
-        name_(name),
-        model_(model),
-        supports_(support_bounds(model.body)),
-        domain_(model.warp ? widened(supports_, model.warp->bound()) : supports_) {}
+      : recipe_(recipe), name_(name), model_(model), supports_(model.body.supports), domain_(supports_) {
+    const BodyLeaf& first = model.tables.leaf(0);
+    if (model.body.plain() && first.warped) domain_ = widened(supports_, first.warp.bound);
+  }
 
   void add_all() {
     for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
       std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
     }
+    sum_changes();
+    model_.finish();
     add_boulders();
   }
 
  private:
-  void add(const FractalLayer& layer) { push(FractalNoise(layer, recipe_.seed, number_of(layer), domain_)); }
-  void add(const SpotLayer& layer) { push(SpotNoise(layer, recipe_.seed, number_of(layer), domain_)); }
-  void add(const SparseLayer& layer) { push(SparseNoise(layer, recipe_.seed, number_of(layer), domain_)); }
-  void add(const RandomPhaseLayer& layer) {
-    push(RandomPhaseNoise(layer, recipe_.seed, number_of(layer), domain_));
+  template <class AnyLayer>
+  void add(const AnyLayer& layer) {
+    push(make_noise(layer, recipe_.seed, number_of(layer), domain_, model_.arrays));
   }
-  void add(const PhasorLayer& layer) { push(PhasorNoise(layer, recipe_.seed, number_of(layer), domain_)); }
+  void add(const SpotLayer& layer) {
+    const SpotNoise noise = make_noise(layer, recipe_.seed, number_of(layer), domain_, model_.arrays);
+    push(noise, add_lists(noise.kinds.count, model_.spot_lists));
+  }
   void add(const GaborLayer& layer) {
-    // A layer of colour alone has no height.
-    if (layer.height_rms > 0.0)
-      push(GaborSurfaceNoise(layer, recipe_.seed, number_of(layer), model_.body, supports_));
+    if (!(layer.height_rms > 0.0)) return;  // a layer of colour alone has no height
+    const GaborSurfaceNoise noise =
+        make_noise(layer, recipe_.seed, number_of(layer), supports_, model_.arrays);
+    push(noise, add_lists(noise.bands.count, model_.gabor_lists));
+    model_.gabor_caches.resize(model_.gabor_lists.size());
   }
   void add(const CraterLayer& layer) {
     std::vector<PlacedCrater> craters =
         place_craters(layer, bare(), recipe_.seed, number_of(layer), place_of(index_));
     std::vector<Vec3d> centers;
     for (const PlacedCrater& crater : craters) centers.push_back(crater.position);
+    sum_changes();
+    model_.finish();
     const std::vector<float> elevations = elevations_at(model_, centers);
-    if (model_.warp) centers = warped(centers);
-    CraterRelief relief(layer, craters, centers, elevations, model_.height_bound);
-    model_.height_bound = relief.elevation_bound();
+    CraterRelief relief =
+        make_crater_relief(layer, craters, unwarped(centers), elevations, model_.height_bound, model_.arrays);
+    relief.list = static_cast<std::uint32_t>(model_.crater_layers.size());
+    model_.crater_layers.push_back(number_of_next_layer());
+    model_.crater_trees.push_back(crater_tree(model_.arrays.view().span(relief.craters)));
+    model_.height_bound = relief.elevation_bound;
     LayerJoin join;
+    join.height_bound = relief.elevation_bound;
     join.change_bound = std::numeric_limits<double>::infinity();  // they replace what was
-    model_.layers.push_back({std::move(relief), std::move(join)});
-    model_.craters.push_back({index_, std::move(craters)});
+    model_.layers.push_back({LayerNoise(relief), join});
+    model_.placed_craters.push_back({index_, std::move(craters)});
   }
 
   void add(const BoulderLayer&) {}  // once the surface is there
 
   void add_boulders() {
-    BoulderField boulders;
     const Terrain terrain{[this](const Vec3d& p) { return static_cast<double>(value_at(model_, p)); },
                           model_.height_bound};
+    std::vector<FieldBoulder> all;
     for (int i = 0; i < static_cast<int>(recipe_.layers.size()); ++i) {
       const auto* layer = std::get_if<BoulderLayer>(&recipe_.layers[static_cast<std::size_t>(i)]);
       if (layer == nullptr) continue;
       std::vector<PlacedBoulder> placed =
           place_boulders(*layer, bare(), terrain, recipe_.seed, layer_number(layer->seed, i), place_of(i));
-      boulders.add(*layer, placed);
+      const std::vector<FieldBoulder> boulders = field_boulders(*layer, placed);
+      all.insert(all.end(), boulders.begin(), boulders.end());
       model_.placed_boulders.push_back({i, std::move(placed)});
     }
-    boulders.finish();
-    model_.boulders = std::move(boulders);
+    std::vector<Box> boxes;
+    for (const FieldBoulder& boulder : all) boxes.push_back(boulder.box);
+    model_.boulder_tree = BoxTree(boxes);
+    model_.boulders = std::move(all);
+  }
+
+  // Appends the lists of impulses of the layer to come; returns the number of the first.
+  std::uint32_t add_lists(std::uint32_t count, std::vector<ImpulseList>& lists) const {
+    const auto first = static_cast<std::uint32_t>(lists.size());
+    for (std::uint32_t part = 0; part < count; ++part) lists.push_back({number_of_next_layer(), part});
+    return first;
+  }
+  std::uint32_t number_of_next_layer() const { return static_cast<std::uint32_t>(model_.layers.size()); }
+
+  // By how much each layer and all after it may change an elevation; craters replace what is there.
+  void sum_changes() {
+    for (std::size_t first = 0; first < model_.layers.size(); ++first) {
+      double bound = 0.0;
+      for (std::size_t i = first; i < model_.layers.size(); ++i) bound += model_.layers[i].join.change_bound;
+      model_.layers[first].join.remaining_change = static_cast<float>(bound * (1.0 + 1e-5));
+    }
   }
 
   template <typename AnyLayer>
@@ -99,15 +129,18 @@ class LayerStack {
   std::string place_of(int layer) const { return name_ + ": layers[" + std::to_string(layer) + "]"; }
 
   template <typename Noise>
-  void push(Noise noise) {
+  void push(const Noise& noise, std::uint32_t first_list = 0) {
     const LayerUse& use = *use_of(recipe_.layers[static_cast<std::size_t>(index_)]);
     LayerJoin join;
     join.how = use.combination;
-    join.height_bound = noise.height_bound();
+    join.height_bound = noise.height_bound;
     join.displaced = displaced_;
-    if (use.locality) join.locality.emplace(*use.locality, *recipe_.body, place_of(index_));
-    if (use.mask) join.mask = mask_of(*use.mask);
-    if (is_masking(index_)) slots_[index_] = join.keeps = model_.kept_heights++;
+    if (use.locality) {
+      join.local = true;
+      join.locality = make_local_weight(*use.locality, *recipe_.body, place_of(index_), model_.arrays);
+    }
+    if (use.mask) set_mask(*use.mask, join);
+    if (is_masking(index_)) slots_[index_] = join.keeps = static_cast<int>(model_.num_kept_heights++);
     const double before = model_.height_bound;
     model_.height_bound = elevation_bound(join.how, before, join.height_bound);
     if (join.changes_elevation()) {
@@ -115,10 +148,10 @@ class LayerStack {
       join.change_bound = is_change ? join.height_bound : before + model_.height_bound;
     }
     if (join.how.kind == Combine::kWarp) displace_later(join.how.direction, join.height_bound);
-    model_.layers.push_back({std::move(noise), std::move(join)});
+    model_.layers.push_back({LayerNoise(noise), join, first_list});
   }
 
-  // Later layers are evaluated so much farther out.
+  // Evaluates later layers so much farther out.
   void displace_later(const Vec3d& direction, double height) {
     const Vec3d d{std::fabs(direction.x) * height, std::fabs(direction.y) * height,
                   std::fabs(direction.z) * height};
@@ -138,37 +171,55 @@ class LayerStack {
     }
     return false;
   }
-  HeightMask mask_of(const LayerMask& mask) const {
+  void set_mask(const LayerMask& mask, LayerJoin& join) const {
     const auto slot = slots_.find(masking_layer(mask, index_));
     if (slot == slots_.end()) {
       throw InputError(place_of(index_) + ".mask.layer: \"" + mask.layer +
                        "\" has no height; give that layer one, or name another");
     }
-    return {slot->second, static_cast<float>(mask.from), static_cast<float>(mask.to)};
+    join.mask = slot->second;
+    join.mask_from = static_cast<float>(mask.from);
+    join.mask_to = static_cast<float>(mask.to);
+    join.mask_inverse_range = 1.0f / (join.mask_to - join.mask_from);
   }
 
-  std::vector<Vec3d> warped(std::vector<Vec3d> points) const {
+  // Points on the metaballs' side of a plain body's warp, where craters lie.
+  std::vector<Vec3d> unwarped(std::vector<Vec3d> points) const {
+    const BodyLeaf& first = model_.tables.leaf(0);
+    if (!model_.body.plain() || !first.warped) return points;
     for (Vec3d& p : points) {
-      const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-      float mx, my, mz;
-      model_.warp->evaluate(1, &x, &y, &z, &mx, &my, &mz);
-      p = {mx, my, mz};
+      const Vec3f at = warped(first.warp, model_.tables.arrays, to_float(p));
+      p = {at.x, at.y, at.z};
     }
     return points;
   }
 
   const Recipe& recipe_;
-  const std::string& name_;  // for errors
+  const std::string& name_;  // the recipe's, for errors
   FieldModel& model_;
   // Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
   Box supports_, domain_;
-  Vec3d displaced_;                  // of the coordinates of later layers, at most, by axis
-  std::map<int, int> slots_;         // of masking layers
-  std::optional<BareSurface> bare_;  // for the first layer that asks
+  Vec3d displaced_;                  // the coordinates of later layers are displaced by so much, by axis
+  std::map<int, int> slots_;         // by masking layer
+  std::optional<BareSurface> bare_;  // made for the first layer that asks
   int index_ = 0;
 };
 
 }  // namespace
+
+void FieldModel::finish() {
+  tables.spot_lists = arrays.add(spot_lists);
+  tables.gabor_lists = arrays.add(gabor_lists);
+  tables.crater_layers = arrays.add(crater_layers);
+  tables.boulders = arrays.add(boulders);
+  tables.arrays = arrays.view();
+  tables.layers = layers.data();
+  tables.num_layers = static_cast<std::uint32_t>(layers.size());
+  tables.num_kept_heights = num_kept_heights;
+  tables.body = body;
+  tables.height_bound = height_bound;
+  tables.height_reach = static_cast<float>(height_bound * (1.0 + 1e-5));
+}
 
 void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model) {
   LayerStack(recipe, name, model).add_all();

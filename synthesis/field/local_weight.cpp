@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "numerics/errors.h"
-#include "numerics/scalar_math.h"
-#include "synthesis/field/join_bounds.h"
 
 namespace astrolith {
 namespace {
@@ -16,7 +16,7 @@ constexpr int kChunk = 256;
 using Chunk = std::array<float, kChunk>;
 
 // The spheres that may be the nearest of all to a point of the box. Leaving out the others changes no bit.
-void nearest_candidates(const std::vector<WeightSphere>& spheres, const Box& box,
+void nearest_candidates(std::span<const WeightSphere> spheres, const Box& box,
                         std::vector<WeightSphere>& out) {
   double least = std::numeric_limits<double>::infinity();
   for (const WeightSphere& s : spheres) {
@@ -28,10 +28,6 @@ void nearest_candidates(const std::vector<WeightSphere>& spheres, const Box& box
   }
 }
 
-NearestBound bound_nearest(const std::vector<WeightSphere>& spheres, const Box& box) {
-  return bound_nearest(spheres.data(), static_cast<std::uint32_t>(spheres.size()), box);
-}
-
 ASTROLITH_SIMD_CLONES void take_nearer(Vec3f center, float radius, int n, const float* __restrict x,
                                        const float* __restrict y, const float* __restrict z,
                                        float* __restrict distance) {
@@ -39,16 +35,16 @@ ASTROLITH_SIMD_CLONES void take_nearer(Vec3f center, float radius, int n, const 
   for (int i = 0; i < n; ++i) distance[i] = nearer_sphere(center, radius, x[i], y[i], z[i], distance[i]);
 }
 
-ASTROLITH_SIMD_CLONES void multiply_weights(const float* __restrict near, const float* __restrict others,
+ASTROLITH_SIMD_CLONES void multiply_weights(const float* __restrict group, const float* __restrict others,
                                             float inverse_width, int n, float* __restrict height) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) height[i] *= local_weight(near[i], others[i], inverse_width);
+  for (int i = 0; i < n; ++i) height[i] *= local_weight(group[i], others[i], inverse_width);
 }
 
 }  // namespace
 
-LocalWeight::LocalWeight(const Locality& locality, const MetaballBody& body, const std::string& layer)
-    : inverse_width_(static_cast<float>(1.0 / locality.width)) {
+LocalWeight make_local_weight(const Locality& locality, const MetaballBody& body, const std::string& layer,
+                              ArrayStore& arrays) {
   const SphereGroup* group = body.find_group(locality.group);
   if (group == nullptr) {
     throw InputError(layer + ": locality.group: the body has no group \"" + locality.group +
@@ -56,36 +52,34 @@ LocalWeight::LocalWeight(const Locality& locality, const MetaballBody& body, con
   }
   std::vector<bool> in_group(body.spheres.size());
   for (const int i : group->spheres) in_group[static_cast<std::size_t>(i)] = true;
+  std::vector<WeightSphere> members, others;
   for (std::size_t i = 0; i < body.spheres.size(); ++i) {
     const Sphere& s = body.spheres[i];
-    (in_group[i] ? near_ : others_).push_back({to_float(s.center), static_cast<float>(s.radius)});
+    (in_group[i] ? members : others).push_back({to_float(s.center), static_cast<float>(s.radius)});
   }
+  return {arrays.add(members), arrays.add(others), static_cast<float>(1.0 / locality.width)};
 }
 
-void LocalWeight::multiply(int n, const float* x, const float* y, const float* z, float* height) const {
-  if (others_.empty()) return;
+void multiply_by_weight(const LocalWeight& weight, const ArrayView& arrays, int n, const float* x,
+                        const float* y, const float* z, float* height) {
+  if (weight.others.count == 0) return;
   thread_local std::vector<WeightSphere> candidates;
-  Chunk near, others;
+  Chunk group, others;
   for (int begin = 0; begin < n; begin += kChunk) {
     const int size = std::min(kChunk, n - begin);
     const float *px = x + begin, *py = y + begin, *pz = z + begin;
     Box box;
     for (int i = 0; i < size; ++i) box.extend({double{px[i]}, double{py[i]}, double{pz[i]}});
     for (const bool of_group : {true, false}) {
-      Chunk& distance = of_group ? near : others;
+      Chunk& distance = of_group ? group : others;
       distance.fill(std::numeric_limits<float>::max());
-      nearest_candidates(of_group ? near_ : others_, box, candidates);
+      nearest_candidates(arrays.span(of_group ? weight.group : weight.others), box, candidates);
       for (const WeightSphere& s : candidates) {
         take_nearer(s.center, s.radius, size, px, py, pz, distance.data());
       }
     }
-    multiply_weights(near.data(), others.data(), inverse_width_, size, height + begin);
+    multiply_weights(group.data(), others.data(), weight.inverse_width, size, height + begin);
   }
-}
-
-Interval LocalWeight::bound(const Box& box) const {
-  if (others_.empty()) return {1.0, 1.0};
-  return bound_local_weight(bound_nearest(near_, box), bound_nearest(others_, box), inverse_width_);
 }
 
 }  // namespace astrolith

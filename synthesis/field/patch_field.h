@@ -24,11 +24,11 @@ class PatchBlock {
   }
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band) const {
-    block_.evaluate_near(origin_, x, y, z, value, band);
+    block_.evaluate_local(origin_, x, y, z, value, band);
   }
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                            std::span<float> value) const {
-    block_.evaluate_tetrahedra_near(origin_, x, y, z, value);
+    block_.evaluate_local_tetrahedra(origin_, x, y, z, value);
   }
 
   // Holds the body's float coordinates of every point of a local box.

@@ -42,7 +42,7 @@ class Deformation {
   Deformation(const Box& body, double strength, std::uint64_t seed)
       : center_(body.center()),
         step_(0.01 * body.diagonal()),
-        warp_(bend(body, strength), bend_seed(seed), body) {
+        warp_(make_coordinate_warp(bend(body, strength), bend_seed(seed), body, arrays_)) {
     CounterRandom random(seed, kAxesStream);
     const auto factor = [&] {
       return std::exp(kAxisStretch * strength * std::clamp(random.normal(), -2.0, 2.0));
@@ -53,7 +53,7 @@ class Deformation {
   Vec3d operator()(const Vec3d& p) const {
     const auto x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
     float wx = 0, wy = 0, wz = 0;
-    warp_.evaluate(1, &x, &y, &z, &wx, &wy, &wz);
+    warp_points(warp_, arrays_.view(), 1, &x, &y, &z, &wx, &wy, &wz);
     const Vec3d moved = p + Vec3d{double{wx} - double{x}, double{wy} - double{y}, double{wz} - double{z}};
     const Vec3d d = moved - center_;
     return center_ + Vec3d{stretch_.x * d.x, stretch_.y * d.y, stretch_.z * d.z};
@@ -79,6 +79,7 @@ class Deformation {
 
   Vec3d center_;
   double step_;
+  ArrayStore arrays_;
   CoordinateWarp warp_;
   Vec3d stretch_{1, 1, 1};
 };

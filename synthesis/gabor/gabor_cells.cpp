@@ -7,11 +7,11 @@
 namespace astrolith {
 namespace {
 
-// Centres of cells and the body's field there.
+// Centres of cells, and the body's field there.
 struct Centers {
   std::vector<float> x, y, z, distance, gx, gy, gz;
 
-  Centers(std::span<const GaborCell> cells, float side, const PreparedBody& body) {
+  Centers(std::span<const GaborCell> cells, float side, const GaborGround& ground) {
     Box box;
     for (const GaborCell& c : cells) {
       const Vec3f p = gabor_cell_center(c[0], c[1], c[2], side);
@@ -21,22 +21,23 @@ struct Centers {
       z.push_back(p.z);
     }
     for (std::vector<float>* v : {&distance, &gx, &gy, &gz}) v->resize(x.size());
-    evaluate_body(body_reaching(body, box), static_cast<int>(x.size()), x.data(), y.data(), z.data(),
-                  distance.data(), gx.data(), gy.data(), gz.data());
+    const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, box);
+    evaluate_body(ground.body, ground.arrays, reaching.lists(), static_cast<int>(x.size()), x.data(),
+                  y.data(), z.data(), distance.data(), gx.data(), gy.data(), gz.data());
   }
 };
 
 }  // namespace
 
-std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const PreparedBody& body,
+std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
                                      std::span<const GaborCell> cells) {
-  const Centers centers(cells, band.cell, body);
+  const Centers centers(cells, band.cell, ground);
   std::vector<GaborImpulse> impulses;
-  const std::vector<GaborLobeShare>& lobes = band.band.lobes;
+  const GaborLobeShare* lobes = ground.arrays[band.lobes];
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const GaborCell& c = cells[i];
-    for_each_gabor_impulse(band, lobes.data(), static_cast<std::uint32_t>(lobes.size()), c[0], c[1], c[2],
-                           -centers.distance[i], {centers.gx[i], centers.gy[i], centers.gz[i]},
+    for_each_gabor_impulse(band, lobes, band.lobes.count, c[0], c[1], c[2], -centers.distance[i],
+                           {centers.gx[i], centers.gy[i], centers.gz[i]},
                            [&](const GaborImpulse& impulse) { impulses.push_back(impulse); });
   }
   return impulses;

@@ -3,26 +3,31 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "synthesis/body/combined_body.h"
-#include "synthesis/gabor/gabor_bands.h"
+#include "synthesis/body/body_tables.h"
 #include "synthesis/gabor/gabor_draw.h"
 
 namespace astrolith {
 
-// A band of a layer at the body's scale.
+// One bandwidth of a layer at the body's scale.
 struct SurfaceBand : GaborDraw {
-  GaborBand band;
+  ArrayRange<GaborLobeShare> lobes;
+};
+
+// The body whose level sets give cells their tangent frames, and the arrays that it and the bands lie in.
+struct GaborGround {
+  const BodyTables& body;
+  ArrayView arrays;
+  LeafLists metaballs;  // all of the body's
 };
 
 using GaborCell = std::array<int, 3>;
 
 // The impulses of cells, one cell after another. A cell has the tangent frame of the body's level set through
 // its centre.
-std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const PreparedBody& body,
+std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
                                      std::span<const GaborCell> cells);
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// A Gabor layer as surface noise on a metaball body, ready for evaluation over many points.
+// A Gabor layer as surface noise on a body, at one point and over many points at once.
 //
 // Impulses lie in a grid of cells in space, so many in each cell. Every cell has the tangent frame of the
 // body's level set through its centre, and a kernel fades with the distance along its cell's normal
@@ -8,15 +8,15 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "numerics/arrays.h"
+#include "numerics/interval.h"
 #include "recipe/recipe.h"
-#include "synthesis/body/combined_body.h"
 #include "synthesis/gabor/gabor_surface_points.h"
 
 namespace astrolith {
 
-// Noise and its slope at a point, and what tetrahedra make of them.
+// The noise and its slope at a point, with one more impulse.
 ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amplitude, const Vec3f& p,
                                           const GaborSample& sum) {
   const GaborSample k = gabor_kernel_with_slope(impulse, p.x, p.y, p.z);
@@ -24,53 +24,81 @@ ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amp
           {math::fma(amplitude, k.slope.x, sum.slope.x), math::fma(amplitude, k.slope.y, sum.slope.y),
            math::fma(amplitude, k.slope.z, sum.slope.z)}};
 }
-// The centre's coordinate from the four corners'.
+// A coordinate of a tetrahedron's centre, from those of the four corners.
 ASTROLITH_KERNEL float tetrahedron_center(float a, float b, float c, float d) {
   return 0.25f * ((a + b) + (c + d));
 }
-// At a corner, to first order about the centre.
+// The height at a corner, to first order about the centre.
 ASTROLITH_KERNEL float height_beside(const GaborSample& center, float dx, float dy, float dz, float clip) {
   const float rise = math::fma(dx, center.slope.x, math::fma(dy, center.slope.y, dz * center.slope.z));
   return math::clamp(center.value + rise, -clip, clip);
 }
 
-class GaborSurfaceNoise {
- public:
-  // Points outside `domain` are moved to its border; bands so fine that float coordinates within it could not
-  // tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
-  GaborSurfaceNoise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const PreparedBody& body,
-                    const Box& domain);
-
-  // height[i] at points *on* the body's surface, in length units, 0 on average, standard deviation
-  // layer.height_rms.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  // The same at the corners of small tetrahedra, four after four, to first order about their centres: for
-  // differences, and about as dear as one point each.
-  void evaluate_tetrahedra(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  // 6 times the standard deviation, where heights are cut.
-  double height_bound() const { return static_cast<double>(clip_); }
-
-  // What it is made of.
-  const SurfaceBand& band(std::size_t number) const { return bands_[number].band(); }
-  const Vec3f& domain_min() const { return domain_min_; }
-  const Vec3f& domain_max() const { return domain_max_; }
-  float clip() const { return clip_; }
-  std::size_t num_bands() const { return bands_.size(); }
-  float amplitude(std::size_t band) const { return bands_[band].band().amplitude; }
-  // The impulses of a band that may reach points of a box, in the order in which they are added.
-  std::vector<GaborImpulse> impulses(std::size_t band, const Box& box) const;
-  // Cells that those of all bands are drawn from, for a box with sides so long.
-  double cells(double side) const;
-
- private:
-  PointBox in_domain(const Box& box) const;
-  GaborSurfacePoints add_bands(int n, const float* x, const float* y, const float* z, bool with_slopes) const;
-
-  Vec3f domain_min_, domain_max_;
-  std::vector<GaborTiles> bands_;
-  float clip_;
+struct GaborSurfaceNoise {
+  Vec3f low, high;            // points outside are moved to the border
+  float clip = 0.0f;          // heights are cut at 6 times the standard deviation
+  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
+  ArrayRange<SurfaceBand> bands;
 };
+
+// Points outside `domain` are moved to its border. Bands so fine that float coordinates within it could not
+// tell neighbouring cells apart (above 2^20 cells from the origin) are left out. Heights are 0 on average,
+// with standard deviation layer.height_rms.
+GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                             ArrayStore& arrays);
+
+// The cells that the impulses of all bands are drawn from, for a box with sides so long.
+double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side);
+
+// The height at a point of the bare surface, length units, from lists of impulses: band b has
+// impulses[first[b]] to impulses[first[b + 1] - 1].
+ASTROLITH_HD inline float height_at(const GaborSurfaceNoise& n, const ArrayView& arrays,
+                                    const GaborImpulse* impulses, const std::uint32_t* first,
+                                    const Vec3f& at) {
+  const Vec3f p = moved_into(at, n.low, n.high);
+  const SurfaceBand* bands = arrays[n.bands];
+  float height = 0.0f;
+  for (std::uint32_t b = 0; b < n.bands.count; ++b) {
+    for (std::uint32_t j = first[b]; j < first[b + 1]; ++j) {
+      height = math::fma(bands[b].amplitude, gabor_kernel(impulses[j], p.x, p.y, p.z), height);
+    }
+  }
+  return math::clamp(height, -n.clip, n.clip);
+}
+
+// The heights at the four corners p of a small tetrahedron, to first order about their centre.
+ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const ArrayView& arrays,
+                                             const GaborImpulse* impulses, const std::uint32_t* first,
+                                             const Vec3f* p, float* heights) {
+  const Vec3f center{tetrahedron_center(p[0].x, p[1].x, p[2].x, p[3].x),
+                     tetrahedron_center(p[0].y, p[1].y, p[2].y, p[3].y),
+                     tetrahedron_center(p[0].z, p[1].z, p[2].z, p[3].z)};
+  const Vec3f q = moved_into(center, n.low, n.high);
+  const SurfaceBand* bands = arrays[n.bands];
+  GaborSample sum{};
+  for (std::uint32_t b = 0; b < n.bands.count; ++b) {
+    for (std::uint32_t j = first[b]; j < first[b + 1]; ++j) {
+      sum = with_impulse(impulses[j], bands[b].amplitude, q, sum);
+    }
+  }
+  for (int k = 0; k < 4; ++k) {
+    heights[k] = height_beside(sum, p[k].x - center.x, p[k].y - center.y, p[k].z - center.z, n.clip);
+  }
+}
+
+// height[i] = n(p_i) at points of the bare surface: the bits of height_at, vectorised. `caches` has one
+// element a band.
+void evaluate_heights(const GaborSurfaceNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
+                      int n, const float* x, const float* y, const float* z, float* height);
+
+// height[i] at the corners of small tetrahedra, four after four, to first order about their centres: for
+// differences, and about as dear as one point each.
+void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const GaborGround& ground,
+                                  const GaborTileCache* caches, int n, const float* x, const float* y,
+                                  const float* z, float* height);
+
+ASTROLITH_HD inline Interval bound_heights(const GaborSurfaceNoise& n, const ArrayView&, const Box&) {
+  return {-n.height_bound, n.height_bound};
+}
 
 }  // namespace astrolith

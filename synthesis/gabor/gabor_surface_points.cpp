@@ -13,8 +13,8 @@ constexpr int kCluster = 4 * kGroup;
 
 // Cells around so many points are drawn at once: memory is bounded.
 constexpr std::int64_t kMostCells = 1 << 17;
-// Around up to so many cells for each point all are drawn, by tiles that others can use too, and groups of
-// points share their impulses. Beyond, only those around each point are.
+// If a group of points has at most this many cells per point, the impulses of all these cells are drawn once,
+// by tiles that others can use too, and shared. Otherwise each point draws the cells around it.
 constexpr std::int64_t kCellsPerPoint = 300;
 
 // The cells whose impulses may reach a point of the box.
@@ -73,7 +73,7 @@ void mark(const CellRange& cells, const TileRange& range, std::vector<TileCells>
 
 using Chunks = std::vector<const ImpulseChunk*>;
 
-// Those of some chunks that overlap a box.
+// Keeps the chunks that overlap a box.
 void narrow(const Chunks& chunks, const PointBox& box, Chunks& kept) {
   kept.clear();
   for (const ImpulseChunk* chunk : chunks) {
@@ -94,17 +94,6 @@ void find_chunks(const HeldTiles& tiles, const PointBox& box, Chunks& chunks) {
 
 }  // namespace
 
-std::vector<GaborImpulse> impulses_reaching(const GaborTiles& tiles, const PointBox& box) {
-  const HeldTiles held = whole_tiles(tiles, TileRange(cells_around(tiles.band(), box)));
-  Chunks chunks;
-  find_chunks(held, box, chunks);
-  std::vector<ImpulseLane> lanes;
-  append_reaching(chunks, box, lanes);
-  std::vector<GaborImpulse> impulses;
-  for (const ImpulseLane lane : lanes) impulses.push_back(impulse_at(lane));
-  return impulses;
-}
-
 GaborSurfacePoints::GaborSurfacePoints(int n, const float* x, const float* y, const float* z,
                                        bool with_slopes)
     : index_(static_cast<std::size_t>(n)) {
@@ -124,8 +113,8 @@ GaborSurfacePoints::GaborSurfacePoints(int n, const float* x, const float* y, co
   }
 }
 
-// Of the points as they were given: halves along the longest axis until a group is left; `begin` is a
-// multiple of a group's size, of a cluster's where both halves hold clusters.
+// Halves the points along their longest axis until a group is left. `begin` is a multiple of a group's size,
+// and of a cluster's where both halves hold clusters.
 void GaborSurfacePoints::sort(int begin, int end) {
   if (end - begin <= kGroup) return;
   std::array<float, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};

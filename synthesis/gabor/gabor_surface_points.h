@@ -19,9 +19,6 @@ struct CellRange {
   }
 };
 
-// The impulses of one bandwidth that may reach a point of the box, in the order in which they are added.
-std::vector<GaborImpulse> impulses_reaching(const GaborTiles& tiles, const PointBox& box);
-
 class GaborSurfacePoints {
  public:
   // Copies the points; `with_slopes` asks for slopes as well.

@@ -23,12 +23,10 @@ std::size_t bytes_of(const GaborTile& tile) {
 
 }  // namespace
 
-GaborTiles::GaborTiles(SurfaceBand band, const PreparedBody& body)
-    : band_(std::move(band)), body_(body), shelves_(std::make_unique<std::array<Shelf, kShelves>>()) {}
-
 std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& index) const {
   const std::uint64_t key = key_of(index);
-  Shelf& shelf = (*shelves_)[hash_cell(0, index[0], index[1], index[2]) % kShelves];
+  GaborTileCache::Shelf& shelf =
+      (*cache_.shelves)[hash_cell(0, index[0], index[1], index[2]) % GaborTileCache::kShelves];
   {
     const std::lock_guard lock(shelf.mutex);
     const auto known = shelf.tiles.find(key);
@@ -58,7 +56,7 @@ std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& inde
                      index[2] * kTileCells + i / (kTileCells * kTileCells)});
   }
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  GaborTile tile{make_chunks(draw_cells(band_, body_, cells), double{band_.a}),
+  GaborTile tile{make_chunks(draw_cells(band_, ground_, cells), double{band_.a}),
                  {kInfinity, kInfinity, kInfinity},
                  {-kInfinity, -kInfinity, -kInfinity}};
   for (const ImpulseChunk& chunk : tile.chunks) {

@@ -24,20 +24,9 @@ struct GaborTile {
 using TileCells = std::uint64_t;
 inline constexpr TileCells kWholeTile = ~TileCells{0};
 
-class GaborTiles {
- public:
-  GaborTiles(SurfaceBand band, const PreparedBody& body);
-
-  const SurfaceBand& band() const { return band_; }
-
-  // The tile whose first cell is kTileCells times the index. May be called from many threads.
-  std::shared_ptr<const GaborTile> tile(const std::array<int, 3>& index) const;
-
-  // The same with the impulses of some cells alone, drawn anew.
-  std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index, TileCells cells) const;
-
- private:
-  // Locked one by one, so that threads seldom wait for each other.
+// The tiles of one band that are kept. They are locked one by one, so that threads seldom wait for each
+// other.
+struct GaborTileCache {
   struct Shelf {
     std::mutex mutex;
     std::unordered_map<std::uint64_t, std::shared_ptr<const GaborTile>> tiles;
@@ -46,9 +35,28 @@ class GaborTiles {
   };
   static constexpr std::size_t kShelves = 64;
 
-  SurfaceBand band_;
-  PreparedBody body_;
-  std::unique_ptr<std::array<Shelf, kShelves>> shelves_;
+  std::unique_ptr<std::array<Shelf, kShelves>> shelves = std::make_unique<std::array<Shelf, kShelves>>();
+};
+
+// The tiles of one band on a body. Members may be called from many threads.
+class GaborTiles {
+ public:
+  // `cache` holds tiles of this band on this body alone. All three must outlive the object.
+  GaborTiles(const SurfaceBand& band, const GaborGround& ground, const GaborTileCache& cache)
+      : band_(band), ground_(ground), cache_(cache) {}
+
+  const SurfaceBand& band() const { return band_; }
+
+  // The tile whose first cell is kTileCells times the index.
+  std::shared_ptr<const GaborTile> tile(const std::array<int, 3>& index) const;
+
+  // The tile with the impulses of some cells alone, drawn anew.
+  std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index, TileCells cells) const;
+
+ private:
+  const SurfaceBand& band_;
+  const GaborGround& ground_;
+  const GaborTileCache& cache_;
 };
 
 }  // namespace astrolith

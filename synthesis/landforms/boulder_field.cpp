@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
@@ -12,7 +13,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kDegree = 3.141592653589793 / 180.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 void expect_on_body(double axis, const BareSurface& surface, const std::string& where) {
   if (axis <= surface.longest_side()) return;
@@ -130,9 +131,9 @@ Box reach_of(const PlacedBoulder& boulder, double reach) {
   return widened(box, 1e-5 * norm(e) + 2e-6 * largest_coordinate(box));
 }
 
-ASTROLITH_SIMD_CLONES void join_boulder(const BoulderKernel& kernel, int n, const float* __restrict x,
-                                        const float* __restrict y, const float* __restrict z,
-                                        float* __restrict field) {
+ASTROLITH_SIMD_CLONES void join_boulder_loop(const BoulderKernel& kernel, int n, const float* __restrict x,
+                                             const float* __restrict y, const float* __restrict z,
+                                             float* __restrict field) {
   const BoulderKernel boulder = kernel;
 #pragma omp simd
   for (int i = 0; i < n; ++i) field[i] = join_boulder(boulder, x[i], y[i], z[i], field[i]);
@@ -159,32 +160,17 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
   return boulders;
 }
 
-void BoulderField::add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders) {
+std::vector<FieldBoulder> field_boulders(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders) {
+  std::vector<FieldBoulder> joined;
   for (const PlacedBoulder& boulder : boulders) {
-    boulders_.push_back(kernel_of(layer, boulder));
-    boxes_.push_back(reach_of(boulder, 1.0 + layer.smoothing + layer.roughness));
+    joined.push_back({kernel_of(layer, boulder), reach_of(boulder, 1.0 + layer.smoothing + layer.roughness)});
   }
+  return joined;
 }
 
-void BoulderField::finish() { tree_ = BoxTree(boxes_); }
-
-std::vector<std::uint32_t> BoulderField::near(int n, const float* x, const float* y, const float* z) const {
-  if (empty()) return {};
-  Box box;
-  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  return tree_.touching(box);
-}
-
-bool BoulderField::reach(std::span<const std::uint32_t> boulders, float x, float y, float z) const {
-  const Vec3d p{x, y, z};
-  return std::any_of(boulders.begin(), boulders.end(), [&](std::uint32_t i) {
-    return boxes_touch(boxes_[i], {p, p});
-  });
-}
-
-void BoulderField::join(std::span<const std::uint32_t> boulders, int n, const float* x, const float* y,
-                        const float* z, float* field) const {
-  for (const std::uint32_t i : boulders) join_boulder(boulders_[i], n, x, y, z, field);
+void join_boulder(const BoulderKernel& kernel, int n, const float* x, const float* y, const float* z,
+                  float* field) {
+  join_boulder_loop(kernel, n, x, y, z, field);
 }
 
 }  // namespace astrolith

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "numerics/box_tree.h"
+#include "numerics/vec3.h"
 #include "recipe/recipe.h"
 #include "synthesis/landforms/bare_surface.h"
 #include "synthesis/landforms/boulder_shape.h"
@@ -40,34 +40,21 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
                                           const Terrain& terrain, std::uint64_t seed, int layer_index,
                                           const std::string& where);
 
-class BoulderField {
- public:
-  void add(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders);
-  // Call it once all are there.
-  void finish();
-
-  bool empty() const { return boulders_.empty(); }
-  // Of what boulders reach.
-  const Box& bounds() const { return tree_.bounds(); }
-  bool touches(const Box& box) const { return tree_.any_touching(box); }
-
-  // In the order in which they join, and the box that each reaches.
-  const std::vector<BoulderKernel>& kernels() const { return boulders_; }
-  const std::vector<Box>& boxes() const { return boxes_; }
-  std::vector<std::uint32_t> reaching(const Box& box) const { return tree_.touching(box); }
-
-  // Numbers of the boulders that may change F at the points.
-  std::vector<std::uint32_t> near(int n, const float* x, const float* y, const float* z) const;
-  // Whether one of them may change it at this point.
-  bool reach(std::span<const std::uint32_t> boulders, float x, float y, float z) const;
-  // F of the union. Elsewhere the boulders change nothing.
-  void join(std::span<const std::uint32_t> boulders, int n, const float* x, const float* y, const float* z,
-            float* field) const;
-
- private:
-  std::vector<BoulderKernel> boulders_;
-  std::vector<Box> boxes_;  // that each reaches
-  BoxTree tree_;
+// A boulder as it joins a field, and the box that it reaches: elsewhere it changes nothing.
+struct FieldBoulder {
+  BoulderKernel kernel;
+  Box box;
 };
+std::vector<FieldBoulder> field_boulders(const BoulderLayer& layer, std::span<const PlacedBoulder> boulders);
+
+// Whether the boulder may change F at a point.
+ASTROLITH_HD inline bool boulder_reaches(const FieldBoulder& boulder, float x, float y, float z) {
+  const Vec3d p{double{x}, double{y}, double{z}};
+  return boxes_touch(boulder.box, {p, p});
+}
+
+// F of the union with one boulder at n points.
+void join_boulder(const BoulderKernel& kernel, int n, const float* x, const float* y, const float* z,
+                  float* field);
 
 }  // namespace astrolith

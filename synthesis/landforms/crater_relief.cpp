@@ -104,6 +104,23 @@ ASTROLITH_SIMD_CLONES void apply_crater(const CraterKernel& kernel, int n, const
   }
 }
 
+// The elevation that each crater starts from: what older craters, no smaller than it, made at its centre.
+void find_bases(std::span<const PlacedCrater> placed, std::span<const float> elevations,
+                std::vector<CraterKernel>& craters) {
+  const BoxTree tree = crater_tree(craters);
+  for (std::size_t i = 0; i < craters.size(); ++i) {
+    CraterKernel& crater = craters[i];
+    const Vec3d center{crater.x, crater.y, crater.z};
+    float base = elevations[i];
+    for (const std::uint32_t k : tree.touching({center, center})) {
+      if (k >= i) break;
+      if (placed[k].diameter < placed[i].diameter) continue;
+      base = cratered(craters[k], crater_distance_squared(craters[k], crater.x, crater.y, crater.z), base);
+    }
+    crater.base = base;
+  }
+}
+
 }  // namespace
 
 std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurface& surface,
@@ -118,52 +135,35 @@ std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurf
   return craters;
 }
 
-CraterRelief::CraterRelief(const CraterLayer& layer, std::span<const PlacedCrater> oldest_first,
-                           std::span<const Vec3d> centers, std::span<const float> elevations,
-                           double bound_before) {
-  double greatest = 0.0;
+BoxTree crater_tree(std::span<const CraterKernel> craters) {
   std::vector<Box> boxes;
+  for (const CraterKernel& crater : craters) boxes.push_back(crater_reach(crater));
+  return BoxTree(boxes);
+}
+
+CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const PlacedCrater> oldest_first,
+                                std::span<const Vec3d> centers, std::span<const float> elevations,
+                                double bound_before, ArrayStore& arrays) {
+  double greatest = 0.0;
+  std::vector<CraterKernel> craters;
   for (std::size_t i = 0; i < oldest_first.size(); ++i) {
     const PlacedCrater& crater = oldest_first[i];
-    craters_.push_back(kernel_of(profile_of(layer, crater.complex), crater, centers[i]));
-    boxes.push_back(crater_reach(craters_.back()));
-    const double peak = double{craters_.back().peak_height};
+    craters.push_back(kernel_of(profile_of(layer, crater.complex), crater, centers[i]));
+    const double peak = double{craters.back().peak_height};
     greatest = std::max({greatest, crater.depth, crater.rim_height + peak});
   }
-  tree_ = BoxTree(boxes);
-  elevation_bound_ = bound_before + kClip * greatest;
-  find_bases(oldest_first, elevations);
+  find_bases(oldest_first, elevations, craters);
+  return {arrays.add(craters), bound_before + kClip * greatest, 0};
 }
 
-void CraterRelief::find_bases(std::span<const PlacedCrater> craters, std::span<const float> elevations) {
-  for (std::size_t i = 0; i < craters_.size(); ++i) {
-    CraterKernel& crater = craters_[i];
-    const Vec3d center{crater.x, crater.y, crater.z};
-    float base = elevations[i];
-    for (const std::uint32_t k : tree_.touching({center, center})) {
-      if (k >= i) break;
-      if (craters[k].diameter < craters[i].diameter) continue;
-      base = cratered(craters_[k], crater_distance_squared(craters_[k], crater.x, crater.y, crater.z), base);
-    }
-    crater.base = base;
-  }
-}
-
-void CraterRelief::apply(int n, const float* x, const float* y, const float* z, float* elevation) const {
+void apply_craters(const CraterRelief& relief, const ArrayView& arrays, const BoxTree& tree, int n,
+                   const float* x, const float* y, const float* z, float* elevation) {
   Box box;
   for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  for (const std::uint32_t k : tree_.touching(box)) apply_crater(craters_[k], n, x, y, z, elevation);
-  const float clip = static_cast<float>(elevation_bound_);
+  const CraterKernel* craters = arrays[relief.craters];
+  for (const std::uint32_t k : tree.touching(box)) apply_crater(craters[k], n, x, y, z, elevation);
+  const float clip = static_cast<float>(relief.elevation_bound);
   for (int i = 0; i < n; ++i) elevation[i] = math::clamp(elevation[i], -clip, clip);
-}
-
-Interval CraterRelief::bound(const Box& box, const Interval& before) const {
-  Interval elevation = before;
-  for (const std::uint32_t k : tree_.touching(box)) {
-    elevation = bound_cratered(craters_[k], box, elevation);
-  }
-  return {std::clamp(elevation.low, -elevation_bound_, elevation_bound_),
-          std::clamp(elevation.high, -elevation_bound_, elevation_bound_)};
 }
 
 }  // namespace astrolith

@@ -1,43 +1,55 @@
-// Coordinates displaced by fractal noise (thesis eq. 4.6), ready for evaluation over many points.
+// Coordinates displaced by fractal noise (thesis eq. 4.6): p + warp(p), each axis by a sum of simplex noise
+// of its own.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
+#include "numerics/arrays.h"
 #include "recipe/recipe.h"
-#include "synthesis/noise/noise_octaves.h"
+#include "synthesis/noise/octave_bounds.h"
 
 namespace astrolith {
 
-class CoordinateWarp {
- public:
-  // `seed` is of what the warp belongs to; its noises are independent of that one's own. Displaced points of
-  // interest lie in `domain`. Octaves too fine for float coordinates of points that may come to lie there are
-  // left out; points still farther are displaced as the nearest of those.
-  CoordinateWarp(const Warp& warp, std::uint32_t seed, const Box& domain);
-
-  // (wx, wy, wz)[i] = p_i + warp(p_i); the outputs overlap nothing.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* wx, float* wy, float* wz) const;
-
-  // No coordinate is displaced by more, in length units.
-  double bound() const { return bound_; }
-  // |p + warp(p) - q - warp(q)| <= stretch |p - q|, in exact arithmetic.
-  double lipschitz_bound() const { return lipschitz_bound_; }
-
-  // Holds p + warp(p) for every float point p of a box.
-  Box image(const Box& box) const;
-
-  // Of the simplex noise that displaces along an axis.
-  const std::vector<NoiseOctave>& octaves(std::size_t axis) const { return octaves_[axis]; }
-  // Points outside are displaced as the nearest one inside.
-  const Vec3f& domain_min() const { return domain_min_; }
-  const Vec3f& domain_max() const { return domain_max_; }
-
- private:
-  std::array<std::vector<NoiseOctave>, 3> octaves_;  // of the displacement along x, y, z
-  Vec3f domain_min_, domain_max_;
-  double bound_, lipschitz_bound_;
+// Octaves too fine for float coordinates of points that may come to lie in the domain are left out.
+struct CoordinateWarp {
+  ArrayRange<NoiseOctave> octaves[3];  // of the displacement along x, y, z, length units
+  Vec3f low, high;                     // points outside are displaced as the nearest one inside
+  double bound = 0.0;                  // no coordinate is displaced by more, length units
+  // |p + warp(p) - q - warp(q)| <= lipschitz_bound |p - q|, in exact arithmetic.
+  double lipschitz_bound = 1.0;
 };
+
+// `seed` belongs to what is warped; the warp's noises are independent of the noises made from it. Displaced
+// points of interest lie in `domain`.
+CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const Box& domain,
+                                    ArrayStore& arrays);
+
+// p + warp(p).
+ASTROLITH_HD inline Vec3f warped(const CoordinateWarp& warp, const ArrayView& arrays, const Vec3f& p) {
+  const Vec3f q{math::clamp(p.x, warp.low.x, warp.high.x), math::clamp(p.y, warp.low.y, warp.high.y),
+                math::clamp(p.z, warp.low.z, warp.high.z)};
+  const auto along = [&](const ArrayRange<NoiseOctave>& octaves, float coordinate) {
+    const NoiseOctave* octave = arrays[octaves];
+    for (std::uint32_t o = 0; o < octaves.count; ++o) {
+      coordinate = with_octave(Noise::kSimplex, octave[o], q, coordinate);
+    }
+    return coordinate;
+  };
+  return {along(warp.octaves[0], p.x), along(warp.octaves[1], p.y), along(warp.octaves[2], p.z)};
+}
+
+// (wx, wy, wz)[i] = p_i + warp(p_i); the outputs overlap no other array.
+void warp_points(const CoordinateWarp& warp, const ArrayView& arrays, int n, const float* x, const float* y,
+                 const float* z, float* wx, float* wy, float* wz);
+
+// A box that holds p + warp(p) for every float point p of `box`.
+ASTROLITH_HD inline Box warped_box(const CoordinateWarp& warp, const ArrayView& arrays, const Box& box) {
+  const Box inside = moved_into(box, warp.low, warp.high);
+  const auto along = [&](const ArrayRange<NoiseOctave>& octaves) {
+    return bound_octaves(Noise::kSimplex, arrays[octaves], octaves.count, inside, false);
+  };
+  return displaced_box(box, along(warp.octaves[0]), along(warp.octaves[1]), along(warp.octaves[2]),
+                       warp.bound);
+}
 
 }  // namespace astrolith

@@ -7,7 +7,6 @@
 
 #include "numerics/hash_random.h"
 #include "numerics/scalar_math.h"
-#include "synthesis/noise/octave_bounds.h"
 
 namespace astrolith {
 namespace {
@@ -25,84 +24,87 @@ double farthest_coordinate(double low, double high, double scale, double bias) {
   return std::max(std::fabs(scale * low + bias), std::fabs(scale * high + bias));
 }
 
-}  // namespace
-
-FractalNoise::FractalNoise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain)
-    : noise_(layer.noise),
-      scale_(to_float(layer.scale)),
-      bias_(to_float(layer.bias)),
-      gradient_modulation_(static_cast<float>(layer.gradient_modulation)) {
-  const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
-  if (layer.warp) warp_.emplace(*layer.warp, layer_seed, domain);
-  const Box reached = warp_ ? widened(domain, warp_->bound()) : domain;
-  domain_min_ = to_float(reached.min);
-  domain_max_ = to_float(reached.max);
-  const double farthest =
-      std::max({farthest_coordinate(reached.min.x, reached.max.x, layer.scale.x, layer.bias.x),
-                farthest_coordinate(reached.min.y, reached.max.y, layer.scale.y, layer.bias.y),
-                farthest_coordinate(reached.min.z, reached.max.z, layer.scale.z, layer.bias.z)});
-  octaves_ = make_octaves(layer.frequency, layer.amplitude * layer.weight, layer.octaves, layer.gain,
-                          layer.lacunarity, {layer_seed}, farthest);
-  double amplitude = layer.amplitude * layer.weight;
-  for (std::size_t o = 0; o < octaves_.size(); ++o, amplitude *= layer.gain)
-    height_bound_ += std::fabs(amplitude);
-}
-
-void FractalNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
-  for (int begin = 0; begin < n; begin += kChunk) {
-    evaluate_chunk(std::min(kChunk, n - begin), x + begin, y + begin, z + begin, height + begin);
-  }
-}
-
-void FractalNoise::evaluate_chunk(int n, const float* x, const float* y, const float* z,
-                                  float* height) const {
-  Chunk wx, wy, wz, qx, qy, qz;
-  if (warp_) {
-    warp_->evaluate(n, x, y, z, wx.data(), wy.data(), wz.data());
-    x = wx.data();
-    y = wy.data();
-    z = wz.data();
-  }
-  place(n, x, domain_min_.x, domain_max_.x, scale_.x, bias_.x, qx.data());
-  place(n, y, domain_min_.y, domain_max_.y, scale_.y, bias_.y, qy.data());
-  place(n, z, domain_min_.z, domain_max_.z, scale_.z, bias_.z, qz.data());
-  add_octaves(octaves_, n, qx.data(), qy.data(), qz.data(), height);
-}
-
-void FractalNoise::evaluate_near(const Vec3d& origin, int n, const float* x, const float* y, const float* z,
-                                 float* height) const {
-  constexpr float kEverywhere = std::numeric_limits<float>::max();
-  const Vec3d scale{scale_.x, scale_.y, scale_.z}, bias{bias_.x, bias_.y, bias_.z};
-  const Vec3d q{scale.x * origin.x + bias.x, scale.y * origin.y + bias.y, scale.z * origin.z + bias.z};
-  const std::vector<NoiseOctave> octaves = octaves_near(noise_, octaves_, q);
-  for (int begin = 0; begin < n; begin += kChunk) {
-    const int size = std::min(kChunk, n - begin);
-    Chunk qx, qy, qz;
-    place(size, x + begin, -kEverywhere, kEverywhere, scale_.x, 0.0f, qx.data());
-    place(size, y + begin, -kEverywhere, kEverywhere, scale_.y, 0.0f, qy.data());
-    place(size, z + begin, -kEverywhere, kEverywhere, scale_.z, 0.0f, qz.data());
-    add_octaves(octaves, size, qx.data(), qy.data(), qz.data(), height + begin);
-  }
-}
-
-void FractalNoise::add_octaves(const std::vector<NoiseOctave>& octaves, int n, const float* x, const float* y,
-                               const float* z, float* height) const {
+// The sum over octaves at coordinates of the noise, of kChunk points at most.
+void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves, int n, const float* x,
+                 const float* y, const float* z, float* height) {
   std::fill(height, height + n, 0.0f);
-  if (gradient_modulation_ == 0.0f) {
-    for (const NoiseOctave& o : octaves) add_octave(noise_, o, n, x, y, z, height);
+  if (noise.gradient_modulation == 0.0f) {
+    for (const NoiseOctave& o : octaves) add_octave(noise.noise, o, n, x, y, z, height);
     return;
   }
   Chunk dx{}, dy{}, dz{};
   for (const NoiseOctave& o : octaves) {
-    add_modulated_octave(noise_, o, gradient_modulation_, n, x, y, z, dx.data(), dy.data(), dz.data(),
-                         height);
+    add_modulated_octave(noise.noise, o, noise.gradient_modulation, n, x, y, z, dx.data(), dy.data(),
+                         dz.data(), height);
   }
 }
 
-Interval FractalNoise::bound_heights(const Box& box) const {
-  const Box p = warp_ ? warp_->image(box) : box;
-  return bound_sum(noise_, octaves_, bound_placed(p, domain_min_, domain_max_, scale_, bias_),
-                   gradient_modulation_ != 0.0f);
+void evaluate_chunk(const FractalNoise& noise, const ArrayView& arrays, int n, const float* x, const float* y,
+                    const float* z, float* height) {
+  Chunk wx, wy, wz, qx, qy, qz;
+  if (noise.warped) {
+    warp_points(noise.warp, arrays, n, x, y, z, wx.data(), wy.data(), wz.data());
+    x = wx.data();
+    y = wy.data();
+    z = wz.data();
+  }
+  place(n, x, noise.low.x, noise.high.x, noise.scale.x, noise.bias.x, qx.data());
+  place(n, y, noise.low.y, noise.high.y, noise.scale.y, noise.bias.y, qy.data());
+  place(n, z, noise.low.z, noise.high.z, noise.scale.z, noise.bias.z, qz.data());
+  sum_octaves(noise, arrays.span(noise.octaves), n, qx.data(), qy.data(), qz.data(), height);
+}
+
+}  // namespace
+
+FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                        ArrayStore& arrays) {
+  FractalNoise noise;
+  noise.noise = layer.noise;
+  noise.scale = to_float(layer.scale);
+  noise.bias = to_float(layer.bias);
+  noise.gradient_modulation = static_cast<float>(layer.gradient_modulation);
+  const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
+  noise.warped = layer.warp.has_value();
+  if (noise.warped) noise.warp = make_coordinate_warp(*layer.warp, layer_seed, domain, arrays);
+  const Box reached = noise.warped ? widened(domain, noise.warp.bound) : domain;
+  noise.low = to_float(reached.min);
+  noise.high = to_float(reached.max);
+  const double farthest =
+      std::max({farthest_coordinate(reached.min.x, reached.max.x, layer.scale.x, layer.bias.x),
+                farthest_coordinate(reached.min.y, reached.max.y, layer.scale.y, layer.bias.y),
+                farthest_coordinate(reached.min.z, reached.max.z, layer.scale.z, layer.bias.z)});
+  noise.octaves = arrays.add(make_octaves(layer.frequency, layer.amplitude * layer.weight, layer.octaves,
+                                          layer.gain, layer.lacunarity, {layer_seed}, farthest));
+  double amplitude = layer.amplitude * layer.weight;
+  for (std::uint32_t o = 0; o < noise.octaves.count; ++o, amplitude *= layer.gain) {
+    noise.height_bound += std::fabs(amplitude);
+  }
+  return noise;
+}
+
+void evaluate_heights(const FractalNoise& noise, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height) {
+  for (int begin = 0; begin < count; begin += kChunk) {
+    evaluate_chunk(noise, arrays, std::min(kChunk, count - begin), x + begin, y + begin, z + begin,
+                   height + begin);
+  }
+}
+
+void evaluate_local_heights(const FractalNoise& noise, const ArrayView& arrays, const Vec3d& origin,
+                            int count, const float* x, const float* y, const float* z, float* height) {
+  constexpr float kEverywhere = std::numeric_limits<float>::max();
+  const Vec3d scale{noise.scale.x, noise.scale.y, noise.scale.z},
+      bias{noise.bias.x, noise.bias.y, noise.bias.z};
+  const Vec3d q{scale.x * origin.x + bias.x, scale.y * origin.y + bias.y, scale.z * origin.z + bias.z};
+  const std::vector<NoiseOctave> octaves = local_octaves(noise.noise, arrays.span(noise.octaves), q);
+  for (int begin = 0; begin < count; begin += kChunk) {
+    const int size = std::min(kChunk, count - begin);
+    Chunk qx, qy, qz;
+    place(size, x + begin, -kEverywhere, kEverywhere, noise.scale.x, 0.0f, qx.data());
+    place(size, y + begin, -kEverywhere, kEverywhere, noise.scale.y, 0.0f, qy.data());
+    place(size, z + begin, -kEverywhere, kEverywhere, noise.scale.z, 0.0f, qz.data());
+    sum_octaves(noise, octaves, size, qx.data(), qy.data(), qz.data(), height + begin);
+  }
 }
 
 }  // namespace astrolith

@@ -1,15 +1,14 @@
-// A fractal layer of the recipe, ready for evaluation over many points (thesis algorithms 4 and 5).
+// A fractal layer of the recipe (thesis algorithms 4 and 5): a sum of octaves of noise, at one point, over
+// many points at once, and over boxes.
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <span>
-#include <vector>
 
+#include "numerics/arrays.h"
 #include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/coordinate_warp.h"
-#include "synthesis/noise/noise_octaves.h"
+#include "synthesis/noise/octave_bounds.h"
 
 namespace astrolith {
 
@@ -18,53 +17,58 @@ ASTROLITH_KERNEL float placed_coordinate(float p, float low, float high, float s
   return math::fma(math::clamp(p, low, high), scale, bias);
 }
 
-class FractalNoise {
- public:
-  // `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-  // `domain`, where no surface is, are moved to its border; octaves too fine for float coordinates within it
-  // are left out (noise_octaves.h).
-  FractalNoise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
+struct FractalNoise {
+  Noise noise = Noise::kSimplex;
+  bool warped = false;
+  CoordinateWarp warp;
+  Vec3f low, high;  // points outside are moved to the border, after the warp
+  Vec3f scale, bias;
+  ArrayRange<NoiseOctave> octaves;
+  float gradient_modulation = 0.0f;
+  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
 
-  // height[i] = n(p_i), length units.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  // The same at the points origin + (x, y, z) to the digits of x, y and z: cells of the lattices are counted
-  // from the origin's. Expects points within the domain, and a layer that has this form: one without a warp.
-  void evaluate_near(const Vec3d& origin, int n, const float* x, const float* y, const float* z,
-                     float* height) const;
-  bool has_near_form() const { return !warp_; }
-
-  // |n(p)| never exceeds this.
-  double height_bound() const { return height_bound_; }
-
-  // n(p) at every float point of a box.
-  Interval bound_heights(const Box& box) const;
-
-  // What it is made of. The warp may be null.
-  struct Parts {
-    Noise noise;
-    const CoordinateWarp* warp;
-    Vec3f scale, bias, domain_min, domain_max;
-    std::span<const NoiseOctave> octaves;
-    float gradient_modulation;
-  };
-  Parts parts() const {
-    return {noise_,   warp_ ? &*warp_ : nullptr, scale_, bias_, domain_min_, domain_max_,
-            octaves_, gradient_modulation_};
-  }
-
- private:
-  void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;
-  // The sum over octaves at coordinates of the noise.
-  void add_octaves(const std::vector<NoiseOctave>& octaves, int n, const float* x, const float* y,
-                   const float* z, float* height) const;
-
-  Noise noise_;
-  std::optional<CoordinateWarp> warp_;
-  Vec3f scale_, bias_, domain_min_, domain_max_;
-  std::vector<NoiseOctave> octaves_;
-  double height_bound_ = 0.0;
-  float gradient_modulation_;
+  // Whether the noise can be evaluated to the digits of coordinates local to an origin.
+  bool has_local_form() const { return !warped; }
 };
+
+// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
+// `domain`, where no surface is, are moved to its border. Octaves too fine for float coordinates within it
+// are left out (noise_octaves.h).
+FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                        ArrayStore& arrays);
+
+// n(p), length units.
+ASTROLITH_HD inline float height_at(const FractalNoise& n, const ArrayView& arrays, const Vec3f& at) {
+  const Vec3f p = n.warped ? warped(n.warp, arrays, at) : at;
+  const Vec3f q{placed_coordinate(p.x, n.low.x, n.high.x, n.scale.x, n.bias.x),
+                placed_coordinate(p.y, n.low.y, n.high.y, n.scale.y, n.bias.y),
+                placed_coordinate(p.z, n.low.z, n.high.z, n.scale.z, n.bias.z)};
+  const NoiseOctave* octaves = arrays[n.octaves];
+  ModulatedSum sum{};
+  for (std::uint32_t o = 0; o < n.octaves.count; ++o) {
+    if (n.gradient_modulation == 0.0f) {
+      sum.value = with_octave(n.noise, octaves[o], q, sum.value);
+    } else {
+      sum = with_modulated_octave(n.noise, octaves[o], n.gradient_modulation, q, sum);
+    }
+  }
+  return sum.value;
+}
+
+// height[i] = n(p_i): the bits of height_at, vectorised.
+void evaluate_heights(const FractalNoise& n, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height);
+
+// height[i] = n(origin + (x, y, z)) to the digits of x, y and z: cells of the lattices are counted from the
+// origin's. Expects points within the domain, and a noise that has_local_form().
+void evaluate_local_heights(const FractalNoise& n, const ArrayView& arrays, const Vec3d& origin, int count,
+                            const float* x, const float* y, const float* z, float* height);
+
+// n(p) at every float point of a box.
+ASTROLITH_HD inline Interval bound_heights(const FractalNoise& n, const ArrayView& arrays, const Box& box) {
+  const Box p = n.warped ? warped_box(n.warp, arrays, box) : box;
+  return bound_octaves(n.noise, arrays[n.octaves], n.octaves.count,
+                       bound_placed(p, n.low, n.high, n.scale, n.bias), n.gradient_modulation != 0.0f);
+}
 
 }  // namespace astrolith

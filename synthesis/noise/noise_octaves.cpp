@@ -5,12 +5,12 @@
 
 #include "numerics/hash_random.h"
 #include "synthesis/noise/octave_bounds.h"
+#include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kLargestLatticeCoordinate = 1048576.0;  // 2^20: leaves three bits within a cell
-constexpr double kSteepestOctave = 1e12;                 // keeps the squares of slopes finite in a float
+constexpr double kSteepestOctave = 1e12;  // keeps the squares of slopes finite in a float
 
 // One loop a noise: a choice inside it would keep it from vectorising.
 #define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
@@ -55,7 +55,7 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
   std::vector<NoiseOctave> octaves;
   double slope = 1.0;
   for (int o = 0; o < count; ++o) {
-    if (!(frequency * farthest <= kLargestLatticeCoordinate)) break;
+    if (!(frequency * farthest <= kLargestCell)) break;
     const std::uint32_t stream = seeds.first_stream + static_cast<std::uint32_t>(o) * seeds.stream_step;
     octaves.push_back({static_cast<float>(frequency),
                        static_cast<float>(amplitude),
@@ -69,7 +69,8 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
   return octaves;
 }
 
-std::vector<NoiseOctave> octaves_near(Noise noise, std::vector<NoiseOctave> octaves, const Vec3d& q) {
+std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave> of_origin, const Vec3d& q) {
+  std::vector<NoiseOctave> octaves(of_origin.begin(), of_origin.end());
   for (NoiseOctave& o : octaves) {
     const Vec3d at = static_cast<double>(o.frequency) * q;
     Vec3d cell{std::floor(at.x), std::floor(at.y), std::floor(at.z)};
@@ -88,13 +89,13 @@ std::vector<NoiseOctave> octaves_near(Noise noise, std::vector<NoiseOctave> octa
   return octaves;
 }
 
-double sum_bound(const std::vector<NoiseOctave>& octaves) {
+double sum_bound(std::span<const NoiseOctave> octaves) {
   double bound = 0.0;
   for (const NoiseOctave& o : octaves) bound += std::fabs(static_cast<double>(o.amplitude));
   return bound;
 }
 
-double slope_bound(Noise noise, const std::vector<NoiseOctave>& octaves) {
+double slope_bound(Noise noise, std::span<const NoiseOctave> octaves) {
   double bound = 0.0;
   for (const NoiseOctave& o : octaves) {
     bound += range_of(noise).slope *
@@ -124,10 +125,6 @@ void add_modulated_octave(Noise noise, const NoiseOctave& octave, float modulati
                           float* sum) {
   const auto add = noise == Noise::kPerlin ? add_modulated_perlin : add_modulated_simplex;
   add(octave, modulation, n, x, y, z, slope_x, slope_y, slope_z, sum);
-}
-
-Interval bound_sum(Noise noise, const std::vector<NoiseOctave>& octaves, const Box& box, bool modulated) {
-  return bound_octaves(noise, octaves.data(), static_cast<std::uint32_t>(octaves.size()), box, modulated);
 }
 
 }  // namespace astrolith

@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include "numerics/interval.h"
+#include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
 namespace {
 
 constexpr int kChunk = 128;
 using Chunk = std::array<float, kChunk>;
-constexpr double kLargestCell = 1048576.0;  // 2^20
 
 // real, imaginary += the k-th impulse of the cell (dx, dy, dz) away from each point's; points in cells.
 ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, float dy, float dz,
@@ -29,38 +28,40 @@ ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, f
 
 }  // namespace
 
-PhasorNoise::PhasorNoise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain)
-    : domain_min_(to_float(domain.min)),
-      domain_max_(to_float(domain.max)),
-      direction_(to_float(normalized(layer.direction))),
-      inverse_cell_(static_cast<float>(1.0 / layer.cell_size)),
-      turns_per_cell_(static_cast<float>(layer.frequency * layer.cell_size)),
-      spread_(static_cast<float>(layer.spread)),
-      amplitude_(static_cast<float>(layer.amplitude)),
-      profile_(layer.profile),
-      impulses_(layer.impulses_per_cell),
-      seed_(hash_seed(seed, static_cast<std::uint32_t>(layer_index))),
-      height_bound_(std::fabs(layer.amplitude) * (1.0 + 1e-6)) {
-  if (largest_coordinate(domain) / layer.cell_size > kLargestCell) amplitude_ = 0.0f;
+PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                       ArrayStore&) {
+  PhasorNoise noise;
+  noise.low = to_float(domain.min);
+  noise.high = to_float(domain.max);
+  noise.kernels = {to_float(normalized(layer.direction)), static_cast<float>(layer.spread),
+                   static_cast<float>(layer.frequency * layer.cell_size)};
+  noise.inverse_cell = static_cast<float>(1.0 / layer.cell_size);
+  const bool too_fine = largest_coordinate(domain) / layer.cell_size > kLargestCell;
+  noise.amplitude = too_fine ? 0.0f : static_cast<float>(layer.amplitude);
+  noise.profile = layer.profile;
+  noise.impulses = layer.impulses_per_cell;
+  noise.seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
+  noise.height_bound = std::fabs(layer.amplitude) * (1.0 + 1e-6);
+  return noise;
 }
 
-void PhasorNoise::evaluate_phase(int n, const float* x, const float* y, const float* z, float* turns) const {
-  const PhasorKernels kernels{direction_, spread_, turns_per_cell_};
+void evaluate_phases(const PhasorNoise& n, int count, const float* x, const float* y, const float* z,
+                     float* turns) {
   Chunk px{}, py{}, pz{}, real, imaginary;
-  for (int begin = 0; begin < n; begin += kChunk) {
-    const int size = std::min(kChunk, n - begin);
+  for (int begin = 0; begin < count; begin += kChunk) {
+    const int size = std::min(kChunk, count - begin);
     for (int i = 0; i < size; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      px[k] = math::clamp(x[begin + i], domain_min_.x, domain_max_.x) * inverse_cell_;
-      py[k] = math::clamp(y[begin + i], domain_min_.y, domain_max_.y) * inverse_cell_;
-      pz[k] = math::clamp(z[begin + i], domain_min_.z, domain_max_.z) * inverse_cell_;
+      px[k] = math::clamp(x[begin + i], n.low.x, n.high.x) * n.inverse_cell;
+      py[k] = math::clamp(y[begin + i], n.low.y, n.high.y) * n.inverse_cell;
+      pz[k] = math::clamp(z[begin + i], n.low.z, n.high.z) * n.inverse_cell;
     }
     real.fill(0.0f);
     imaginary.fill(0.0f);
     for (int c = 0; c < 27; ++c) {
-      for (int j = 0; j < impulses_; ++j) {
+      for (int j = 0; j < n.impulses; ++j) {
         const Vec3f cell = phasor_cell(c);
-        add_impulse(kernels, cell.x, cell.y, cell.z, phasor_seed(seed_, j), size, px.data(), py.data(),
+        add_impulse(n.kernels, cell.x, cell.y, cell.z, phasor_seed(n.seed, j), size, px.data(), py.data(),
                     pz.data(), real.data(), imaginary.data());
       }
     }
@@ -71,9 +72,10 @@ void PhasorNoise::evaluate_phase(int n, const float* x, const float* y, const fl
   }
 }
 
-void PhasorNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
-  evaluate_phase(n, x, y, z, height);
-  for (int i = 0; i < n; ++i) height[i] = amplitude_ * phasor_profile(profile_, height[i]);
+void evaluate_heights(const PhasorNoise& n, const ArrayView&, int count, const float* x, const float* y,
+                      const float* z, float* height) {
+  evaluate_phases(n, count, x, y, z, height);
+  for (int i = 0; i < count; ++i) height[i] = n.amplitude * phasor_profile(n.profile, height[i]);
 }
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// Phasor noise (Tricard et al. 2019; thesis eq. 2.27 to 2.30), ready for evaluation over many points.
+// Phasor noise (Tricard et al. 2019; thesis eq. 2.27 to 2.30), at one point and over many points at once.
 //
 //   height(p) = amplitude profile(phi(p)),      phi(p) = arg sum_j a(|p - p_j|) exp(2 pi i (F u_j.(p - p_j) +
 //   psi_j))
@@ -9,6 +9,7 @@
 
 #include <cstdint>
 
+#include "numerics/arrays.h"
 #include "numerics/hash_random.h"
 #include "numerics/interval.h"
 #include "numerics/random_direction.h"
@@ -59,7 +60,7 @@ ASTROLITH_KERNEL Vec3f phasor_cell(int c) {
   return {static_cast<float>(c % 3 - 1), static_cast<float>(c / 3 % 3 - 1), static_cast<float>(c / 9 - 1)};
 }
 
-// At a phase in turns, [-1/2, 1/2].
+// The profile at a phase in turns, [-1/2, 1/2].
 ASTROLITH_HD inline float phasor_profile(PhasorProfile profile, float turns) {
   switch (profile) {
     case PhasorProfile::kTriangle:
@@ -73,45 +74,48 @@ ASTROLITH_HD inline float phasor_profile(PhasorProfile profile, float turns) {
   }
 }
 
-class PhasorNoise {
- public:
-  // `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-  // `domain`, where no surface is, are moved to its border; beyond 2^20 cells from the origin, where float
-  // coordinates could not tell cells apart, there is no noise.
-  PhasorNoise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
-
-  // height[i] = n(p_i), length units: 0 on average; standard deviation over amplitude 1/sqrt 2 for a sine,
-  // 1/sqrt 3 for a triangle and a sawtooth, 1 for a square.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  // The phase phi(p_i) in turns, [-1/2, 1/2].
-  void evaluate_phase(int n, const float* x, const float* y, const float* z, float* turns) const;
-
-  double height_bound() const { return height_bound_; }
-  Interval bound_heights(const Box&) const { return {-height_bound_, height_bound_}; }
-
-  // What it is made of.
-  struct Parts {
-    Vec3f domain_min, domain_max;
-    PhasorKernels kernels;
-    float inverse_cell, amplitude;
-    PhasorProfile profile;
-    int impulses;  // a cell
-    std::uint32_t seed;
-  };
-  Parts parts() const {
-    return {domain_min_,   domain_max_, {direction_, spread_, turns_per_cell_},
-            inverse_cell_, amplitude_,  profile_,
-            impulses_,     seed_};
-  }
-
- private:
-  Vec3f domain_min_, domain_max_, direction_;
-  float inverse_cell_, turns_per_cell_, spread_, amplitude_;
-  PhasorProfile profile_;
-  int impulses_;
-  std::uint32_t seed_;
-  double height_bound_;
+struct PhasorNoise {
+  Vec3f low, high;  // points outside are moved to the border
+  PhasorKernels kernels{};
+  float inverse_cell = 0.0f, amplitude = 0.0f;
+  PhasorProfile profile = PhasorProfile::kSine;
+  int impulses = 0;  // a cell
+  std::uint32_t seed = 0;
+  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
 };
+
+// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
+// `domain`, where no surface is, are moved to its border. Where the domain reaches beyond 2^20 cells from the
+// origin, where float coordinates could not tell cells apart, there is no noise. Heights are 0 on average;
+// their standard deviation over the amplitude is 1/sqrt 2 for a sine, 1/sqrt 3 for a triangle and a sawtooth,
+// 1 for a square.
+PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                       ArrayStore& arrays);
+
+// n(p), length units.
+ASTROLITH_HD inline float height_at(const PhasorNoise& n, const ArrayView&, const Vec3f& at) {
+  const Vec3f p = moved_into(at, n.low, n.high);
+  const float x = p.x * n.inverse_cell, y = p.y * n.inverse_cell, z = p.z * n.inverse_cell;
+  PhasorSum sum{};
+  for (int c = 0; c < 27; ++c) {
+    const Vec3f cell = phasor_cell(c);
+    for (int j = 0; j < n.impulses; ++j) {
+      sum = with_phasor_impulse(n.kernels, cell.x, cell.y, cell.z, phasor_seed(n.seed, j), x, y, z, sum);
+    }
+  }
+  return n.amplitude * phasor_profile(n.profile, math::atan2_turns(sum.imaginary, sum.real));
+}
+
+// height[i] = n(p_i): the bits of height_at, vectorised.
+void evaluate_heights(const PhasorNoise& n, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height);
+
+// The phase phi(p_i) in turns, [-1/2, 1/2].
+void evaluate_phases(const PhasorNoise& n, int count, const float* x, const float* y, const float* z,
+                     float* turns);
+
+ASTROLITH_HD inline Interval bound_heights(const PhasorNoise& n, const ArrayView&, const Box&) {
+  return {-n.height_bound, n.height_bound};
+}
 
 }  // namespace astrolith

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
 
 #include "numerics/interval.h"
 #include "numerics/random_direction.h"
 #include "numerics/scalar_math.h"
+#include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
 namespace {
@@ -14,8 +18,7 @@ namespace {
 constexpr int kChunk = 128;  // an array a corner's windows stays in the first cache
 using Chunk = std::array<float, kChunk>;
 
-constexpr double kMostTurns = 262144.0;     // 2^18: floats hold five bits of a turn
-constexpr double kLargestCell = 1048576.0;  // 2^20
+constexpr double kMostTurns = 262144.0;  // 2^18: floats hold five bits of a turn
 constexpr double kClip = 6.0;
 constexpr std::uint32_t kWaveStream = 0x77617665u;
 
@@ -65,66 +68,83 @@ ASTROLITH_SIMD_CLONES void add_wave(const Wave& wave, float randomness, int n, c
 }
 
 double coherence_of(double randomness) {
-  const double x = 3.14159265358979323846 * randomness;
+  const double x = std::numbers::pi * randomness;
   return x > 0.0 ? std::pow(std::sin(x) / x, 2) : 1.0;
 }
 
-}  // namespace
-
-RandomPhaseNoise::RandomPhaseNoise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index,
-                                   const Box& domain)
-    : domain_min_(to_float(domain.min)),
-      domain_max_(to_float(domain.max)),
-      inverse_cell_(static_cast<float>(1.0 / layer.cell_size)),
-      randomness_(static_cast<float>(layer.randomness)),
-      coherence_(static_cast<float>(coherence_of(layer.randomness))),
-      clip_(static_cast<float>(kClip * layer.height_rms)),
-      seed_(hash_seed(seed, static_cast<std::uint32_t>(layer_index))) {
-  const double farthest = largest_coordinate(domain);
-  if (farthest / layer.cell_size > kLargestCell) return;
-  std::vector<double> frequency;
-  double power = 0.0;
+// The frequencies of all waves, one in each of equal shares of the band, cycles per length unit.
+std::vector<double> wave_frequencies(const RandomPhaseLayer& layer, std::uint32_t seed) {
+  std::vector<double> frequencies;
   for (int j = 0; j < layer.waves; ++j) {
-    const std::uint32_t h = hash_append(seed_ ^ kWaveStream, static_cast<std::uint32_t>(j));
+    const std::uint32_t h = hash_append(seed ^ kWaveStream, static_cast<std::uint32_t>(j));
     const double share = (j + static_cast<double>(unit_float(hash_append(h, 0)))) / layer.waves;
-    frequency.push_back(layer.frequency_min + share * (layer.frequency_max - layer.frequency_min));
-    power += std::pow(frequency.back() / layer.frequency_max, -layer.exponent);
+    frequencies.push_back(layer.frequency_min + share * (layer.frequency_max - layer.frequency_min));
   }
-  for (int j = 0; j < layer.waves; ++j) {
-    const double f = frequency[static_cast<std::size_t>(j)];
+  return frequencies;
+}
+
+std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, double farthest) {
+  const std::vector<double> frequencies = wave_frequencies(layer, seed);
+  double power = 0.0;
+  for (const double f : frequencies) power += std::pow(f / layer.frequency_max, -layer.exponent);
+  std::vector<Wave> waves;
+  for (std::size_t j = 0; j < frequencies.size(); ++j) {
+    const double f = frequencies[j];
     if (std::sqrt(3.0) * f * farthest > kMostTurns) continue;
-    const std::uint32_t h = hash_append(seed_ ^ kWaveStream, static_cast<std::uint32_t>(j));
+    const std::uint32_t h = hash_append(seed ^ kWaveStream, static_cast<std::uint32_t>(j));
     const Vec3f u = direction_in_cone(to_float(normalized(layer.direction)), static_cast<float>(layer.spread),
                                       unit_float(hash_append(h, 1)), unit_float(hash_append(h, 2)));
     const double amplitude =
         layer.height_rms * std::sqrt(2.0 * std::pow(f / layer.frequency_max, -layer.exponent) / power);
-    waves_.push_back({u * static_cast<float>(f), unit_float(hash_append(h, 3)), static_cast<float>(amplitude),
-                      hash_append(h, 4)});
+    waves.push_back({u * static_cast<float>(f), unit_float(hash_append(h, 3)), static_cast<float>(amplitude),
+                     hash_append(h, 4)});
   }
+  return waves;
 }
 
-void RandomPhaseNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
-  for (int begin = 0; begin < n; begin += kChunk) {
-    evaluate_chunk(std::min(kChunk, n - begin), x + begin, y + begin, z + begin, height + begin);
-  }
-}
-
-void RandomPhaseNoise::evaluate_chunk(int n, const float* x, const float* y, const float* z,
-                                      float* height) const {
+void evaluate_chunk(const RandomPhaseNoise& noise, std::span<const Wave> waves, int n, const float* x,
+                    const float* y, const float* z, float* height) {
   Chunk px{}, py{}, pz{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    px[i] = math::clamp(x[i], domain_min_.x, domain_max_.x);
-    py[i] = math::clamp(y[i], domain_min_.y, domain_max_.y);
-    pz[i] = math::clamp(z[i], domain_min_.z, domain_max_.z);
+    px[i] = math::clamp(x[i], noise.low.x, noise.high.x);
+    py[i] = math::clamp(y[i], noise.low.y, noise.high.y);
+    pz[i] = math::clamp(z[i], noise.low.z, noise.high.z);
   }
   Windows windows;
-  find_windows(n, px.data(), py.data(), pz.data(), inverse_cell_, coherence_, seed_, windows);
+  find_windows(n, px.data(), py.data(), pz.data(), noise.inverse_cell, noise.coherence, noise.seed, windows);
   std::fill(height, height + n, 0.0f);
-  for (const Wave& wave : waves_) {
-    add_wave(wave, randomness_, n, px.data(), py.data(), pz.data(), windows, height);
+  for (const Wave& wave : waves) {
+    add_wave(wave, noise.randomness, n, px.data(), py.data(), pz.data(), windows, height);
   }
   for (int i = 0; i < n; ++i) {
-    height[i] = math::clamp(height[i] * windows.scale[static_cast<std::size_t>(i)], -clip_, clip_);
+    height[i] = math::clamp(height[i] * windows.scale[static_cast<std::size_t>(i)], -noise.clip, noise.clip);
+  }
+}
+
+}  // namespace
+
+RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index,
+                            const Box& domain, ArrayStore& arrays) {
+  RandomPhaseNoise noise;
+  noise.low = to_float(domain.min);
+  noise.high = to_float(domain.max);
+  noise.inverse_cell = static_cast<float>(1.0 / layer.cell_size);
+  noise.randomness = static_cast<float>(layer.randomness);
+  noise.coherence = static_cast<float>(coherence_of(layer.randomness));
+  noise.clip = static_cast<float>(kClip * layer.height_rms);
+  noise.seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
+  noise.height_bound = static_cast<double>(noise.clip);
+  const double farthest = largest_coordinate(domain);
+  if (farthest / layer.cell_size <= kLargestCell)
+    noise.waves = arrays.add(draw_waves(layer, noise.seed, farthest));
+  return noise;
+}
+
+void evaluate_heights(const RandomPhaseNoise& noise, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height) {
+  for (int begin = 0; begin < count; begin += kChunk) {
+    evaluate_chunk(noise, arrays.span(noise.waves), std::min(kChunk, count - begin), x + begin, y + begin,
+                   z + begin, height + begin);
   }
 }
 

@@ -1,4 +1,4 @@
-// Local random phase noise (Gilet et al. 2014; thesis eq. 2.25), ready for evaluation over many points.
+// Local random phase noise (Gilet et al. 2014; thesis eq. 2.25), at one point and over many points at once.
 //
 //   n(p) = rms / norm(p) sum_i w_i(p) sum_j A_j cos(2 pi f_j.p + phi_ij)
 // with i over the eight lattice points around p. Each window w_i is a product of cos(pi/2 fade(t)) along the
@@ -8,8 +8,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "numerics/arrays.h"
 #include "numerics/hash_random.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
@@ -56,38 +56,47 @@ ASTROLITH_KERNEL float with_wave(const Wave& w, float randomness, const PhaseCor
   return math::fma(w.amplitude * corner.weight, math::cos_turns(angle), height);
 }
 
-class RandomPhaseNoise {
- public:
-  // `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-  // `domain`, where no surface is, are moved to its border; waves of more than 2^18 turns within it, whose
-  // phases float coordinates could not hold, are left out.
-  RandomPhaseNoise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
-
-  // height[i] = n(p_i), length units: 0 on average, standard deviation height_rms over seeds.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  // 6 times the standard deviation, where heights are cut.
-  double height_bound() const { return static_cast<double>(clip_); }
-  Interval bound_heights(const Box&) const { return {-height_bound(), height_bound()}; }
-
-  const std::vector<Wave>& waves() const { return waves_; }
-  // What else it is made of.
-  struct Parts {
-    Vec3f domain_min, domain_max;
-    float inverse_cell, randomness, coherence, clip;
-    std::uint32_t seed;
-  };
-  Parts parts() const {
-    return {domain_min_, domain_max_, inverse_cell_, randomness_, coherence_, clip_, seed_};
-  }
-
- private:
-  void evaluate_chunk(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  std::vector<Wave> waves_;
-  Vec3f domain_min_, domain_max_;
-  float inverse_cell_, randomness_, coherence_, clip_;
-  std::uint32_t seed_;
+struct RandomPhaseNoise {
+  Vec3f low, high;  // points outside are moved to the border
+  ArrayRange<Wave> waves;
+  float inverse_cell = 0.0f, randomness = 0.0f, coherence = 0.0f;
+  float clip = 0.0f;  // heights are cut at 6 times the standard deviation
+  std::uint32_t seed = 0;
+  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
 };
+
+// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
+// `domain`, where no surface is, are moved to its border. Waves of more than 2^18 turns within the domain,
+// whose phases float coordinates could not hold, are left out. Heights are 0 on average, their standard
+// deviation over seeds is height_rms.
+RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index,
+                            const Box& domain, ArrayStore& arrays);
+
+// n(p), length units.
+ASTROLITH_HD inline float height_at(const RandomPhaseNoise& n, const ArrayView& arrays, const Vec3f& at) {
+  const Vec3f p = moved_into(at, n.low, n.high);
+  PhaseCorner corners[8];
+  float weights = 0.0f;
+  for (unsigned c = 0; c < 8; ++c) {
+    corners[c] = phase_corner(c, p.x * n.inverse_cell, p.y * n.inverse_cell, p.z * n.inverse_cell, n.seed);
+    weights += corners[c].weight;
+  }
+  const Wave* waves = arrays[n.waves];
+  float height = 0.0f;
+  for (std::uint32_t w = 0; w < n.waves.count; ++w) {
+    for (const PhaseCorner& corner : corners) {
+      height = with_wave(waves[w], n.randomness, corner, p.x, p.y, p.z, height);
+    }
+  }
+  return math::clamp(height * phase_scale(n.coherence, weights), -n.clip, n.clip);
+}
+
+// height[i] = n(p_i): the bits of height_at, vectorised.
+void evaluate_heights(const RandomPhaseNoise& n, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height);
+
+ASTROLITH_HD inline Interval bound_heights(const RandomPhaseNoise& n, const ArrayView&, const Box&) {
+  return {-n.height_bound, n.height_bound};
+}
 
 }  // namespace astrolith

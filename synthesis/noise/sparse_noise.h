@@ -1,21 +1,20 @@
-// A sparse layer of the recipe, ready for evaluation over many points: white noise, mostly zero, upscaled
-// level by level and clamped.
+// A sparse layer of the recipe: white noise, mostly zero, upscaled level by level and clamped; at one point,
+// over many points at once, and over boxes.
 //
 // Upscaling an image again and again by quadratic interpolation makes of one pixel a quadratic B-spline in
 // each direction: each level is the sum of such bumps, evaluated where it is needed and never stored.
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
+#include "numerics/arrays.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/lattice_noise.h"
 
 namespace astrolith {
 
-// Of a bump of value 1, alone.
+// The inverse of the height of a lone bump of value 1.
 inline constexpr float kInverseBumpHeight = 64.0f / 27.0f;  // (4/3)^3
 
 // A cell's value: zero, or with the probability uniform in [0, 1).
@@ -68,43 +67,86 @@ ASTROLITH_KERNEL float sparse_height(float amplitude, float sum, float cut) {
   return -amplitude * math::max(sum - cut, 0.0f);
 }
 
-class SparseNoise {
- public:
-  // As FractalNoise: levels too fine for float coordinates within the domain are left out.
-  SparseNoise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain);
-
-  // height[i] = n(p_i), length units.
-  void evaluate(int n, const float* x, const float* y, const float* z, float* height) const;
-
-  // |n(p)| never exceeds this.
-  double height_bound() const { return height_bound_; }
-
-  // n(p) at every float point of a box.
-  Interval bound_heights(const Box& box) const;
-
-  // What it is made of. A level is cut, or the sum of all.
-  struct Parts {
-    Vec3f domain_min, domain_max;
-    std::span<const SparseLevel> levels;
-    float amplitude, level_cut, sum_cut, probability, inverse_probability;
-  };
-  Parts parts() const {
-    return {domain_min_,
-            domain_max_,
-            levels_,
-            amplitude_,
-            merged_ ? 0.0f : threshold_,
-            merged_ ? threshold_ : 0.0f,
-            probability_,
-            inverse_probability_};
-  }
-
- private:
-  std::vector<SparseLevel> levels_;
-  float amplitude_, threshold_, probability_, inverse_probability_;
-  bool merged_;
-  Vec3f domain_min_, domain_max_;
-  double height_bound_ = 0.0;
+// What is cut off is either every level or the sum of all levels; the other cut is 0.
+struct SparseNoise {
+  Vec3f low, high;  // points outside are moved to the border
+  ArrayRange<SparseLevel> levels;
+  float amplitude = 0.0f, level_cut = 0.0f, sum_cut = 0.0f;
+  float probability = 0.0f, inverse_probability = 0.0f;
+  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
 };
+
+// Levels too fine for float coordinates within the domain are left out.
+SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                       ArrayStore& arrays);
+
+// n(p), length units.
+ASTROLITH_HD inline float height_at(const SparseNoise& n, const ArrayView& arrays, const Vec3f& at) {
+  const Vec3f p = moved_into(at, n.low, n.high);
+  const SparseLevel* levels = arrays[n.levels];
+  float sum = 0.0f;
+  for (std::uint32_t l = 0; l < n.levels.count; ++l) {
+    const SparseLevel& level = levels[l];
+    const float noise = upscaled_noise(level.frequency * p.x, level.frequency * p.y, level.frequency * p.z,
+                                       level.seed, n.probability, n.inverse_probability);
+    sum = with_sparse_level(level.gain, noise, n.level_cut, sum);
+  }
+  return sparse_height(n.amplitude, sum, n.sum_cut);
+}
+
+// height[i] = n(p_i): the bits of height_at, vectorised.
+void evaluate_heights(const SparseNoise& n, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height);
+
+inline constexpr double kMostSparseCells = 512.0;  // looked at one by one
+inline constexpr double kSparseSlack = 1e-5;       // relative, for the rounding of positions and sums
+
+// The greatest weight that a cell's bump has from low to high, in cells from its centre.
+ASTROLITH_HD inline double greatest_bump(double low, double high) {
+  const double d = std::max(std::max(0.0, low), -high);
+  return d <= 0.5 ? 0.75 - d * d : d < 1.5 ? 0.5 * (1.5 - d) * (1.5 - d) : 0.0;
+}
+
+// The greatest noise of one level over a box.
+ASTROLITH_HD inline double greatest_sparse_noise(const SparseLevel& level, float probability,
+                                                 float inverse_probability, const Box& box) {
+  const double f = double{level.frequency};
+  const double rounding = 1e-6 * (1.0 + f * largest_coordinate(box));
+  const Vec3d low = f * box.min - Vec3d{rounding, rounding, rounding},
+              high = f * box.max + Vec3d{rounding, rounding, rounding};
+  const auto first = [](double c) { return std::floor(c + 0.5) - 1.0; };
+  const auto last = [](double c) { return std::floor(c + 0.5) + 1.0; };
+  const double cells = (last(high.x) - first(low.x) + 1.0) * (last(high.y) - first(low.y) + 1.0) *
+                       (last(high.z) - first(low.z) + 1.0);
+  if (!(cells <= kMostSparseCells)) return double{kInverseBumpHeight};
+  double sum = 0.0;
+  for (double k = first(low.z); k <= last(high.z); ++k) {
+    const double wz = greatest_bump(low.z - k, high.z - k);
+    for (double j = first(low.y); j <= last(high.y); ++j) {
+      const double wy = greatest_bump(low.y - j, high.y - j);
+      for (double i = first(low.x); i <= last(high.x); ++i) {
+        sum += wz * wy * greatest_bump(low.x - i, high.x - i) *
+               double{sparse_value(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k),
+                                   level.seed, probability, inverse_probability)};
+      }
+    }
+  }
+  return std::min(sum * (1.0 + kSparseSlack), 1.0) * double{kInverseBumpHeight};  // the weights add up to 1
+}
+
+// n(p) at every float point of a box.
+ASTROLITH_HD inline Interval bound_heights(const SparseNoise& n, const ArrayView& arrays, const Box& box) {
+  const Box inside = moved_into(box, n.low, n.high);
+  const SparseLevel* levels = arrays[n.levels];
+  double deepest = 0.0;
+  for (std::uint32_t l = 0; l < n.levels.count; ++l) {
+    const double noise = greatest_sparse_noise(levels[l], n.probability, n.inverse_probability, inside);
+    deepest += double{levels[l].gain} * std::max(noise - double{n.level_cut}, 0.0);
+  }
+  deepest = std::max(deepest - double{n.sum_cut}, 0.0);
+  const double slack = kSparseSlack * n.height_bound,
+               reach = std::fabs(double{n.amplitude}) * deepest + slack;
+  return n.amplitude > 0.0f ? Interval{-reach, slack} : Interval{-slack, reach};
+}
 
 }  // namespace astrolith

@@ -4,19 +4,18 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
 #include "numerics/hash_random.h"
-#include "synthesis/spots/spot_bounds.h"
+#include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kLargestCell =
-    1048576.0;                 // 2^20 cells from the origin: floats hold three bits within a cell
 constexpr double kClip = 2.0;  // of a sum of overlapping spots, in greatest kernels
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotImpulse* impulses,
                                      std::size_t num_impulses, int n, const float* __restrict x,
@@ -39,7 +38,7 @@ std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses
   return found;
 }
 
-// Of a part of a spot: R of its turns, then what takes length units to those of q.
+// The rotation R by the turns of a part of a spot.
 using Rotation = std::array<Vec3d, 3>;  // columns
 
 Rotation rotation(const Vec3d& degrees) {
@@ -80,7 +79,7 @@ SpotKernel kernel_of(const SpotLayer& layer, const SpotPart& part, const Rotatio
           static_cast<float>(layer.sigma)};
 }
 
-// Half the sides of the box around a part: of the ellipsoid q.V^-1 q = sigma.
+// Half the sides of the box around the ellipsoid q.V^-1 q = sigma of a part, length units.
 Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit) {
   const Vec3d &a = part.axes, &v = layer.variances;
   const auto side = [&](double x, double y, double z) {
@@ -90,10 +89,44 @@ Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r
          Vec3d{side(r[0].x, r[1].x, r[2].x), side(r[0].y, r[1].y, r[2].y), side(r[0].z, r[1].z, r[2].z)};
 }
 
+// One part of the spots of one size, `unit` long and `amplitude` high.
+SpotKind kind_of(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
+                 double amplitude, double clip) {
+  const Rotation turn = rotation(part.turn);
+  return {kernel_of(layer, part, turn, unit, amplitude), lattice, unit * part.center,
+          support_of(layer, part, turn, unit), static_cast<float>(clip)};
+}
+
+double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
+  return kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
+}
+
+// Adds the sums of one kind's spots to heights at points, which are halved while too many cells lie around
+// them.
+void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x, const float* y,
+             const float* z, float* height) {
+  Box box;
+  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
+  if (n > 1 && spot_cells_around(kind, box).count() > kMostSpotCells) {
+    const int half = n / 2;
+    add_sum(kind, thresholds, half, x, y, z, height);
+    add_sum(kind, thresholds, n - half, x + half, y + half, z + half, height + half);
+    return;
+  }
+  const std::vector<SpotImpulse> impulses = draw_spots(kind, thresholds, box);
+  add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
+}
+
 }  // namespace
 
-SpotNoise::SpotNoise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain)
-    : domain_min_(to_float(domain.min)), domain_max_(to_float(domain.max)) {
+SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+                     ArrayStore& arrays) {
+  SpotNoise noise;
+  noise.low = to_float(domain.min);
+  noise.high = to_float(domain.max);
+  std::vector<SpotKind> kinds;
+  std::vector<std::uint32_t> thresholds;
+  const std::vector<SpotPart> parts = layer.parts.empty() ? std::vector<SpotPart>(1) : layer.parts;
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   for (int j = 0; j < layer.layers; ++j) {
     const double shrink = std::pow(layer.lacunarity, j);
@@ -101,101 +134,78 @@ SpotNoise::SpotNoise(const SpotLayer& layer, std::uint64_t seed, int layer_index
     if (!(largest_coordinate(domain) / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
     const SpotLattice lattice =
         make_spot_lattice(layer, cell, layer.density * std::pow(shrink, layer.exponent - 2.0),
-                          hash_append(layer_seed, static_cast<std::uint32_t>(j)), thresholds_);
+                          hash_append(layer_seed, static_cast<std::uint32_t>(j)), thresholds);
     const double amplitude = (layer.inverted ? 1.0 : -1.0) * layer.amplitude * std::pow(layer.gain, j);
-    if (layer.parts.empty()) add_kind(layer, {}, lattice, unit, amplitude);
-    for (const SpotPart& part : layer.parts) add_kind(layer, part, lattice, unit, amplitude);
+    for (const SpotPart& part : parts) {
+      const double clip = clip_of(layer, part, amplitude);
+      kinds.push_back(kind_of(layer, part, lattice, unit, amplitude, clip));
+      noise.height_bound += clip * (1.0 + kSpotSlack);
+    }
   }
+  noise.kinds = arrays.add(kinds);
+  noise.thresholds = arrays.add(thresholds);
+  return noise;
 }
 
-void SpotNoise::add_kind(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice,
-                         double unit, double amplitude) {
-  const Rotation turn = rotation(part.turn);
-  const double clip =
-      kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
-  kinds_.push_back({kernel_of(layer, part, turn, unit, amplitude), lattice, unit * part.center,
-                    support_of(layer, part, turn, unit), static_cast<float>(clip)});
-  height_bound_ += clip * (1.0 + kSpotSlack);
-}
-
-std::vector<SpotImpulse> SpotNoise::impulses_reaching(int k, const Box& box) const {
+std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box) {
   std::vector<SpotImpulse> impulses;
-  for_each_spot(kinds_[static_cast<std::size_t>(k)], thresholds_.data(), box,
-                [&](const SpotImpulse& impulse) { impulses.push_back(impulse); });
+  for_each_spot(kind, thresholds, box, [&](const SpotImpulse& impulse) { impulses.push_back(impulse); });
   return impulses;
 }
 
-SpotImpulses SpotNoise::draw(const Box& box) const {
-  SpotImpulses impulses;
-  for (int j = 0; j < num_kinds(); ++j)
-    impulses.push_back(impulses_reaching(j, moved_into(box, domain_min_, domain_max_)));
-  return impulses;
+double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side) {
+  double cells = 0.0;
+  for (const SpotKind& kind : arrays.span(noise.kinds))
+    cells += spot_cells_around(kind, {{}, {side, side, side}}).count();
+  return cells;
 }
 
-std::shared_ptr<const SpotImpulses> SpotNoise::gather(const Box& box, const SpotImpulses* of_larger) const {
-  const Box moved = moved_into(box, domain_min_, domain_max_);
+std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
+                                                 const Box& box, const SpotImpulses* of_larger) {
+  const Box moved = moved_into(box, noise.low, noise.high);
+  const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
   const auto too_many = [&](const SpotKind& kind) {
     return spot_cells_around(kind, moved).count() > kMostSpotCells;
   };
-  if (of_larger == nullptr && std::any_of(kinds_.begin(), kinds_.end(), too_many)) return nullptr;
-  if (of_larger == nullptr) return std::make_shared<const SpotImpulses>(draw(box));
-  auto impulses = std::make_shared<SpotImpulses>(kinds_.size());
-  for (std::size_t j = 0; j < kinds_.size(); ++j) {
-    (*impulses)[j] = those_reaching((*of_larger)[j], kinds_[j].support, moved);
+  if (of_larger == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
+  auto impulses = std::make_shared<SpotImpulses>();
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    impulses->push_back(of_larger != nullptr ? those_reaching((*of_larger)[k], kinds[k].support, moved)
+                                             : draw_spots(kinds[k], arrays[noise.thresholds], moved));
   }
   return impulses;
 }
 
-void SpotNoise::evaluate(int n, const float* x, const float* y, const float* z, float* height,
-                         const SpotImpulses* impulses) const {
-  std::vector<float> points(static_cast<std::size_t>(4 * n));
-  float *px = points.data(), *py = px + n, *pz = py + n, *sum = pz + n;
-  for (int i = 0; i < n; ++i) {
-    px[i] = math::clamp(x[i], domain_min_.x, domain_max_.x);
-    py[i] = math::clamp(y[i], domain_min_.y, domain_max_.y);
-    pz[i] = math::clamp(z[i], domain_min_.z, domain_max_.z);
-  }
+void evaluate_heights(const SpotNoise& noise, const ArrayView& arrays, int n, const float* x, const float* y,
+                      const float* z, float* height, const SpotImpulses* impulses) {
+  const PointsInDomain p(noise.low, noise.high, n, x, y, z);
+  const Box box = p.box();
+  const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
+  std::vector<float> sum(static_cast<std::size_t>(n));
   std::fill(height, height + n, 0.0f);
-  Box points_box;
-  for (int i = 0; i < n; ++i) points_box.extend({px[i], py[i], pz[i]});
-  for (std::size_t j = 0; j < kinds_.size(); ++j) {
-    const SpotKind& kind = kinds_[j];
-    std::fill(sum, sum + n, 0.0f);
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const SpotKind& kind = kinds[k];
+    std::fill(sum.begin(), sum.end(), 0.0f);
     if (impulses == nullptr) {
-      add_sum(kind, n, px, py, pz, sum);
+      add_sum(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
     } else {
-      const std::vector<SpotImpulse> near = those_reaching((*impulses)[j], kind.support, points_box);
-      add_spots(kind.kernel, near.data(), near.size(), n, px, py, pz, sum);
+      const std::vector<SpotImpulse> reaching = those_reaching((*impulses)[k], kind.support, box);
+      add_spots(kind.kernel, reaching.data(), reaching.size(), n, p.x(), p.y(), p.z(), sum.data());
     }
-    for (int i = 0; i < n; ++i) height[i] += math::clamp(sum[i], -kind.clip, kind.clip);
+    for (int i = 0; i < n; ++i)
+      height[i] += math::clamp(sum[static_cast<std::size_t>(i)], -kind.clip, kind.clip);
   }
 }
 
-void SpotNoise::add_sum(const SpotKind& kind, int n, const float* x, const float* y, const float* z,
-                        float* height) const {
-  Box box;
-  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  if (n > 1 && spot_cells_around(kind, box).count() > kMostSpotCells) {
-    const int half = n / 2;
-    add_sum(kind, half, x, y, z, height);
-    add_sum(kind, n - half, x + half, y + half, z + half, height + half);
-    return;
-  }
-  const int j = static_cast<int>(&kind - kinds_.data());
-  const std::vector<SpotImpulse> impulses = impulses_reaching(j, box);
-  add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
-}
-
-Interval SpotNoise::bound_heights(const Box& box, const SpotImpulses* impulses) const {
-  const Box moved = moved_into(box, domain_min_, domain_max_);
-  const double slack = 3.0 * kSpotSlack * height_bound_;
+Interval bound_heights(const SpotNoise& noise, const ArrayView& arrays, const Box& box,
+                       const SpotImpulses* impulses) {
+  if (impulses == nullptr) return bound_heights(noise, arrays, box);
+  const Box moved = moved_into(box, noise.low, noise.high);
+  const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
+  const double slack = 3.0 * kSpotSlack * noise.height_bound;
   Interval sum{-slack, slack};
-  for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    if (impulses == nullptr) {
-      sum = plus(sum, bound_drawn_spots(kinds_[k], thresholds_.data(), moved));
-      continue;
-    }
-    SpotSumBound bound{kinds_[k], moved};
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    SpotSumBound bound{kinds[k], moved};
     for (const SpotImpulse& impulse : (*impulses)[k]) bound.add(impulse);
     sum = plus(sum, bound.clipped());
   }

@@ -12,6 +12,7 @@
 #include "tests/benchmarks/lagae_gabor_noise.h"
 #include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/lone_gabor_noise.h"
 
 namespace astrolith {
 namespace {
@@ -70,8 +71,8 @@ struct SurfaceBlocks {
 };
 
 double surface_rate(const SurfaceBlocks& blocks, int bandwidth) {
-  const PreparedBody body = prepare_body(*testing::sphere_recipe(1.0).body, 1);
-  const GaborSurfaceNoise noise(layer_of(bandwidth, blocks.pixel), 1, 0, body, {{-2, -2, -2}, {2, 2, 2}});
+  const testing::LoneGaborNoise noise(layer_of(bandwidth, blocks.pixel), 1, 0,
+                                      *testing::sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
   constexpr int n = SurfaceBlocks::kSide * SurfaceBlocks::kSide;
   std::vector<float> height(n);
   return static_cast<double>(blocks.x.size()) / least_processor_seconds([&] {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "synthesis/noise/fractal_noise.h"
+#include "synthesis/noise/lone_noise.h"
 #include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"
 
@@ -15,14 +16,14 @@ namespace {
 constexpr int kSide = 256;
 constexpr float kStep = 0.02f;
 
-FractalNoise noise_of(Noise noise, int octaves) {
+LoneNoise<FractalNoise> noise_of(Noise noise, int octaves) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, octaves);
   layer.noise = noise;
   return {layer, 1, 0, {{-10, -10, -10}, {10, 10, 10}}};
 }
 
 // Boxes of nx x ny x nz points one after another; their coordinates are written each time.
-double rate(const FractalNoise& noise, int nx, int ny, int nz, int boxes) {
+double rate(const LoneNoise<FractalNoise>& noise, int nx, int ny, int nz, int boxes) {
   const auto n = static_cast<std::size_t>(nx * ny * nz);
   std::vector<float> x(n), y(n), z(n), height(n);
   const double seconds = least_processor_seconds([&] {

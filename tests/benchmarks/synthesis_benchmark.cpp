@@ -6,6 +6,7 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/gabor/gabor_texture.h"
 #include "synthesis/noise/fractal_noise.h"
+#include "synthesis/noise/lone_noise.h"
 #include "synthesis/spots/spot_noise.h"
 #include "tests/synthesis/bodies.h"
 
@@ -33,7 +34,7 @@ void fractal(benchmark::State& state) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, static_cast<int>(state.range(1)));
   layer.noise = static_cast<Noise>(state.range(0));
   layer.gradient_modulation = 0.1 * static_cast<double>(state.range(2));
-  const FractalNoise noise(layer, 1, 0, domain);
+  const LoneNoise<FractalNoise> noise(layer, 1, 0, domain);
   std::vector<float> height(kPoints);
   for (auto _ : state) {
     noise.evaluate(kPoints, row.x.data(), row.y.data(), row.z.data(), height.data());
@@ -55,7 +56,7 @@ void spots(benchmark::State& state) {
   layer.cell_size = 1.0;
   layer.kappa = -0.5;
   layer.layers = 3;
-  const SpotNoise noise(layer, 1, 0, {{-100, -100, -100}, {100, 100, 100}});
+  const LoneNoise<SpotNoise> noise(layer, 1, 0, {{-100, -100, -100}, {100, 100, 100}});
   std::vector<float> x, y, z, height(729);
   for (int i = 0; i < 729; ++i) {
     x.push_back(0.1f * static_cast<float>(i % 9));

@@ -113,15 +113,15 @@ void measure_noise(DeviceBackend& backend, const char* name, const Limits& limit
 
 // The whole field at points around the surface.
 struct EvaluateField {
-  FlatField field;
-  FlatBlocks parts;
+  FieldView field;
+  BlockListArrays lists;
   Vec3f low, extent;
   float* out;
   ASTROLITH_HD void operator()(std::size_t i) const {
     const Vec3f p{low.x + extent.x * static_cast<float>(i & 255) / 256.0f,
                   low.y + extent.y * static_cast<float>(i >> 8 & 255) / 256.0f,
                   low.z + extent.z * static_cast<float>(i >> 16) / 256.0f};
-    out[i] = flat_value(field, parts.block(0), p, std::numeric_limits<float>::infinity());
+    out[i] = field_at(field, lists.block(0), p, std::numeric_limits<float>::infinity());
   }
 };
 
@@ -162,22 +162,21 @@ void run_counted_kernels(DeviceBackend& backend) {
 }
 
 void measure_field(DeviceBackend& backend, const ImplicitField& field, const Limits& limits) {
-  const FlatFieldData data(field);
-  const FieldOnBackend<DeviceBackend> on_device(backend, data);
+  const FieldOnBackend<DeviceBackend> on_device(backend, field.tables());
   const Vec3d c = field.bounds().center();
   const Vec3d half = 0.02 * field.bounds().extent();
-  FlatBlocksData blocks(data);
-  blocks.add(field.gather({c - half, c + half}));
-  const BlocksOnBackend<DeviceBackend> parts(backend, blocks);
+  BlockListStore blocks(field.tables());
+  blocks.add(field.tables(), {c - half, c + half});
+  const BlocksOnBackend<DeviceBackend> lists(backend, blocks);
   const std::size_t n = std::size_t{1} << 24;
   auto out = backend.allocate<float>(n);
   const auto single = [](const Vec3d& v) { return Vec3f{float(v.x), float(v.y), float(v.z)}; };
-  const EvaluateField body{on_device.view(), parts.view(), single(c - half), single(2.0 * half), out.data()};
+  const EvaluateField body{on_device.view(), lists.view(), single(c - half), single(2.0 * half), out.data()};
   const double s = seconds_of([&] { backend.launch("field", n, body); });
-  const auto metaballs = static_cast<double>(blocks.spheres.size());
+  const auto metaballs = static_cast<double>(blocks.metaballs.size());
   const double rate = static_cast<double>(n) / s;
-  row("body and layers, " + std::to_string(blocks.spheres.size()) + " metaballs", rate / 1e6, "M points/s", s,
-      rate * (metaballs * cost::kMetaball + kOctaves * cost::kSimplex) / limits.instructions,
+  row("body and layers, " + std::to_string(blocks.metaballs.size()) + " metaballs", rate / 1e6, "M points/s",
+      s, rate * (metaballs * cost::kMetaball + kOctaves * cost::kSimplex) / limits.instructions,
       "arithmetic (without spots)");
 }
 
@@ -242,9 +241,9 @@ void measure_swarm(const Limits& limits) {
     lines.block.push_back(0);
   }
   const Box domain{{-1, -1, -1}, {1, 1, 1}};
-  CandidateLayers layers;
-  for (int l = 0; l < 3; ++l) layers.emplace_back(testing::fractal_layer(0.01, 4.0, 8), 1, l, domain);
-  const std::vector<CandidateLayers> candidates(kCandidates, layers);
+  const std::vector<FractalLayer> layers(3, testing::fractal_layer(0.01, 4.0, 8));
+  Candidates candidates;
+  for (std::size_t c = 0; c < kCandidates; ++c) candidates.add(layers, 1, domain);
   std::vector<SurfletArrays> sets;
   for (std::size_t c = 0; c < kCandidates; ++c) {
     std::vector<Vec3d> points, normals;

@@ -4,7 +4,6 @@
 
 #include "estimation/shape/model/point_clusters.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/noise/fractal_noise.h"
 
 namespace astrolith {
 namespace {
@@ -15,20 +14,11 @@ constexpr int kTargetSteps = 6;
 
 constexpr std::size_t kPointsPerBlock = 256;
 
-std::vector<FractalNoise> prepare(std::span<const FractalLayer> layers, std::uint64_t seed,
-                                  const Box& domain) {
-  std::vector<FractalNoise> noises;
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    noises.emplace_back(layers[i], seed, static_cast<int>(i), domain);
-  }
-  return noises;
-}
-
 // F at the points of one block after they moved by t.
 class BlockEvaluation {
  public:
-  BlockEvaluation(const PreparedMetaballs& metaballs, const std::vector<FractalNoise>& noises, std::size_t n)
-      : metaballs_(metaballs), noises_(noises) {
+  BlockEvaluation(const PreparedMetaballs& metaballs, const Candidates& layers, std::size_t n)
+      : metaballs_(metaballs), layers_(layers) {
     for (auto& a : arrays_) a.resize(n);
   }
 
@@ -44,8 +34,8 @@ class BlockEvaluation {
     const int n = static_cast<int>(t.size());
     evaluate_metaballs(metaballs_, n, x.data(), y.data(), z.data(), f.data(), gx.data(), gy.data(),
                        gz.data());
-    for (const FractalNoise& noise : noises_) {
-      noise.evaluate(n, x.data(), y.data(), z.data(), height.data());
+    for (const FractalNoise& noise : layers_.noises) {
+      evaluate_heights(noise, layers_.arrays.view(), n, x.data(), y.data(), z.data(), height.data());
       for (std::size_t i = 0; i < t.size(); ++i) f[i] += height[i];
     }
     return f;
@@ -53,7 +43,7 @@ class BlockEvaluation {
 
  private:
   const PreparedMetaballs& metaballs_;
-  const std::vector<FractalNoise>& noises_;
+  const Candidates& layers_;  // of one candidate
   std::array<std::vector<float>, 8> arrays_;
 };
 
@@ -94,13 +84,14 @@ void SurfaceProbe::add_block(const PreparedMetaballs& base, const std::vector<Pr
 }
 
 std::vector<double> SurfaceProbe::heights(std::span<const FractalLayer> layers, std::uint64_t seed) const {
-  const std::vector<FractalNoise> noises = prepare(layers, seed, domain_);
+  Candidates candidate;
+  candidate.add(layers, seed, domain_);
   const float reach = static_cast<float>(reach_);
   std::vector<double> result(size_);
   parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
     const Block& block = blocks_[static_cast<std::size_t>(b)];
     const std::size_t n = block.points.size();
-    BlockEvaluation evaluation(block.metaballs, noises, n);
+    BlockEvaluation evaluation(block.metaballs, candidate, n);
     std::vector<float> t(n, 0.0f);
     for (int step = 0; step < kSteps; ++step) {
       const std::vector<float>& f = evaluation.at(block.start, block.direction, t);
@@ -126,12 +117,10 @@ void SurfaceProbe::add_lines(const Block& block) {
 std::vector<std::vector<double>> SurfaceProbe::heights(CandidateEvaluator& evaluator,
                                                        std::span<const std::vector<FractalLayer>> candidates,
                                                        std::uint64_t seed) const {
-  std::vector<CandidateLayers> noises;
-  for (const std::vector<FractalLayer>& layers : candidates) {
-    noises.push_back(prepare(layers, seed, domain_));
-  }
+  Candidates all;
+  for (const std::vector<FractalLayer>& layers : candidates) all.add(layers, seed, domain_);
   std::vector<std::vector<double>> result;
-  for (const std::vector<float>& t : evaluator.heights(lines_, noises)) {
+  for (const std::vector<float>& t : evaluator.heights(lines_, all)) {
     std::vector<double>& heights = result.emplace_back(size_);
     std::size_t line = 0;
     for (const Block& block : blocks_) {

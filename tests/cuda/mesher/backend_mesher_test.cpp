@@ -6,6 +6,7 @@
 
 #include "cuda/device.h"
 #include "cuda/host_backend.h"
+#include "cuda/mesher/gpu_obstacle.h"
 #include "cuda/mesher/mesh_field.h"
 #include "recipe/recipe_json.h"
 #include "tests/support/test_size.h"
@@ -80,7 +81,7 @@ TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   Recipe gravel = potato_recipe(10, 8);
   gravel.layers = {testing::gabor_layer(0.06, 0.003)};
   const ImplicitField noisy(gravel);
-  ASSERT_EQ(obstacle_to_flattening(noisy, block_side(noisy.bounds(), 12)), "");
+  ASSERT_EQ(obstacle_on_gpu(noisy.tables(), block_side(noisy.bounds(), 12)), "");
   expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
 }
 
@@ -112,7 +113,7 @@ TEST(BackendMesher, MeshesTheExamplesAsTheCpu) {
   for (const auto& entry : std::filesystem::directory_iterator(examples())) {
     if (entry.path().extension() != ".json") continue;
     const ImplicitField field(read_recipe(entry.path()));
-    if (!obstacle_to_flattening(field, block_side(field.bounds(), kExampleCells)).empty()) continue;
+    if (!obstacle_on_gpu(field.tables(), block_side(field.bounds(), kExampleCells)).empty()) continue;
     SCOPED_TRACE(entry.path().filename().string());
     expect_same(on_twin(field, kExampleCells), on_cpu(field, kExampleCells));
     ++meshed;

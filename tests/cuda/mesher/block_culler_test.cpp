@@ -1,10 +1,11 @@
 // The blocks that a backend finds, and what reaches each, against the CPU's.
-#include "cuda/mesher/block_parts.h"
+#include "cuda/mesher/gathered_lists.h"
 
 #include <algorithm>
 #include <cstring>
 
 #include "cuda/host_backend.h"
+#include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/random_recipes.h"
 
@@ -37,12 +38,13 @@ void expect_same(const std::vector<T>& cpu, const T* twin, const char* what) {
   EXPECT_TRUE(cpu.empty() || std::memcmp(cpu.data(), twin, cpu.size() * sizeof(T)) == 0) << what;
 }
 
-// Gabor impulses are compared by what they make: a backend may hold some more that add nothing.
-void expect_same_lists(const FlatBlocksData& cpu, const FlatBlocks& twin) {
-  expect_same(cpu.first_sphere, twin.first_sphere, "metaballs");
-  expect_same(cpu.spheres, twin.spheres, "metaballs");
-  expect_same(cpu.first_impulse, twin.first_impulse, "spots");
-  expect_same(cpu.impulses, twin.impulses, "spots");
+void expect_same_lists(const BlockListStore& cpu, const BlockListArrays& twin) {
+  expect_same(cpu.first_metaball, twin.first_metaball, "metaballs");
+  expect_same(cpu.metaballs, twin.metaballs, "metaballs");
+  expect_same(cpu.first_spot, twin.first_spot, "spots");
+  expect_same(cpu.spots, twin.spots, "spots");
+  expect_same(cpu.first_gabor, twin.first_gabor, "Gabor impulses");
+  expect_same(cpu.gabor, twin.gabor, "Gabor impulses");
   expect_same(cpu.first_landform, twin.first_landform, "craters and boulders");
   expect_same(cpu.landforms, twin.landforms, "craters and boulders");
 }
@@ -54,9 +56,9 @@ void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& o
   const auto cpu = blocks_of_cpu(field, grid, layers);
 
   HostBackend backend(std::size_t{1} << 34, order);
-  const FlatFieldData data(field);
-  const FieldOnBackend<HostBackend> on_machine(backend, data);
-  BlockCuller<HostBackend> culler(backend, data, on_machine.view(), grid, gabor_margin(data));
+  const FieldOnBackend<HostBackend> on_backend(backend, field.tables());
+  BlockCuller<HostBackend> culler(backend, field.tables(), on_backend.view(), grid,
+                                  gabor_margin(field.tables()));
   auto failure = zeros_on<std::uint32_t>(backend, 1);
   const CulledBlocks<HostBackend> twin = culler.cull(0, grid.blocks(2), failure);
   ASSERT_EQ(backend.read(failure, 0), 0u);
@@ -66,11 +68,11 @@ void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& o
     ASSERT_EQ(twin.on_host[i].y, cpu[i].y) << i;
     ASSERT_EQ(twin.on_host[i].z, layers[i]) << i;
   }
-  const BlockParts<HostBackend> parts(backend, data, {on_machine.view(), grid, culler.lists(), twin.view()},
-                                      cpu.size());
-  FlatBlocksData lists(data);
-  for (const auto& node : cpu) lists.add(node.field);
-  expect_same_lists(lists, parts.view());
+  const GatheredLists<HostBackend> gathered(backend, {on_backend.view(), grid, culler.lists(), twin.view()},
+                                            cpu.size());
+  BlockListStore lists(field.tables());
+  for (const auto& node : cpu) lists.add(field.tables(), node.field.box());
+  expect_same_lists(lists, gathered.view());
 }
 
 TEST(BlockCuller, FindsTheBlocksAndListsOfTheCpu) {
@@ -90,9 +92,8 @@ TEST(BlockCuller, SaysWhereTheBodyFillsTheBorder) {
   const SampleGrid samples = make_sample_grid({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
   const MeshGrid grid{samples, window_of_tile<kBlockCells>(samples, {}), true};
   HostBackend backend;
-  const FlatFieldData data(field);
-  const FieldOnBackend<HostBackend> on_machine(backend, data);
-  BlockCuller<HostBackend> culler(backend, data, on_machine.view(), grid, 0.0);
+  const FieldOnBackend<HostBackend> on_backend(backend, field.tables());
+  BlockCuller<HostBackend> culler(backend, field.tables(), on_backend.view(), grid, 0.0);
   auto failure = zeros_on<std::uint32_t>(backend, 1);
   culler.cull(0, grid.blocks(2), failure);
   EXPECT_EQ(backend.read(failure, 0), static_cast<std::uint32_t>(MeshFailure::kBorder));

@@ -116,9 +116,9 @@ TEST(LayerJoin, AnIntersectionIsTheUnionUpsideDown) {
       Combination how = kind(Combine::kBlend);
       how.width = width;
       float above = a, height = b, below = -a, negative = -b;
-      join_elevation(how, 1, nullptr, &height, &above);
+      join_elevations(how, 1, nullptr, &height, &above);
       how.intersection = true;
-      join_elevation(how, 1, nullptr, &negative, &below);
+      join_elevations(how, 1, nullptr, &negative, &below);
       EXPECT_EQ(above, -below);
     }
   }
@@ -255,7 +255,7 @@ TEST(LayerJoin, IsTheSameNearAnOrigin) {
     const float x = 0.01f, y = -0.02f, z = 0.005f;
     float value = 0.0f;
     field.gather({origin - Vec3d{0.03, 0.03, 0.03}, origin + Vec3d{0.03, 0.03, 0.03}})
-        .evaluate_near(origin, {&x, 1}, {&y, 1}, {&z, 1}, {&value, 1}, kExactEverywhere);
+        .evaluate_local(origin, {&x, 1}, {&y, 1}, {&z, 1}, {&value, 1}, kExactEverywhere);
     EXPECT_NEAR(static_cast<double>(value), field.value(p), 1e-5);
   }
 }

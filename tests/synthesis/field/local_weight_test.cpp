@@ -22,10 +22,19 @@ Recipe halves(int num_spheres, std::uint64_t seed) {
   return recipe;
 }
 
-std::vector<float> weights(const LocalWeight& weight, const std::vector<float>& x,
-                           const std::vector<float>& y, const std::vector<float>& z) {
+struct LoneWeight {
+  LoneWeight(const Locality& locality, const MetaballBody& body)
+      : tables(make_local_weight(locality, body, "layer", arrays)) {}
+
+  ArrayStore arrays;
+  LocalWeight tables;
+};
+
+std::vector<float> weights(const LoneWeight& weight, const std::vector<float>& x, const std::vector<float>& y,
+                           const std::vector<float>& z) {
   std::vector<float> w(x.size(), 1.0f);
-  weight.multiply(static_cast<int>(x.size()), x.data(), y.data(), z.data(), w.data());
+  multiply_by_weight(weight.tables, weight.arrays.view(), static_cast<int>(x.size()), x.data(), y.data(),
+                     z.data(), w.data());
   return w;
 }
 
@@ -50,7 +59,7 @@ double nearest(const MetaballBody& body, const SphereGroup& group, const Vec3d& 
 TEST(LocalWeight, IsTheFormulaAndAddsUpToOne) {
   const MetaballBody body = *halves(80, 3).body;
   const double width = 0.05;
-  const LocalWeight left({"left", width}, body), right({"right", width}, body);
+  const LoneWeight left({"left", width}, body), right({"right", width}, body);
   CounterRandom random(1);
   Points points;
   for (int i = 0; i < 2000; ++i) {
@@ -72,7 +81,7 @@ TEST(LocalWeight, IsTheFormulaAndAddsUpToOne) {
 
 TEST(LocalWeight, BitsDependOnThePointAlone) {
   const MetaballBody body = *halves(120, 5).body;
-  const LocalWeight weight({"left", 0.02}, body);
+  const LoneWeight weight({"left", 0.02}, body);
   CounterRandom random(2);
   Points points;
   for (int i = 0; i < 700; ++i) {
@@ -82,6 +91,9 @@ TEST(LocalWeight, BitsDependOnThePointAlone) {
   for (std::size_t i = 0; i < together.size(); ++i) {
     const float alone = weights(weight, {points.x[i]}, {points.y[i]}, {points.z[i]})[0];
     ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
+    const float at_point =
+        weight_at(weight.tables, weight.arrays.view(), {points.x[i], points.y[i], points.z[i]});
+    ASSERT_EQ(math::bits_of(at_point), math::bits_of(together[i]));
   }
 }
 
@@ -91,10 +103,11 @@ TEST(LocalWeight, BoundsHoldEveryValue) {
   for (int k = 0; k < 300; ++k) {
     const MetaballBody body = *halves(2 + k % 60, random.next()).body;
     if (body.groups[0].spheres.empty() || body.groups[1].spheres.empty()) continue;
-    const LocalWeight weight({"left", std::pow(10.0, random.uniform(-3.0, -0.5))}, body);
+    const LoneWeight weight({"left", std::pow(10.0, random.uniform(-3.0, -0.5))}, body);
     const Vec3d corner{random.uniform(-0.7, 0.6), random.uniform(-0.5, 0.4), random.uniform(-0.5, 0.4)};
     const double size = std::pow(10.0, random.uniform(-3.0, -0.5));
-    const Interval bound = weight.bound({corner, corner + Vec3d{size, size, size}});
+    const Interval bound =
+        bound_weight(weight.tables, weight.arrays.view(), {corner, corner + Vec3d{size, size, size}});
     narrow += bound.high - bound.low < 0.2;
     Points points;
     for (int i = 0; i < 50; ++i) {
@@ -113,11 +126,11 @@ TEST(LocalWeight, AGroupOfAllSpheresIsEverywhere) {
   recipe.body->groups = {{"all", {0, 1, 2, 3, 4}}};
   Points points;
   points.add({3, 0, 0});
-  EXPECT_EQ(weights(LocalWeight({"all", 1.0}, *recipe.body), points.x, points.y, points.z)[0], 1.0f);
+  EXPECT_EQ(weights(LoneWeight({"all", 1.0}, *recipe.body), points.x, points.y, points.z)[0], 1.0f);
 }
 
 TEST(LocalWeight, NeedsItsGroup) {
-  EXPECT_THROW(LocalWeight({"middle", 1.0}, *halves(10, 1).body), InputError);
+  EXPECT_THROW(LoneWeight({"middle", 1.0}, *halves(10, 1).body), InputError);
 }
 
 // A layer on the left half leaves the far right as it is; no box is proved empty that is not.

@@ -57,7 +57,7 @@ float value_near(const ImplicitField& field, const Vec3d& origin, const Vec3d& l
               z = static_cast<float>(local.z);
   float value = 0.0f;
   field.gather(Box{origin, origin})
-      .evaluate_near(origin, {&x, 1}, {&y, 1}, {&z, 1}, {&value, 1}, kExactEverywhere);
+      .evaluate_local(origin, {&x, 1}, {&y, 1}, {&z, 1}, {&value, 1}, kExactEverywhere);
   return value;
 }
 

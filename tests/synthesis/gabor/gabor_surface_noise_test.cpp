@@ -5,6 +5,7 @@
 
 #include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/lone_gabor_noise.h"
 
 namespace astrolith {
 namespace {
@@ -39,7 +40,7 @@ struct FlatPatch {
     Box domain;
     domain.extend({-2, -2, -2});
     domain.extend({2, 2, 2});
-    const GaborSurfaceNoise noise(layer, seed, 0, prepare_body(*sphere_recipe(1.0).body, 1), domain);
+    const testing::LoneGaborNoise noise(layer, seed, 0, *sphere_recipe(1.0).body, domain);
     std::vector<float> h(px.size());
     noise.evaluate(n * n, px.data(), py.data(), pz.data(), h.data());
     return h;
@@ -135,8 +136,8 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
 
 // Few points in two places so far apart that the cells between them are not drawn: a group is split.
 TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
-  const GaborSurfaceNoise noise(layer_of({{1, 0.1, 0.2, 1.0}}, 0.002, 1.0), 7, 0,
-                                prepare_body(*sphere_recipe(1.0).body, 1), {{-2, -2, -2}, {2, 2, 2}});
+  const testing::LoneGaborNoise noise(layer_of({{1, 0.1, 0.2, 1.0}}, 0.002, 1.0), 7, 0,
+                                      *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
   CounterRandom random(3);
   std::vector<float> x, y, z, height(11);
   for (std::size_t i = 0; i < height.size(); ++i) {
@@ -154,8 +155,8 @@ TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
 
 // The error falls as the square of the size, whether corners share their impulses or each draws its own.
 TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
-  const GaborSurfaceNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
-                                prepare_body(*sphere_recipe(1.0).body, 1), {{-2, -2, -2}, {2, 2, 2}});
+  const testing::LoneGaborNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
+                                      *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
   CounterRandom random(3);
   const auto largest_error = [&](double h, double spread) {
     std::vector<float> x, y, z, exact(240), linear(240);
@@ -216,8 +217,8 @@ TEST(GaborSurfaceNoise, OtherLayersMoveItNotChangeIt) {
   domain.extend({-2, -2, -2});
   domain.extend({2, 2, 2});
   const GaborLayer layer = layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 1.0);
-  const PreparedBody body = prepare_body(*sphere_recipe(1.0).body, 1);
-  const GaborSurfaceNoise first(layer, 1, 0, body, domain), second(layer, 1, 1, body, domain);
+  const MetaballBody body = *sphere_recipe(1.0).body;
+  const testing::LoneGaborNoise first(layer, 1, 0, body, domain), second(layer, 1, 1, body, domain);
   CounterRandom random(6);
   double product = 0.0;
   for (int i = 0; i < 1000; ++i) {

@@ -215,22 +215,28 @@ TEST(CraterRelief, BoundsOverBoxesAreNeverWrong) {
       centers.push_back(crater.position);
       before.push_back(static_cast<float>(random.uniform(-0.05, 0.05)));
     }
-    const CraterRelief relief(layer, craters, centers, before, 0.05);
+    ArrayStore arrays;
+    const CraterRelief relief = make_crater_relief(layer, craters, centers, before, 0.05, arrays);
+    const BoxTree tree = crater_tree(arrays.view().span(relief.craters));
     for (int b = 0; b < 60; ++b) {
       const double size = std::pow(10.0, random.uniform(-2.0, 0.0));
       const Vec3d corner{random.uniform(-1.2, 1.0), random.uniform(-1.2, 1.0), random.uniform(-1.2, 1.0)};
       const Box box{corner, corner + Vec3d{size, size, size}};
-      const Interval bound = relief.bound(box, {-0.05, 0.05});
+      const auto for_each_reaching = [&](const auto& visit) {
+        for (const std::uint32_t number : tree.touching(box)) visit(number);
+      };
+      const Interval bound =
+          bound_cratered_elevation(relief, arrays.view(), for_each_reaching, box, {-0.05, 0.05});
       for (int i = 0; i < 40; ++i) {
         const float x = static_cast<float>(random.uniform(box.min.x, box.max.x)),
                     y = static_cast<float>(random.uniform(box.min.y, box.max.y)),
                     z = static_cast<float>(random.uniform(box.min.z, box.max.z));
         float e = static_cast<float>(random.uniform(-0.05, 0.05));
-        relief.apply(1, &x, &y, &z, &e);
+        apply_craters(relief, arrays.view(), tree, 1, &x, &y, &z, &e);
         ASSERT_GE(double{e}, bound.low - 1e-7);
         ASSERT_LE(double{e}, bound.high + 1e-7);
       }
-      tight += bound.high - bound.low < 0.6 * relief.elevation_bound();
+      tight += bound.high - bound.low < 0.6 * relief.elevation_bound;
     }
   }
   EXPECT_GT(tight, 200);

@@ -1,5 +1,6 @@
 #include "synthesis/landforms/population.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/field/implicit_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "synthesis/noise/fractal_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 #include <cmath>
 #include <utility>
@@ -20,7 +21,7 @@ const Box kDomain{{-10, -10, -10}, {10, 10, 10}};
 struct Heights {
   std::vector<float> x, y, z, height;
 
-  Heights(const FractalNoise& noise, const Box& box, int n, std::uint64_t seed) {
+  Heights(const LoneNoise<FractalNoise>& noise, const Box& box, int n, std::uint64_t seed) {
     CounterRandom random(seed);
     for (int i = 0; i < n; ++i) {
       x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
@@ -45,7 +46,7 @@ FractalLayer random_layer(CounterRandom& random) {
 }
 
 TEST(FractalNoise, OneOctaveOfSimplexNoiseKeepsItsBits) {
-  const FractalNoise noise(testing::fractal_layer(0.5, 1.0, 1), 1, 0, kDomain);
+  const LoneNoise<FractalNoise> noise(testing::fractal_layer(0.5, 1.0, 1), 1, 0, kDomain);
   const Heights h(noise, kDomain, 4096, 1);
   std::uint32_t checksum = 0;
   for (const float v : h.height) checksum = checksum * 31u + static_cast<std::uint32_t>(math::bits_of(v));
@@ -63,7 +64,7 @@ TEST(FractalNoise, VectorsGiveTheBitsOfSinglePoints) {
   for (const auto& [noise, function] : kFunctions) {
     FractalLayer layer = testing::fractal_layer(1.0, 1.0, 1);
     layer.noise = noise;
-    const Heights h(FractalNoise(layer, 4, 0, kDomain), kDomain, 5000, 1);
+    const Heights h(LoneNoise<FractalNoise>(layer, 4, 0, kDomain), kDomain, 5000, 1);
     const std::uint32_t seed = hash_append(hash_seed(4, 0), 0);
     for (std::size_t i = 0; i < h.x.size(); ++i) {
       ASSERT_EQ(h.height[i], function(h.x[i], h.y[i], h.z[i], seed));
@@ -74,7 +75,7 @@ TEST(FractalNoise, VectorsGiveTheBitsOfSinglePoints) {
 TEST(FractalNoise, IsTheSumOfItsOctaves) {
   FractalLayer layer = testing::fractal_layer(0.8, 1.3, 3);
   layer.gain = 0.4;
-  const FractalNoise noise(layer, 5, 2, kDomain);
+  const LoneNoise<FractalNoise> noise(layer, 5, 2, kDomain);
   const Heights h(noise, kDomain, 500, 2);
   const std::uint32_t seed = hash_seed(5, 2);
   for (std::size_t i = 0; i < h.x.size(); ++i) {
@@ -93,7 +94,7 @@ TEST(FractalNoise, VariancesOfOctavesAddUp) {
   FractalLayer layer = testing::fractal_layer(2.0, 3.0, 4);
   layer.noise = Noise::kPerlin;
   layer.bias = {0.3, 0.7, 0.1};
-  const Heights h(FractalNoise(layer, 9, 0, kDomain), kDomain, 200000, 3);
+  const Heights h(LoneNoise<FractalNoise>(layer, 9, 0, kDomain), kDomain, 200000, 3);
   double squares = 0.0, expected = 0.0;
   for (const float v : h.height) squares += static_cast<double>(v * v);
   for (int o = 0; o < 4; ++o) expected += std::pow(2.0 * 0.2605 * std::pow(0.5, o), 2);
@@ -102,11 +103,11 @@ TEST(FractalNoise, VariancesOfOctavesAddUp) {
 
 TEST(FractalNoise, ModulationSubduesSteepPlaces) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, 6);
-  const Heights plain(FractalNoise(layer, 1, 0, kDomain), kDomain, 5000, 4);
+  const Heights plain(LoneNoise<FractalNoise>(layer, 1, 0, kDomain), kDomain, 5000, 4);
   layer.gradient_modulation = 1e-9;
-  const Heights same(FractalNoise(layer, 1, 0, kDomain), kDomain, 5000, 4);
+  const Heights same(LoneNoise<FractalNoise>(layer, 1, 0, kDomain), kDomain, 5000, 4);
   layer.gradient_modulation = 0.3;
-  const Heights subdued(FractalNoise(layer, 1, 0, kDomain), kDomain, 5000, 4);
+  const Heights subdued(LoneNoise<FractalNoise>(layer, 1, 0, kDomain), kDomain, 5000, 4);
   double plain_squares = 0.0, subdued_squares = 0.0;
   for (std::size_t i = 0; i < plain.height.size(); ++i) {
     ASSERT_NEAR(plain.height[i], same.height[i], 1e-5);
@@ -121,7 +122,7 @@ TEST(FractalNoise, BoundsOverBoxesAreNeverWrong) {
   CounterRandom random(7);
   int tight = 0;
   for (int k = 0; k < 3000; ++k) {
-    const FractalNoise noise(random_layer(random), random.next(), 1, kDomain);
+    const LoneNoise<FractalNoise> noise(random_layer(random), random.next(), 1, kDomain);
     const double size = std::pow(10.0, random.uniform(-3.0, 0.5));
     const Vec3d corner{random.uniform(-11, 10), random.uniform(-11, 10), random.uniform(-11, 10)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};
@@ -140,7 +141,7 @@ TEST(FractalNoise, BoundsOverBoxesAreNeverWrong) {
 TEST(FractalNoise, ChunksDoNotMatter) {
   CounterRandom random(8);
   for (int k = 0; k < 20; ++k) {
-    const FractalNoise noise(random_layer(random), 3, 1, kDomain);
+    const LoneNoise<FractalNoise> noise(random_layer(random), 3, 1, kDomain);
     const Heights h(noise, kDomain, 700, 5);
     for (std::size_t i = 0; i < h.x.size(); i += 13) {
       float alone = 0.0f;

@@ -1,4 +1,5 @@
 #include "synthesis/noise/phasor_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 #include <array>
 #include <vector>
@@ -38,8 +39,8 @@ Points scattered(int n) {
 TEST(PhasorNoise, PhasesAreUniform) {
   const Points p = scattered(40000);
   std::vector<float> turns(p.x.size());
-  PhasorNoise(layer_of(PhasorProfile::kSine), 1, 0, kDomain)
-      .evaluate_phase(p.size(), p.x.data(), p.y.data(), p.z.data(), turns.data());
+  const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kSine), 1, 0, kDomain);
+  evaluate_phases(noise.noise(), p.size(), p.x.data(), p.y.data(), p.z.data(), turns.data());
   std::array<int, 16> count{};
   for (const float t : turns) {
     ASSERT_TRUE(t >= -0.5f && t <= 0.5f);
@@ -54,7 +55,7 @@ TEST(PhasorNoise, ProfilesHaveTheirMeanVarianceAndRange) {
   const Points p = scattered(40000);
   const double variances[] = {0.5, 1.0 / 3.0, 1.0 / 3.0, 1.0};
   for (const PhasorProfile profile : kPhasorProfiles) {
-    const PhasorNoise noise(layer_of(profile), 2, 0, kDomain);
+    const LoneNoise<PhasorNoise> noise(layer_of(profile), 2, 0, kDomain);
     std::vector<float> height(p.x.size());
     noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), height.data());
     double sum = 0.0, squares = 0.0;
@@ -73,7 +74,7 @@ TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
   PhasorLayer layer = layer_of(PhasorProfile::kSine);
   layer.direction = {0, 3, 4};
   layer.spread = 0.0;
-  const PhasorNoise noise(layer, 4, 0, kDomain);
+  const LoneNoise<PhasorNoise> noise(layer, 4, 0, kDomain);
   const auto gain = [&](const Vec3d& u) {
     const double h = 0.01;
     double sum = 0.0;
@@ -85,7 +86,7 @@ TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
         y[k] = p.y[i] + static_cast<float>(h * static_cast<double>(k) * u.y);
         z[k] = p.z[i] + static_cast<float>(h * static_cast<double>(k) * u.z);
       }
-      noise.evaluate_phase(2, x.data(), y.data(), z.data(), turns.data());
+      evaluate_phases(noise.noise(), 2, x.data(), y.data(), z.data(), turns.data());
       const double step = double{turns[1]} - double{turns[0]};
       sum += step - std::round(step);
     }
@@ -97,7 +98,7 @@ TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
 
 // What sets it apart from Gabor noise: a sine reaches its full height in every wavelength.
 TEST(PhasorNoise, ContrastNeverFades) {
-  const PhasorNoise noise(layer_of(PhasorProfile::kSine), 6, 0, kDomain);
+  const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kSine), 6, 0, kDomain);
   int full = 0, stretches = 0;
   for (double start = -90.0; start < 90.0; start += 0.6) {
     float highest = -2.0f, lowest = 2.0f;
@@ -115,7 +116,7 @@ TEST(PhasorNoise, ContrastNeverFades) {
 }
 
 TEST(PhasorNoise, BitsDependOnThePointAlone) {
-  const PhasorNoise noise(layer_of(PhasorProfile::kTriangle), 9, 1, kDomain);
+  const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kTriangle), 9, 1, kDomain);
   const Points p = scattered(301);
   std::vector<float> together(p.x.size());
   noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), together.data());

@@ -1,4 +1,5 @@
 #include "synthesis/noise/random_phase_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 #include <complex>
 #include <cstdio>
@@ -23,7 +24,11 @@ RandomPhaseLayer layer_of(double randomness) {
   return layer;
 }
 
-float height_at(const RandomPhaseNoise& noise, const Vec3d& p) {
+std::span<const Wave> waves_of(const LoneNoise<RandomPhaseNoise>& noise) {
+  return noise.arrays().span(noise.noise().waves);
+}
+
+float height_at(const LoneNoise<RandomPhaseNoise>& noise, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float height = 0.0f;
   noise.evaluate(1, &x, &y, &z, &height);
@@ -37,7 +42,8 @@ TEST(RandomPhaseNoise, HasItsMeanAndVarianceEverywhere) {
       double sum = 0.0, squares = 0.0, fourth = 0.0;
       constexpr int kSeeds = 4000;
       for (int seed = 0; seed < kSeeds; ++seed) {
-        const RandomPhaseNoise noise(layer_of(randomness), static_cast<std::uint64_t>(seed), 0, kDomain);
+        const LoneNoise<RandomPhaseNoise> noise(layer_of(randomness), static_cast<std::uint64_t>(seed), 0,
+                                                kDomain);
         const double h = height_at(noise, p) / 0.5;
         sum += h;
         squares += h * h;
@@ -63,7 +69,7 @@ TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
   std::vector<double> power(kSamples / 2);
   std::vector<float> x(kSamples), y(kSamples), z(kSamples), height(kSamples);
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    const RandomPhaseNoise noise(layer, seed, 3, kDomain);
+    const LoneNoise<RandomPhaseNoise> noise(layer, seed, 3, kDomain);
     for (std::size_t i = 0; i < kSamples; ++i) {
       x[i] = static_cast<float>(kStep * (static_cast<double>(i) - 512.0));
       y[i] = z[i] = 0.37f;
@@ -97,8 +103,8 @@ TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
 TEST(RandomPhaseNoise, WithoutRandomnessWavesRunThroughAllCells) {
   RandomPhaseLayer layer = layer_of(0.0);
   layer.waves = 1;
-  const RandomPhaseNoise noise(layer, 5, 0, kDomain);
-  const Wave& wave = noise.waves().at(0);
+  const LoneNoise<RandomPhaseNoise> noise(layer, 5, 0, kDomain);
+  const Wave& wave = waves_of(noise)[0];
   CounterRandom random(2);
   // Only the sum of the windows, between 1 and sqrt 8, divides out exactly.
   for (int i = 0; i < 200; ++i) {
@@ -114,12 +120,12 @@ TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
   layer.exponent = 2.0;
   layer.spread = 0.1;
   layer.direction = {0, -3, 0};
-  const RandomPhaseNoise noise(layer, 1, 0, kDomain);
-  ASSERT_EQ(noise.waves().size(), 12u);
+  const LoneNoise<RandomPhaseNoise> noise(layer, 1, 0, kDomain);
+  ASSERT_EQ(waves_of(noise).size(), 12u);
   double variance = 0.0;
   const auto length = [](const Wave& w) { return norm(Vec3d{w.frequency.x, w.frequency.y, w.frequency.z}); };
-  const double first = length(noise.waves()[0]) * double{noise.waves()[0].amplitude};
-  for (const Wave& w : noise.waves()) {
+  const double first = length(waves_of(noise)[0]) * double{waves_of(noise)[0].amplitude};
+  for (const Wave& w : waves_of(noise)) {
     EXPECT_NEAR(length(w) * double{w.amplitude}, first, 1e-5);
     EXPECT_GE(-double{w.frequency.y} / length(w), 0.9 - 1e-6);
     variance += 0.5 * double{w.amplitude} * double{w.amplitude};
@@ -128,7 +134,7 @@ TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
 }
 
 TEST(RandomPhaseNoise, BitsDependOnThePointAlone) {
-  const RandomPhaseNoise noise(layer_of(0.7), 9, 1, kDomain);
+  const LoneNoise<RandomPhaseNoise> noise(layer_of(0.7), 9, 1, kDomain);
   CounterRandom random(4);
   std::vector<float> x, y, z, height(301);
   for (std::size_t i = 0; i < height.size(); ++i) {

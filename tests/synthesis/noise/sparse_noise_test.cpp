@@ -1,4 +1,5 @@
 #include "synthesis/noise/sparse_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 #include <cmath>
 
@@ -18,7 +19,7 @@ SparseLayer one_level(double probability) {
   return layer;
 }
 
-float height_at(const SparseNoise& noise, float x, float y, float z) {
+float height_at(const LoneNoise<SparseNoise>& noise, float x, float y, float z) {
   float h = 0.0f;
   noise.evaluate(1, &x, &y, &z, &h);
   return h;
@@ -75,7 +76,7 @@ TEST(SparseNoise, ShareOfCellsIsTheProbability) {
 
 // All cells occupied by u in [0, 1): the mean of n is that of the values, as bumps add up to one.
 TEST(SparseNoise, BumpsAddUpToOne) {
-  const SparseNoise noise(one_level(1.0), 5, 0, kDomain);
+  const LoneNoise<SparseNoise> noise(one_level(1.0), 5, 0, kDomain);
   CounterRandom random(2);
   double sum = 0.0;
   const int n = 4000;
@@ -92,7 +93,7 @@ TEST(SparseNoise, ThresholdCutsMostOfTheSurfaceFlat) {
   for (const bool merged : {false, true}) {
     layer.merged = merged;
     layer.threshold = 0.3;
-    const SparseNoise noise(layer, 5, 0, kDomain);
+    const LoneNoise<SparseNoise> noise(layer, 5, 0, kDomain);
     CounterRandom random(3);
     int flat = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -116,7 +117,7 @@ TEST(SparseNoise, BoundsOverBoxesAreNeverWrongAndGroupsDoNotMatter) {
     layer.levels = 1 + static_cast<int>(random.below(4));
     layer.threshold = random.uniform();
     layer.merged = random.uniform() < 0.5;
-    const SparseNoise noise(layer, random.next(), 1, kDomain);
+    const LoneNoise<SparseNoise> noise(layer, random.next(), 1, kDomain);
     const double size = layer.cell_size * std::pow(10.0, random.uniform(-2.0, 1.0));
     const Vec3d corner{random.uniform(-52, 50), random.uniform(-20, 20), random.uniform(-20, 20)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};

@@ -1,4 +1,5 @@
 #include "synthesis/spots/spot_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 #include <array>
 #include <cmath>
@@ -11,7 +12,14 @@ namespace {
 
 const Box kDomain{{-50, -50, -50}, {50, 50, 50}};
 
-float height_at(const SpotNoise& noise, float x, float y, float z) {
+// The impulses of kind k whose spots may reach the box.
+std::vector<SpotImpulse> impulses_reaching(const LoneNoise<SpotNoise>& noise, std::uint32_t k,
+                                           const Box& box) {
+  const SpotNoise& n = noise.noise();
+  return draw_spots(noise.arrays()[n.kinds][k], noise.arrays()[n.thresholds], box);
+}
+
+float height_at(const LoneNoise<SpotNoise>& noise, float x, float y, float z) {
   float h = 0.0f;
   noise.evaluate(1, &x, &y, &z, &h);
   return h;
@@ -33,7 +41,7 @@ constexpr int kSide = 40;  // cells
 std::vector<int> counts_by_cell(const SpotLayer& layer) {
   const Box box{{0, 0, 0}, {kSide, kSide, kSide}};
   std::vector<int> counts(kSide * kSide * kSide);
-  for (const SpotImpulse& p : SpotNoise(layer, 3, 1, kDomain).impulses_reaching(0, box)) {
+  for (const SpotImpulse& p : impulses_reaching(LoneNoise<SpotNoise>(layer, 3, 1, kDomain), 0, box)) {
     const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y)),
               z = static_cast<int>(std::floor(p.z));
     if (x < 0 || y < 0 || z < 0 || x >= kSide || y >= kSide || z >= kSide) continue;
@@ -83,7 +91,7 @@ TEST(SpotNoise, ProbabilityThinsCellsAndReachSpreadsImpulses) {
   layer.reach = 1.0;
   double total = 0.0, left_half = 0.0, weight = 0.0;
   const Box box{{-5, -5, -5}, {5, 5, 5}};
-  for (const SpotImpulse& p : SpotNoise(layer, 3, 1, kDomain).impulses_reaching(0, box)) {
+  for (const SpotImpulse& p : impulses_reaching(LoneNoise<SpotNoise>(layer, 3, 1, kDomain), 0, box)) {
     total += 1.0;
     left_half += p.x - std::floor(p.x) < 0.5f;
     weight += static_cast<double>(p.weight);
@@ -104,10 +112,10 @@ TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
   layer.gamma = 0.5;
   layer.variances = {1.0, 2.0, 0.5};
   layer.sigma = 6.0;
-  const SpotNoise noise(layer, 8, 0, kDomain);
+  const LoneNoise<SpotNoise> noise(layer, 8, 0, kDomain);
   layer.inverted = true;
-  const SpotNoise boulders(layer, 8, 0, kDomain);
-  const SpotImpulse spot = noise.impulses_reaching(0, {{0, 0, 0}, {20, 20, 20}}).front();
+  const LoneNoise<SpotNoise> boulders(layer, 8, 0, kDomain);
+  const SpotImpulse spot = impulses_reaching(noise, 0, {{0, 0, 0}, {20, 20, 20}}).front();
   CounterRandom random(1);
   int within = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -132,12 +140,12 @@ TEST(SpotNoise, SizesOnASurfaceFollowTheExponent) {
     layer.size = 0.4;
     layer.layers = 4;
     layer.exponent = exponent;
-    const SpotNoise noise(layer, 5, 0, kDomain);
+    const LoneNoise<SpotNoise> noise(layer, 5, 0, kDomain);
     double slope = 0.0, error = 0.0;
     std::vector<double> count;
-    for (int j = 0; j < noise.num_kinds(); ++j) {
+    for (std::uint32_t j = 0; j < noise.noise().kinds.count; ++j) {
       double n = 0;
-      for (const SpotImpulse& p : noise.impulses_reaching(j, {{-20, -20, 0.3}, {20, 20, 0.3}})) {
+      for (const SpotImpulse& p : impulses_reaching(noise, j, {{-20, -20, 0.3}, {20, 20, 0.3}})) {
         n += std::fabs(p.x) < 20 && std::fabs(p.y) < 20;
       }
       count.push_back(n);
@@ -191,7 +199,7 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
   int tight = 0;
   for (int k = 0; k < 800; ++k) {
     const SpotLayer layer = random_layer(random);
-    const SpotNoise noise(layer, random.next(), 1, kDomain);
+    const LoneNoise<SpotNoise> noise(layer, random.next(), 1, kDomain);
     const double size = layer.size * std::pow(10.0, random.uniform(-2.5, 0.5));
     const Vec3d corner{random.uniform(-52, 50), random.uniform(-20, 20), random.uniform(-20, 20)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};
@@ -214,7 +222,7 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
 TEST(SpotNoise, GroupsDoNotMatter) {
   CounterRandom random(9);
   for (int k = 0; k < 20; ++k) {
-    const SpotNoise noise(random_layer(random), 4, 0, kDomain);
+    const LoneNoise<SpotNoise> noise(random_layer(random), 4, 0, kDomain);
     const double spread = std::pow(10.0, random.uniform(-1.0, 1.5));
     std::vector<float> x, y, z, h(300);
     for (std::size_t i = 0; i < h.size(); ++i) {
@@ -236,12 +244,12 @@ TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
   layer.kappa = -0.4;
   layer.gamma = 0.5;
   layer.parts = {{{1, 0, 0}, {2, 0.5, 1}, {0, 0, 30}, 0.75}, {{0, -2, 1}, {1, 1, 3}, {90, 0, 0}, -1.0}};
-  const SpotNoise noise(layer, 8, 0, kDomain);
-  ASSERT_EQ(noise.num_kinds(), 2);
+  const LoneNoise<SpotNoise> noise(layer, 8, 0, kDomain);
+  ASSERT_EQ(noise.noise().kinds.count, 2);
   SpotLayer plain = layer;
   plain.parts.clear();
   const SpotImpulse spot =
-      SpotNoise(plain, 8, 0, kDomain).impulses_reaching(0, {{0, 0, 0}, {20, 20, 20}}).front();
+      impulses_reaching(LoneNoise<SpotNoise>(plain, 8, 0, kDomain), 0, {{0, 0, 0}, {20, 20, 20}}).front();
   const auto kernel = [](const Vec3d& q) {
     const double q2 = squared_norm(q);
     return q2 <= 4.0 ? std::exp(-1.5 * q2) - 0.4 * std::exp(-10 * std::pow(std::log(0.5 * q2), 2)) : 0.0;
@@ -268,7 +276,7 @@ TEST(SpotNoise, AnEvenLatticeRepeats) {
   layer.reach = -0.5;
   layer.least_weight = 1.0;
   layer.lattice = {{1, 0, 0}, {0.5, 0.75, 0}, {0.25, 0, 1.25}};
-  const SpotNoise noise(layer, 5, 0, kDomain);
+  const LoneNoise<SpotNoise> noise(layer, 5, 0, kDomain);
   CounterRandom random(2);
   double lowest = 0.0;
   for (int i = 0; i < 300; ++i) {
@@ -299,7 +307,8 @@ TEST(SpotNoise, EvenCellsHoldTheFractionByChance) {
 
 TEST(SpotNoise, NoDensityNoSpots) {
   EXPECT_TRUE(
-      SpotNoise(small_spots(0.0), 3, 1, kDomain).impulses_reaching(0, {{-9, -9, -9}, {9, 9, 9}}).empty());
+      impulses_reaching(LoneNoise<SpotNoise>(small_spots(0.0), 3, 1, kDomain), 0, {{-9, -9, -9}, {9, 9, 9}})
+          .empty());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesher.h"
 #include "synthesis/noise/fractal_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 namespace astrolith::testing {
 
@@ -52,7 +53,7 @@ inline MeasuredLayers measured(const std::vector<FractalLayer>& layers) {
   std::vector<float> shifted = x;
   for (float& v : shifted) v += step;
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    const FractalNoise noise(layers[k], 1, static_cast<int>(k), domain);
+    const LoneNoise<FractalNoise> noise(layers[k], 1, static_cast<int>(k), domain);
     noise.evaluate(n, x.data(), y.data(), z.data(), at.data());
     noise.evaluate(n, shifted.data(), y.data(), z.data(), beside.data());
     for (std::size_t i = 0; i < sum.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "numerics/hash_random.h"
 #include "synthesis/noise/fractal_noise.h"
+#include "synthesis/noise/lone_noise.h"
 
 namespace astrolith {
 namespace {
@@ -36,7 +37,7 @@ TEST(RoughnessModel, AgreesWithSynthesisedNoise) {
     layer.frequency = 8.0;
     layer.octaves = 3;
     layer.gain = 0.6;
-    const FractalNoise noise(layer, 7, 0, {{-9, -9, -9}, {9, 9, 9}});
+    const LoneNoise<FractalNoise> noise(layer, 7, 0, {{-9, -9, -9}, {9, 9, 9}});
     const std::vector<double> expected = model.of({which, 1.0, 8.0, 3, 0.6}, lags);
     for (std::size_t k = 0; k < lags.size(); ++k) {
       CounterRandom random(k, which);

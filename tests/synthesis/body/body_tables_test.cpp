@@ -1,10 +1,11 @@
-#include "synthesis/body/combined_body.h"
+#include "synthesis/body/body_tables.h"
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/lone_body.h"
 
 namespace astrolith {
 namespace {
@@ -158,7 +159,7 @@ TEST(CombinedBody, BoundsAreNeverWrong) {
   for (int k = 0; k < 40; ++k) {
     const Recipe recipe = random_recipe(random, k);
     const ImplicitField field(recipe);
-    const PreparedBody body = prepare_body(*recipe.body, recipe.seed);
+    const testing::LoneBody body(*recipe.body, recipe.seed);
     if (field.bounds().empty()) continue;
     for (int b = 0; b < 20; ++b) {
       const Box all = field.bounds();
@@ -166,7 +167,7 @@ TEST(CombinedBody, BoundsAreNeverWrong) {
                          random.uniform(all.min.z, all.max.z)};
       const double size = std::pow(10.0, random.uniform(-2.5, -0.7));
       const Box box{corner, corner + Vec3d{size, size, size}};
-      const Interval bound = bound_distance(body, box, 0.3 * size);
+      const Interval bound = body.bound(box, 0.3 * size);
       const FieldBlock block = field.gather(box);
       const BlockContent content = block.content();
       proved += content != BlockContent::kMixed;
@@ -177,7 +178,7 @@ TEST(CombinedBody, BoundsAreNeverWrong) {
         z.push_back(static_cast<float>(corner.z + size * random.uniform()));
       }
       block.evaluate(x, y, z, value);
-      evaluate_body(body, 60, x.data(), y.data(), z.data(), s.data(), gx.data(), gy.data(), gz.data());
+      body.evaluate(60, x.data(), y.data(), z.data(), s.data(), gx.data(), gy.data(), gz.data());
       for (std::size_t i = 0; i < value.size(); ++i) {
         ASSERT_GE(s[i], bound.low);
         ASSERT_LE(s[i], bound.high);
@@ -195,10 +196,10 @@ TEST(CombinedBody, BoundsAreNeverWrong) {
 TEST(CombinedBody, GradientsAreUnitNormalsOnTheSurface) {
   BodyOperation operation;
   operation.alpha = 0.0;
-  const PreparedBody body = prepare_body(*two_balls(operation).body, 1);
+  const testing::LoneBody body(*two_balls(operation).body, 1);
   const float x = -0.6f, y = 0.8f, z = 0.0f;
   float s = 0, gx = 0, gy = 0, gz = 0;
-  evaluate_body(body, 1, &x, &y, &z, &s, &gx, &gy, &gz);
+  body.evaluate(1, &x, &y, &z, &s, &gx, &gy, &gz);
   EXPECT_NEAR(s, 0.0, 1e-5);
   EXPECT_LT(norm(Vec3d{gx, gy, gz} - Vec3d{0.6, -0.8, 0.0}), 2e-3);
 }

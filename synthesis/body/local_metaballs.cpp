@@ -1,4 +1,4 @@
-#include "synthesis/body/metaballs_near.h"
+#include "synthesis/body/local_metaballs.h"
 
 namespace astrolith {
 namespace {
@@ -9,9 +9,9 @@ MetaballSphere<double> in_double(const MetaballSphere<float>& s) {
 
 }  // namespace
 
-void evaluate_metaballs_near(const PreparedMetaballs& metaballs, const Vec3d& origin, int n, const float* x,
-                             const float* y, const float* z, float* distance, float* gradient_x,
-                             float* gradient_y, float* gradient_z) {
+void evaluate_local_metaballs(const MetaballsView& metaballs, const Vec3d& origin, int n, const float* x,
+                              const float* y, const float* z, float* distance, float* gradient_x,
+                              float* gradient_y, float* gradient_z) {
   const MetaballParameters<double> body = in_double(metaballs.parameters);
   for (int i = 0; i < n; ++i) {
     const Vec3d p = origin + Vec3d{x[i], y[i], z[i]};

@@ -1,0 +1,79 @@
+// The bare body at one point, for CPU and GPU: evaluate_body (body_tables.h), bit for bit.
+#pragma once
+
+#include "synthesis/body/body_tables.h"
+#include "synthesis/body/surface_projection.h"
+
+namespace astrolith {
+
+// s and grad L of a leaf's metaballs, at a point on the metaballs' side of the leaf's warp.
+ASTROLITH_HD inline SurfaceDistance<float> leaf_distance(const BodyLeaf& leaf, const LeafLists& lists,
+                                                         std::uint32_t number, const Vec3f& p) {
+  std::uint32_t j = lists.first[number];
+  const std::uint32_t end = lists.first[number + 1];
+  MetaballTotals<float> totals{};
+  for (; j < end && !lists.spheres[j].subtractive(); ++j) {
+    accumulate_metaball(leaf.metaballs, lists.spheres[j], p, totals.added);
+  }
+  if (j == end) return metaball_distance(leaf.metaballs, totals.added);
+  for (; j < end; ++j)
+    accumulate_metaball(leaf.metaballs, lists.spheres[j].as_adding(), p, totals.subtracted);
+  return metaball_distance(leaf.metaballs, totals.net());
+}
+
+// s, the direction of its gradient, and where a plain body was evaluated.
+struct BodyAtPoint {
+  float distance;
+  Vec3f gradient, at;
+};
+
+// A leaf as an operand: the gradient is divided by its length.
+ASTROLITH_HD inline BodySample operand_at(const BodyLeaf& leaf, const ArrayView& arrays,
+                                          const LeafLists& lists, std::uint32_t number, const Vec3f& p) {
+  const SurfaceDistance<float> d =
+      leaf_distance(leaf, lists, number, leaf.warped ? warped(leaf.warp, arrays, p) : p);
+  const Vec3f& g = d.log_gradient;
+  const float length = gradient_length(g.x, g.y, g.z, leaf.metaballs.gradient_floor);
+  return {d.distance, g.x / length, g.y / length, g.z / length};
+}
+
+// The body at a point that is on the metaballs' side of a plain body's warp.
+ASTROLITH_HD inline BodyAtPoint unwarped_body_at(const BodyTables& body, const ArrayView& arrays,
+                                                 const LeafLists& lists, const Vec3f& p) {
+  const BodyLeaf* leaves = arrays[body.leaves];
+  if (body.plain()) {
+    const SurfaceDistance<float> d = leaf_distance(leaves[0], lists, 0, p);
+    return {d.distance, d.log_gradient, p};
+  }
+  const BodyStep* steps = arrays[body.steps];
+  BodySample stack[kMaxOperationDepth + 2];
+  int size = 0;
+  for (std::uint32_t i = 0; i < body.steps.count; ++i) {
+    if (steps[i].is_leaf) {
+      stack[size++] = operand_at(leaves[steps[i].leaf], arrays, lists, steps[i].leaf, p);
+    } else {
+      --size;
+      stack[size - 1] = combined(steps[i].combine, stack[size - 1], stack[size]);
+    }
+  }
+  return {stack[0].distance, {stack[0].gx, stack[0].gy, stack[0].gz}, p};
+}
+
+ASTROLITH_HD inline BodyAtPoint body_at(const BodyTables& body, const ArrayView& arrays,
+                                        const LeafLists& lists, const Vec3f& p) {
+  const BodyLeaf& first = *arrays[body.leaves];
+  const bool warps = body.plain() && first.warped;
+  return unwarped_body_at(body, arrays, lists, warps ? warped(first.warp, arrays, p) : p);
+}
+
+// The point's first-order projection on the bare surface, at most `longest_step` away.
+ASTROLITH_HD inline Vec3f projected_point(const BodyAtPoint& body, float gradient_floor, float longest_step) {
+  const Vec3f &g = body.gradient, &p = body.at;
+  const float length = gradient_length(g.x, g.y, g.z, gradient_floor);
+  const auto along = [&](float c, float slope) {
+    return projected_coordinate(c, slope, length, body.distance, longest_step);
+  };
+  return {along(p.x, g.x), along(p.y, g.y), along(p.z, g.z)};
+}
+
+}  // namespace astrolith

@@ -1,0 +1,190 @@
+#include "synthesis/body/body_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/hash_random.h"
+#include "synthesis/body/body_bounds.h"
+#include "synthesis/body/surface_projection.h"
+
+namespace astrolith {
+namespace {
+
+// The stream of the recipe's seed that warps of bodies count down from; layers have their numbers.
+constexpr std::uint32_t kBodyStream = 0xffffffffu;
+
+OperatorParameters<double> parameters_of(const BodyOperation& operation) {
+  return {operation.kind,  operation.alpha, operation.exponent,
+          operation.width, operation.bulge, {1.0 / operation.reach[0], 1.0 / operation.reach[1]}};
+}
+
+OperatorParameters<float> in_float(const OperatorParameters<double>& o) {
+  const auto to = [](double v) { return static_cast<float>(v); };
+  return {o.kind,      to(o.alpha), to(o.exponent),
+          to(o.width), to(o.bulge), {to(o.inverse_reach[0]), to(o.inverse_reach[1])}};
+}
+
+// The largest sum of |ds/df| and |ds/dg|.
+double slope_of(const OperatorParameters<double>& o) {
+  const auto r_function = [](double alpha) { return (2.0 + std::sqrt(2.0 * (1.0 - alpha))) / (1.0 + alpha); };
+  switch (o.kind) {
+    case Operator::kBlend:
+      return std::pow(2.0, 1.0 / o.exponent);
+    case Operator::kCleanUnion:  // 3 sqrt(3) / 8 is the steepest slope of 1 / (1 + x^2)
+      return r_function(0.0) + 0.6496 * std::fabs(o.bulge) * (o.inverse_reach[0] + o.inverse_reach[1]);
+    default:
+      return r_function(o.alpha);
+  }
+}
+
+// Leaves and steps of a body and its operands, in the order in which the recipe holds them.
+class BodyBuilder {
+ public:
+  BodyBuilder(std::uint64_t seed, ArrayStore& arrays) : seed_(seed), arrays_(arrays) {}
+
+  BodyTables build(const MetaballBody& body) {
+    const Part whole = add(body);
+    if (body.operations.empty()) steps_.clear();
+    // A plain body's points are taken through its warp before they are evaluated.
+    const Box supports = body.operations.empty() ? plain_supports_ : whole.supports;
+    return {arrays_.add(leaves_), arrays_.add(steps_), supports, whole.lipschitz_bound};
+  }
+
+ private:
+  struct Part {
+    Box supports;
+    double lipschitz_bound;
+  };
+
+  Part add(const MetaballBody& body) {
+    const auto number = static_cast<std::uint32_t>(leaves_.size());
+    steps_.push_back({true, number, {}, {}});
+    Part part = add_leaf(body, number);
+    for (const BodyOperation& operation : body.operations) {
+      const Part operand = add(operation.operand.front());
+      const OperatorParameters<double> parameters = parameters_of(operation);
+      steps_.push_back({false, 0, in_float(parameters), parameters});
+      part.supports.extend(operand.supports.min);
+      part.supports.extend(operand.supports.max);
+      part.lipschitz_bound = std::max(part.lipschitz_bound, operand.lipschitz_bound) * slope_of(parameters);
+    }
+    return part;
+  }
+
+  Part add_leaf(const MetaballBody& body, std::uint32_t number) {
+    const PreparedMetaballs metaballs = prepare_metaballs(body);
+    const Box supports = support_bounds(metaballs);
+    if (number == 0) plain_supports_ = supports;
+    BodyLeaf leaf{metaballs.parameters, body.warp.has_value(), {}, arrays_.add(metaballs.spheres)};
+    if (leaf.warped) {
+      leaf.warp = make_coordinate_warp(*body.warp, hash_seed(seed_, kBodyStream - number), supports, arrays_);
+    }
+    leaves_.push_back(leaf);
+    return {leaf.warped ? widened(supports, leaf.warp.bound) : supports,
+            leaf.warped ? leaf.warp.lipschitz_bound : 1.0};
+  }
+
+  std::uint64_t seed_;
+  ArrayStore& arrays_;
+  std::vector<BodyLeaf> leaves_;
+  std::vector<BodyStep> steps_;
+  Box plain_supports_;
+};
+
+// Four arrays of n floats: distances and gradients of points, or coordinates and more.
+struct Columns {
+  std::vector<float> values;
+  std::size_t n;
+  explicit Columns(int size)
+      : values(4 * static_cast<std::size_t>(size)), n(static_cast<std::size_t>(size)) {}
+  float* at(std::size_t column) { return values.data() + column * n; }
+};
+
+std::span<const MetaballSphere<float>> spheres_of(const LeafLists& lists, std::uint32_t leaf) {
+  return {lists.spheres + lists.first[leaf], lists.first[leaf + 1] - lists.first[leaf]};
+}
+
+// A leaf as an operand: its gradients are divided by their lengths.
+void evaluate_operand(const BodyLeaf& leaf, const ArrayView& arrays,
+                      std::span<const MetaballSphere<float>> spheres, int n, const float* x, const float* y,
+                      const float* z, Columns& out) {
+  const MetaballsView metaballs{leaf.metaballs, spheres};
+  float *gx = out.at(1), *gy = out.at(2), *gz = out.at(3);
+  if (leaf.warped) {
+    Columns warped(n);
+    warp_points(leaf.warp, arrays, n, x, y, z, warped.at(0), warped.at(1), warped.at(2));
+    evaluate_metaballs(metaballs, n, warped.at(0), warped.at(1), warped.at(2), out.at(0), gx, gy, gz);
+  } else {
+    evaluate_metaballs(metaballs, n, x, y, z, out.at(0), gx, gy, gz);
+  }
+  for (int i = 0; i < n; ++i) {
+    const float length = gradient_length(gx[i], gy[i], gz[i], leaf.metaballs.gradient_floor);
+    gx[i] /= length;
+    gy[i] /= length;
+    gz[i] /= length;
+  }
+}
+
+// Replaces a body's distances and gradients by what the operator makes of them and of another body's.
+void combine(const OperatorParameters<float>& o, int n, Columns& body, Columns& other) {
+  float *distance = body.at(0), *gx = body.at(1), *gy = body.at(2), *gz = body.at(3);
+  const float *g = other.at(0), *ox = other.at(1), *oy = other.at(2), *oz = other.at(3);
+  for (int i = 0; i < n; ++i) {
+    const BodySample both =
+        combined(o, BodySample{distance[i], gx[i], gy[i], gz[i]}, BodySample{g[i], ox[i], oy[i], oz[i]});
+    distance[i] = both.distance;
+    gx[i] = both.gx;
+    gy[i] = both.gy;
+    gz[i] = both.gz;
+  }
+}
+
+}  // namespace
+
+BodyTables make_body(const MetaballBody& body, std::uint64_t seed, ArrayStore& arrays) {
+  return BodyBuilder(seed, arrays).build(body);
+}
+
+ReachingMetaballs all_metaballs(const BodyTables& body, const ArrayView& arrays) {
+  ReachingMetaballs all;
+  for (const BodyLeaf& leaf : arrays.span(body.leaves)) all.add(arrays.span(leaf.spheres));
+  return all;
+}
+
+ReachingMetaballs metaballs_reaching(const BodyTables& body, const ArrayView& arrays, const LeafLists& lists,
+                                     const Box& at) {
+  ReachingMetaballs reaching;
+  for (std::uint32_t l = 0; l < body.leaves.count; ++l) {
+    const double cutoff = double{arrays[body.leaves][l].metaballs.cutoff_squared};
+    const Box box = leaf_box(body, arrays, l, at);
+    for (const MetaballSphere<float>& sphere : spheres_of(lists, l)) {
+      if (reaches_box(sphere, cutoff, box)) reaching.spheres.push_back(sphere);
+    }
+    reaching.first.push_back(static_cast<std::uint32_t>(reaching.spheres.size()));
+  }
+  return reaching;
+}
+
+void evaluate_body(const BodyTables& body, const ArrayView& arrays, const LeafLists& lists, int n,
+                   const float* x, const float* y, const float* z, float* distance, float* gradient_x,
+                   float* gradient_y, float* gradient_z) {
+  const BodyLeaf* leaves = arrays[body.leaves];
+  if (body.plain()) {
+    return evaluate_metaballs({leaves[0].metaballs, spheres_of(lists, 0)}, n, x, y, z, distance, gradient_x,
+                              gradient_y, gradient_z);
+  }
+  std::vector<Columns> stack;
+  for (const BodyStep& step : arrays.span(body.steps)) {
+    if (step.is_leaf) {
+      evaluate_operand(leaves[step.leaf], arrays, spheres_of(lists, step.leaf), n, x, y, z,
+                       stack.emplace_back(n));
+    } else {
+      combine(step.combine, n, stack[stack.size() - 2], stack.back());
+      stack.pop_back();
+    }
+  }
+  float* const to[] = {distance, gradient_x, gradient_y, gradient_z};
+  for (std::size_t column = 0; column < 4; ++column) std::copy_n(stack[0].at(column), n, to[column]);
+}
+
+}  // namespace astrolith

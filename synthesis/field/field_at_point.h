@@ -1,0 +1,156 @@
+// F at one point from a field's tables, for CPU and GPU: the bits of ImplicitField.
+#pragma once
+
+#include "synthesis/body/body_at_point.h"
+#include "synthesis/field/field_tables.h"
+
+namespace astrolith {
+
+// As many layers' heights can be kept for masks where a point is evaluated by itself.
+inline constexpr std::uint32_t kMostKeptHeights = 4;
+
+// What the layers so far have made of the surface near a point.
+struct FieldState {
+  float elevation = 0.0f;
+  bool is_displaced = false;
+  Vec3f displacement;
+  float kept[kMostKeptHeights] = {};
+};
+
+ASTROLITH_HD inline Vec3f projected_point(const FieldView& f, const BodyAtPoint& body) {
+  return projected_point(body, f.leaf(0).metaballs.gradient_floor, static_cast<float>(f.height_bound));
+}
+
+// Joins a layer's height with what the layers before it made.
+ASTROLITH_HD inline void join_height(const FieldView& f, const LayerJoin& join, const Vec3f& p, float height,
+                                     FieldState& state) {
+  if (join.keeps >= 0) state.kept[join.keeps] = height;
+  float weight = 1.0f;
+  if (join.mask >= 0) weight *= smooth_step(state.kept[join.mask], join.mask_from, join.mask_inverse_range);
+  if (join.local) weight *= weight_at(join.locality, f.arrays, p);
+  if (join.how.kind == Combine::kWarp) {
+    const float by = join.weighted() ? weight * height : height;
+    const Vec3f along = to_float(join.how.direction);
+    Vec3f& d = state.displacement;
+    d = {math::fma(along.x, by, d.x), math::fma(along.y, by, d.y), math::fma(along.z, by, d.z)};
+    state.is_displaced = true;
+  }
+  if (join.changes_elevation()) state.elevation = join_elevation(join, weight, height, state.elevation);
+}
+
+// Applies one layer at a point; visits the layer's noise.
+struct LayerAtPoint {
+  const FieldView& f;
+  const BlockLists& lists;
+  const FieldLayer& layer;
+  const BodyAtPoint& body;
+  const Vec3f& p;
+  FieldState& state;
+
+  ASTROLITH_HD void operator()(const CraterRelief& relief) const {
+    const std::uint32_t first = lists.first_landform[relief.list],
+                        end = lists.first_landform[relief.list + 1];
+    state.elevation = cratered_elevation(relief, f.arrays, lists.landforms + first, end - first,
+                                         projected_point(f, body), state.elevation);
+  }
+  ASTROLITH_HD void operator()(const GaborSurfaceNoise& noise) const {
+    join(height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list,
+                   projected_point(f, body)));
+  }
+  ASTROLITH_HD void operator()(const SpotNoise& noise) const {
+    join(height_at(noise, f.arrays, lists.spots, lists.first_spot + layer.first_list, displaced()));
+  }
+  template <class Noise>
+  ASTROLITH_HD void operator()(const Noise& noise) const {
+    join(height_at(noise, f.arrays, displaced()));
+  }
+
+ private:
+  // Where a noise in space is evaluated for the point.
+  ASTROLITH_HD Vec3f displaced() const { return state.is_displaced ? p + state.displacement : p; }
+  ASTROLITH_HD void join(float height) const { join_height(f, layer.join, p, height, state); }
+};
+
+// Whether a boulder that reaches the block may change F at the point.
+ASTROLITH_HD inline bool boulders_reach(const FieldView& f, const BlockLists& lists, const Vec3f& p) {
+  const FieldBoulder* boulders = f.arrays[f.boulders];
+  const std::uint32_t* first = lists.first_landform + f.boulder_list();
+  for (std::uint32_t k = first[0]; k < first[1]; ++k) {
+    if (boulder_reaches(boulders[lists.landforms[k]], p.x, p.y, p.z)) return true;
+  }
+  return false;
+}
+
+// F without boulders. Layers are added until those to come cannot bring F into the band, except where
+// boulders reach.
+ASTROLITH_HD inline float terrain_at(const FieldView& f, const BlockLists& lists, const Vec3f& p,
+                                     float band) {
+  const BodyAtPoint body = body_at(f.body, f.arrays, lists.metaballs, p);
+  const auto decided = [&](float value, float change) {
+    return math::abs(value) > change + band && !boulders_reach(f, lists, p);
+  };
+  if (f.num_layers == 0 || decided(body.distance, f.height_reach)) return body.distance;
+  FieldState state;
+  for (std::uint32_t i = 0; i < f.num_layers; ++i) {
+    const FieldLayer& layer = f.layers[i];
+    if (decided(body.distance + state.elevation, layer.join.remaining_change)) break;
+    layer.noise.visit(LayerAtPoint{f, lists, layer, body, p, state});
+  }
+  return body.distance + state.elevation;
+}
+
+ASTROLITH_HD inline float with_boulders(const FieldView& f, const BlockLists& lists, const Vec3f& p,
+                                        float value) {
+  const FieldBoulder* boulders = f.arrays[f.boulders];
+  const std::uint32_t* first = lists.first_landform + f.boulder_list();
+  for (std::uint32_t k = first[0]; k < first[1]; ++k) {
+    value = join_boulder(boulders[lists.landforms[k]].kernel, p.x, p.y, p.z, value);
+  }
+  return value;
+}
+
+// F(p) as FieldBlock::evaluate has it for the same band; `lists` must hold what reaches p.
+ASTROLITH_HD inline float field_at(const FieldView& f, const BlockLists& lists, const Vec3f& p, float band) {
+  const float steepest = static_cast<float>(f.body.lipschitz_bound);
+  return with_boulders(f, lists, p, terrain_at(f, lists, p, band * steepest));
+}
+
+// Applies one layer at the corners of a tetrahedron; visits the layer's noise.
+struct LayerAtTetrahedron {
+  const FieldView& f;
+  const BlockLists& lists;
+  const FieldLayer& layer;
+  const BodyAtPoint* body;
+  const Vec3f* p;
+  FieldState* state;
+
+  ASTROLITH_HD void operator()(const GaborSurfaceNoise& noise) const {
+    Vec3f projected[4];
+    float heights[4];
+    for (int k = 0; k < 4; ++k) projected[k] = projected_point(f, body[k]);
+    tetrahedron_heights(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list, projected,
+                        heights);
+    for (int k = 0; k < 4; ++k) join_height(f, layer.join, p[k], heights[k], state[k]);
+  }
+  template <class Noise>
+  ASTROLITH_HD void operator()(const Noise& noise) const {
+    for (int k = 0; k < 4; ++k) LayerAtPoint{f, lists, layer, body[k], p[k], state[k]}(noise);
+  }
+};
+
+// F at the corners of a small tetrahedron, as FieldBlock::evaluate_tetrahedra has it.
+ASTROLITH_HD inline void field_at_tetrahedron(const FieldView& f, const BlockLists& lists, const Vec3f* p,
+                                              float* values) {
+  BodyAtPoint body[4];
+  FieldState state[4];
+  for (int k = 0; k < 4; ++k) body[k] = body_at(f.body, f.arrays, lists.metaballs, p[k]);
+  for (std::uint32_t i = 0; i < f.num_layers; ++i) {
+    const FieldLayer& layer = f.layers[i];
+    layer.noise.visit(LayerAtTetrahedron{f, lists, layer, body, p, state});
+  }
+  for (int k = 0; k < 4; ++k) {
+    values[k] = with_boulders(f, lists, p[k], body[k].distance + state[k].elevation);
+  }
+}
+
+}  // namespace astrolith

@@ -1,0 +1,110 @@
+// What is certain about a field over a box, for CPU and GPU, which agree bit by bit.
+//
+// `Lists` knows which elements of the field reach the box:
+//   MetaballList metaballs(leaf)                  those of a leaf that reach leaf_box() of the box
+//   Interval bound_spots(noise, layer, box)       the heights of a layer of spots over a box
+//   for_each_crater(relief, box, visit)           visit(number) for the craters that reach a box, ascending
+//   bool boulder_reaches(box)                     whether any boulder does
+#pragma once
+
+#include "synthesis/body/body_bounds.h"
+#include "synthesis/field/content_bounds.h"
+#include "synthesis/field/field_tables.h"
+
+namespace astrolith {
+
+// The weight of a layer over a box, from the heights that masks ask for; it is not below 0.
+ASTROLITH_HD inline Interval bound_join_weight(const FieldView& f, const LayerJoin& join, const Box& box,
+                                               const Interval* kept) {
+  const Interval local = join.local ? bound_weight(join.locality, f.arrays, box) : Interval{1.0, 1.0};
+  return join.mask < 0 ? local : product(local, bound_mask(join.mask_from, join.mask_to, kept[join.mask]));
+}
+
+// The elevations over a box after a layer, from those before it; visits the layer's noise.
+template <class Lists>
+struct LayerOverBox {
+  const FieldView& f;
+  const Lists& lists;
+  std::uint32_t number;
+  const Box& box;
+  const Box& projected;  // where the points of the box are projected on the bare surface
+  Interval before;
+  Interval* kept;  // heights that masks ask for, by slot
+
+  ASTROLITH_HD Interval operator()(const CraterRelief& relief) const {
+    const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
+    return bound_cratered_elevation(relief, f.arrays, for_each, projected, before);
+  }
+  ASTROLITH_HD Interval operator()(const SpotNoise& noise) const {
+    return joined(lists.bound_spots(noise, number, displaced_box_of_layer()));
+  }
+  template <class Noise>
+  ASTROLITH_HD Interval operator()(const Noise& noise) const {
+    return joined(bound_heights(noise, f.arrays, displaced_box_of_layer()));
+  }
+
+ private:
+  ASTROLITH_HD const LayerJoin& join() const { return f.layers[number].join; }
+  ASTROLITH_HD Box displaced_box_of_layer() const { return displaced_layer_box(box, join().displaced); }
+  ASTROLITH_HD Interval joined(const Interval& heights) const {
+    const double slack = kHeightSlack * join().height_bound;
+    if (join().keeps >= 0) kept[join().keeps] = plus(heights, {-slack, slack});
+    if (!join().changes_elevation()) return before;
+    return join_bounds(join().how, bound_join_weight(f, join(), box, kept), before, heights);
+  }
+};
+
+// The elevations over a box that all layers make. `kept` has room for f.num_kept_heights.
+template <class Lists>
+ASTROLITH_HD Interval bound_elevations(const FieldView& f, const Lists& lists, const Box& box,
+                                       const Box& projected, Interval* kept) {
+  Interval elevation;
+  for (std::uint32_t i = 0; i < f.num_layers; ++i) {
+    elevation = f.layers[i].noise.visit(LayerOverBox<Lists>{f, lists, i, box, projected, elevation, kept});
+  }
+  const double slack = kHeightSlack * f.height_bound;
+  return {elevation.low - slack, elevation.high + slack};
+}
+
+// Where bounds of one box write what they need once; both arrays belong to the caller.
+struct BoundScratch {
+  KernelInterval* kernels;  // as many as the longest list of metaballs
+  Interval* kept;           // as many as there are kept heights
+};
+
+template <class Lists>
+ASTROLITH_HD BlockContent content_of_combined(const FieldView& f, const Lists& lists, const Box& box,
+                                              const BoundScratch& scratch) {
+  const double height = f.height_bound * (1.0 + kHeightSlack);
+  const Interval distance = bound_distance(f.body, f.arrays, lists, box, height, scratch.kernels);
+  const BlockContent content = content_by_distance(distance, {-height, height});
+  if (content != BlockContent::kMixed || f.num_layers == 0) return content;
+  const Box projected = projected_box(box, distance, height);
+  return content_by_distance(distance, bound_elevations(f, lists, box, projected, scratch.kept));
+}
+
+template <class Lists>
+ASTROLITH_HD BlockContent content_of_plain(const FieldView& f, const Lists& lists, const Box& box,
+                                           const BoundScratch& scratch) {
+  const Box at = body_box(f.body, f.arrays, box);
+  const MetaballParameters<float>& leaf = f.leaf(0).metaballs;
+  const MetaballList spheres = lists.metaballs(0);
+  const MetaballInterval bound = bound_metaballs(leaf, spheres, at, f.height_bound, scratch.kernels);
+  const BlockContent content = content_by_height_bound(bound, f.height_bound);
+  if (content != BlockContent::kMixed || f.num_layers == 0) return content;
+  const auto divisor = [&] { return smallest_gradient(leaf, spheres, at, scratch.kernels); };
+  // Only craters ask where points are projected.
+  const Box projected = f.crater_layers.count == 0 ? at : projected_box(at, bound, f.height_bound, divisor());
+  return content_by_heights(bound, bound_elevations(f, lists, box, projected, scratch.kept), divisor);
+}
+
+// Whether F keeps one sign over the box. A union with boulders only adds.
+template <class Lists>
+ASTROLITH_HD BlockContent field_content(const FieldView& f, const Lists& lists, const Box& box,
+                                        const BoundScratch& scratch) {
+  const BlockContent content =
+      f.body.plain() ? content_of_plain(f, lists, box, scratch) : content_of_combined(f, lists, box, scratch);
+  return content == BlockContent::kOutside && lists.boulder_reaches(box) ? BlockContent::kMixed : content;
+}
+
+}  // namespace astrolith

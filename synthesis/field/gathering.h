@@ -1,0 +1,131 @@
+// Which elements of a field reach a block: the rule by which the lists of BlockLists are gathered, for CPU
+// and GPU.
+#pragma once
+
+#include "synthesis/body/body_at_point.h"
+#include "synthesis/body/body_bounds.h"
+#include "synthesis/field/content_bounds.h"
+#include "synthesis/field/field_tables.h"
+
+namespace astrolith {
+
+// Where the points of a box may be projected on the bare surface; craters and Gabor noise are looked up
+// there.
+ASTROLITH_HD inline Box projected_block(const FieldView& f, const Box& box) {
+  return farthest_projected_box(body_box(f.body, f.arrays, box), f.height_bound);
+}
+
+// `at` is the leaf_box() of the block.
+ASTROLITH_HD inline bool metaball_reaches(const BodyLeaf& leaf, const MetaballSphere<float>& sphere,
+                                          const Box& at) {
+  return reaches_box(sphere, double{leaf.metaballs.cutoff_squared}, at);
+}
+
+// `projected` is the projected_block().
+ASTROLITH_HD inline bool crater_reaches(const FieldView& f, std::uint32_t list, std::uint32_t number,
+                                        const Box& projected) {
+  return boxes_touch(crater_reach(f.arrays[f.craters(list).craters][number]), projected);
+}
+
+ASTROLITH_HD inline bool boulder_reaches(const FieldView& f, std::uint32_t number, const Box& box) {
+  return boxes_touch(f.arrays[f.boulders][number].box, box);
+}
+
+// Calls write(impulse) for the spots of a list that reach the block.
+template <class Write>
+ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box& box, Write&& write) {
+  const ImpulseList from = f.arrays[f.spot_lists][list];
+  const FieldLayer& layer = f.layers[from.layer];
+  const SpotNoise& noise = *layer.noise.get_if<SpotNoise>();
+  const Box where = displaced_layer_box(box, layer.join.displaced);
+  for_each_spot(f.arrays[noise.kinds][from.part], f.arrays[noise.thresholds],
+                moved_into(where, noise.low, noise.high), write);
+}
+
+// A box of floats by its corners, its centre and half its sides, along the three axes.
+struct FloatBox {
+  float low[3], high[3], center[3], half[3];
+};
+
+// A box within a domain, rounded outwards to floats.
+ASTROLITH_HD inline FloatBox outer_float_box(const Box& box, const Vec3f& least, const Vec3f& most) {
+  // The neighbour of a finite float.
+  const auto next_float = [](float v, bool up) {
+    if (v == 0.0f) return math::float_of(up ? 1 : std::int32_t(0x80000001u));
+    return math::float_of(math::bits_of(v) + ((v > 0.0f) == up ? 1 : -1));
+  };
+  FloatBox out;
+  const auto set = [&](int axis, double low, double high, float from, float to) {
+    out.low[axis] = math::clamp(next_float(static_cast<float>(low), false), from, to);
+    out.high[axis] = math::clamp(next_float(static_cast<float>(high), true), from, to);
+    out.center[axis] = 0.5f * (out.low[axis] + out.high[axis]);
+    out.half[axis] = std::max(out.high[axis] - out.center[axis], out.center[axis] - out.low[axis]);
+  };
+  set(0, box.min.x, box.max.x, least.x, most.x);
+  set(1, box.min.y, box.max.y, least.y, most.y);
+  set(2, box.min.z, box.max.z, least.z, most.z);
+  return out;
+}
+
+// Visits the cells of a band whose impulses may reach a box, tile by tile, as the CPU keeps them: kernels are
+// added in that order.
+template <class Visit>
+ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box, const Visit& visit) {
+  GaborCellSpan cells[3], tiles[3];
+  for (int a = 0; a < 3; ++a) {
+    cells[a] = gabor_cells_around(band, box.low[a], box.high[a]);
+    tiles[a] = {gabor_tile_of(cells[a].first), gabor_tile_of(cells[a].last)};
+  }
+  const auto visit_tile = [&](int tx, int ty, int tz) {
+    const auto of_tile = [&](int a, int tile) {
+      return GaborCellSpan{std::max(cells[a].first, tile * kTileCells),
+                           std::min(cells[a].last, tile * kTileCells + kTileCells - 1)};
+    };
+    const GaborCellSpan xs = of_tile(0, tx), ys = of_tile(1, ty), zs = of_tile(2, tz);
+    for (int z = zs.first; z <= zs.last; ++z) {
+      for (int y = ys.first; y <= ys.last; ++y) {
+        for (int x = xs.first; x <= xs.last; ++x) visit(x, y, z);
+      }
+    }
+  };
+  for (int tz = tiles[2].first; tz <= tiles[2].last; ++tz) {
+    for (int ty = tiles[1].first; ty <= tiles[1].last; ++ty) {
+      for (int tx = tiles[0].first; tx <= tiles[0].last; ++tx) visit_tile(tx, ty, tz);
+    }
+  }
+}
+
+// Calls write(impulse) for the Gabor impulses of a list that may reach the block; there may be more, which
+// add nothing. `metaballs` must hold those that reach the cells around the block, whose frames follow from
+// the body.
+template <class Write>
+ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
+                               const Box& box, Write&& write) {
+  const ImpulseList from = f.arrays[f.gabor_lists][list];
+  const GaborSurfaceNoise& noise = *f.layers[from.layer].noise.get_if<GaborSurfaceNoise>();
+  const SurfaceBand& band = f.arrays[noise.bands][from.part];
+  const FloatBox at = outer_float_box(projected_block(f, box), noise.low, noise.high);
+  const auto write_reaching = [&](const GaborImpulse& impulse) {
+    if (beyond_gabor_reach(impulse, at.center, at.half) <= 0.0f) write(impulse);
+  };
+  for_each_gabor_cell(band, at, [&](int x, int y, int z) {
+    const BodyAtPoint s =
+        unwarped_body_at(f.body, f.arrays, metaballs, gabor_cell_center(x, y, z, band.cell));
+    for_each_gabor_impulse(band, f.arrays[band.lobes], band.lobes.count, x, y, z, -s.distance, s.gradient,
+                           write_reaching);
+  });
+}
+
+// How far beyond a block the cells of Gabor impulses that may reach it have their centres; 0 without such
+// noise.
+inline double gabor_margin(const FieldView& f) {
+  double margin = 0.0;
+  for (const ImpulseList& list : f.arrays.span(f.gabor_lists)) {
+    const GaborSurfaceNoise& noise = *f.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
+    const SurfaceBand& band = f.arrays[noise.bands][list.part];
+    margin = std::max(margin, 1.01 * double{band.reach} + 2.0 * double{band.cell});
+  }
+  return margin;
+}
+
+}  // namespace astrolith
