@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "recipe/body.h"
+#include "recipe/landforms.h"
 #include "recipe/limits.h"
 #include "recipe/noise_layers.h"
-#include "recipe/surface_features.h"
 
 namespace astrolith {
 

@@ -5,9 +5,9 @@
 #include "numerics/errors.h"
 #include "recipe/body_internal.h"
 #include "recipe/json_document_internal.h"
+#include "recipe/landforms_internal.h"
 #include "recipe/noise_layers_internal.h"
 #include "recipe/recipe_json.h"
-#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {

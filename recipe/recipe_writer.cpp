@@ -6,9 +6,9 @@
 #include "numerics/errors.h"
 #include "numerics/output_file.h"
 #include "recipe/body_internal.h"
+#include "recipe/landforms_internal.h"
 #include "recipe/noise_layers_internal.h"
 #include "recipe/recipe_json.h"
-#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "recipe/expect_internal.h"
-#include "recipe/surface_features_internal.h"
+#include "recipe/landforms_internal.h"
 
 namespace astrolith {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "recipe/landforms.h"
 #include "recipe/object_reader_internal.h"
 #include "recipe/place_internal.h"
-#include "recipe/surface_features.h"
 
 namespace astrolith {
 

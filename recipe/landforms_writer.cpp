@@ -1,5 +1,5 @@
 #include "recipe/body_internal.h"
-#include "recipe/surface_features_internal.h"
+#include "recipe/landforms_internal.h"
 
 namespace astrolith {
 namespace {

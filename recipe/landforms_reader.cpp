@@ -1,4 +1,4 @@
-#include "recipe/surface_features_internal.h"
+#include "recipe/landforms_internal.h"
 
 namespace astrolith {
 namespace {
