@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -118,6 +119,10 @@ json parse_json(std::string_view text, const std::string& name) {
   TreeBuilder builder(text, name);
   json::sax_parse(text.begin(), text.end(), &builder);
   return builder.take();
+}
+
+std::string json_string(std::string_view text) {
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace astrolith

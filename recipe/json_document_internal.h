@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -20,5 +20,8 @@ std::string read_json_text(const std::filesystem::path& file);
 // Throws InputError "name: line L, column C: ..." for text that is not one JSON value in UTF-8, for a key
 // that stands twice in one object, and beyond the limits above. Columns count bytes from 1.
 nlohmann::json parse_json(std::string_view text, const std::string& name);
+
+// The text as a JSON string: in quotes, on one line, and with U+FFFD for bytes that are not UTF-8.
+std::string json_string(std::string_view text);
 
 }  // namespace astrolith

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace astrolith {
 
@@ -35,5 +36,7 @@ class Place {
 
 // Text of a file as it may stand in a one-line message: quoted, escaped, cut after 40 characters.
 std::string quote_text(std::string_view text);
+// "a", "b" or "c" where `last` is " or ".
+std::string quote_list(const std::vector<std::string_view>& words, std::string_view last);
 
 }  // namespace astrolith
