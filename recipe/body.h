@@ -1,5 +1,5 @@
-// The body of a recipe: metaballs, and how bodies are combined. Lengths are in the recipe's unit. Included by
-// recipe/recipe.h.
+// The body of a recipe: metaballs, and how bodies are combined. Lengths are in the recipe's `length_unit`.
+// Include recipe/recipe.h, which includes this file.
 #pragma once
 
 #include <cmath>
@@ -13,9 +13,12 @@
 
 namespace astrolith {
 
-inline constexpr double kMaxKernelExponent = 80.0;  // e^80 times a million spheres is still a float
-inline constexpr double kMaxNetExponent = 60.0;     // of a kernel over the iso-value where spheres take away
-inline constexpr double kMaxTension = 10.0;         // of kernels other than the Gaussian
+// The largest logarithm of a kernel: e^80 times a million spheres is still a float.
+inline constexpr double kMaxKernelExponent = 80.0;
+// The largest logarithm of a kernel over the iso-value in a body with subtractive metaballs.
+inline constexpr double kMaxNetExponent = 60.0;
+// The largest `a` of kernels other than the Gaussian.
+inline constexpr double kMaxTension = 10.0;
 
 struct Sphere {
   Vec3d center;
@@ -37,25 +40,26 @@ enum class Kernel { kGaussian, kMetaball, kSoftObject, kWyvill, kCauchy };
 inline constexpr Kernel kKernels[] = {Kernel::kGaussian, Kernel::kMetaball, Kernel::kSoftObject,
                                       Kernel::kWyvill, Kernel::kCauchy};
 
-// As recipes and command lines name it.
+// The kernel's name in recipes and on command lines.
 constexpr std::string_view kernel_word(Kernel kernel) {
   constexpr std::string_view kWords[] = {"gaussian", "metaball", "soft_object", "wyvill", "cauchy"};
   return kWords[static_cast<int>(kernel)];
 }
 
-// Spheres, by their place in the body's list, that layers can be tied to.
+// A group of spheres that layers can be tied to.
 struct SphereGroup {
   std::string name;
-  std::vector<int> spheres;  // at least one, each below the number of spheres and once
+  std::vector<int> spheres;  // places in MetaballBody::spheres from 0: at least one, each at most once
 };
 
-// How a body is combined with another (thesis 2.2), both by their signed distances f and g, positive inside:
+// How a body is combined with another (thesis 2.2). Both are given by their signed distances f and g,
+// positive inside:
 //   union, intersection   (f + g +- sqrt(f^2 + g^2 - 2 alpha f g)) / (1 + alpha)       (R-functions)
 //   difference            the intersection of f and -g
 //   blend                 (f'^n + g'^n)^(1/n) = 1 with f' = max(0, 1 + f / width)      (super-elliptic)
 //   clean union           f + g + sqrt(f^2 + g^2) + a0 / (1 + (f/a1)^2 + (g/a2)^2)     (eq. 2.16, 2.17)
-// All but blend and bulge are exact on the surfaces; alpha < 1 rounds the field off them, and so what layers
-// build on it.
+// The R-functions, and the clean union without a bulge, keep the surfaces of both bodies. An alpha below 1
+// rounds the field away from the surfaces, and so it rounds the heights that layers add.
 enum class Operator { kUnion, kIntersection, kDifference, kBlend, kCleanUnion };
 inline constexpr Operator kOperators[] = {Operator::kUnion, Operator::kIntersection, Operator::kDifference,
                                           Operator::kBlend, Operator::kCleanUnion};
@@ -67,49 +71,49 @@ constexpr std::string_view operator_word(Operator op) {
 struct MetaballBody;
 struct BodyOperation {
   Operator kind = Operator::kUnion;
-  double alpha = 1.0;                 // of the three R-functions, [-0.9, 1]
-  double exponent = 2.0;              // n of the blend, [1, 64]
-  double width = 1.0;                 // of the blend, length units, > 0: it ends this far from either body
-  double bulge = 0.0;                 // a0 of the clean union, length units; below 0 it carves
-  double reach[2] = {1.0, 1.0};       // a1, a2 of the clean union, length units, > 0
-  std::vector<MetaballBody> operand;  // exactly one
+  double alpha = 1.0;                 // R-functions only, [-0.9, 1]
+  double exponent = 2.0;              // blend only: n, [1, 64]
+  double width = 1.0;                 // blend only: it ends this far from either body, length units, > 0
+  double bulge = 0.0;                 // clean union only: a0, length units; a negative bulge carves
+  double reach[2] = {1.0, 1.0};       // clean union only: a1 and a2, length units, > 0
+  std::vector<MetaballBody> operand;  // exactly one body, without groups
 };
-inline constexpr int kMaxOperationDepth = 8;  // of operands within operands
-inline constexpr int kMaxOperations = 256;    // in a whole recipe
+inline constexpr int kMaxOperationDepth = 8;  // the most levels of operands within operands
+inline constexpr int kMaxOperations = 256;    // the most operations in a whole recipe
 
 // m(p) = (sum_i f_i(p)^m)^(1/m),  f_i = exp(a - b |p - c_i|^2 / r_i^2)     (thesis eq. 4.3 to 4.5, per
 // sphere) with f_i = 0 beyond cutoff_radii * r_i. The bare body is the set where m(p) >= iso_value. With a =
 // b and iso_value = 1 a lone sphere's surface has its own radius.
 //
-// The other kernels are scaled to the same two values: f_i is e^a at the centre and 1 where |p - c_i|^2 is
-// a/b r_i^2. They end continuously: where their own support does or, lowered by what is left there, at
-// cutoff_radii, whichever comes first (synthesis/body/compact_kernel.h). That needs a tension of
-// least_tension(body) at least. Their blend is a p-norm with m >= 1.
+// The other kernels are scaled to two values of the Gaussian: f_i is e^a at the centre and 1 where
+// |p - c_i|^2 is a/b r_i^2. These kernels end continuously, where their own support ends or at cutoff_radii,
+// whichever comes first. A kernel that ends at cutoff_radii is lowered by its value there. The other kernels
+// need a tension `a` of at least least_tension(body), and their blend is a p-norm with m >= 1.
 //
-// Spheres can also take away: with g_j their kernels and T the iso-value,
+// A body can have subtractive metaballs. With g_j their kernels and T the iso-value,
 //   m(p) = (sum_i f_i(p)^m / (1 + sum_j (g_j(p) / T)^m))^(1/m),
-// whose surface is that of the difference, sum_i f_i^m - sum_j g_j^m = T^m.
+// and the surface is that of the difference, sum_i f_i^m - sum_j g_j^m = T^m.
 //
-// With a warp, m is taken at p + warp(p) instead of p: low frequencies and high amplitudes make caves,
-// tunnels and arches.
+// With a warp, m is evaluated at p + warp(p) instead of p. Low frequencies and high amplitudes of a warp make
+// caves, tunnels and arches.
 struct MetaballBody {
   Kernel kernel = Kernel::kGaussian;
   double a = 1.0;               // tension, > 0; at most kMaxTension for kernels other than the Gaussian
   double b = 1.0;               // tension, > 0
   double blend_exponent = 1.0;  // the thesis's m, > 0 or >= 1; blend_exponent * a <= kMaxKernelExponent
   double iso_value = 1.0;       // the thesis's T, > 0
-  double cutoff_radii = 5.0;    // support of each kernel in its own radii, > 1
+  double cutoff_radii = 5.0;    // support of a kernel in radii of its sphere, > 1
   std::vector<Sphere> spheres;  // at least one
-  // Spheres that take away; not in groups. They ask for blend_exponent (a - log iso_value) <=
-  // kMaxNetExponent.
+  // Subtractive metaballs, which belong to no group. A body with subtractive metaballs must have
+  // blend_exponent (a - log iso_value) <= kMaxNetExponent.
   std::vector<Sphere> subtract;
   std::vector<SphereGroup> groups;        // sorted by name, each name once
-  std::vector<BodyOperation> operations;  // done to these metaballs, in order
+  std::vector<BodyOperation> operations;  // applied to these metaballs in order
   std::optional<Warp> warp;
 
   std::size_t num_metaballs() const { return spheres.size() + subtract.size(); }
 
-  // Null where there is none of that name.
+  // The group of this name, or null.
   const SphereGroup* find_group(std::string_view name) const {
     for (const SphereGroup& group : groups) {
       if (group.name == name) return &group;
@@ -118,8 +122,8 @@ struct MetaballBody {
   }
 };
 
-// The flattest kernel with its end at cutoff_radii is a parabola: below its tension there is none. Infinite
-// where the surface lies beyond the end.
+// The least tension `a` for which the body's kernel can end at cutoff_radii: the flattest such kernel is a
+// parabola. The result is 0 for the Gaussian, and infinite if the sphere's surface lies beyond cutoff_radii.
 inline double least_tension(const MetaballBody& body) {
   const double surface = body.a / body.b, end = body.cutoff_radii * body.cutoff_radii;
   if (body.kernel == Kernel::kGaussian) return 0.0;

@@ -10,11 +10,11 @@ namespace astrolith {
 namespace {
 
 struct Complaint {
-  std::string_view sign;         // in the library's message
-  std::string_view explanation;  // {} is the word that the reader stopped at
+  std::string_view sign;         // part of the library's message
+  std::string_view explanation;  // {} is the word at which the library stopped
 };
 
-// The first whose sign stands in the message.
+// The first complaint whose sign stands in the library's message explains it.
 constexpr Complaint kComplaints[] = {
     {"unexpected end of input", "the text ends in the middle of a value; is the file cut off?"},
     {"missing closing quote", "the text {} has no closing quote; add it"},
@@ -36,7 +36,7 @@ constexpr Complaint kComplaints[] = {
     {"parsing array", "{} stands where a comma or a closing bracket should; add it"},
 };
 
-// The word, or the bracket or other mark, that the reader stopped at; `position` counts from 1.
+// The word or the mark at `position`, which counts from 1.
 std::string_view word_at(std::string_view text, std::size_t position) {
   constexpr std::string_view kEnds = " \t\r\n,:[]{}";
   const std::size_t at = std::min(position, text.size());

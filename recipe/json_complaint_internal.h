@@ -1,4 +1,4 @@
-// What is wrong with a text that is no JSON, and what to do about it, in plain words.
+// Errors of JSON syntax in plain words: what is wrong, and what to do about it.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@
 
 namespace astrolith {
 
-// `problem` is the JSON library's own message about `text`; it stopped at character `position`, from 1.
+// `problem` is the JSON library's message about `text`, and `position` is the character, counted from 1, at
+// which the library stopped.
 std::string explain_json_problem(std::string_view problem, std::string_view text, std::size_t position);
 
 }  // namespace astrolith

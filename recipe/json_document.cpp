@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -20,7 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-// Builds the tree from the parser's events and stops at the first breach of a limit.
+// Builds the tree from the parser's events and throws at the first breach of a limit.
 class TreeBuilder : public nlohmann::json_sax<json> {
  public:
   TreeBuilder(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -31,7 +32,7 @@ class TreeBuilder : public nlohmann::json_sax<json> {
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override { return add(std::move(value)); }
-  bool binary(binary_t&) override { return false; }  // not in text
+  bool binary(binary_t&) override { return false; }  // JSON text has no binary values
   bool start_object(std::size_t) override { return open(json::object()); }
   bool start_array(std::size_t) override { return open(json::array()); }
   bool end_object() override { return close(); }
@@ -118,6 +119,10 @@ json parse_json(std::string_view text, const std::string& name) {
   TreeBuilder builder(text, name);
   json::sax_parse(text.begin(), text.end(), &builder);
   return builder.take();
+}
+
+std::string json_string(std::string_view text) {
+  return json(text).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace astrolith

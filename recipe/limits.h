@@ -1,5 +1,5 @@
-// What numbers of a recipe may be. No number exceeds kMaxNumber in magnitude and "> 0" means at least
-// kMinPositive, which keeps absurd files out; combinations at the ends of both ranges can still leave what a
+// Limits of a recipe's numbers, which keep absurd files out. No number exceeds kMaxNumber in magnitude, and
+// "> 0" means at least kMinPositive. Numbers at the ends of their ranges can still combine to more than a
 // float holds.
 #pragma once
 

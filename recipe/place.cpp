@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "numerics/errors.h"
+#include "recipe/json_document_internal.h"
 #include "recipe/place_internal.h"
 
 namespace astrolith {
@@ -24,8 +23,16 @@ std::string quote_text(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string shown(text.substr(0, kShown));
   if (text.size() > kShown) shown += "...";
-  // JSON's own escapes: no line break or control character survives, nor half a UTF-8 sequence.
-  return nlohmann::json(shown).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_string(shown);
+}
+
+std::string quote_list(const std::vector<std::string_view>& words, std::string_view last) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) list += i + 1 < words.size() ? ", " : last;
+    list += quote_text(words[i]);
+  }
+  return list;
 }
 
 }  // namespace astrolith

@@ -1,24 +1,25 @@
-// Where in a recipe a value stands, for error messages: "rock.json: layers[0].lobes[3].bandwidth".
+// The place of a value in a recipe, for error messages: "rock.json: layers[0].lobes[3].bandwidth".
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace astrolith {
 
-// A chain of places on the stack, so that walking a recipe allocates nothing. A place points to its parent:
-// the parent must outlive it.
+// Places form a chain on the stack, so that walking a recipe allocates nothing. A place points to its parent,
+// which must outlive it.
 class Place {
  public:
-  // The recipe as a whole.
+  // The place of the recipe as a whole. `file_name` must outlive the place.
   explicit Place(const std::string& file_name) : file_name_(&file_name) {}
 
   Place field(std::string_view name) const { return {*file_name_, this, name, -1}; }
   Place element(std::size_t index) const { return {*file_name_, this, {}, static_cast<std::int64_t>(index)}; }
 
-  // "layers[0].lobes[3].bandwidth"; empty for the recipe as a whole.
+  // The path "layers[0].lobes[3].bandwidth", which is empty for the recipe as a whole.
   std::string path() const;
   // Throws InputError "file: path: message" on one line.
   [[noreturn]] void fail(std::string_view message) const;
@@ -33,7 +34,9 @@ class Place {
   std::int64_t index_ = -1;
 };
 
-// Text of a file as it may stand in a one-line message: quoted, escaped, cut after 40 characters.
+// A file's text for a one-line message: quoted, escaped and cut after 40 characters.
 std::string quote_text(std::string_view text);
+// The list `"a", "b" or "c"` if `last` is " or ".
+std::string quote_list(const std::vector<std::string_view>& words, std::string_view last);
 
 }  // namespace astrolith

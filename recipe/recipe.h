@@ -1,6 +1,6 @@
-// The recipe: the contract between fitting and synthesis, and the meaning of the JSON file of the same shape
-// (recipe/recipe.schema.json). Plain data; recipe_json.h reads and writes it, and checks every rule stated
-// here.
+// The recipe: the contract between fitting and synthesis, and the meaning of a recipe's JSON file
+// (recipe/recipe.schema.json). The structs are plain data. recipe_json.h reads and writes them, and checks
+// every rule that these headers state.
 //
 // All lengths are in `length_unit`; positions are in the body-fixed frame.
 #pragma once
@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "recipe/body.h"
+#include "recipe/landforms.h"
 #include "recipe/limits.h"
 #include "recipe/noise_layers.h"
-#include "recipe/surface_features.h"
 
 namespace astrolith {
 
@@ -25,7 +25,7 @@ inline constexpr int kRecipeFormatVersion = 1;
 using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer, BoulderLayer, SparseLayer,
                            RandomPhaseLayer, PhasorLayer>;
 
-// Null for the kinds that have none.
+// The layer's use, or null for craters and boulders.
 inline LayerUse* use_of(Layer& layer) {
   return std::visit(
       [](auto& l) -> LayerUse* {
@@ -39,25 +39,26 @@ inline LayerUse* use_of(Layer& layer) {
 }
 inline const LayerUse* use_of(const Layer& layer) { return use_of(const_cast<Layer&>(layer)); }
 
-// The last of this name; -1 where there is none.
+// The place of the last layer of this name in the list, or -1.
 int find_layer(std::span<const Layer> layers, const std::string& name);
 
-// Thermal erosion of the finished surface (thesis eq. 5.12): slopes steeper than the talus angle, measured
-// against the gravity of a body of uniform density that may turn about +z, slide down until they are not.
+// Thermal erosion of the finished surface (thesis eq. 5.12): material slides down until no slope is steeper
+// than the talus angle. Slopes are measured against the gravity of a body of uniform density that may turn
+// about +z.
 struct Erosion {
   double talus_angle = 35.0;     // degrees, [1, 85]
-  int iterations = 10000;        // sweeps over the surface at most, 1 .. 100000; ends when all has settled
+  int iterations = 10000;        // the most sweeps over the surface, 1 .. 100000
   double density = 2000.0;       // kg / m^3, [1, 30000]
-  double rotation_period = 0.0;  // hours, 0 (at rest) or [0.01, 1e6]
+  double rotation_period = 0.0;  // hours, [0.01, 1e6], or 0 for a body at rest
 };
 
-// Where a recipe came from.
+// The origin of a recipe.
 struct Provenance {
-  std::string tool;                                          // "fit_shape 0.1.0"
-  std::string input_name;                                    // file name without folders
+  std::string tool;                                          // program and version, "fit_shape 0.1.0"
+  std::string input_name;                                    // name of the fitted file without folders
   std::string input_sha256;                                  // 64 hexadecimal digits, or empty
-  std::vector<std::pair<std::string, std::string>> options;  // as given, sorted by name
-  std::vector<std::pair<std::string, double>> achieved;      // errors reached, sorted by name
+  std::vector<std::pair<std::string, std::string>> options;  // the user's options, sorted by name
+  std::vector<std::pair<std::string, double>> achieved;      // errors of the fit, sorted by name
 };
 
 struct Recipe {
@@ -67,9 +68,9 @@ struct Recipe {
   std::string frame = "body-fixed, right-handed, +z spin pole, +x prime meridian";
   std::uint64_t seed = 1;  // below 2^53, so that every JSON reader keeps it exact
   Provenance provenance;
-  std::optional<MetaballBody> body;  // absent in what fit_gabor writes
-  std::vector<Layer> layers;
-  std::optional<Erosion> erosion;  // of a body with its layers
+  std::optional<MetaballBody> body;  // fit_gabor writes recipes without a body
+  std::vector<Layer> layers;         // at least one in a recipe without a body
+  std::optional<Erosion> erosion;    // only in a recipe with a body
 };
 
 }  // namespace astrolith

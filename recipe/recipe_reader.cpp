@@ -1,136 +1,170 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
 
-#include "numerics/errors.h"
-#include "recipe/body_internal.h"
+#include "recipe/fields_internal.h"
 #include "recipe/json_document_internal.h"
-#include "recipe/noise_layers_internal.h"
 #include "recipe/recipe_json.h"
-#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {
 
 using nlohmann::json;
 
-template <typename T>
-void read_named(const json& value, const Place& place, std::vector<std::pair<std::string, T>>& out) {
-  ObjectReader object(value, place);  // any names
-  for (const auto& [name, member] : value.items()) {
-    out.emplace_back(name, T{});
-    read_value(member, place.field(name), out.back().second);
-  }
-  std::sort(out.begin(), out.end());
-}
-
-constexpr const char* kLayerTypes =
-    "\"simplex\", \"perlin\", \"worley\", \"spots\", \"sparse\", \"craters\", \"boulders\", "
-    "\"random_phase\", "
-    "\"phasor\" and \"gabor\"";
-
-// What all kinds of layer have.
-void read_identity(ObjectReader& object, auto& layer) {
-  object.allow("name", layer.name);
-  object.allow("seed", layer.seed);
-}
-
-void read_layer(const json& value, const Place& place, Layer& out) {
-  ObjectReader object(value, place);
-  std::string type;
-  const auto read_fractal = [&](Noise noise) {
-    FractalLayer& layer = out.emplace<FractalLayer>();
-    layer.noise = noise;
-    read_fields(object, layer);
-  };
-  if (!object.allow("type", type))
-    object.at("type").fail(std::string("is missing; add one of ") + kLayerTypes);
-  if (type == "simplex") {
-    read_fractal(Noise::kSimplex);
-  } else if (type == "perlin") {
-    read_fractal(Noise::kPerlin);
-  } else if (type == "worley") {
-    read_fractal(Noise::kWorleyF1);
-  } else if (type == "spots") {
-    read_fields(object, out.emplace<SpotLayer>());
-  } else if (type == "sparse") {
-    read_fields(object, out.emplace<SparseLayer>());
-  } else if (type == "craters") {
-    read_fields(object, out.emplace<CraterLayer>());
-  } else if (type == "boulders") {
-    read_fields(object, out.emplace<BoulderLayer>());
-  } else if (type == "random_phase") {
-    read_fields(object, out.emplace<RandomPhaseLayer>());
-  } else if (type == "phasor") {
-    read_fields(object, out.emplace<PhasorLayer>());
-  } else if (type == "gabor") {
-    read_fields(object, out.emplace<GaborLayer>());
-  } else {
-    object.at("type").fail(std::string("must be one of ") + kLayerTypes + ", is " + quote_text(type));
-  }
-  std::visit([&](auto& layer) { read_identity(object, layer); }, out);
-  if (LayerUse* use = use_of(out)) read_use(object, *use);
-  object.finish();
-}
-
-void read_erosion(const json& value, const Place& place, Erosion& out) {
-  ObjectReader object(value, place);
-  object.require("talus_angle", out.talus_angle);
-  object.allow("iterations", out.iterations);
-  object.allow("density", out.density);
-  object.allow("rotation_period", out.rotation_period);
-  object.finish();
-}
-
-void read_provenance(const json& value, const Place& place, Provenance& out) {
-  ObjectReader object(value, place);
-  object.allow("tool", out.tool);
-  object.allow("input_name", out.input_name);
-  object.allow("input_sha256", out.input_sha256);
-  if (const json* options = object.find("options")) read_named(*options, object.at("options"), out.options);
-  if (const json* figures = object.find("achieved"))
-    read_named(*figures, object.at("achieved"), out.achieved);
-  object.finish();
-}
-
-// Before anything else: fields of another version would only be reported as unknown.
-void read_version(const json& document, const Place& place, int& out) {
-  ObjectReader object(document, place);
-  if (!object.allow("format_version", out)) {
-    object.at("format_version").fail(fmt::format("is missing; add {}", kRecipeFormatVersion));
-  }
-  if (out != kRecipeFormatVersion) {
-    object.at("format_version")
-        .fail(fmt::format("is {}, this program reads {}; use the program version that wrote the file", out,
-                          kRecipeFormatVersion));
+// A value of the file in words, such as "an object" or "the string "Km"".
+std::string description(const json& value) {
+  switch (value.type()) {
+    case json::value_t::null:
+      return "null";
+    case json::value_t::object:
+      return "an object";
+    case json::value_t::array:
+      return fmt::format("an array of {}", value.size());
+    case json::value_t::string:
+      return "the string " + quote_text(value.get_ref<const std::string&>());
+    default:
+      return value.dump();
   }
 }
 
-Recipe read_document(const json& document, const Place& place) {
-  Recipe recipe;
-  read_version(document, place, recipe.format_version);
-  ObjectReader object(document, place);
-  object.find("format_version");
-  object.allow("description", recipe.description);
-  object.require("length_unit", recipe.length_unit);
-  object.allow("frame", recipe.frame);
-  object.allow("seed", recipe.seed);
-  if (const json* from = object.find("provenance"))
-    read_provenance(*from, object.at("provenance"), recipe.provenance);
-  if (const json* body = object.find("body")) read_body(*body, object.at("body"), recipe.body.emplace());
-  if (const json* layers = object.find("layers"))
-    read_elements(*layers, object.at("layers"), recipe.layers, read_layer);
-  if (const json* erosion = object.find("erosion"))
-    read_erosion(*erosion, object.at("erosion"), recipe.erosion.emplace());
-  object.finish();
-  return recipe;
+[[noreturn]] void fail_type(const json& value, const Place& place, std::string_view wanted) {
+  place.fail(fmt::format("must be {}, is {}", wanted, description(value)));
 }
+
+// An integer in [low, high], which may be written as 8.0 or 1e3. Doubles must hold both bounds exactly.
+double integral(const json& value, const Place& place, double low, double high) {
+  if (!value.is_number()) fail_type(value, place, "an integer");
+  const double number = value.get<double>();
+  if (number != std::floor(number)) fail_type(value, place, "an integer");
+  if (number < low || number > high) {
+    fail_type(value, place, fmt::format("an integer from {:.0f} to {:.0f}", low, high));
+  }
+  return number;
+}
+
+// Levenshtein's edit distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+// Names in the list of fields of an object that is being read.
+struct ObjectNames {
+  std::vector<std::string_view> known, missing;
+};
+
+[[noreturn]] void fail_unknown(const std::string& name, const std::vector<std::string_view>& known,
+                               const Place& place) {
+  const std::string_view shown = std::string_view(name).substr(0, 64);  // a hostile name costs no more
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](auto a, auto b) {
+    return edit_distance(shown, a) < edit_distance(shown, b);
+  });
+  const std::string inner = quote_text(name);
+  const Place here = place.field(std::string_view(inner).substr(1, inner.size() - 2));
+  if (edit_distance(shown, *nearest) <= std::max<std::size_t>(2, nearest->size() / 3)) {
+    here.fail(fmt::format("unknown field; did you mean '{}'?", *nearest));
+  }
+  here.fail(fmt::format("unknown field; known are {}", fmt::join(known, ", ")));
+}
+
+// Reads values from a JSON document and reports missing, mistyped and unknown fields. validate_recipe checks
+// the limits.
+class FieldReader final : public FieldVisitor {
+ public:
+  FieldReader(const json& document, const Place& place)
+      : FieldVisitor(Task::kRead, place), values_{&document} {}
+
+ private:
+  void visit_number(double& number, const NumberLimits&) override {
+    if (!current().is_number()) fail_type(current(), place(), "a number");
+    number = current().get<double>();
+  }
+  void visit_integer(int& number, const IntegerLimits&) override {
+    constexpr std::numeric_limits<int> kRange;
+    number = static_cast<int>(integral(current(), place(), kRange.min(), kRange.max()));
+  }
+  void visit_seed(std::uint64_t& number) override {
+    number = static_cast<std::uint64_t>(integral(current(), place(), 0.0, 0x1.0p53 - 1.0));
+  }
+  void visit_flag(bool& flag) override {
+    if (!current().is_boolean()) fail_type(current(), place(), "true or false");
+    flag = current().get<bool>();
+  }
+  void visit_text(std::string& text) override {
+    if (!current().is_string()) fail_type(current(), place(), "a string");
+    text = current().get<std::string>();
+  }
+
+  bool enter(std::string_view name, bool required, bool) override {
+    objects_.back().known.push_back(name);
+    const json& object = current();
+    if (const auto found = object.find(name); found != object.end()) {
+      values_.push_back(&*found);
+      return true;
+    }
+    if (required) objects_.back().missing.push_back(name);
+    return false;
+  }
+  void enter_element(std::size_t index) override { values_.push_back(&current()[index]); }
+  void leave() override { values_.pop_back(); }
+
+  void begin_object() override {
+    if (!current().is_object()) fail_type(current(), place(), "an object");
+    objects_.emplace_back();
+  }
+  // Unknown fields come first, since a misspelt name is also a missing one.
+  void end_object() override {
+    const auto& [known, missing] = objects_.back();
+    for (const auto& [name, unused] : current().items()) {
+      if (std::find(known.begin(), known.end(), name) == known.end()) fail_unknown(name, known, place());
+    }
+    if (!missing.empty()) place().field(missing.front()).fail("is missing; add it");
+    objects_.pop_back();
+  }
+  std::vector<std::string> begin_members() override {
+    begin_object();
+    std::vector<std::string> names;
+    for (const auto& [name, unused] : current().items()) names.push_back(name);
+    return names;
+  }
+  void end_members() override { objects_.pop_back(); }
+
+  std::size_t begin_array(std::size_t, std::span<const std::string_view> names, bool) override {
+    if (!names.empty() && (!current().is_array() || current().size() != names.size())) {
+      fail_type(current(), place(), fmt::format("[{}]", fmt::join(names, ", ")));
+    }
+    if (!current().is_array()) fail_type(current(), place(), "an array");
+    return current().size();
+  }
+
+  const json& current() const { return *values_.back(); }
+
+  std::vector<const json*> values_;  // from the document to the value at place()
+  std::vector<ObjectNames> objects_;
+};
 
 }  // namespace
 
 Recipe parse_recipe(std::string_view text, const std::string& name) {
   const json document = parse_json(text, name);
-  Recipe recipe = read_document(document, Place(name));
+  const Place place(name);
+  Recipe recipe;
+  FieldReader(document, place).visit(recipe);
   validate_recipe(recipe, name);
   return recipe;
 }

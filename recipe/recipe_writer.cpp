@@ -1,66 +1,16 @@
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "recipe/body_internal.h"
-#include "recipe/noise_layers_internal.h"
+#include "recipe/fields_internal.h"
+#include "recipe/json_document_internal.h"
 #include "recipe/recipe_json.h"
-#include "recipe/surface_features_internal.h"
 
 namespace astrolith {
 namespace {
 
-using nlohmann::ordered_json;
-
-template <typename T>
-ordered_json to_json(const std::vector<std::pair<std::string, T>>& named) {
-  ordered_json object = ordered_json::object();
-  for (const auto& [name, value] : named) object[name] = value;
-  return object;
-}
-
-ordered_json to_json(const Provenance& provenance) {
-  return {{"tool", provenance.tool},
-          {"input_name", provenance.input_name},
-          {"input_sha256", provenance.input_sha256},
-          {"options", to_json(provenance.options)},
-          {"achieved", to_json(provenance.achieved)}};
-}
-
-ordered_json to_json(const Erosion& erosion) {
-  return {{"talus_angle", erosion.talus_angle},
-          {"iterations", erosion.iterations},
-          {"density", erosion.density},
-          {"rotation_period", erosion.rotation_period}};
-}
-
-ordered_json to_json(const Recipe& recipe) {
-  ordered_json document{{"format_version", recipe.format_version}};
-  if (!recipe.description.empty()) document["description"] = recipe.description;
-  document["length_unit"] = recipe.length_unit;
-  document["frame"] = recipe.frame;
-  document["seed"] = recipe.seed;
-  document["provenance"] = to_json(recipe.provenance);
-  if (recipe.body) document["body"] = to_json(*recipe.body);
-  document["layers"] = ordered_json::array();
-  for (const Layer& layer : recipe.layers) {
-    document["layers"].push_back(std::visit([](const auto& l) { return to_json(l); }, layer));
-    ordered_json& written = document["layers"].back();
-    std::visit(
-        [&](const auto& l) {
-          if (l.seed) written["seed"] = *l.seed;
-        },
-        layer);
-    if (const LayerUse* use = use_of(layer)) add_use(*use, written);
-  }
-  if (recipe.erosion) document["erosion"] = to_json(*recipe.erosion);
-  return document;
-}
-
-// Shortest decimal that reads back to the same bits. A reader would take "-0" for the integer 0.
+// The shortest decimal that reads back to equal bits. A reader would take "-0" for the integer 0.
 std::string number_text(double value) {
   if (value == 0.0 && std::signbit(value)) return "-0.0";
   char text[32];
@@ -68,36 +18,64 @@ std::string number_text(double value) {
   return {text, end.ptr};
 }
 
-std::string scalar_text(const ordered_json& value) {
-  if (value.is_number_float()) return number_text(value.get<double>());
-  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
+// Writes JSON with two spaces per level. An array of numbers stays on one line.
+class FieldWriter final : public FieldVisitor {
+ public:
+  explicit FieldWriter(const Place& place) : FieldVisitor(Task::kWrite, place) {}
 
-bool is_row_of_numbers(const ordered_json& value) {
-  return value.is_array() &&
-         std::all_of(value.begin(), value.end(), [](const auto& v) { return v.is_number(); });
-}
+  std::string take() { return std::move(text_) + "\n"; }
 
-// Two spaces a level; an array of numbers stays on its line.
-void print(const ordered_json& value, const std::string& indent, std::string& text) {
-  if (!value.is_structured() || value.empty()) {
-    text += scalar_text(value);
-    return;
+ private:
+  void visit_number(double& number, const NumberLimits&) override { text_ += number_text(number); }
+  void visit_integer(int& number, const IntegerLimits&) override { text_ += std::to_string(number); }
+  void visit_seed(std::uint64_t& number) override { text_ += std::to_string(number); }
+  void visit_flag(bool& flag) override { text_ += flag ? "true" : "false"; }
+  void visit_text(std::string& text) override { text_ += json_string(text); }
+
+  bool enter(std::string_view name, bool, bool written) override {
+    if (!written) return false;
+    next_item();
+    text_ += json_string(name) + ": ";
+    return true;
   }
-  const bool row = is_row_of_numbers(value);
-  const std::string inner = indent + "  ";
-  text += value.is_array() ? '[' : '{';
-  const char* separator = "";
-  for (const auto& item : value.items()) {
-    text += separator;
-    separator = row ? ", " : ",";
-    if (!row) text += '\n' + inner;
-    if (value.is_object()) text += scalar_text(item.key()) + ": ";
-    print(item.value(), inner, text);
+  void enter_element(std::size_t) override { next_item(); }
+  void begin_object() override { begin('{', false); }
+  void end_object() override { end('}'); }
+  std::vector<std::string> begin_members() override {
+    begin_object();
+    return {};
   }
-  if (!row) text += '\n' + indent;
-  text += value.is_array() ? ']' : '}';
-}
+  void end_members() override { end_object(); }
+  std::size_t begin_array(std::size_t size, std::span<const std::string_view>, bool one_line) override {
+    begin('[', one_line);
+    return size;
+  }
+  void end_array() override { end(']'); }
+
+  void begin(char bracket, bool one_line) {
+    text_ += bracket;
+    levels_.push_back({one_line, true});
+  }
+  void end(char bracket) {
+    const Level level = levels_.back();
+    levels_.pop_back();
+    if (!level.empty && !level.one_line) new_line();
+    text_ += bracket;
+  }
+  void next_item() {
+    Level& level = levels_.back();
+    if (!level.empty) text_ += level.one_line ? ", " : ",";
+    if (!level.one_line) new_line();
+    level.empty = false;
+  }
+  void new_line() { text_.append(1, '\n').append(2 * levels_.size(), ' '); }
+
+  struct Level {
+    bool one_line, empty;
+  };
+  std::vector<Level> levels_;  // one for each open bracket
+  std::string text_;
+};
 
 }  // namespace
 
@@ -107,9 +85,11 @@ std::string recipe_to_json(const Recipe& recipe) {
   } catch (const InputError& e) {
     throw WorkError(std::string("the recipe to be written is invalid: ") + e.what());
   }
-  std::string text;
-  print(to_json(recipe), "", text);
-  return text + "\n";
+  const std::string name = "recipe";
+  const Place place(name);
+  FieldWriter writer(place);
+  writer.inspect(recipe);
+  return writer.take();
 }
 
 void write_recipe(const Recipe& recipe, const std::filesystem::path& file) {

@@ -1,5 +1,5 @@
-// SHA-256 (FIPS 180-4) of files and streams: names the input in a recipe, and proves that two meshes are the
-// same bytes.
+// SHA-256 (FIPS 180-4) of files and streams. A recipe names its input by the hash, and equal hashes prove
+// that two meshes are equal byte for byte.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class Sha256 {
   Sha256& operator=(Sha256&&) noexcept;
 
   void update(const void* data, std::size_t bytes);
-  // 64 lower-case hexadecimal digits of everything so far; more may follow.
+  // 64 lower-case hexadecimal digits for all bytes so far. Further updates may follow.
   std::string hex() const;
 
  private:
@@ -28,7 +28,7 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-// Throws InputError when the file cannot be read.
+// 64 lower-case hexadecimal digits. Throws InputError when the file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -4,8 +4,8 @@
 recipe_reference.py          rewrites docs/recipe.md
 recipe_reference.py --check  exit status 1, and a word, where docs/recipe.md is not what it would write
 
-A table stands between two comments, the first of which names one or more of the schema's definitions, all of whose
-fields it shows, all but some, or some only:
+A table stands between two comments. The first comment names one or more of the schema's definitions, and the table
+shows all their fields, all fields but some (`without`) or some fields only (`only`):
 
     <!-- fields of gradient_noise, worley without type, locality -->
     <!-- fields of worley only name, seed -->

@@ -1,4 +1,4 @@
-// The relief of one crater at one point, as recipe/surface_features.h states it.
+// The relief of one crater at one point, as recipe/landforms.h states it.
 #pragma once
 
 #include "numerics/host_device.h"

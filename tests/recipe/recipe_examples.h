@@ -58,7 +58,8 @@ inline const std::string kCompleteRecipe = R"({
 }
 )";
 
-// kCompleteRecipe with the first `from` replaced by `to`, and what the reader's error must contain.
+// A change that spoils kCompleteRecipe: its first `from` becomes `to`, and the reader's error contains
+// `error`.
 struct Spoiled {
   std::string from;
   std::string to;
@@ -71,10 +72,10 @@ inline std::string spoil(const Spoiled& change) {
   return text.replace(text.find(change.from), change.from.size(), change.to);
 }
 
-// Documents that are JSON and no recipe.
+// Changes that leave the document JSON, but no recipe.
 inline std::vector<Spoiled> spoiled_recipes() {
   return {
-      // Names.
+      // Misspelt names.
       {R"("spheres": [[0)", R"("sphers": [[0)", R"(body.sphers: unknown field; did you mean 'spheres'?)"},
       {R"("amplitude": 0.02)", R"("amplitdue": 0.02)",
        R"(layers[0].amplitdue: unknown field; did you mean 'amplitude'?)"},
@@ -95,7 +96,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("type": "simplex",)", R"()", R"(layers[0].type: is missing)"},
       {R"(, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]])", R"()",
        R"(layers[1].lobes: is missing)"},
-      // Types.
+      // Values of a wrong type.
       {R"("format_version": 1)", R"("format_version": "1")",
        R"(format_version: must be an integer, is the string "1")"},
       {R"("km")", R"(7)", R"(length_unit: must be a string, is 7)"},
@@ -117,7 +118,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
        R"(layers[1].lobes[0]: must be [bandwidth, frequency_x, frequency_y, variance])"},
       {R"([4, 0.125, -0.25, 0.75])", R"([4.5, 0.125, -0.25, 0.75])",
        R"(layers[1].lobes[0].bandwidth: must be an integer)"},
-      // Words.
+      // Unknown words, and rules that depend on a word.
       {R"("format_version": 1)", R"("format_version": 2)", R"(format_version: is 2, this program reads 1)"},
       {R"("km")", R"("Km")", R"(length_unit: must be "m", "km" or "px", is "Km")"},
       {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
@@ -155,7 +156,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
        R"(layers[4].mask.layer: no layer before this one has the name "sand")", false},
       {R"("layer": "grit")", R"("layer": "")", R"(layers[4].mask.layer: must be a name)", false},
       {R"("to": -0.01)", R"("to": 0.01)", R"(layers[4].mask.to: is too near to `from`)", false},
-      // Ranges.
+      // Numbers out of range.
       {R"("seed": 7)", R"("seed": -7)", R"(layers[4].seed: must be an integer from 0 to 1073741823)"},
       {R"("width": 0.002)", R"("width": -1)", R"(layers[8].combine.width: must be from 0)"},
       {R"("waves": 8)", R"("waves": 1000)", R"(layers[8].waves: must be an integer from 1 to 128, is 1000)"},

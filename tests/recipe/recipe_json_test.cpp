@@ -85,7 +85,7 @@ TEST(RecipeJson, WritingAndReadingAreInverse) {
   EXPECT_EQ(recipe_to_json(parse_recipe(text, "r")), text);
 }
 
-// Doubles of every size, with all 53 bits in use, and the awkward ones.
+// The numbers are doubles of every magnitude with all 53 bits in use, zeros, subnormals and limits.
 TEST(RecipeJson, NumbersKeepTheirBits) {
   Recipe recipe;
   recipe.body.emplace();
@@ -164,7 +164,7 @@ TEST(RecipeJson, SyntaxErrorsGiveLineAndColumn) {
   expect_error(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "line 1, column 1: not valid JSON");
 }
 
-// In words that a user knows, with what stands there and what to do.
+// A syntax error names the text at fault and a remedy, without words that only a programmer knows.
 TEST(RecipeJson, SyntaxErrorsAreSaidPlainly) {
   expect_error("", "the text ends in the middle of a value; is the file cut off?");
   expect_error(R"({"a": 1)", "the text ends in the middle");
@@ -210,7 +210,7 @@ TEST(RecipeJson, TruncatedTextIsAnError) {
   for (std::size_t n = 0; n <= text.size(); ++n) EXPECT_NE(error_of(text.substr(0, n)), "no error") << n;
 }
 
-// Up to four bytes changed at random: a recipe or one line of error, nothing else.
+// Up to four bytes are changed at random. The reader returns a recipe or throws one line of error.
 TEST(RecipeJson, DamagedTextIsReadOrRefused) {
   CounterRandom random(21);
   int refused = 0;

@@ -1,5 +1,5 @@
-// docs/recipe.md and the schema keep their word: the example is a recipe, and the defaults are those of the
-// reader. That the tables are those of the schema is another test (scripts/recipe_reference.py).
+// The example in docs/recipe.md is a recipe, and the schema's defaults are the reader's. Another test
+// compares the document's tables with the schema (scripts/recipe_reference.py).
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -23,14 +23,15 @@ std::string first_json_block(const std::string& markdown) {
 
 nlohmann::json schema() { return nlohmann::json::parse(text_of(ASTROLITH_RECIPE_SCHEMA)); }
 
-// The least that a layer of this type has to state.
+// A layer of this type with no field beyond the required ones.
 nlohmann::json least_layer(const std::string& type) {
   nlohmann::json layer = {{"type", type}};
   if (type == "gabor") layer["lobes"] = {{4, 0.1, 0.0, 1.0}};
   return layer;
 }
 
-// Expects of each field of a definition that states a default that the writer wrote it.
+// Expects that the writer wrote each default that a definition states. Returns the number of defaults
+// compared.
 int expect_defaults(const nlohmann::json& definition, const nlohmann::json& written) {
   int compared = 0;
   for (const auto& [name, field] : definition.at("properties").items()) {
@@ -49,7 +50,7 @@ TEST(RecipeReference, ExampleIsARecipe) {
 }
 
 TEST(RecipeReference, ExampleHasEveryField) {
-  // The writer writes all fields: so must the example hold them, in the writer's order.
+  // The writer writes all fields, so the example must hold all fields in the writer's order.
   const std::string example = first_json_block(text_of(ASTROLITH_RECIPE_REFERENCE));
   EXPECT_EQ(recipe_to_json(parse_recipe(example, "docs/recipe.md")), example);
 }

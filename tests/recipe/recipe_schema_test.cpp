@@ -1,35 +1,18 @@
-// The schema, read by another library, and the reader agree on what a recipe is.
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
-
+// The reader and the schema, as another library understands it, accept and refuse equal documents.
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "tests/recipe/recipe_examples.h"
+#include "tests/recipe/schema_validator.h"
 
 namespace astrolith {
 namespace {
 
-using valijson::adapters::NlohmannJsonAdapter;
-
 class RecipeSchema : public ::testing::Test {
  protected:
-  RecipeSchema() {
-    const nlohmann::json document = nlohmann::json::parse(std::ifstream(ASTROLITH_RECIPE_SCHEMA));
-    valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-        .populateSchema(NlohmannJsonAdapter(document), schema_);
-  }
-  bool accepts(const std::string& text) {
-    const nlohmann::json document = nlohmann::json::parse(text);
-    return valijson::Validator().validate(schema_, NlohmannJsonAdapter(document), nullptr);
-  }
+  bool accepts(const std::string& text) const { return schema_.accepts(text); }
 
  private:
-  valijson::Schema schema_;
+  const testing::SchemaValidator schema_{ASTROLITH_RECIPE_SCHEMA};
 };
 
 TEST_F(RecipeSchema, AcceptsWhatTheReaderAccepts) {

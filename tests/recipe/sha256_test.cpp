@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-// FIPS 180-4 examples as published by NIST.
+// The examples that NIST publishes for FIPS 180-4.
 TEST(Sha256, KnownAnswers) {
   EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   Sha256 abc;
@@ -23,7 +23,7 @@ TEST(Sha256, PiecesAreTheWhole) {
   whole.update(text.data(), text.size());
   for (std::size_t i = 0; i < text.size(); i += 777) {
     pieces.update(text.data() + i, std::min<std::size_t>(777, text.size() - i));
-    pieces.hex();  // looking does not disturb
+    pieces.hex();  // a look at the hash does not disturb it
   }
   EXPECT_EQ(pieces.hex(), whole.hex());
 }

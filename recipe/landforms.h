@@ -1,0 +1,116 @@
+// Landforms of a recipe: craters and boulders that are listed one by one or drawn at random.
+//
+// Shapes are stated as fractions of a landform's own size, so that one profile serves every diameter. Lengths
+// are in the recipe's `length_unit`. Include recipe/recipe.h, which includes this file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+inline constexpr int kMaxDrawnFeatures = 1'000'000;  // the most landforms that one layer draws
+
+inline constexpr double kMinAxisRatio = 0.05;  // the least ratio of a boulder's shortest axis to its longest
+
+// A place on the bare body. A position means the nearest point of the surface. A direction means the point
+// where the ray from the frame's origin leaves the body for the last time.
+struct SurfacePlace {
+  Vec3d vector;  // a position in length units, or a direction of any length but 0
+  bool is_direction = false;
+};
+
+// Landforms drawn uniformly over the area of the bare body. The number above a diameter D falls as
+//   N(> D) ~ D^-exponent
+// between two limits. A population has either a count or a density.
+struct Population {
+  std::optional<int> count;        // exact number, 0 .. kMaxDrawnFeatures
+  std::optional<double> density;   // mean of a Poisson number, per squared length unit, >= 0
+  double least_diameter = 0.0;     // > 0
+  double greatest_diameter = 0.0;  // >= least_diameter
+  double exponent = 2.0;           // [0.01, 10]
+};
+
+// The relief of a crater over x = distance from its centre / radius, above the surroundings:
+//   cavity(x) = depth + rim_height times terraced(1 + sharpness (x^2 - 1)), less depth
+//   rim(x)    = rim_height ((extent - x) / (extent - 1))^flank,  0 beyond extent
+//   peak(x)   = peak_height (1 - (x / peak_radius)^2)^2,         0 beyond peak_radius
+//   height(x) = smooth_max(smooth_min(cavity, rim, k), -depth, k) + peak,     k = smoothing * depth
+// A sharpness of 1 is a bowl. With a larger sharpness the floor is flat to x = sqrt(1 - 1 / sharpness).
+// Cavity and rim meet at x = 1 at rim_height, and a smooth minimum lowers the crest by k/4.
+struct CraterProfile {
+  double depth = 0.1;         // floor below the surroundings, in diameters, [0, 1]
+  double rim_height = 0.036;  // crest above the surroundings, in diameters, [0, 1]
+  double extent = 2.5;        // end of the rim's outer flank, in radii, [1.05, 10]
+  double flank = 3.0;         // exponent of the flank's fall, [1, 8]
+  double sharpness = 1.0;     // steepness of the walls independent of depth, [1, 100]
+  double smoothing = 0.0;     // width of the joints, in depths, [0, 1]
+  double peak_height = 0.0;   // central peak above the floor, in diameters, [0, 1]
+  double peak_radius = 0.25;  // radius of the central peak, in radii, [0.01, 1]
+  int terraces = 0;           // steps of the wall, 0 .. 16
+};
+
+struct Crater {
+  SurfacePlace place;
+  double diameter = 1.0;             // of the rim's crest, length units, > 0
+  std::optional<double> depth;       // length units, 0 .. diameter; absent: the profile's
+  std::optional<double> rim_height;  // length units, 0 .. diameter; absent: the profile's
+  double age = 0.0;                  // any unit, >= 0; with equal ages the later in the list is younger
+};
+
+struct CraterPopulation {
+  Population drawn;
+  double greatest_age = 1.0;  // ages are uniform in [0, greatest_age]; >= 0
+  double depth_spread = 0.0;  // a uniform factor of depth and rim in 1 +- depth_spread; [0, 1]
+  double degradation = 0.0;   // a factor of depth and rim, 1 - degradation * age / greatest_age; [0, 1]
+};
+
+// Craters, added one by one from the oldest to the youngest. A crater changes the elevation E that earlier
+// layers and older craters made. With x as above, and base = E at the crater's centre due to earlier layers
+// and to older craters that are not smaller,
+//   E <- base + (E - base) min(x^2, 1) + height(x).
+// The crater replaces the elevation within its rim and adds to the elevation outside. A crater whose diameter
+// is at least `complex_from` has the profile `complex`, and a smaller one has `simple`.
+struct CraterLayer {
+  std::string name;
+  std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h
+  CraterProfile simple;
+  CraterProfile complex{0.06, 0.03, 2.5, 3.0, 1.8, 0.1, 0.03, 0.25, 3};
+  std::optional<double> complex_from;  // length units, > 0; absent: all craters are simple
+  std::vector<Crater> craters;
+  std::optional<CraterPopulation> population;
+};
+
+// An ellipsoid on the surface that all other layers make. Without a tilt, its axis c lies along the normal of
+// the bare surface.
+struct Boulder {
+  SurfacePlace place;
+  Vec3d axes{1, 1, 1};   // full lengths a, b, c, length units, > 0; none below kMinAxisRatio of the longest
+  double heading = 0.0;  // of axis a on the surface, degrees from east (z x normal) to north, [-360, 360]
+  double tilt = 0.0;     // of axis c about axis a, degrees, [-180, 180]
+  double burial = 0.3;   // share of the chord along the normal that lies below the surface, [0, 1]
+};
+
+struct BoulderPopulation {
+  Population drawn;                 // diameters are the boulders' axes a
+  Vec3d axis_ratios{1, 0.71, 0.5};  // a : b : c, each in [kMinAxisRatio, 1]
+  double ratio_spread = 0.2;        // a uniform factor of b and of c in 1 +- ratio_spread; [0, 0.9]
+  double least_burial = 0.1;        // burials are uniform in [least_burial, greatest_burial]; [0, 1]
+  double greatest_burial = 0.6;     // least_burial .. 1
+  double greatest_tilt = 20.0;      // tilts are uniform within +- greatest_tilt; degrees, [0, 90]
+};
+
+// Boulders join the body as a smooth union with the joint k = smoothing * (half the shortest axis).
+struct BoulderLayer {
+  std::string name;
+  std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h
+  double smoothing = 0.0;   // width of the joint, in half the shortest axis, [0, 1]
+  double roughness = 0.0;   // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
+  std::vector<Boulder> boulders;
+  std::optional<BoulderPopulation> population;
+};
+
+}  // namespace astrolith

@@ -1,0 +1,211 @@
+// Lists of fields of a recipe's noise layers, with their rules.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "recipe/fields_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr Noise kWorleyNoises[] = {Noise::kWorleyF1, Noise::kWorleyF2, Noise::kWorleyF2MinusF1};
+std::string_view distance_word(Noise noise) {
+  return noise == Noise::kWorleyF1 ? "f1" : noise == Noise::kWorleyF2 ? "f2" : "f2-f1";
+}
+
+void check_modulation(const FractalLayer& layer, const Place& place) {
+  if (is_worley(layer.noise)) {
+    expect(layer.gradient_modulation, range(0.0, 0.0), place.field("gradient_modulation"));
+  }
+}
+
+void check_lobes(const GaborLayer& layer, const Place& place) {
+  if (!layer.lobes.empty()) return;
+  place.field("lobes").fail("must hold at least one [bandwidth, frequency_x, frequency_y, variance]");
+}
+
+void check_edge(const Vec3d& edge, const Place& place) {
+  const double length = norm(edge);
+  if (length >= kLeastCellHeight && length <= kLongestCellEdge) return;
+  place.fail(fmt::format("must be {:g} to {:g} long, is {:.3g}; change it", kLeastCellHeight,
+                         kLongestCellEdge, length));
+}
+
+void check_lattice(const CellEdges& lattice, const Place& place) {
+  std::size_t i = 0;
+  for (const Vec3d& edge : {lattice.a, lattice.b, lattice.c}) check_edge(edge, place.element(i++));
+  if (least_height(lattice) >= kLeastCellHeight) return;
+  place.fail(
+      fmt::format("its cells must be {:g} high at least over each face, are {:.3g}; make them less oblique",
+                  kLeastCellHeight, least_height(lattice)));
+}
+
+void check_parts(const SpotLayer& layer, const Place& place) {
+  if (layer.parts.size() <= kMaxSpotParts) return;
+  place.field("parts").fail(
+      fmt::format("must hold at most {}, are {}; leave some out", kMaxSpotParts, layer.parts.size()));
+}
+
+void check_spot_reach(const SpotLayer& layer, const Place& place) {
+  double extent = layer.parts.empty() ? spot_extent(layer, {}) : 0.0;
+  for (const SpotPart& part : layer.parts) extent = std::max(extent, spot_extent(layer, part));
+  const double cells = layer.size * extent / (layer.cell_size * least_height(layer.lattice));
+  if (cells <= kMaxSpotCells) return;
+  place.field("cell_size")
+      .fail(fmt::format(
+          "a spot's half axis size * sqrt(sigma * variance), and that of each of its parts, must be "
+          "at most {:g} cells, is {:.3g}; use larger cells or smaller spots",
+          kMaxSpotCells, cells));
+}
+
+void check_spot_density(const SpotLayer& layer, const Place& place) {
+  const double finest =
+      layer.density * std::pow(layer.lacunarity, (layer.layers - 1) * (layer.exponent - 2.0));
+  const double densest = std::max(layer.density, finest);
+  if (densest <= kMaxSpotDensity) return;
+  place.field("density").fail(fmt::format(
+      "must be at most {:g} impulses a cell at every size, is {:.3g}; lower it, the exponent or the layers",
+      kMaxSpotDensity, densest));
+}
+
+void check_frequencies(const RandomPhaseLayer& layer, const Place& place) {
+  if (layer.frequency_max >= layer.frequency_min) return;
+  place.field("frequency_max")
+      .fail(fmt::format("must be at least frequency_min, {}, is {}; swap them", layer.frequency_min,
+                        layer.frequency_max));
+}
+
+void check_turns(const PhasorLayer& layer, const Place& place) {
+  const double turns = layer.frequency * layer.cell_size;
+  if (turns <= kMaxPhasorTurns) return;
+  place.field("cell_size")
+      .fail(fmt::format("frequency * cell_size must be at most {:g}, is {:.3g}; use smaller cells",
+                        kMaxPhasorTurns, turns));
+}
+
+template <class DirectedLayer>
+void check_direction(const DirectedLayer& layer, const Place& place) {
+  if (norm(layer.direction) >= kMinPositive) return;
+  place.field("direction").fail("must not be zero; give the direction");
+}
+
+}  // namespace
+
+void visit_fields(FieldVisitor& v, FractalLayer& layer) {
+  v.field("amplitude", layer.amplitude, kAnyNumber);
+  v.field("frequency", layer.frequency, kPositive);
+  visit_octaves(v, layer.frequency, layer.octaves, layer.gain, layer.lacunarity);
+  v.field("scale", layer.scale, kAnyNumber);
+  v.field("bias", layer.bias, kAnyNumber);
+  v.field("weight", layer.weight, kAnyNumber);
+  v.rule(check_modulation, layer);
+  if (is_worley(layer.noise)) {
+    v.word("distance", layer.noise, kWorleyNoises, distance_word);
+  } else {
+    v.field("gradient_modulation", layer.gradient_modulation, kNotNegative);
+  }
+  v.field("warp", layer.warp);
+}
+
+static void visit_row(FieldVisitor& v, GaborLobe& lobe) {
+  constexpr NumberLimits kCyclesPerPixel = range(-0.5, 0.5);
+  v.row(Column{"bandwidth", lobe.bandwidth, range(1, 12)},
+        Column{"frequency_x", lobe.frequency_x, kCyclesPerPixel},
+        Column{"frequency_y", lobe.frequency_y, kCyclesPerPixel},
+        Column{"variance", lobe.variance, kPositive});
+}
+
+void visit_fields(FieldVisitor& v, LayerColor& color) {
+  v.required("axis", color.axis, range(-1.0, 1.0));
+  v.field("mean", color.mean, kAnyNumber);
+}
+
+void visit_fields(FieldVisitor& v, GaborLayer& layer) {
+  v.field("pixel_size", layer.pixel_size, kPositive);
+  v.field("height_rms", layer.height_rms, kNotNegative);
+  v.field("impulses_per_kernel", layer.impulses_per_kernel, range(1, 1024));
+  v.field("exemplar_mean", layer.exemplar_mean, kAnyNumber);
+  v.field("exemplar_rms", layer.exemplar_rms, kNotNegative);
+  v.field("color", layer.color);
+  v.rule(check_lobes, layer);
+  v.required("lobes", layer.lobes);
+}
+
+static void visit_row(FieldVisitor& v, CellEdges& lattice) {
+  v.array("edge", {&lattice.a, &lattice.b, &lattice.c}, kAnyNumber);
+  v.rule(check_lattice, lattice);
+}
+
+void visit_fields(FieldVisitor& v, SpotPart& part) {
+  v.field("center", part.center, kAnyNumber);
+  v.field("axes", part.axes, range(kLeastSpotAxis, 1.0 / kLeastSpotAxis));
+  v.field("turn", part.turn, range(-360.0, 360.0));
+  v.field("weight", part.weight, range(-1e3, 1e3));
+}
+
+void visit_fields(FieldVisitor& v, SpotLayer& layer) {
+  v.field("amplitude", layer.amplitude, kAnyNumber);
+  v.field("inverted", layer.inverted);
+  v.field("size", layer.size, kPositive);
+  v.field("cell_size", layer.cell_size, kPositive);
+  v.field("lattice", layer.lattice);
+  v.field("density", layer.density, kNotNegative);
+  v.field("probability", layer.probability, kShare);
+  v.field("even", layer.even);
+  v.field("reach", layer.reach, range(-0.5, 1.0));
+  v.field("least_weight", layer.least_weight, kShare);
+  v.field("gaussian", layer.gaussian, range(-1e6, 1e6));
+  v.field("alpha", layer.alpha, range(0.0, 1e6));
+  v.field("kappa", layer.kappa, range(-1e6, 1e6));
+  v.field("beta", layer.beta, range(0.0, 1e6));
+  v.field("gamma", layer.gamma, range(1e-6, 1e6));
+  v.field("variances", layer.variances, range(1e-6, 1e6));
+  v.field("sigma", layer.sigma, range(1e-6, 1e6));
+  v.field("layers", layer.layers, range(1, 12));
+  v.field("lacunarity", layer.lacunarity, above_one(16.0));
+  v.field("gain", layer.gain, range(0.0, 4.0));
+  v.field("exponent", layer.exponent, range(0.0, 6.0));
+  v.rule(check_parts, layer);
+  v.field_if(!layer.parts.empty(), "parts", layer.parts);
+  v.rule(check_spot_reach, layer);
+  v.rule(check_spot_density, layer);
+}
+
+void visit_fields(FieldVisitor& v, SparseLayer& layer) {
+  v.field("amplitude", layer.amplitude, kAnyNumber);
+  v.field("cell_size", layer.cell_size, kPositive);
+  v.field("levels", layer.levels, range(1, 16));
+  v.field("probability", layer.probability, kShare);
+  v.field("threshold", layer.threshold, kShare);
+  v.field("gain", layer.gain, range(0.0, 4.0));
+  v.field("merged", layer.merged);
+}
+
+void visit_fields(FieldVisitor& v, RandomPhaseLayer& layer) {
+  v.field("height_rms", layer.height_rms, kNotNegative);
+  v.field("cell_size", layer.cell_size, kPositive);
+  v.field("waves", layer.waves, range(1, 128));
+  v.field("frequency_min", layer.frequency_min, kPositive);
+  v.field("frequency_max", layer.frequency_max, kPositive);
+  v.rule(check_frequencies, layer);
+  v.field("exponent", layer.exponent, range(-8.0, 8.0));
+  v.field("direction", layer.direction, kAnyNumber);
+  v.rule(check_direction<RandomPhaseLayer>, layer);
+  v.field("spread", layer.spread, kShare);
+  v.field("randomness", layer.randomness, kShare);
+}
+
+void visit_fields(FieldVisitor& v, PhasorLayer& layer) {
+  v.field("amplitude", layer.amplitude, kAnyNumber);
+  v.field("frequency", layer.frequency, kPositive);
+  v.field("cell_size", layer.cell_size, kPositive);
+  v.rule(check_turns, layer);
+  v.field("impulses_per_cell", layer.impulses_per_cell, range(1, 16));
+  v.field("direction", layer.direction, kAnyNumber);
+  v.rule(check_direction<PhasorLayer>, layer);
+  v.field("spread", layer.spread, kShare);
+  v.word("profile", layer.profile, kPhasorProfiles, profile_word);
+}
+
+}  // namespace astrolith

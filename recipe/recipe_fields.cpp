@@ -1,0 +1,160 @@
+// Lists of fields of a recipe as a whole, its provenance, its erosion and any of its layers, with their
+// rules.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+#include "recipe/fields_internal.h"
+
+namespace astrolith {
+namespace {
+
+struct LayerType {
+  std::string_view word;
+  Layer defaults;
+};
+
+Layer fractal_layer(Noise noise) {
+  FractalLayer layer;
+  layer.noise = noise;
+  return layer;
+}
+
+const std::vector<LayerType>& layer_types() {
+  static const std::vector<LayerType> types = {{"simplex", fractal_layer(Noise::kSimplex)},
+                                               {"perlin", fractal_layer(Noise::kPerlin)},
+                                               {"worley", fractal_layer(Noise::kWorleyF1)},
+                                               {"spots", SpotLayer{}},
+                                               {"sparse", SparseLayer{}},
+                                               {"craters", CraterLayer{}},
+                                               {"boulders", BoulderLayer{}},
+                                               {"random_phase", RandomPhaseLayer{}},
+                                               {"phasor", PhasorLayer{}},
+                                               {"gabor", GaborLayer{}}};
+  return types;
+}
+
+std::string layer_type_list() {
+  std::vector<std::string_view> words;
+  for (const LayerType& type : layer_types()) words.push_back(type.word);
+  return quote_list(words, " and ");
+}
+
+std::string type_word(const Layer& layer) {
+  if (const auto* fractal = std::get_if<FractalLayer>(&layer)) {
+    return is_worley(fractal->noise) ? "worley" : fractal->noise == Noise::kPerlin ? "perlin" : "simplex";
+  }
+  const auto same_kind = [&](const LayerType& type) { return type.defaults.index() == layer.index(); };
+  return std::string(std::find_if(layer_types().begin(), layer_types().end(), same_kind)->word);
+}
+
+// Gives `layer` the type that the file states, with default fields.
+void choose_type(const std::optional<std::string>& word, const Place& place, Layer& layer) {
+  if (!word) place.fail("is missing; add one of " + layer_type_list());
+  for (const LayerType& type : layer_types()) {
+    if (type.word == *word) {
+      layer = type.defaults;
+      return;
+    }
+  }
+  place.fail("must be one of " + layer_type_list() + ", is " + quote_text(*word));
+}
+
+void check_origin(const Provenance& provenance, const Place& place) {
+  if (provenance.input_name.find('/') != std::string::npos) {
+    place.field("input_name")
+        .fail("must be a file name without folders, is " + quote_text(provenance.input_name));
+  }
+  const std::string& hash = provenance.input_sha256;
+  const bool digits = std::all_of(hash.begin(), hash.end(), [](unsigned char c) { return std::isxdigit(c); });
+  if (!hash.empty() && (hash.size() != 64 || !digits)) {
+    place.field("input_sha256").fail("must be 64 hexadecimal digits or empty, is " + quote_text(hash));
+  }
+}
+
+void check_unit(const Recipe& recipe, const Place& place) {
+  const std::string& unit = recipe.length_unit;
+  if (unit == "m" || unit == "km" || unit == "px") return;
+  place.field("length_unit").fail("must be \"m\", \"km\" or \"px\", is " + quote_text(unit));
+}
+
+void check_seed(const Recipe& recipe, const Place& place) {
+  if (recipe.seed < std::uint64_t{1} << 53) return;
+  place.field("seed").fail(fmt::format("must be below 2^53, is {}", recipe.seed));
+}
+
+void check_parts_of_recipe(const Recipe& recipe, const Place& place) {
+  if (!recipe.body && recipe.layers.empty()) place.fail("has neither a body nor layers; add one of them");
+  if (recipe.erosion && !recipe.body) place.field("erosion").fail("needs a body; add one, or leave it out");
+}
+
+// The version is the first field, since the fields of another version would only be reported as unknown.
+void visit_version(FieldVisitor& v, int& version) {
+  std::optional<int> stated;
+  if (!v.reading()) stated = version;
+  v.required("format_version", stated, range(kRecipeFormatVersion, kRecipeFormatVersion));
+  const Place at = v.place().field("format_version");
+  if (!stated) at.fail(fmt::format("is missing; add {}", kRecipeFormatVersion));
+  if (*stated != kRecipeFormatVersion) {
+    at.fail(fmt::format("is {}, this program reads {}; use the program version that wrote the file", *stated,
+                        kRecipeFormatVersion));
+  }
+  if (v.reading()) version = *stated;
+}
+
+}  // namespace
+
+void visit_fields(FieldVisitor& v, Provenance& provenance) {
+  using Option = std::pair<std::string, std::string>;
+  using Figure = std::pair<std::string, double>;
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  v.field("tool", provenance.tool);
+  v.field("input_name", provenance.input_name);
+  v.field("input_sha256", provenance.input_sha256);
+  v.rule(check_origin, provenance);
+  v.field("options", NamedMembers{provenance.options, &Option::first, &Option::second});
+  v.field("achieved", NamedMembers{provenance.achieved, &Figure::first, &Figure::second},
+          NumberLimits{-kLargest, kLargest, "finite"});
+}
+
+void visit_fields(FieldVisitor& v, Erosion& erosion) {
+  const bool at_rest = erosion.rotation_period == 0.0;
+  v.required("talus_angle", erosion.talus_angle, range(1.0, 85.0));
+  v.field("iterations", erosion.iterations, range(1, 100000));
+  v.field("density", erosion.density, range(1.0, 30000.0));
+  v.field("rotation_period", erosion.rotation_period, at_rest ? kNotNegative : range(0.01, 1e6));
+}
+
+void visit_fields(FieldVisitor& v, Layer& layer) {
+  std::optional<std::string> type;
+  if (!v.reading()) type = type_word(layer);
+  v.required("type", type);
+  if (v.reading()) choose_type(type, v.place().field("type"), layer);
+  const auto visit_kind = [&v](auto& kind) {
+    v.field("name", kind.name);
+    visit_fields(v, kind);
+    v.field("seed", kind.seed, range(0, kMaxLayerSeed));
+  };
+  std::visit(visit_kind, layer);
+  if (LayerUse* use = use_of(layer)) visit_fields(v, *use);
+}
+
+void visit_fields(FieldVisitor& v, Recipe& recipe) {
+  visit_version(v, recipe.format_version);
+  v.field_if(!recipe.description.empty(), "description", recipe.description);
+  v.required("length_unit", recipe.length_unit);
+  v.rule(check_unit, recipe);
+  v.field("frame", recipe.frame);
+  v.field("seed", recipe.seed);
+  v.rule(check_seed, recipe);
+  v.field("provenance", recipe.provenance);
+  v.rule(check_parts_of_recipe, recipe);
+  v.field("body", recipe.body);
+  v.field("layers", recipe.layers);
+  v.rule(check_layer_uses, recipe);
+  v.field("erosion", recipe.erosion);
+}
+
+}  // namespace astrolith
