@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-// Slopes of some tens of degrees converge by a factor of about four a step.
+// On slopes of a few tens of degrees the error falls by a factor of about four with each step.
 constexpr int kSteps = 3;
 constexpr int kTargetSteps = 6;
 
@@ -24,7 +24,7 @@ std::vector<FractalNoise> prepare(std::span<const FractalLayer> layers, std::uin
   return noises;
 }
 
-// F at the points of one block after they moved by t.
+// Evaluates F at the points of one block after they have moved by t.
 class BlockEvaluation {
  public:
   BlockEvaluation(const PreparedMetaballs& metaballs, const std::vector<FractalNoise>& noises, std::size_t n)
