@@ -13,17 +13,18 @@
 namespace astrolith {
 namespace {
 
-// Heights are looked for this far from the base (fraction of the diagonal).
+// Heights lie within this distance of the base (fraction of the diagonal).
 constexpr double kReach = 0.05;
 
-// Lines that meet a height of so many times the median are not of details but of what the base missed.
+// A line with a height above this multiple of the median is left out: such a height is an error of the base
+// and not a detail.
 constexpr double kStray = 8.0;
 
-// Amplitudes are searched from and to these parts of the residual's root mean square.
+// The range of amplitudes, as multiples of the residual's root mean square.
 constexpr double kLeastAmplitude = 0.02, kLargestAmplitude = 20.0;
-constexpr double kTiniestAmplitude = 1e-7;  // fraction of the diagonal: what a float still tells apart
+constexpr double kTiniestAmplitude = 1e-7;  // fraction of the diagonal; a float resolves no less
 
-// That of descriptor/shape_description.h.
+// The curvature radius of descriptor/shape_description.h.
 constexpr double kCurvatureRadius = 0.2;
 
 double root_mean_square(std::span<const double> values) {
@@ -56,7 +57,8 @@ std::vector<MeshPlace> nearest_places(const TriangleMesh& mesh, const std::vecto
   return places;
 }
 
-// First octaves no wider than twice the longest line, no octave finer than two edges a cycle.
+// The wavelength of the first octave is at most twice the longest lag. The wavelength of every octave is at
+// least two edges.
 DetailRanges ranges_of(const std::vector<double>& lags, double edge, double residual) {
   DetailRanges ranges;
   ranges.highest_frequency = 0.5 / edge;
@@ -77,8 +79,8 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
       mesh_(layout_.mesh, nearest_places(layout_.mesh, samples_.points), curvature_radius(samples_)),
       wanted_histogram_(histogram_of(target.surface, samples_)) {
   std::vector<double> heights = target_heights(target.tree, layout_.place_points(), kReach);
-  // The facets of a finer target are steeper than those of the base's mesh can be: that mesh is then moved to
-  // the target too.
+  // The facets of a target that is finer than the base's mesh are steeper than that mesh can reproduce. The
+  // mesh is then moved to the target, and both histogram and heights are taken from it.
   if (facet_edge(target) < 0.9 * probe_edge(target)) {
     const std::vector<double> of_vertices = target_heights(target.tree, layout_.vertex_points(), kReach);
     wanted_histogram_ = histogram(of_vertices);
@@ -86,7 +88,7 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
   }
   leave_out_strays(heights);
   wanted_roughness_ = roughness(heights, layout_.triples);
-  // The roughness is of the residual's size, and knows no strays.
+  // The roughness has the size of the residual and does not include strays.
   ranges_ = ranges_of(layout_.lags, probe_edge(target), root_mean_square(wanted_roughness_));
 }
 

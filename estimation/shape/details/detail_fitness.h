@@ -1,13 +1,16 @@
-// How well candidates for the details reproduce a target, without meshing them.
+// Measures how well candidates for the details reproduce a target, without meshing the candidates.
 //
 //   fitness = (1 - similarity(H_target, H_candidate)) + kRoughnessWeight * roughness_misfit
 //             + max(0, steepness - kSteepest)
-// H are histograms of the adaptive hybrid descriptor. The base is meshed once, about as finely as the target;
-// for a candidate the vertices of that mesh move along the base's normals to the candidate's surface, and the
-// samples, which lie where the target's own samples are nearest, move with their triangles. So normals and
-// curvatures mean the same on both sides, and what the histograms differ by is the shapes, not the sampling.
-// Five bins an axis see how steep details are, hardly how wide: the roughness (roughness.h) adds that. It is
-// of heights over the base, so what the base fits already is not asked for twice.
+// The fitness has no unit, is at least 0, and is best when it is least. H are histograms of the adaptive
+// hybrid descriptor. The base is meshed once, about as finely as the target. For a candidate the vertices of
+// this mesh move along the base's normals to the candidate's surface. Each sample of the target has its
+// nearest place on this mesh, which moves with its triangle. Normals and curvatures of both histograms are
+// therefore taken in the same way, and the histograms differ by the shapes and not by the sampling.
+//
+// A histogram with five bins for each axis shows how steep details are, but hardly how wide. The roughness
+// (roughness.h) adds the width. It is computed from heights over the base, so it leaves out what the base
+// fits already.
 #pragma once
 
 #include <algorithm>
@@ -22,25 +25,26 @@
 
 namespace astrolith {
 
-// A roughness from some thousand lines is known to about 2 %, a similarity of some thousand samples to about
-// 1 %: both count alike for what they are worth when the weight is about a half.
+// A roughness from a few thousand lines has an error of about 2 %, and a similarity of a few thousand samples
+// one of about 1 %. With a weight of one half both errors change the fitness by the same amount.
 inline constexpr double kRoughnessWeight = 0.5;
 
-// Vertices that move find the surface nearest to the base and see no islands beyond it, so details that may
-// make some are kept away. Bounds of slopes are seldom met, and never by all octaves in one place.
+// Moving vertices find the surface nearest to the base and miss islands beyond it. Details that are steep
+// enough to make islands are therefore penalised. The steepness is an upper bound that details seldom reach,
+// so the limit is above 1.
 inline constexpr double kSteepest = 1.5;
 
 struct FitnessOptions {
-  std::int64_t samples = 4000;    // of the histogram; a fitness costs the square of it
-  int lines = 2000;               // for the roughness
-  std::uint64_t seed = 1;         // of both
+  std::int64_t samples = 4000;    // of the histogram; the cost of a fitness grows with the square
+  int lines = 2000;               // of the roughness
+  std::uint64_t seed = 1;         // of samples and lines
   std::uint64_t recipe_seed = 1;  // of the noises
 };
 
 struct DetailScore {
-  double similarity = 0.0;
-  double roughness_misfit = 0.0;
-  double steepness = 0.0;
+  double similarity = 0.0;        // at most 1
+  double roughness_misfit = 0.0;  // roughness.h
+  double steepness = 0.0;         // detail_parameters.h
   double fitness() const {
     return 1.0 - similarity + kRoughnessWeight * roughness_misfit + std::max(0.0, steepness - kSteepest);
   }
@@ -54,16 +58,17 @@ class DetailFitness {
   // May be called from many threads. The layers are in the target's frame.
   DetailScore score(std::span<const FractalLayer> layers) const;
 
-  // The same of a whole swarm, in a few launches of a machine: the same bits.
+  // The scores of all candidates, which the evaluator computes in a few launches. They have the bits that
+  // score gives for each.
   std::vector<DetailScore> scores(std::span<const std::vector<FractalLayer>> candidates,
                                   CandidateEvaluator& evaluator) const;
 
-  // Of the search, by what the target shows.
+  // The ranges of the search, which follow from the target's resolution and roughness.
   const DetailRanges& ranges() const { return ranges_; }
 
   const std::vector<double>& lags() const { return layout_.lags; }
-  const std::vector<double>& target_roughness() const { return wanted_roughness_; }  // of each lag
-  // Of heights over the base.
+  const std::vector<double>& target_roughness() const { return wanted_roughness_; }  // (#lags)
+  // The roughness of the layers' heights over the base.  (#lags)
   std::vector<double> layers_roughness(std::span<const FractalLayer> layers) const;
 
  private:
@@ -76,7 +81,7 @@ class DetailFitness {
   FitnessOptions options_;
   ProbeLayout layout_;
   SurfaceProbe probe_;
-  SurfaceSamples samples_;  // of the target: where the histogram is taken
+  SurfaceSamples samples_;  // of the target, for the histograms
   MovedMesh mesh_;
   ShapeHistogram wanted_histogram_;
   std::vector<double> wanted_roughness_;

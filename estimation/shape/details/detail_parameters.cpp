@@ -9,18 +9,18 @@ namespace {
 constexpr std::size_t kPerNoise = 10, kGradient = 30, kFirstGain = 31;
 constexpr int kMostOctaves = 8;
 constexpr double kLeastWeight = 1e-3;
-constexpr double kStretch = 2.0;  // of the coordinates' scale, and its inverse
+constexpr double kLargestScale = 2.0;  // of the coordinates; the least is its inverse
 constexpr double kLargestModulation = 2.0, kLargestGain = 0.9;
 
 constexpr const char* kNames[] = {"details: Perlin", "details: simplex", "details: Worley"};
 
-// As many octaves as stay at or below the highest frequency, at least one.
+// The wanted number of octaves, less the ones above the highest frequency; at least one.
 int resolved_octaves(double frequency, double wanted, double highest) {
   const double most = 1.0 + std::log(std::max(highest / frequency, 1.0)) / std::log(kDetailLacunarity);
   return std::clamp(static_cast<int>(std::lround(wanted)), 1, static_cast<int>(most + 1e-9));
 }
 
-// The greatest slopes of synthesis/noise/noise_octaves.h.
+// The greatest slope of a noise with amplitude and frequency 1, from synthesis/noise/noise_octaves.h.
 double greatest_slope(Noise noise) {
   return noise == Noise::kSimplex ? 7.0 : noise == Noise::kPerlin ? 3.65 : 1.0;
 }
@@ -40,7 +40,7 @@ Bounds detail_bounds(const DetailRanges& ranges) {
     add(std::log(ranges.lowest_frequency), std::log(ranges.highest_frequency));
     add(1.0, kMostOctaves);
     add(std::log(ranges.least_amplitude), std::log(ranges.largest_amplitude));
-    for (int axis = 0; axis < 3; ++axis) add(-std::log(kStretch), std::log(kStretch));
+    for (int axis = 0; axis < 3; ++axis) add(-std::log(kLargestScale), std::log(kLargestScale));
     for (int axis = 0; axis < 3; ++axis) add(-ranges.bias, ranges.bias);
   }
   add(0.0, kLargestModulation);
@@ -88,10 +88,10 @@ std::vector<FractalLayer> detail_layers(std::span<const double> x, const DetailR
 double steepness(std::span<const FractalLayer> layers) {
   double sum = 0.0;
   for (const FractalLayer& layer : layers) {
-    const double stretch =
+    const double scale =
         std::max({std::fabs(layer.scale.x), std::fabs(layer.scale.y), std::fabs(layer.scale.z)});
     double slope = greatest_slope(layer.noise) * std::fabs(layer.amplitude * layer.weight) * layer.frequency *
-                   stretch * (layer.gradient_modulation > 0.0 ? 2.0 : 1.0);
+                   scale * (layer.gradient_modulation > 0.0 ? 2.0 : 1.0);
     for (int o = 0; o < layer.octaves; ++o, slope *= layer.gain * layer.lacunarity) sum += slope;
   }
   return sum;

@@ -1,4 +1,4 @@
-// How good a recipe of base and details is: the mesh that synthesis makes of it, measured against the target.
+// Measures a recipe of base and details: synthesis makes a mesh of it, which is compared with the target.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,18 @@
 
 namespace astrolith {
 
-// As check_fit, for a whole recipe in the frame and the unit of the target's file.
+// Like check_fit, for a whole recipe. The recipe is in the frame and the unit of the target's file; the check
+// is in the target's frame.
 FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, int resolution, std::int64_t samples,
                       std::uint64_t seed);
 
-// Of two shapes, and of two samplings of the first: no candidate can be told from 1 above that.
+// The similarity of two shapes, and the similarity of two samplings of the first. A candidate above this
+// floor cannot be told from a perfect one. Both are at most 1.
 struct MeasuredSimilarity {
   double similarity = 0.0, floor = 0.0;
 };
 
-// Histograms of `points` fresh Poisson-disk samples each.
+// Compares histograms of `points` fresh Poisson-disk samples each.
 MeasuredSimilarity measure_similarity(const TriangleMesh& target, const TriangleMesh& candidate,
                                       PairFeatures features, std::int64_t points, std::uint64_t seed);
 

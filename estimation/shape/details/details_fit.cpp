@@ -12,7 +12,7 @@ namespace {
 
 void check(const DetailsFitOptions& options) {
   if (options.population < 1 || options.generations < 1) {
-    throw InputError("--population and --generations: give at least 1");
+    throw InputError("population and generations: give at least 1");
   }
 }
 
@@ -22,8 +22,8 @@ struct Start {
   DetailScore score;
 };
 
-// Facets take a part of the amplitude away, of which the closed form knows nothing: what is missing on the
-// mesh is given back.
+// Facets reduce the amplitude, which the closed form does not include. The amplitude is raised by the factor
+// that is missing on the mesh.
 void correct_amplitude(const DetailFitness& fitness, PlainNoise& noise) {
   const std::vector<double> reached =
       fitness.layers_roughness(detail_layers(detail_parameters(noise, fitness.ranges()), fitness.ranges()));
@@ -36,7 +36,7 @@ void correct_amplitude(const DetailFitness& fitness, PlainNoise& noise) {
                                fitness.ranges().largest_amplitude);
 }
 
-// The best of all plain noises that are as rough as the target.
+// The plain noise with the best fitness among those that are as rough as the target.
 Start best_plain_noise(const DetailFitness& fitness) {
   const RoughnessModel model;
   Start best;
@@ -53,7 +53,7 @@ Start best_plain_noise(const DetailFitness& fitness) {
   return best;
 }
 
-// Halves the swarm where the machine's memory ends.
+// Computes the scores in two halves if the evaluator's memory is too small for all candidates.
 std::vector<DetailScore> scores_of(const DetailFitness& fitness,
                                    std::span<const std::vector<FractalLayer>> candidates,
                                    CandidateEvaluator& swarm) {
@@ -126,7 +126,7 @@ DetailsFitResult fit_details(const TargetBody& target, const MetaballBody& base,
   return result;
 }
 
-// noise(f (scale p + bias)) keeps its argument when p_file = center + diagonal p.
+// With p_file = center + diagonal p, the argument f (scale p + bias) of the noise stays the same.
 std::vector<FractalLayer> layers_in_file_frame(std::vector<FractalLayer> layers, const TargetBody& target) {
   const double d = target.diagonal;
   const Vec3d& c = target.center;

@@ -1,10 +1,10 @@
-// Surface details for a fitted base (thesis section 4.3.5): fractal layers of Perlin, simplex and Worley
-// noise whose 34 parameters an optimiser chooses by the fitness of detail_fitness.h.
+// Fits surface details to a fitted base (thesis section 4.3.5): fractal layers of Perlin, simplex and Worley
+// noise. An optimiser chooses their 34 parameters by the fitness of detail_fitness.h.
 //
-// A histogram of few bins leaves amplitudes and frequencies loose, and 34 numbers are many for two thousand
-// evaluations. So the search does not begin blind: for each noise alone, and each number of octaves, the
-// amplitude, frequency and gain that give the target's roughness over the base are known in closed form
-// (roughness.h), and the best of these is one of the optimiser's first candidates.
+// A histogram with few bins determines amplitudes and frequencies only loosely, and 34 parameters are many
+// for two thousand evaluations. The search therefore starts from a good candidate. For each noise alone, and
+// for each number of octaves, roughness.h gives the amplitude, frequency and gain that reproduce the target's
+// roughness over the base. The best of these noises is one of the optimiser's first candidates.
 #pragma once
 
 #include <vector>
@@ -20,28 +20,30 @@ struct DetailsFitOptions {
   int generations = 100;  // population * generations evaluations, > 0
   std::uint64_t seed = 1;
   FitnessOptions fitness;
-  EvaluationLog* log = nullptr;  // of the search: a log that holds values begins where it ended
-  CandidateEvaluator* swarm =
-      nullptr;  // measures whole generations of the search; null: the CPU does, with the same bits
+  // The log of the search, or null. A search with a log that holds values continues where the log ends.
+  EvaluationLog* log = nullptr;
+  // Evaluates whole generations of the search, or null. Without it the CPU does, with the same bits.
+  CandidateEvaluator* swarm = nullptr;
 };
 
 struct DetailsFitResult {
-  std::vector<FractalLayer> layers;  // in the target's frame; none where the bare base is best
-  PlainNoise start;                  // what the search began with
-  DetailRanges ranges;               // what it searched
+  std::vector<FractalLayer> layers;  // in the target's frame; none if the bare base is best
+  PlainNoise start;                  // the first candidate of the search
+  DetailRanges ranges;               // the ranges of the search
   DetailScore base_score, start_score, score;
-  std::vector<double> lags;                         // fractions of the diagonal
-  std::vector<double> target_roughness, roughness;  // of each lag, fractions of the diagonal
+  std::vector<double> lags;                         // fractions of the diagonal, ascending
+  std::vector<double> target_roughness, roughness;  // (#lags) fractions of the diagonal
   OptimizeResult optimization;
   bool interrupted = false;  // progress asked to stop; the layers are the best so far
 };
 
-// `base` in the target's frame. The same target, base and options give the same layers for every number of
-// threads. Throws InputError for options out of range.
+// `base` is in the target's frame. The same target, base and options give the same layers for every number of
+// threads. Throws InputError "parameter: range" for an option out of range.
 DetailsFitResult fit_details(const TargetBody& target, const MetaballBody& base,
                              const DetailsFitOptions& options, const Progress& progress = {});
 
-// From the target's frame to that of its file, numbers rounded as a recipe stores them.
+// Moves layers from the target's frame into the frame and unit of the target's file. Numbers are rounded as a
+// recipe stores them.
 std::vector<FractalLayer> layers_in_file_frame(std::vector<FractalLayer> layers, const TargetBody& target);
 
 }  // namespace astrolith

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "descriptor/surflet_histogram.h"
 #include "geometry/mesh_normals.h"
@@ -9,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 Vec3d facet(const std::vector<Vec3d>& vertices, const Triangle& t) {
   return cross(vertices[t[1]] - vertices[t[0]], vertices[t[2]] - vertices[t[0]]);
@@ -17,12 +18,13 @@ Vec3d facet(const std::vector<Vec3d>& vertices, const Triangle& t) {
 
 double angle_between(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
-// Of every vertex: the integral of the curvature over its surroundings, 2 pi - sum of angles, and their area,
-// a third of the triangles around. (The mixed areas of Meyer et al. share the same whole out a little
-// differently, which a mean over many vertices does not show.)
+// The integral of the curvature around every vertex, 2 pi minus the sum of its angles, and the area around
+// it, a third of its triangles. Meyer et al. divide the area among the vertices a little differently (mixed
+// areas). A mean over many vertices does not show the difference.
 struct VertexIntegrals {
   std::vector<double> curvature, area;
 };
+
 VertexIntegrals vertex_integrals(const std::vector<Vec3d>& vertices, const std::vector<Triangle>& triangles) {
   VertexIntegrals result{std::vector<double>(vertices.size(), kTwoPi),
                          std::vector<double>(vertices.size(), 0.0)};

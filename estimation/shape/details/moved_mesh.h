@@ -1,5 +1,6 @@
-// The adaptive hybrid descriptor of a mesh whose vertices move while its triangles, and the samples on them,
-// stay: what descriptor/shape_description.h computes for a mesh, with all that does not change done once.
+// The adaptive hybrid descriptor of a mesh whose vertices move while its triangles and the samples on them
+// stay. The descriptor is that of descriptor/shape_description.h. Everything that does not change is computed
+// once.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +14,14 @@ namespace astrolith {
 
 class MovedMesh {
  public:
-  // `mesh` is closed and manifold, as it is before anything moves. kappa is the mean of the vertices'
-  // curvature within `radius`, weighted as in geometry/surface/sample_curvature.h; which vertices those are,
-  // and their weights, stay as they are now.
+  // `mesh` is the closed manifold mesh before any vertex moves. The curvature of a sample is the weighted
+  // mean over the vertices within `radius`, in the mesh's unit, as in geometry/surface/sample_curvature.h.
+  // These vertices and their weights stay the same when vertices move.
   MovedMesh(const TriangleMesh& mesh, const std::vector<MeshPlace>& samples, double radius);
 
-  // Of the samples once the vertices are here, and what its pairs are counted of.  (#V)
+  // The features of the samples for vertices at these places, from which pairs are counted.  (#V in)
   PairInput pair_input(const std::vector<Vec3d>& vertices) const;
+  // The histogram of these pairs.  (#V in)
   ShapeHistogram histogram(const std::vector<Vec3d>& vertices) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/hash_random.h"
@@ -11,12 +12,12 @@
 namespace astrolith {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kMostTriangles = 50000.0;
 constexpr double kFirstLag = 2.0;  // edges
-constexpr double kLagRatio = 1.4142135623730951;
+constexpr double kLagRatio = std::numbers::sqrt2;
 constexpr std::size_t kFewestLags = 3;
-constexpr double kLongestLag = 0.08;  // of the diagonal: beyond it tangents leave a body that curves
+constexpr double kLongestLag = 0.08;  // fraction of the diagonal; longer tangents leave a curved body
 
 double edge_of_area(double triangle_area) { return std::sqrt(4.0 / std::sqrt(3.0) * triangle_area); }
 
@@ -35,7 +36,8 @@ std::vector<double> choose_lags(double edge, double sphere_distance) {
   return lags;
 }
 
-// Marching cubes' triangles are on average as large as those whose edge is a cell.
+// The triangles of marching cubes have on average the area of an equilateral triangle with the edge of a
+// cell.
 TriangleMesh mesh_of_base(const MetaballBody& base, double edge) {
   Recipe recipe;
   recipe.body = base;

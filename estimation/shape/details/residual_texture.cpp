@@ -16,11 +16,15 @@
 namespace astrolith {
 namespace {
 
-constexpr double kReach = 0.05;  // heights are looked for this far from the base
-// A patch is used where every normal of the base leans less than this from the middle's: beyond, the chart is
-// crowded, and at last no longer single-valued.
+// Heights lie within this distance of the base (fraction of the diagonal).
+constexpr double kReach = 0.05;
+
+// The cosine of the largest angle between a normal of the base in a patch and the normal in its middle.
+// Beyond this angle the tangent plane is distorted, and at last no longer a chart.
 constexpr double kLeastCosine = 0.7;
-// ... and where no height is so many times the median: those are not of a texture.
+
+// A patch with a height above this multiple of the median is left out: such a height does not belong to a
+// texture.
 constexpr double kStray = 12.0;
 
 struct Patch {
@@ -28,14 +32,15 @@ struct Patch {
   bool flat = false;
 };
 
-// First east, about +z, then south, as synthesis/gabor/gabor_surface_noise.h lays a texture.
+// The axes of a texture as in synthesis/gabor/gabor_surface_noise.h: east is tangent to the circle about +z,
+// and south follows.
 void east_and_south(const Vec3d& n, Vec3d& east, Vec3d& south) {
   const Vec3d about = cross(Vec3d{0, 0, 1}, n);
   east = squared_norm(about) > 1e-12 ? normalized(about) : Vec3d{1, 0, 0};
   south = cross(east, n);
 }
 
-// The grid in the tangent plane at q, brought onto the base along its gradient.
+// Projects a grid in the tangent plane at q onto the base along the base's gradient.
 Patch make_patch(const MetaballModel& base, const Vec3d& q, const Vec3d& n, int side, double pixel) {
   Vec3d east, south;
   east_and_south(n, east, south);
@@ -63,7 +68,7 @@ double median_magnitude(std::vector<double> values) {
   return *middle;
 }
 
-// Heights of every flat patch without strays, detrended.
+// The detrended heights of every patch that is flat and has no strays.
 std::vector<GreyImage> residual_patches(const TargetBody& target, const MetaballModel& base,
                                         const ResidualTextureOptions& options, double pixel) {
   const SurfaceSamples sites = project_onto_isosurface(
@@ -84,8 +89,8 @@ std::vector<GreyImage> residual_patches(const TargetBody& target, const Metaball
   return images;
 }
 
-// Mean of the patches' periodograms. Patches that overlap share what they show: as many looks as fit side by
-// side on the surface.
+// The mean of the patches' periodograms. Overlapping patches are not independent, so there are at most as
+// many looks as patches fit side by side on the surface.
 PowerSpectrum mean_periodogram(const std::vector<GreyImage>& images, double area_in_patches) {
   PowerSpectrum mean;
   double looks = 0.0;
@@ -109,12 +114,12 @@ ResidualTexture fit_residual_texture(const TargetBody& target, const MetaballBod
   const std::vector<GreyImage> images = residual_patches(target, model_of(base), options, pixel);
   if (images.empty()) {
     throw InputError(
-        "--micro auto: the body is nowhere flat enough for patches of 16 of its facets; give a finer "
+        "residual texture: the body is nowhere flat enough for patches of 16 of its facets; give a finer "
         "mesh");
   }
   PowerSpectrum spectrum = mean_periodogram(images, target.area / (width * width));
   const double rms = std::sqrt(spectrum.variance());
-  if (!(rms > 1e-9)) throw InputError("--micro auto: the base leaves nothing of the measured surface");
+  if (!(rms > 1e-9)) throw InputError("residual texture: the base leaves nothing of the measured surface");
   for (double& p : spectrum.power) p /= rms * rms;
   const GaborFit fit = fit_gabor_spectrum(std::move(spectrum), "residual", {}, progress);
   ResidualTexture result;

@@ -1,9 +1,9 @@
-// What a base left of the measured surface, as a Gabor layer: detail learnt from the body itself.
+// Fits a Gabor layer to the residual of a base: detail learnt from the body itself.
 //
-// The heights of the target over the base, in square patches of tangent planes, are exemplars of one texture.
-// Patches lie where the base is flat enough to be seen from its tangent plane, their axes as those of a Gabor
-// layer on a surface: first east, then south. Each is detrended by a plane and tapered; not the patches but
-// their periodograms are joined, by averaging.
+// The heights of the target over the base in square patches of tangent planes are exemplars of one texture.
+// Patches lie where the base is nearly flat. Their axes are those of a Gabor layer on a surface: first east,
+// then south. Each patch is detrended by a plane and tapered, and the periodograms of all patches are
+// averaged.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,18 @@
 namespace astrolith {
 
 struct ResidualTextureOptions {
-  int patches = 200;  // tried
-  int side = 32;      // pixels, each half a facet's edge wide; >= 32
+  int patches = 200;  // number of places that are tried, > 0
+  int side = 32;      // of a patch in pixels, each half a facet's edge wide; >= 32
   std::uint64_t seed = 1;
 };
 
 struct ResidualTexture {
   GaborLayer layer;  // in the target's frame: lengths are fractions of the diagonal
-  int patches = 0;   // that could be used
+  int patches = 0;   // number of patches that were flat enough
 };
 
-// `base` in the target's frame. Throws InputError when no patch is flat enough or the base leaves nothing.
+// `base` is in the target's frame. Throws InputError if no patch is flat enough, or if the base leaves no
+// residual.
 ResidualTexture fit_residual_texture(const TargetBody& target, const MetaballBody& base,
                                      const ResidualTextureOptions& options, const Progress& progress = {});
 

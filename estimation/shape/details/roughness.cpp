@@ -15,7 +15,7 @@ constexpr int kTableSize = 64;
 constexpr int kTriplesPerEntry = 4096;
 constexpr double kLargestLogRatio = 3.0;
 
-// What the roughness of a body is known to, from some thousand lines.
+// The relative error of a roughness from a few thousand lines.
 constexpr double kRoughnessError = 0.02;
 
 constexpr int kMostOctaves = 8;
@@ -30,7 +30,7 @@ Vec3d random_direction(CounterRandom& random) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-// < (n(p + r u) - 2 n(p) + n(p - r u))^2 > at one r.
+// The mean of (n(p + r u) - 2 n(p) + n(p - r u))^2 for one r, over random places p and directions u.
 double mean_square(Noise noise, double r, CounterRandom random) {
   const NoiseOctave octave{1.0f, 1.0f, 1.0f, 12345u};
   std::vector<float> x[3];
@@ -81,8 +81,8 @@ RoughnessModel::RoughnessModel() {
   }
 }
 
-// Linear in the logarithms. Below the table a second difference grows with the square of the lag, above it
-// places are independent.
+// Interpolates the table linearly in the logarithms. Below the table a second difference grows with the
+// square of the lag. Above it heights are independent, and the roughness is constant.
 double RoughnessModel::squared(std::size_t which, double cycles) const {
   const std::vector<double>& table = tables_[which];
   if (cycles <= kLeastCycles) return table.front() * std::pow(cycles / kLeastCycles, 4);
@@ -111,10 +111,10 @@ namespace {
 
 struct RoughNoise {
   PlainNoise noise;
-  double misfit = 0.0;  // root mean square of log ratios
+  double misfit = 0.0;  // root mean square of the log ratios
 };
 
-// The best of one number of octaves.
+// Finds the best noise for one number of octaves.
 class RoughnessFit {
  public:
   RoughnessFit(std::span<const double> wanted, std::span<const double> lags, const DetailRanges& ranges,
@@ -126,7 +126,7 @@ class RoughnessFit {
       return PlainNoise{which, 1.0, std::exp(x[0]), octaves, octaves > 1 ? x[1] : 0.5};
     };
     const Objective misfit = [&](std::span<const double> x) { return scaled(noise_at(x)).misfit; };
-    // The last octave's frequency stays within the ranges too.
+    // The last octave's frequency must stay within the ranges.
     const double highest = ranges_.highest_frequency * std::pow(kDetailLacunarity, 1 - octaves);
     const Bounds bounds{{std::log(ranges_.lowest_frequency), 0.0},
                         {std::log(std::max(highest, ranges_.lowest_frequency)), 0.9}};
@@ -138,7 +138,7 @@ class RoughnessFit {
   }
 
  private:
-  // With the amplitude that fits best.
+  // The noise with the amplitude that fits best, and its misfit.
   RoughNoise scaled(PlainNoise noise) const {
     const std::vector<double> roughness = model_.of(noise, lags_);
     double sum = 0.0, squares = 0.0;

@@ -1,8 +1,9 @@
-// How rough a surface is at each scale: the root mean square second difference of its heights,
-//   nu(r)^2 = < (t(q + r u) - 2 t(q) + t(q - r u))^2 >   over places q and directions u,
-// a structure function of second order. Unlike a histogram of coarse bins it tells amplitude and frequency
-// apart; unlike the difference of first order (the RMS deviation of Shepard et al., "The roughness of natural
-// terrain", JGR 2001) it hardly sees what a smooth base left over at larger scales.
+// The roughness of a surface at each scale: the root mean square second difference of its heights t,
+//   nu(r)^2 = < (t(q + r u) - 2 t(q) + t(q - r u))^2 >   over places q and directions u.
+// This is a structure function of second order, in length units. Unlike a histogram with coarse bins, it
+// separates amplitude and frequency. Unlike the difference of first order (the RMS deviation of Shepard et
+// al., "The roughness of natural terrain", JGR 2001), it hardly depends on the errors of a smooth base at
+// larger scales.
 #pragma once
 
 #include <span>
@@ -17,36 +18,37 @@ struct HeightTriple {
   std::uint32_t before, middle, after;
 };
 
-// Of each lag, whose triples are given.  (#lags)
+// The roughness at each lag. The triples of a lag are its lines.  (#lags)
 std::vector<double> roughness(std::span<const double> heights,
                               const std::vector<std::vector<HeightTriple>>& triples_of_lag);
 
-// nu(r) of fractal sums in closed form but for one table a noise: octaves are independent, so their squares
-// add up,
+// The roughness nu(r) of fractal sums, in closed form with one table for each noise. Octaves are independent,
+// so their squares add up:
 //   nu(r)^2 = amplitude^2 sum_o gain^2o nu_noise(lacunarity^o frequency r)^2.
 class RoughnessModel {
  public:
-  // Tabulates the noises by random triples in space; the same tables every time.
+  // Tabulates the noises from random triples in space. The tables are always the same.
   RoughnessModel();
 
-  // For amplitude 1; gradient modulation, scale, bias and weight do not enter.  (#lags)
+  // The roughness for amplitude 1. Gradient modulation, scale, bias and weight do not enter.  (#lags)
   std::vector<double> of(const PlainNoise& noise, std::span<const double> lags) const;
 
  private:
   double squared(std::size_t which, double cycles) const;
 
-  std::vector<double> tables_[3];  // nu_noise^2 at kLeastCycles * kTableStep^i cycles
+  std::vector<double> tables_[3];  // nu_noise^2 at a geometric series of cycles, one table for each noise
 };
 
-// For each number of octaves the amplitude, frequency and gain that make one noise (of kDetailNoises) as
-// rough as wanted at every lag, least squares of log nu; all octaves' frequencies stay within the ranges.
-// Numbers of octaves that do worse than the best, by more than a roughness is known, are left out; fewest
-// octaves first.
+// For each number of octaves, finds the amplitude, frequency and gain that make a noise as rough as wanted at
+// every lag: least squares of log nu. `which` is an index into kDetailNoises. The frequencies of all octaves
+// stay within the ranges. A number of octaves is left out if its misfit exceeds the best one by more than the
+// error of a roughness. The result is ordered by the number of octaves.
 std::vector<PlainNoise> noises_as_rough_as(std::span<const double> wanted, std::span<const double> lags,
                                            std::size_t which, const DetailRanges& ranges,
                                            const RoughnessModel& model);
 
-// Root mean square of log(a / b), each term at most 3: 0.1 for a tenth too much or too little.
+// The root mean square of log(a / b), with each logarithm clipped to [-3, 3]. It is about 0.1 if a is a tenth
+// too large or too small.
 double roughness_misfit(std::span<const double> a, std::span<const double> b);
 
 }  // namespace astrolith

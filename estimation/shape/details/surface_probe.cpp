@@ -8,13 +8,13 @@
 namespace astrolith {
 namespace {
 
-// Slopes of some tens of degrees converge by a factor of about four a step.
+// On slopes of a few tens of degrees the error falls by a factor of about four with each step.
 constexpr int kSteps = 3;
 constexpr int kTargetSteps = 6;
 
 constexpr std::size_t kPointsPerBlock = 256;
 
-// F at the points of one block after they moved by t.
+// Evaluates F at the points of one block after they have moved by t.
 class BlockEvaluation {
  public:
   BlockEvaluation(const PreparedMetaballs& metaballs, const Candidates& layers, std::size_t n)

@@ -1,9 +1,12 @@
-// From a coarse model to the budget of spheres: refine, remove what is idle, add where the error is largest,
-// and again; then take the least useful spheres to where the error is largest as long as that pays; refine to
-// the end on all samples, and mend what no sample saw.
+// Fits a model with a given number of metaballs, from a coarse start.
 //
-// Until the end only as many samples are seen as the spheres need, for speed. The model that is kept is
-// always the closest measured, not the last.
+// The fit refines the model, removes idle metaballs and adds new ones where the error is largest, until it
+// has as many as it may. Then it moves the least useful metaballs to where the error is largest, as long as
+// the error decreases. Finally it refines the model on all samples, and repairs the surface away from the
+// samples.
+//
+// Until the final refinement only as many samples are used as the metaballs need, to save time. The result is
+// always the closest model measured, not the last.
 #pragma once
 
 #include <vector>
@@ -15,37 +18,38 @@
 namespace astrolith {
 
 struct AdaptiveFitOptions {
-  int spheres = 200;          // the budget, > 0
-  int rounds = 6;             // of growth, > 0
-  int first_iterations = 24;  // of the refinement before the first round
-  int round_iterations = 12;  // after each round of growth
-  int grown_iterations = 60;  // once the budget is reached
-  int relocations = 40;       // rounds of them, at most
-  int relocation_iterations = 20;
-  int last_iterations = 60;     // at the end, on all samples
-  double subtractive = 0.5;     // share of the spheres that may take away, at most; Gaussians alone
-  double relocated = 0.15;      // share of the spheres that a relocation takes elsewhere, at first
-  int samples_per_sphere = 60;  // seen before the end
-  double tolerance = 0.0;       // stops growing at this mean |s| over the samples, fraction of the diagonal
-  double loss_scale = 1e-3;     // fraction of the diagonal
-  double containment_weight = 0.2;
+  int spheres = 200;               // number of metaballs, at most, > 0
+  int rounds = 6;                  // rounds of growth, > 0
+  int first_iterations = 24;       // of the refinement before the first round of growth
+  int round_iterations = 12;       // of the refinement after each round of growth
+  int grown_iterations = 60;       // of the refinement once the number of metaballs is reached
+  int relocations = 40;            // rounds of relocation, at most
+  int relocation_iterations = 20;  // of the refinement after each round of relocation
+  int last_iterations = 60;        // of the refinement on all samples
+  double subtractive = 0.5;        // share of the metaballs that may be subtractive, with the Gaussian kernel
+  double relocated = 0.15;         // share of the metaballs that the first relocation moves
+  int samples_per_sphere = 60;     // used until the final refinement
+  double tolerance = 0.0;          // growth stops at this mean |s| over the samples, fraction of the diagonal
+  double loss_scale = 1e-3;        // fraction of the diagonal
+  double containment_weight = 0.2;  // fraction of the diagonal, >= 0
   int repair_resolution = 256;  // cells along the longest side of the mesh in which islands are looked for
 };
 
 struct ConvergencePoint {
-  int iterations = 0;  // of Levenberg and Marquardt so far
-  int spheres = 0;
-  double mean_distance = 0.0;  // mean |s| over the samples
+  int iterations = 0;          // of Levenberg-Marquardt so far
+  int spheres = 0;             // number of metaballs
+  double mean_distance = 0.0;  // mean |s| over all samples, fraction of the diagonal
 };
 
 struct AdaptiveFitSummary {
-  MetaballModel model;
+  MetaballModel model;  // in the target's frame
   std::vector<ConvergencePoint> convergence;
   bool interrupted = false;  // progress asked to stop; the model is the best so far
 };
 
-// `samples` are points and smooth normals of the target's surface, in random order; `containment` holds
-// points inside and outside of it and is extended by what the repair finds.
+// `samples` are points and smooth normals of the target's surface in random order. `containment` holds points
+// inside and outside of the target; the fit adds to its copy the points that the repair finds. Throws
+// WorkError if a refinement fails at its start.
 AdaptiveFitSummary fit_adaptively(const TargetBody& target, const MetaballModel& start,
                                   const SurfaceSamples& samples, const FitPoints& containment,
                                   const AdaptiveFitOptions& options, const Progress& progress = {});

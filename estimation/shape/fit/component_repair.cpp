@@ -3,47 +3,48 @@
 #include <algorithm>
 
 #include "estimation/shape/fit/sphere_growth.h"
-#include "estimation/shape/model/model_evaluation_internal.h"
+#include "estimation/shape/model/model_levels.h"
 #include "estimation/shape/packing/clearance_grid.h"
 
 namespace astrolith {
 namespace {
 
-// Cells of the grid inside the target, and how deep its places lie (fraction of the diagonal): nearer to the
-// surface its samples, and the shells of points beside it, are dense enough.
+// The number of grid cells inside the target, and the least depth of a watched place (fraction of the
+// diagonal). Nearer to the surface the samples and the shells of points beside it are dense enough.
 constexpr double kWatchedCells = 30000.0;
 constexpr double kWatchedDepth = 0.012;
 
-// Levels below this are low. Between places of the grid the level can sink that much again.
+// A level below this is low. Between two places of the grid the level can be lower by about as much.
 constexpr double kLowLevel = 0.05;
 
-// A filler reaches this much further than what it fills, and is at least this large (fraction of the
-// diagonal).
+// The radius of a metaball that fills a cavity: this multiple of the cavity's radius, or the least radius.
 constexpr double kFillerScale = 1.1;
-constexpr double kSmallestFiller = 0.003;
+constexpr double kSmallestFiller = 0.003;  // fraction of the diagonal
 
-std::size_t count_cavities(const std::vector<StrayPart>& strays) {
+std::size_t count_cavities(const std::vector<StrayComponent>& strays) {
   return static_cast<std::size_t>(
-      std::count_if(strays.begin(), strays.end(), [](const StrayPart& s) { return s.cavity; }));
+      std::count_if(strays.begin(), strays.end(), [](const StrayComponent& s) { return s.cavity; }));
 }
 
-// Which spheres, in which strays.
+// The metaballs to remove: subtractive or additive ones, in cavities or in islands.
 struct Culprits {
   bool cavities, subtractive;
 };
 
-// Those whose centre is in such a stray. At least one that adds stays.
-void remove_within(MetaballModel& model, const std::vector<StrayPart>& strays, const Culprits& culprits) {
+// Removes the culprits whose centre lies in a stray component. If no additive metaball would remain, nothing
+// is removed.
+void remove_within(MetaballModel& model, const std::vector<StrayComponent>& strays,
+                   const Culprits& culprits) {
   const auto is_culprit = [&](const ModelSphere& s) {
     return s.subtractive == culprits.subtractive &&
-           std::any_of(strays.begin(), strays.end(), [&](const StrayPart& stray) {
+           std::any_of(strays.begin(), strays.end(), [&](const StrayComponent& stray) {
              return stray.cavity == culprits.cavities && norm(s.center - stray.center) < stray.radius;
            });
   };
   std::vector<ModelSphere> kept;
   std::remove_copy_if(model.spheres.begin(), model.spheres.end(), std::back_inserter(kept), is_culprit);
-  const auto adds = [](const ModelSphere& s) { return !s.subtractive; };
-  if (std::any_of(kept.begin(), kept.end(), adds)) model.spheres = std::move(kept);
+  const auto additive = [](const ModelSphere& s) { return !s.subtractive; };
+  if (std::any_of(kept.begin(), kept.end(), additive)) model.spheres = std::move(kept);
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ void InsideWatch::add_dips(const MetaballModel& model, std::vector<Vec3d>& insid
   places_ = std::move(others);
 }
 
-void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
+void fill_cavities(MetaballModel& model, const std::vector<StrayComponent>& strays,
                    const std::vector<Vec3d>& on_surface) {
   remove_within(model, strays, {.cavities = true, .subtractive = true});
   const std::size_t before = model.spheres.size();
@@ -72,14 +73,14 @@ void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
   remove_least_useful_spheres(model, on_surface, static_cast<int>(wanted));
   const std::size_t cavities = before - model.spheres.size();
   std::size_t filled = 0;
-  for (const StrayPart& stray : strays) {
+  for (const StrayComponent& stray : strays) {
     if (!stray.cavity || filled == cavities) continue;
     model.spheres.emplace_back(stray.center, std::max(kFillerScale * stray.radius, kSmallestFiller));
     ++filled;
   }
 }
 
-void remove_islands(MetaballModel& model, const std::vector<StrayPart>& strays) {
+void remove_islands(MetaballModel& model, const std::vector<StrayComponent>& strays) {
   remove_within(model, strays, {.cavities = false, .subtractive = false});
 }
 

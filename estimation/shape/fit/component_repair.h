@@ -1,5 +1,5 @@
-// What keeps a fit's surface to the parts of its target: samples of the target's surface say nothing of what
-// the model does away from it.
+// Keeps the connected components of a fit's surface to those of its target. Samples of the target's surface
+// do not constrain the model away from the surface, so islands and cavities can form there.
 #pragma once
 
 #include <vector>
@@ -11,26 +11,27 @@
 
 namespace astrolith {
 
-// Watches the inside of the target on a grid: where spheres are moved towards the surface, as the fit does,
-// the level sinks between them, and where it passes 0 a cavity opens.
+// Watches the inside of the target on a grid. The fit moves metaballs towards the surface, and the level
+// sinks between them. A cavity opens where the level falls below 0.
 class InsideWatch {
  public:
   explicit InsideWatch(const TargetBody& target);
 
-  // Adds to `inside` the places where the model's level is low, each place once.
+  // Adds to `inside` the places where the model's level is low. A place is added at most once in all calls.
   void add_dips(const MetaballModel& model, std::vector<Vec3d>& inside);
 
  private:
-  std::vector<Vec3d> places_;
+  std::vector<Vec3d> places_;  // not yet added
 };
 
-// Removes the spheres that take away and have their centre in a cavity, and puts one that adds in place of
-// each cavity: no more spheres than before, for the least useful of them go, as seen from points on the
-// surface. A filled cavity is gone whatever other spheres that add do there.
-void fill_cavities(MetaballModel& model, const std::vector<StrayPart>& strays,
+// Removes the subtractive metaballs whose centre lies in a cavity, and puts an additive one in place of each
+// cavity. The number of metaballs does not grow: the least useful ones at `on_surface`, points of the
+// target's surface, are removed to make room.
+void fill_cavities(MetaballModel& model, const std::vector<StrayComponent>& strays,
                    const std::vector<Vec3d>& on_surface);
 
-// Removes the spheres that make the islands among the strays. At least one that adds stays.
-void remove_islands(MetaballModel& model, const std::vector<StrayPart>& strays);
+// Removes the additive metaballs whose centre lies in an island. The model keeps at least one additive
+// metaball: if none would remain, nothing is removed.
+void remove_islands(MetaballModel& model, const std::vector<StrayComponent>& strays);
 
 }  // namespace astrolith

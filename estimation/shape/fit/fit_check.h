@@ -1,4 +1,4 @@
-// How good a fitted body is: the mesh that synthesis makes of it, measured against the target.
+// Measures a fitted body: synthesis makes a mesh of it, which is compared with the target.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 namespace astrolith {
 
 struct FitCheck {
-  TriangleMesh mesh;               // of the fitted body, in the target's frame
-  MeshTopology topology;           // of mesh
+  TriangleMesh mesh;               // the fitted body, in the target's frame
+  MeshTopology topology;           // topology of `mesh`
   SurfaceDistanceReport distance;  // fractions of the target's bounding-box diagonal
-  double volume_ratio = 0.0;       // of the fitted body's volume over the target's
+  double volume_ratio = 0.0;       // the fitted body's volume over the target's
 };
 
-// Meshes the body (in the target's frame) with `resolution` cells along its longest side, and measures from
-// `samples` fresh points of both surfaces.
+// Meshes the body with `resolution` cells along its longest side, and measures distances from `samples` fresh
+// points of each surface. The body is in the target's frame.
 FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resolution, std::int64_t samples,
                    std::uint64_t seed);
 
-// Vertices of the check's mesh further than `threshold` from the target: parts of the surface that no sample
-// of the target asked for (cavities, islands, bridges). Those inside the target and those outside are told
-// apart as the fit's containment points.
+// Returns the vertices of the mesh that are farther than `threshold` from the target's surface. They belong
+// to cavities, islands and bridges, which no sample of the target constrains. Vertices inside the target
+// become points that must lie inside the model, and vertices outside become points that must lie outside.
 FitPoints stray_points(const TargetBody& target, const TriangleMesh& mesh, double threshold);
 
 }  // namespace astrolith

@@ -10,8 +10,9 @@
 namespace astrolith {
 namespace {
 
-// Variables of the search: number of spheres, then logarithms of a, b and m. a/b in [1/4, 4] scales radii by
-// half to twice; the sharpness m a stays within [0.25, 16], from a soft blend to nearly a union.
+// The variables of the search are the number of spheres and the logarithms of a, b and m. The ratio a/b lies
+// in [1/4, 4], which scales radii by a factor from 1/2 to 2. The sharpness m a lies in [0.25, 16], from a
+// soft blend to nearly a union.
 constexpr double kTension = 2.0;
 constexpr double kSmallestExponent = 0.5, kLargestExponent = 8.0;
 
@@ -22,8 +23,8 @@ Bounds search_bounds(int packed, int max_spheres) {
           {most, t, t, std::log(kLargestExponent)}};
 }
 
-// Kernels other than the Gaussian are summed with exponent 1 and have the tensions m a and m b, which are the
-// same thing for Gaussians.
+// Kernels other than the Gaussian are summed with exponent 1 and take m a and m b as tensions. For Gaussians
+// this would be the same body.
 MetaballBody body_at(const std::vector<Sphere>& packing, Kernel kernel, std::span<const double> x) {
   MetaballBody body;
   body.kernel = kernel;

@@ -1,8 +1,8 @@
-// The global parameters of thesis section 4.3.4 (number of spheres, tensions a and b, blend exponent m) by a
-// derivative-free optimiser on the surflet histogram.
+// Finds the global parameters of thesis section 4.3.4 with a derivative-free optimiser: the number of
+// spheres, the tensions a and b, and the blend exponent m.
 //
-// A candidate is not meshed: fixed points of the target's surface are projected onto the candidate's surface,
-// and the histogram of those is compared with the histogram of the target's points,
+// A candidate is not meshed. Fixed points of the target's surface are projected onto the candidate's surface,
+// and the surflet histogram of the projected points is compared with the histogram of the target's points:
 //   fitness = 1 - similarity(target, candidate).
 #pragma once
 
@@ -22,13 +22,14 @@ struct GlobalParameterSearchOptions {
 };
 
 struct GlobalParameterSearchSummary {
-  MetaballModel model;  // the winner; its radii include sqrt(a/b)
-  double a = 1.0, b = 1.0, blend_exponent = 1.0;
-  double similarity = 0.0;  // of the winner
+  MetaballModel model;                            // the best candidate; its radii include sqrt(a/b)
+  double a = 1.0, b = 1.0, blend_exponent = 1.0;  // its parameters
+  double similarity = 0.0;                        // its similarity to the target, at most 1
   OptimizeResult optimization;
 };
 
-// `packing` is ordered largest first and not empty; `samples` are points and normals of the target's surface.
+// `packing` is ordered by radius, the largest first, and not empty. `samples` are points and normals of the
+// target's surface.
 GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>& packing,
                                                       const SurfaceSamples& samples,
                                                       const GlobalParameterSearchOptions& options,

@@ -11,25 +11,25 @@
 namespace astrolith {
 namespace {
 
-// Share of the budget that the packing's spheres may take; the rest grows where the error is.
+// The share of the metaballs that the packing gives. The others are added where the error is largest.
 constexpr double kBaseShare = 0.5;
-constexpr int kFewSpheres = 16;  // may all be the packing's
+constexpr int kFewSpheres = 16;  // so many metaballs may all come from the packing
 
-// So many spheres settle slowly: their steps are given twice as many iterations, and for the sake of time
-// there are a third as many relocations.
+// Fits with at least this many metaballs converge slowly. Their refinements have twice as many iterations,
+// and to save time they have a third as many relocations.
 constexpr int kManySpheres = 500;
 
-constexpr std::int64_t kSearchSamples = 800;       // a fitness costs the square of it
+constexpr std::int64_t kSearchSamples = 800;       // the cost of a fitness grows with the square
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
 
-// Points inside and outside: this many, this deep (fraction of the diagonal).
+// Containment points on each side of the surface: their number and their least distance from the surface.
 constexpr int kContainmentPoints = 2000;
-constexpr double kContainmentDepth = 0.015;
+constexpr double kContainmentDepth = 0.015;  // fraction of the diagonal
 
-// Shells of points near the surface, at these distances from it (fractions of the diagonal): near enough to
-// one another that no island of a few hundredths fits between.
+// Shells of points on both sides of the surface, at these distances from it (fractions of the diagonal). No
+// island with a size of a few hundredths fits between two shells.
 constexpr double kShells[] = {0.008, 0.016, 0.032};
-constexpr double kShellShare = 0.25;  // of the number of surface samples, each
+constexpr double kShellShare = 0.25;  // points in a shell, as a share of the surface samples
 
 // Independent random streams of one seed.
 enum Stream : std::uint64_t {
@@ -46,16 +46,15 @@ enum Stream : std::uint64_t {
 std::uint64_t stream_seed(std::uint64_t seed, Stream stream) { return 1000003u * seed + stream; }
 
 void check_options(const ShapeFitOptions& options) {
-  if (options.spheres < 1 || options.spheres > 10000) throw InputError("--spheres: give 1 to 10000");
+  if (options.spheres < 1 || options.spheres > 10000) throw InputError("spheres: give 1 to 10000");
   if (options.points != 0 && (options.points < 100 || options.points > 10000000)) {
-    throw InputError("--points: give 100 to 10000000, or 0");
+    throw InputError("points: give 100 to 10000000, or 0");
   }
   if (options.population < 1 || options.generations < 1) {
-    throw InputError("--population and --generations: give at least 1");
+    throw InputError("population and generations: give at least 1");
   }
-  if (!(options.subtract >= 0.0 && options.subtract <= 0.9)) throw InputError("--subtract: give 0 to 0.9");
-  if (!(options.tolerance >= 0.0))
-    throw InputError("--tolerance: give a fraction of the diagonal, at least 0");
+  if (!(options.subtract >= 0.0 && options.subtract <= 0.9)) throw InputError("subtract: give 0 to 0.9");
+  if (!(options.tolerance >= 0.0)) throw InputError("tolerance: give a fraction of the diagonal, at least 0");
 }
 
 Packing pack(const TargetBody& target, const ShapeFitOptions& options, const Progress& progress) {
@@ -117,7 +116,7 @@ MetaballBody body_in_file_frame(const MetaballModel& model, const TargetBody& ta
   return metaball_body(moved);
 }
 
-// With the features that `compare` takes unless told otherwise.
+// The histogram of fresh samples, with the default features of the program `compare`.
 ShapeHistogram fresh_histogram(const TriangleMesh& mesh, std::uint64_t seed) {
   DescriptionOptions options;
   options.points = kSimilaritySamples;

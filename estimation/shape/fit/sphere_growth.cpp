@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "estimation/shape/model/model_evaluation_internal.h"
+#include "estimation/shape/model/model_levels.h"
 #include "estimation/shape/model/point_clusters.h"
 #include "numerics/parallel_for.h"
 
@@ -14,41 +15,42 @@ namespace {
 
 constexpr std::size_t kPointsPerCluster = 32;
 
-// Kernel sum at the surface is 1; a new sphere adds this much there, or to what that is divided by. That
-// makes a bump, or a dent, far larger than the error it is to mend, which the first steps of the refinement
-// take back; with a smaller share the sphere lies so deep that it is hardly told from others, and stays idle.
+// The sum of kernels is 1 at the surface. A new additive metaball adds this much to it, and a new subtractive
+// one adds this much to the sum that divides it. The bump or dent is far larger than the error to be
+// corrected, and the first steps of the refinement reduce it. With a smaller share the metaball would lie so
+// deep that the refinement could not tell it from others, and it would stay idle.
 constexpr double kStartShare = 0.3;
 
-// A sphere that holds this share of its kind's sum somewhere inside, or outside where it takes away, is not
-// idle.
+// A metaball that holds this share of its kind's sum at a containment point is not idle.
 constexpr double kHoldingShare = 0.02;
 
-// A new Gaussian's bump falls by e at this many patches along the surface, whatever the sharpness: with the
-// patch as the sphere's radius bumps of soft blends were twice as wide as what they were to mend.
+// Along the surface the bump of a new Gaussian falls by the factor e at this many patch radii, for every
+// sharpness. With the patch radius as the metaball's radius, bumps of soft blends were twice as wide as the
+// error.
 constexpr double kBumpWidth = 0.7;
 
-// Means over a patch, s positive inside the model.
+// Means over a patch. The distance s is positive inside the model.
 struct PatchError {
-  double square = 0.0;  // of s^2
-  double mean = 0.0;    // of s
+  double square = 0.0;  // mean of s^2
+  double mean = 0.0;    // mean of s
 };
 
-// Of the samples within `radius` of sample i.  (#points)
+// The errors of the patches around every point. A patch holds the points within `radius`.  (#points)
 std::vector<PatchError> patch_errors(const std::vector<Vec3d>& points, const std::vector<double>& distances,
                                      double radius) {
   std::vector<PatchError> errors(points.size());
   const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
   parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
     const PointCluster& own = clusters[static_cast<std::size_t>(c)];
-    std::vector<std::size_t> near;
+    std::vector<std::size_t> in_reach;
     for (const PointCluster& other : clusters) {
       if (norm(own.center - other.center) > own.radius + other.radius + radius) continue;
-      for (const std::int32_t i : other.points) near.push_back(static_cast<std::size_t>(i));
+      for (const std::int32_t i : other.points) in_reach.push_back(static_cast<std::size_t>(i));
     }
     for (const std::int32_t i : own.points) {
       PatchError sum;
       int count = 0;
-      for (const std::size_t j : near) {
+      for (const std::size_t j : in_reach) {
         if (squared_norm(points[j] - points[static_cast<std::size_t>(i)]) > radius * radius) continue;
         sum.square += distances[j] * distances[j];
         sum.mean += distances[j];
@@ -60,15 +62,16 @@ std::vector<PatchError> patch_errors(const std::vector<Vec3d>& points, const std
   return errors;
 }
 
-// How far the surface near a point would move without a sphere.
+// How far the surface at a point would move without a sphere.
 struct Movement {
   std::int32_t sphere;
   double distance;
 };
 
-// Without each of those that hold more than next to nothing there, at every point.  (#points)
+// For every point the movements without each of the spheres in reach. Spheres with a negligible share of
+// their kind's sum are left out.  (#points)
 std::vector<std::vector<Movement>> movements(const MetaballModel& model, const std::vector<Vec3d>& points) {
-  constexpr double kMostOfIt = 0.999, kNextToNothing = 1e-6;
+  constexpr double kLargestShare = 0.999, kNegligibleShare = 1e-6;
   const ModelEvaluation parameters = evaluation_parameters(model);
   std::vector<std::vector<Movement>> moved(points.size());
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
@@ -78,15 +81,15 @@ std::vector<std::vector<Movement>> movements(const MetaballModel& model, const s
     const Vec3d slope = metaball_distance(parameters, sums).log_gradient;
     const double slope_length = std::sqrt(squared_norm(slope) + parameters.gradient_floor);
     for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      if (shares[j] <= kNextToNothing) continue;
+      if (shares[j] <= kNegligibleShare) continue;
       moved[p].push_back(
-          {neighbours[j], level_lost(model, sums.kernel, std::min(shares[j], kMostOfIt)) / slope_length});
+          {neighbours[j], level_lost(model, sums.kernel, std::min(shares[j], kLargestShare)) / slope_length});
     }
   });
   return moved;
 }
 
-// Squares of these distances, summed over the points.  (#spheres)
+// For every sphere the sum of its squared movements over all points.  (#spheres)
 std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec3d>& points) {
   std::vector<double> use(model.spheres.size(), 0.0);
   for (const std::vector<Movement>& list : movements(model, points)) {
@@ -99,7 +102,7 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
 void mark_holding(const MetaballModel& model, bool subtractive, const std::vector<Vec3d>& points,
                   double share, std::vector<bool>& marks) {
   const ModelEvaluation parameters = evaluation_parameters(model);
-  std::vector<std::vector<std::int32_t>> holding(points.size());  // a list a point, merged afterwards
+  std::vector<std::vector<std::int32_t>> holding(points.size());  // one list for each point
   for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
     std::vector<double> shares;
     totals_with_shares(model, parameters, neighbours, points[p], shares);
@@ -113,55 +116,38 @@ void mark_holding(const MetaballModel& model, bool subtractive, const std::vecto
   }
 }
 
-// Radius of a new sphere. Along the surface a Gaussian falls as exp(-kappa x^2 / r^2).
+// The radius of a new metaball for a patch of this radius. Along the surface a Gaussian falls as
+// exp(-kappa x^2 / r^2).
 double radius_for_patch(const MetaballModel& model, double patch) {
   return model.kernel == Kernel::kGaussian ? kBumpWidth * patch * std::sqrt(model.sharpness) : patch;
 }
 
-// How many radii from its centre a kernel has fallen to `value` < 1: bisection, for it falls all the way.
+// The distance from the centre, in radii, at which the kernel has the value `value` < 1. The kernel decreases
+// monotonically, so bisection finds it.
 double radii_at_kernel(const MetaballModel& model, double value) {
   const MetaballParameters<double> parameters = evaluation_parameters(model);
-  double near = 1.0, far = parameters.cutoff_squared;
+  double low = 1.0, high = parameters.cutoff_squared;  // squared distances
   for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (near + far);
-    (kernel_power(parameters, middle).value > value ? near : far) = middle;
+    const double middle = 0.5 * (low + high);
+    (kernel_power(parameters, middle).value > value ? low : high) = middle;
   }
-  return std::sqrt(near);
+  return std::sqrt(low);
 }
 
-// Returns how many spheres went; none, should all that add be unwanted.
+// Removes the unwanted spheres and returns how many. Removes none if no additive one is wanted.
 int keep_only(MetaballModel& model, const std::vector<bool>& wanted) {
   std::vector<ModelSphere> kept;
   for (std::size_t i = 0; i < model.spheres.size(); ++i) {
     if (wanted[i]) kept.push_back(model.spheres[i]);
   }
-  const auto adds = [](const ModelSphere& s) { return !s.subtractive; };
-  if (std::none_of(kept.begin(), kept.end(), adds)) return 0;
+  const auto additive = [](const ModelSphere& s) { return !s.subtractive; };
+  if (std::none_of(kept.begin(), kept.end(), additive)) return 0;
   const auto removed = static_cast<int>(model.spheres.size() - kept.size());
   model.spheres = std::move(kept);
   return removed;
 }
 
 }  // namespace
-
-std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points) {
-  std::vector<double> levels(points.size());
-  const ModelEvaluation parameters = evaluation_parameters(model);
-  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    levels[p] = level_of(model, net_sums_at(model, parameters, neighbours, points[p]).kernel);
-  });
-  return levels;
-}
-
-std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points) {
-  const std::vector<Vec3d> all(points.begin(), points.end());
-  std::vector<double> distances(all.size());
-  const ModelEvaluation parameters = evaluation_parameters(model);
-  for_each_with_neighbours(model, all, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    distances[p] = metaball_distance(parameters, net_sums_at(model, parameters, neighbours, all[p])).distance;
-  });
-  return distances;
-}
 
 std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, const SurfaceSamples& samples,
                                                     const GrowthOptions& options) {

@@ -1,7 +1,6 @@
-// Where a model needs more spheres and which it can do without: the adaptive half of the shape fit.
+// Adds metaballs to a model where its error is largest, and removes the ones that it does not need.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "estimation/shape/model/metaball_model.h"
@@ -10,33 +9,34 @@
 
 namespace astrolith {
 
-// First-order signed distance s of every point: positive inside the model.  (#points)
-std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points);
-
 struct GrowthOptions {
-  double area = 0.0;    // of the target's surface
-  int budget = 0;       // spheres in all: each of them has a patch of the surface to itself
-  int count = 0;        // new spheres at most
-  int subtractive = 0;  // of them that may take away, at most
+  double area = 0.0;    // area of the target's surface, > 0
+  int budget = 0;       // metaballs in all, > 0; a patch has this share of the area
+  int count = 0;        // new metaballs, at most
+  int subtractive = 0;  // subtractive ones among the new metaballs, at most
 };
 
-// Spheres where s^2, averaged over patches, is largest; no two in one patch. Where the model lies under the
-// target's surface, a sphere just below it that starts as a slight bulge; where the model sticks out, one
-// just above that takes away and starts as a slight dent. The refinement decides what becomes of them.
-// `samples` are even over the target's surface.
+// Returns new metaballs where s^2, averaged over patches of the surface, is largest. No two lie in one patch.
+// Where the model lies under the target's surface, the new metaball lies below the surface and makes a bump.
+// Where the model sticks out, it lies above the surface, is subtractive and makes a dent; it is additive if
+// no more may be subtractive. The refinement that follows moves and scales the new metaballs. `samples` are
+// spread evenly over the target's surface.
 std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, const SurfaceSamples& samples,
                                                     const GrowthOptions& options);
 
-// Removes the spheres without which the surface moves less than `distance` at all of its points, and that
-// hold little of their kind's sum at the points inside, or outside where they take away; returns how many. At
-// least one sphere that adds stays, here and below.
+// The functions below keep at least one additive metaball: if none would remain, they remove nothing.
+
+// Removes idle metaballs and returns how many. A metaball is idle if its removal moves the surface by less
+// than `distance` at all points on the surface, and if it holds little of its kind's sum at all containment
+// points: at the inside points for an additive metaball, at the outside points for a subtractive one.
 int remove_idle_spheres(MetaballModel& model, const FitPoints& points, double distance);
 
-// Removes the `count` spheres whose absence moves the surface least, summed over the points of it.
+// Removes the `count` metaballs whose removal moves the surface least, as the sum of squares over
+// `on_surface`.
 void remove_least_useful_spheres(MetaballModel& model, const std::vector<Vec3d>& on_surface, int count);
 
-// Removes the spheres that add and whose centre lies outside the target by more than `margin`; returns how
-// many. The refinement pushes out what it cannot use, and there such a sphere is an island.
+// Removes the additive metaballs whose centre lies outside the target by more than `margin`, and returns how
+// many. The refinement moves metaballs that it cannot use out of the target, where they become islands.
 int remove_outside_spheres(MetaballModel& model, const SurfaceTree& target, double margin);
 
 }  // namespace astrolith

@@ -5,11 +5,11 @@
 namespace astrolith {
 namespace {
 
-// One sphere as seen from a point.
+// The terms of one sphere at a point, in the symbols of the header.
 struct Term {
   Vec3d u;
-  double q, inverse_square;     // of the radius
-  KernelDerivatives<double> k;  // K, D, C; all 0 beyond the support
+  double q, inverse_square;     // q, and 1 / r^2
+  KernelDerivatives<double> k;  // K, D and C; all 0 beyond the support
 };
 
 Term term_of(const MetaballModel& model, const ModelEvaluation& parameters, std::int32_t sphere,
@@ -46,10 +46,11 @@ double value_by_tension(const ModelEvaluation& parameters, const Term& t) {
          parameters.compact_kernel.height * by.low;
 }
 
-// d(by_level L + by_gradient . g) by every sphere and by the logarithm of the tension.
-void add_up(const MetaballModel& model, const ModelEvaluation& parameters,
-            std::span<const std::int32_t> neighbours, const Vec3d& p, double by_level,
-            const Vec3d& by_gradient, std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
+// Derivatives of by_level L + by_gradient . g by every sphere and by the logarithm of the tension.
+void differentiate(const MetaballModel& model, const ModelEvaluation& parameters,
+                   std::span<const std::int32_t> neighbours, const Vec3d& p, double by_level,
+                   const Vec3d& by_gradient, std::span<SphereDerivatives> by_sphere,
+                   double* by_log_sharpness) {
   const CompactKernelTension& by = parameters.tension;
   double by_tension = 0.0;
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
@@ -74,7 +75,8 @@ double compact_distance(const MetaballModel& model, const ModelEvaluation& param
   const double n2 = squared_norm(sums.gradient) + parameters.gradient_floor;
   const double n = std::sqrt(n2), s = sums.level / n;
   if (!by_sphere.empty()) {
-    add_up(model, parameters, neighbours, p, 1.0 / n, sums.gradient * (-s / n2), by_sphere, by_log_sharpness);
+    differentiate(model, parameters, neighbours, p, 1.0 / n, sums.gradient * (-s / n2), by_sphere,
+                  by_log_sharpness);
   }
   return s;
 }
@@ -83,7 +85,8 @@ double compact_level(const MetaballModel& model, const ModelEvaluation& paramete
                      std::span<const std::int32_t> neighbours, const Vec3d& p,
                      std::span<SphereDerivatives> by_sphere, double* by_log_sharpness) {
   const Sums sums = sums_at(model, parameters, neighbours, p);
-  if (!by_sphere.empty()) add_up(model, parameters, neighbours, p, 1.0, {}, by_sphere, by_log_sharpness);
+  if (!by_sphere.empty())
+    differentiate(model, parameters, neighbours, p, 1.0, {}, by_sphere, by_log_sharpness);
   return sums.level;
 }
 

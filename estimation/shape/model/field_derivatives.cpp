@@ -7,8 +7,8 @@
 namespace astrolith {
 namespace {
 
-// Sums over the neighbours as synthesis takes them (synthesis/body/metaballs.h). Where `terms` is not empty,
-// the terms of every sphere are kept there: u_i (3), then exp k_i, 0 beyond the support.
+// Sums over the neighbours as synthesis takes them (synthesis/body/metaballs.h). If `terms` is not empty, it
+// receives the terms of every sphere: u_i (3), then exp k_i, which is 0 beyond the support.
 MetaballTotals<double> totals_at(const MetaballModel& model, const ModelEvaluation& parameters,
                                  std::span<const std::int32_t> neighbours, const Vec3d& p,
                                  std::span<SphereDerivatives> terms) {
@@ -31,10 +31,10 @@ MetaballTotals<double> totals_at(const MetaballModel& model, const ModelEvaluati
   return totals;
 }
 
-// What the spheres of one kind have in common: w_i over exp k_i, and G_i.
+// The terms that all spheres of one kind, additive or subtractive, have in common.
 struct KindTerms {
-  double weight;
-  Vec3d mean;
+  double weight;  // w_i over exp k_i
+  Vec3d mean;     // G_i
 };
 
 class SignedTerms {

@@ -17,7 +17,8 @@ class Projector {
         longest_step_(largest_radius(model)),
         steps_(steps) {}
 
-  // Spheres that may reach a point of the cluster after it moved a little.
+  // Spheres whose support may reach a point of the cluster after the point has moved by up to half the
+  // largest radius.
   std::vector<MetaballSphere<double>> neighbours(const PointCluster& cluster) const {
     std::vector<MetaballSphere<double>> found;
     const double reach = cluster.radius + 0.5 * longest_step_;
@@ -35,7 +36,7 @@ class Projector {
       const SurfaceDistance<double> at = metaball_distance(parameters_, totals.net());
       if (squared_norm(at.log_gradient) == 0.0) return;
       normal = normalized(-at.log_gradient);
-      // The last evaluation is for the normal alone.
+      // The last evaluation only gives the normal.
       if (step < steps_) point += normal * std::clamp(at.distance, -longest_step_, longest_step_);
     }
   }

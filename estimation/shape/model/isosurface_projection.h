@@ -1,5 +1,5 @@
-// Points of space brought onto a metaball model's surface along its gradient: a sampling of the surface
-// without meshing it.
+// Moves points onto a metaball model's surface along its gradient. This samples the surface without meshing
+// it.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace astrolith {
 
-// Newton steps p <- p + s(p) n, n = -grad L / |grad L|, each no longer than the largest radius. Normals point
-// out of the body. Points that no sphere reaches stay where they are, with a normal away from the nearest
-// sphere.  (#points in, #points out)
+// Takes Newton steps p <- p + s(p) n with n = -grad L / |grad L|. No step is longer than the largest radius.
+// The normals have length 1 and point out of the body. A point that no sphere reaches stays where it is, and
+// its normal points away from the nearest sphere.  (#points in, #points out)
 SurfaceSamples project_onto_isosurface(const MetaballModel& model, std::span<const Vec3d> points,
                                        int steps = 4);
 

@@ -10,15 +10,16 @@
 namespace astrolith {
 namespace {
 
-// Beyond its support a Gaussian is e^-16 or less: less than a float of the sum can hold.
+// Support of a Gaussian, in radii. Beyond it the kernel is at most e^-16, which is lost in the rounding of
+// the sum.
 double gaussian_support(double sharpness) { return std::sqrt(1.0 + 16.0 / sharpness); }
 
-// Where kernels without an end of their own are cut off.
+// Kernels with infinite support are cut off at this many radii.
 constexpr double kCutoffRadii = 5.0;
 
-// The least slope that a level is divided by, times the largest radius. Kernels that end have none beyond
-// their support, and s would be without bound there; with this it is about a radius, and on the surface,
-// where slopes are steeper, all but what it was.
+// The least slope that a level is divided by, times the largest radius. A compact kernel has no slope beyond
+// its support, and s would be unbounded there. With this floor s is about one radius there. On the surface
+// slopes are steeper, and the floor hardly changes s.
 double slope_floor(Kernel kernel) { return kernel == Kernel::kGaussian ? 1e-3 : 0.5; }
 
 CompactKernel<double> compact_kernel_of(Kernel kernel, double tension, double& cutoff_squared) {
@@ -26,7 +27,8 @@ CompactKernel<double> compact_kernel_of(Kernel kernel, double tension, double& c
   return scaled_kernel(kernel, tension, 1.0, cutoff_squared);
 }
 
-// By differences: a compact_kernel's scale is found by bisection, and this is done once for all points.
+// Taken by central differences, because the scale of a compact kernel is found by bisection. This is done
+// once for all points.
 CompactKernelTension tension_derivatives(Kernel kernel, double tension) {
   const double h = 1e-4;
   double cutoff_squared = 0.0;
@@ -105,7 +107,7 @@ MetaballModel model_of(const MetaballBody& body) {
                      " with exponent 1 alone");
   }
   if (!gaussian && !body.subtract.empty()) {
-    throw InputError("body: subtract: the fit knows Gaussians alone that take away");
+    throw InputError("body: subtract: the fit knows subtractive metaballs with the Gaussian kernel alone");
   }
   MetaballModel model{body.blend_exponent * body.a, {body.spheres.begin(), body.spheres.end()}, body.kernel};
   for (const Sphere& s : body.subtract) model.spheres.emplace_back(s, true);

@@ -1,4 +1,5 @@
-// A metaball model evaluated at many points, near ones together so that they share their list of spheres.
+// A metaball model evaluated at many points. Points that lie close together form a cluster and share one list
+// of spheres.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,8 @@
 
 namespace astrolith {
 
-// Indices, ascending, of the spheres within `reach` of their own radii of the cluster.
+// Indices, ascending, of the spheres that may reach the cluster. `reach` is their support as a multiple of
+// their radii.
 inline std::vector<std::int32_t> spheres_within(const MetaballModel& model, const PointCluster& cluster,
                                                 double reach) {
   std::vector<std::int32_t> found;
@@ -44,8 +46,8 @@ inline void add_sums(const MetaballSums<double>& more, MetaballSums<double>& sum
   sums.weighted += more.weighted;
 }
 
-// The sums at a point over some of the model's spheres, and in `shares` the part that each has in its sum:
-// k / P of a sphere that adds, k / (1 + N) of one that takes away.
+// Returns the sums at a point over some of the model's spheres. `shares` receives the share of each sphere in
+// the sum of its kind: k / P for an additive metaball, k / (1 + N) for a subtractive one.
 inline MetaballTotals<double> totals_with_shares(const MetaballModel& model,
                                                  const ModelEvaluation& evaluation,
                                                  std::span<const std::int32_t> spheres, const Vec3d& p,
@@ -67,7 +69,7 @@ inline MetaballTotals<double> totals_with_shares(const MetaballModel& model,
   return totals;
 }
 
-// The net sums alone.
+// The net sums at a point over some of the model's spheres.
 inline MetaballSums<double> net_sums_at(const MetaballModel& model, const ModelEvaluation& evaluation,
                                         std::span<const std::int32_t> spheres, const Vec3d& p) {
   MetaballTotals<double> totals;
@@ -76,8 +78,5 @@ inline MetaballSums<double> net_sums_at(const MetaballModel& model, const ModelE
   }
   return totals.net();
 }
-
-// L(p), the level of every point: 0 on the surface, positive inside.  (#points)
-std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points);
 
 }  // namespace astrolith

@@ -34,7 +34,7 @@ void split(const std::vector<Vec3d>& points, std::span<std::int32_t> indices, st
   }
   const int axis = longest_axis(box.extent());
   const std::size_t half = indices.size() / 2;
-  // Equal coordinates are told apart by index: the order must not depend on the library's algorithm.
+  // Points with equal coordinates are ordered by index, so that the order does not depend on the library.
   std::nth_element(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(half), indices.end(),
                    [&](std::int32_t i, std::int32_t j) {
                      const double xi = coordinate(points[static_cast<std::size_t>(i)], axis);

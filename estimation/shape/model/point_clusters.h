@@ -1,4 +1,4 @@
-// Points grouped by nearness, so that what concerns one concerns its group.
+// Groups of points that lie close together, so that one list of spheres serves a whole group.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@ namespace astrolith {
 
 struct PointCluster {
   std::vector<std::int32_t> points;  // indices
-  Vec3d center;                      // of a sphere that holds them
-  double radius = 0.0;
+  Vec3d center;                      // centre of a ball that holds them
+  double radius = 0.0;               // radius of this ball
 };
 
-// Splits at the median of the longest side until at most `size` points are left. Deterministic.
+// Splits the points at the median along the longest side of their bounding box until no cluster has more than
+// `size` points. The result depends on the points only.
 std::vector<PointCluster> cluster_points(const std::vector<Vec3d>& points, std::size_t size);
 
 }  // namespace astrolith

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int32_t kUnknown = -1;
 
-// A cell near the surface.
+// What is known exactly of a cell at the surface.
 struct Seed {
   Vec3f nearest;  // on the surface
   bool inside;
@@ -36,7 +36,7 @@ class GridBuilder {
     mark_seeds();
     find_seeds();
     find_inside();
-    // Twice both ways: what the second pair still improves is a thousandth of the cells.
+    // Two sweeps in each direction: the second pair improves only a thousandth of the cells.
     for (int pass = 0; pass < 2; ++pass) {
       sweep(1);
       sweep(-1);
@@ -89,7 +89,8 @@ class GridBuilder {
         256);
   }
 
-  // Between seeds no row crosses the surface.
+  // Marks the cells inside the body. A row crosses the surface only at seeds, so the cells between two seeds
+  // are on the side of the first.
   void find_inside() {
     inside_.assign(cell_count(), false);
     std::size_t i = 0;
@@ -102,7 +103,8 @@ class GridBuilder {
     }
   }
 
-  // Takes over from the 13 neighbours that a raster scan in this direction has already passed.
+  // A raster scan. Every cell inside takes over the nearest point of the 13 neighbours that the scan has
+  // already passed.
   void sweep(int direction) {
     const auto [nx, ny, nz] = grid_.cells;
     const auto from = [&](int n) { return direction > 0 ? 1 : n - 2; };
@@ -166,7 +168,7 @@ class GridBuilder {
   const TriangleMesh& body_;
   const SurfaceTree& tree_;
   ClearanceGrid grid_;
-  std::vector<std::int32_t> nearest_;  // by cell: the seed whose point of the surface is nearest so far
+  std::vector<std::int32_t> nearest_;  // for each cell the seed whose surface point is nearest so far
   std::vector<std::size_t> seed_cells_;
   std::vector<Seed> seeds_;
   std::vector<bool> inside_;

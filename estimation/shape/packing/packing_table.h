@@ -1,5 +1,5 @@
-// A sphere packing as a table that spreadsheets and gravity codes read: CSV with a line for each sphere,
-// largest first, under comment lines that state what it holds.
+// A sphere packing as a table for spreadsheets and gravity codes. The file is CSV with one line for each
+// sphere, the largest first, below comment lines that state title and units.
 #pragma once
 
 #include <filesystem>
@@ -12,14 +12,14 @@ namespace astrolith {
 
 struct PackingTable {
   std::string title;         // first comment line
-  std::string length_unit;   // "m" or "km", of centres and radii
+  std::string length_unit;   // "m" or "km": the unit of centres and radii
   double body_volume = 0.0;  // length_unit^3
-  double density = 0.0;      // kg / m^3; 0 = no masses
+  double density = 0.0;      // kg / m^3, >= 0; 0 leaves the masses out
 };
 
-// Columns x, y, z, radius and, where a density is given, mass in kg: spheres share the mass of the whole body
-// by their volumes, so that the mascons (point masses at the centres) weigh what the body weighs. Throws
-// InputError when the file cannot be written.
+// Writes the columns x, y, z and radius, and the mass in kg if a density is given. The spheres share the mass
+// of the whole body in proportion to their volumes, so that the mascons (point masses at the centres) weigh
+// as much as the body. Throws InputError if the file cannot be written.
 void write_packing_table(const std::vector<Sphere>& spheres, const PackingTable& table,
                          const std::filesystem::path& file);
 

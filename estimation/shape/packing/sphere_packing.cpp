@@ -10,20 +10,20 @@
 namespace astrolith {
 namespace {
 
-// Of the grid, inside the body: a cell is then small beside the spheres that are wanted.
+// Cells of the grid inside the body: this many for each sphere, so that a cell is small beside a sphere.
 constexpr double kCellsPerSphere = 250.0;
 constexpr double kFewestCells = 50000.0;
 
 // Width, in steps of the grid, of the bins that places are sorted into by clearance.
 constexpr double kBinSteps = 0.25;
 
-// Climb from a cell's centre to the node nearby: the first step in steps of the grid, how it shrinks, and how
-// often.
-constexpr double kFirstClimb = 0.5;
+// The climb from a cell's centre to a Voronoi node: length of the first step, factor between steps, and
+// number of steps.
+constexpr double kFirstClimb = 0.5;  // steps of the grid
 constexpr double kClimbDecay = 0.7;
 constexpr int kClimbs = 10;
 
-// Nearest obstacle seen from a point.
+// The nearest obstacle of a point: the surface or a placed sphere.
 struct Obstacle {
   double distance;  // negative inside a placed sphere
   Vec3d away;       // unit direction that leads away from it
@@ -71,8 +71,8 @@ class Packer {
     }
   }
 
-  // Places spheres where clearances are still of the last bin, largest first; the other cells go where they
-  // belong by now.
+  // Places spheres at the cells of the last bin, the largest clearance first. A cell whose clearance has sunk
+  // since it was sorted goes to the bin that it belongs to now.
   void empty_last_bin() {
     const std::vector<std::uint32_t> cells = std::move(bins_.back());
     bins_.pop_back();
@@ -101,38 +101,39 @@ class Packer {
     return true;
   }
 
-  // To the node near p, whose clearance is about the one given: only placed spheres within twice of that can
-  // be nearest anywhere on the way.
+  // Climbs from p to a Voronoi node nearby and returns the sphere there. The node's clearance is about the
+  // one given, so only placed spheres within twice this distance can be the nearest obstacle on the way.
   Sphere climb(Vec3d p, double clearance) const {
     const double reach = 2.0 * (clearance + 2.0 * grid_.step);
-    std::vector<Sphere> near;
+    std::vector<Sphere> reached;
     for (const Sphere& s : spheres_) {
       const double limit = s.radius + reach;
-      if (squared_norm(s.center - p) < limit * limit) near.push_back(s);
+      if (squared_norm(s.center - p) < limit * limit) reached.push_back(s);
     }
-    Obstacle obstacle = nearest_obstacle(p, near);
+    Obstacle obstacle = nearest_obstacle(p, reached);
     Sphere best{p, obstacle.distance};
     double step = kFirstClimb * grid_.step;
     for (int i = 0; i < kClimbs && obstacle.distance > 0.0; ++i, step *= kClimbDecay) {
-      // Not out of the sphere of clearance, which holds no obstacle.
+      // The step stays within the ball of clearance, which holds no obstacle.
       p += obstacle.away * std::min(step, obstacle.distance);
-      obstacle = nearest_obstacle(p, near);
+      obstacle = nearest_obstacle(p, reached);
       if (obstacle.distance > best.radius) best = {p, obstacle.distance};
     }
     return best;
   }
 
-  Obstacle nearest_obstacle(const Vec3d& p, const std::vector<Sphere>& near) const {
+  Obstacle nearest_obstacle(const Vec3d& p, const std::vector<Sphere>& spheres) const {
     const ClosestPoint surface = tree_.closest(p);
     Obstacle nearest{surface.distance, normalized(p - surface.point)};
-    for (const Sphere& s : near) {
+    for (const Sphere& s : spheres) {
       const double distance = norm(p - s.center) - s.radius;
       if (distance < nearest.distance) nearest = {distance, normalized(p - s.center)};
     }
     return nearest;
   }
 
-  // No clearance left exceeds the last bin's, so a sphere is felt no farther than that from its surface.
+  // Lowers the clearances around a new sphere. No clearance exceeds the last bin's, so the sphere changes
+  // nothing farther than this from its surface.
   void lower_grid(const Sphere& sphere) {
     const double reach = sphere.radius + bin_width_ * static_cast<double>(bins_.size() + 1);
     const Vec3d center = (sphere.center - grid_.origin) * (1.0 / grid_.step);

@@ -1,10 +1,11 @@
-// Greedy polydisperse packing of a closed body with spheres that lie inside and do not overlap, largest first
-// (thesis section 4.3.2, algorithm 3; Weller and Zachmann, "Protosphere", 2010).
+// Greedy polydisperse packing of a closed body: spheres of different sizes that lie inside and do not
+// overlap, the largest first (thesis section 4.3.2, algorithm 3; Weller and Zachmann, "Protosphere", 2010).
 //
-// Where the paper lets random prototypes climb to the Voronoi nodes of the surface and the spheres placed so
-// far, a grid holds the clearance of every place (estimation/shape/packing/clearance_grid.h). The place of
-// largest clearance climbs to its node by exact distances, away from the nearest obstacle with steps that
-// grow shorter; the sphere there is placed and the grid lowered around it. Nothing is random.
+// In the paper random prototypes climb to the Voronoi nodes of the surface and the spheres placed so far.
+// Here nothing is random: a grid holds the clearance of every place
+// (estimation/shape/packing/clearance_grid.h). The place of largest clearance climbs to its node, away from
+// the nearest obstacle, by exact distances and with steps that grow shorter. The sphere is placed there, and
+// the clearance around it is lowered.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +20,19 @@ namespace astrolith {
 
 struct PackingOptions {
   int max_spheres = 200;          // > 0
-  double smallest_radius = 1e-4;  // as a fraction of the bounding-box diagonal, > 0
+  double smallest_radius = 1e-4;  // fraction of the bounding-box diagonal, > 0
 };
 
 struct Packing {
   std::vector<Sphere> spheres;  // largest first
-  double filling_rate = 0.0;    // volume of the spheres over that of the body
-  bool interrupted = false;
+  double filling_rate = 0.0;    // volume of the spheres over the volume of the body
+  bool interrupted = false;     // progress asked to stop; the spheres are the ones placed so far
 };
 
-// `body` is closed with positive volume and `tree` was made of it. The result does not depend on the number
-// of threads. Fewer than max_spheres come back when no place of smallest_radius is left, or none that the
-// grid can see: its cells are about a seventh of the mean diameter wide, for bodies in very large boxes
-// wider.
+// `body` is closed with positive volume, and `tree` was made of it. The result does not depend on the number
+// of threads. Fewer than max_spheres come back if no place of smallest_radius is left, or none that the grid
+// resolves. Its cells are about a seventh of the spheres' mean diameter wide, and wider if the body fills
+// little of its bounding box.
 Packing pack_spheres(const TriangleMesh& body, const SurfaceTree& tree, const PackingOptions& options,
                      const Progress& progress = {});
 

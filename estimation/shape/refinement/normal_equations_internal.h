@@ -1,8 +1,9 @@
-// The normal equations of one step of the refinement: H = J^T J and g = J^T r over all residual blocks, with
-// H a sparse matrix of 4 x 4 blocks (one row of them a sphere) and one row more for the sharpness.
+// The normal equations of one step of the refinement: H = J^T J and g = J^T r, summed over all residual
+// blocks. H is a sparse matrix of 4 x 4 blocks with one row of blocks for each sphere, and one more row for
+// the sharpness.
 //
-// Every row is summed by one thread in the order of the blocks, so that the sums are the same for every
-// number of threads.
+// One thread sums all of a row, in the order of the residual blocks. The sums are therefore the same for
+// every number of threads.
 #pragma once
 
 #include <Eigen/CholmodSupport>
@@ -15,32 +16,37 @@ namespace astrolith {
 
 class NormalEquations {
  public:
-  // Finds which spheres meet in a block. `residuals` must outlive this.
+  // Finds which spheres meet in a residual block, and with them the pattern of H. `residuals` must outlive
+  // this.
   NormalEquations(const ResidualBlocks& residuals, std::size_t spheres);
 
-  // Sums the blocks as they were last evaluated, with derivatives.
+  // Sums the blocks as they were last evaluated. The evaluation must have included the derivatives.
   void assemble();
 
-  // (H + damping D) step = -g with D the diagonal of H; false when that is not positive definite.
+  // Solves (H + damping D) step = -g, where D is the diagonal of H. Returns false where the matrix is not
+  // positive definite.
   bool solve(double damping, Eigen::VectorXd& step);
 
-  // By how much the linear model lowers the cost with this step.
+  // How much the linear model lowers the cost with this step.
   double predicted_decrease(const Eigen::VectorXd& step) const;
 
  private:
+  class SphereRow;
   struct Place {
     std::int32_t block;
     std::int32_t position;  // in the block's list of neighbours
   };
 
-  void find_pattern();
+  void find_places();
+  void find_partners();
+  void make_pattern();
   void assemble_row(std::size_t sphere);
-  void add_center_condition(std::size_t sphere, Eigen::Ref<Eigen::MatrixXd> row);
-  void store_row(std::size_t sphere, const Eigen::MatrixXd& row);
+  void assemble_sharpness();
+  void store(std::size_t sphere, const SphereRow& row);
 
   const ResidualBlocks& residuals_;
   std::size_t spheres_;
-  std::vector<std::vector<Place>> places_;  // of every sphere, in the order of blocks
+  std::vector<std::vector<Place>> places_;  // blocks of every sphere, in the order of blocks
   std::vector<std::vector<std::int32_t>>
       partners_;                         // spheres j >= i that meet sphere i in a block, ascending
   Eigen::SparseMatrix<double> hessian_;  // lower triangle; whole blocks on the diagonal

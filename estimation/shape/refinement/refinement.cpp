@@ -9,17 +9,19 @@
 namespace astrolith {
 namespace {
 
-// A round without any step that lowers the cost ends the refinement only at this damping.
+// A round without a step that lowers the cost ends the refinement only above this damping.
 constexpr double kLargestDamping = 1e6;
 constexpr double kSmallestDamping = 1e-8;
 
-// One step moves a centre by at most this part of its sphere's radius, and changes a log radius no more.
+// One step moves a centre by at most this fraction of its sphere's radius, and changes a log radius by at
+// most this much.
 constexpr double kLongestStep = 0.3;
 
-// Steps with less than this part of the decrease that the linear model predicts are not taken.
+// A step is taken only if it lowers the cost by more than this fraction of what the linear model predicts.
 constexpr double kWorthwhile = 1e-3;
 
-// Levenberg and Marquardt with Nielsen's rule for the damping, over rounds of fixed lists of neighbours.
+// Levenberg-Marquardt with Nielsen's rule for the damping (H. B. Nielsen, "Damping parameter in Marquardt's
+// method", 1999). The lists of neighbours are fixed during a round of some iterations.
 class Refinement {
  public:
   Refinement(const MetaballModel& start, const FitPoints& points, const RefinementOptions& options,
@@ -41,7 +43,7 @@ class Refinement {
   }
 
  private:
-  // Some steps on the same lists; true when one of them lowered the cost.
+  // Takes the steps of one round. Returns true if one of them lowered the cost.
   bool round(ResidualBlocks& residuals, bool first) {
     residuals.evaluate(true);
     round_start_ = result_.final_cost = residuals.cost();
@@ -55,7 +57,7 @@ class Refinement {
       stale = step(residuals, equations);
       moved = moved || stale;
       ++result_.iterations;
-      // The derivatives after the last step of a round are those of the next round's lists.
+      // After the last step of a round the derivatives are not needed: the next round makes new lists.
       if (stale && result_.iterations < last) residuals.evaluate(true);
     }
     return moved;
@@ -68,7 +70,7 @@ class Refinement {
     return !result_.interrupted;
   }
 
-  // True when the step was taken.
+  // Returns true if the step was taken.
   bool step(ResidualBlocks& residuals, NormalEquations& equations) {
     Eigen::VectorXd change;
     if (equations.solve(damping_, change)) {
@@ -92,8 +94,8 @@ class Refinement {
     return false;
   }
 
-  // Shortens the steps of single spheres. In necks and between lobes the residuals are far from linear, and a
-  // few spheres that want to go far would otherwise shrink the steps of all.
+  // Shortens the steps of single spheres. In necks and between lobes the residuals are far from linear. There
+  // a few spheres with long steps would otherwise raise the damping, and so shorten the steps of all spheres.
   void keep_within_reach(Eigen::VectorXd& change) const {
     for (std::size_t i = 0; i < parameters_.spheres.size(); ++i) {
       auto step = change.segment<4>(static_cast<Eigen::Index>(4 * i));
@@ -108,7 +110,7 @@ class Refinement {
   const Progress& progress_;
   RefinementParameters parameters_;
   RefinementSummary result_;
-  double damping_ = 1.0;  // at first: far from the surface the residuals are far from linear
+  double damping_ = 1.0;  // large at the start, where the residuals are far from linear
   double growth_ = 2.0;
   double round_start_ = 0.0;
 };

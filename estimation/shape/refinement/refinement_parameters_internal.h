@@ -1,4 +1,4 @@
-// A model's parameters while it is refined.
+// The parameters of a model while it is refined.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +10,10 @@
 
 namespace astrolith {
 
-// The model as parameters: centre and log radius a sphere, and t for the sharpness, which
-//   log kappa = middle + half tanh(t / half)
-// keeps between limits: a lone sphere has the same surface at every kappa, and nothing else would hold it.
+// The parameters are the centre and the log radius of each sphere, and t for the sharpness kappa:
+//   log kappa = middle + half tanh(t / half).
+// This keeps kappa between limits. A lone sphere has the same surface at every kappa, so its residuals alone
+// would leave kappa undetermined.
 struct RefinementParameters {
   explicit RefinementParameters(const MetaballModel& model)
       : kernel(model.kernel),
@@ -33,7 +34,7 @@ struct RefinementParameters {
     }
     return m;
   }
-  // Adds a step: four numbers a sphere, then one for the sharpness.
+  // Adds a step: four numbers for each sphere, then one for the sharpness.
   void add(const double* step) {
     for (SphereDerivatives& s : spheres) {
       for (double& value : s) value += *step++;
@@ -43,14 +44,14 @@ struct RefinementParameters {
   // d log kappa / dt
   double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / half), 2); }
 
-  // Limits of the sharpness.
+  // Limits of the sharpness: kappa, or the tension of the other kernels.
   static constexpr double kSoftest = 0.3;
   static double sharpest(Kernel kernel) { return kernel == Kernel::kGaussian ? 30.0 : 9.9; }
 
   Kernel kernel;
   double middle, half;
   std::vector<SphereDerivatives> spheres;
-  std::vector<bool> subtractive;  // by sphere; fixed
+  std::vector<bool> subtractive;  // (#spheres) does not change
   double sharpness = 0.0;         // t
 };
 

@@ -3,36 +3,38 @@
 #include <iterator>
 
 #include "estimation/shape/model/model_evaluation_internal.h"
+#include "estimation/shape/model/model_levels.h"
 #include "estimation/shape/refinement/residual_blocks_internal.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
 
-// Points a residual block: larger blocks make the solver's sums longer and fewer, but gather more spheres
-// that reach only some of the points.
+// The number of points in a residual block, at most. Larger blocks make the solver's sums longer and fewer,
+// but they gather more spheres that reach only some of the points.
 constexpr std::size_t kPointsPerBlock = 24;
 
-// Derivatives are taken by the spheres that hold this share of their kind's sum at a point of the block when
-// a round starts; the residuals themselves see every sphere in reach. Smooth bodies are made of many wide
-// spheres with small shares each: with 1e-3 the steps there miss a good part of the slope.
+// Derivatives are taken by the spheres that hold at least this share of their kind's sum at a point of the
+// block when a round starts. The residuals themselves include every sphere whose support reaches the block.
+// Smooth bodies consist of many wide spheres with a small share each: with 1e-3 the steps miss a good part of
+// the slope.
 constexpr double kSmallestShare = 1e-4;
 
-// Containment points are left out of a round when their condition holds by more than this level.
+// A containment point is left out of a round if its condition holds by more than this, as a level.
 constexpr double kIdleLevel = 0.05;
 
-// Centres are asked to lie this part of their radius inside the target.
+// A centre must lie this far inside the target, as a fraction of its sphere's radius.
 constexpr double kCenterDepth = 0.05;
 
-// phi and dphi/ds of the pseudo-Huber loss. phi^2 = 2 s^2 / (1 + t), t = sqrt(1 + s^2 / c^2), which has no
-// cancellation near zero.
+// phi and dphi/ds of the pseudo-Huber loss. The form phi^2 = 2 s^2 / (1 + t) with t = sqrt(1 + s^2 / c^2) has
+// no cancellation near zero.
 ScaledResidual pseudo_huber(double s, double c) {
   const double t = std::sqrt(1.0 + s * s / (c * c));
   const double shrink = std::sqrt(2.0 / (1.0 + t));
   return {s * shrink, 1.0 / (shrink * t)};
 }
 
-// Those of `spheres` that hold kSmallestShare of their kind's sum at one of the points.
+// The spheres of the list that hold at least kSmallestShare of their kind's sum at one of the points.
 std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const ModelEvaluation& evaluation,
                                              const std::vector<Vec3d>& points,
                                              const std::vector<std::int32_t>& spheres) {
@@ -55,7 +57,8 @@ CenterCondition center_condition(const SurfaceTree& target, double weight, const
   const double depth = kCenterDepth * sphere.radius;
   const double lack = depth - sign * closest.distance;
   if (!(lack > 0.0)) return {};
-  // The signed distance's gradient points inwards, from the nearest point or towards it.
+  // The gradient of the signed distance points inwards: away from the nearest surface point if the centre is
+  // inside, and towards it if the centre is outside.
   const Vec3d inward =
       closest.distance > 0.0 ? (sphere.center - closest.point) * (sign / closest.distance) : -closest.normal;
   return {weight * lack, {-weight * inward.x, -weight * inward.y, -weight * inward.z, weight * depth}};
@@ -106,12 +109,11 @@ void ResidualBlocks::add_blocks(const std::vector<Vec3d>& points, PointCondition
     ResidualBlock block{condition, {}, {}, {}, {}, {}};
     for (const std::int32_t i : cluster.points) block.points.push_back(points[static_cast<std::size_t>(i)]);
     blocks_.push_back(std::move(block));
-    reach_.push_back(cluster);
+    clusters_.push_back(cluster);
   }
 }
 
-// Points whose condition nearly fails, or fails: the others would only fill the normal equations with
-// zeros.
+// The points whose condition fails or nearly fails. All others would only add zeros to the normal equations.
 std::vector<Vec3d> ResidualBlocks::active(const std::vector<Vec3d>& points, PointCondition condition) const {
   const std::vector<double> levels = model_levels(parameters_.model(), points);
   const double sign = condition == PointCondition::inside ? -1.0 : 1.0;
@@ -128,19 +130,20 @@ void ResidualBlocks::find_neighbours() {
   const double reach = support_radii(model);
   parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
     ResidualBlock& block = blocks_[static_cast<std::size_t>(b)];
-    block.neighbours = spheres_with_share(model, evaluation, block.points,
-                                          spheres_within(model, reach_[static_cast<std::size_t>(b)], reach));
+    block.neighbours =
+        spheres_with_share(model, evaluation, block.points,
+                           spheres_within(model, clusters_[static_cast<std::size_t>(b)], reach));
     block.residuals.resize(block.points.size());
     block.by_sharpness.resize(block.points.size());
     block.by_sphere.resize(block.points.size() * block.neighbours.size());
   });
 }
 
-// Neighbours of the block first, then the other spheres whose support reaches it now.
+// The neighbours of the block, then the other spheres whose support reaches the block now.
 std::vector<std::int32_t> ResidualBlocks::contributors(std::size_t b, const MetaballModel& model,
                                                        double cutoff) const {
   std::vector<std::int32_t> all = blocks_[b].neighbours;
-  const std::vector<std::int32_t> within = spheres_within(model, reach_[b], cutoff);
+  const std::vector<std::int32_t> within = spheres_within(model, clusters_[b], cutoff);
   std::set_difference(within.begin(), within.end(), blocks_[b].neighbours.begin(),
                       blocks_[b].neighbours.end(), std::back_inserter(all));
   return all;

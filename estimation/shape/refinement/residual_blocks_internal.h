@@ -1,4 +1,5 @@
-// The residuals of refinement.h and their derivatives, in blocks of near points that share their spheres.
+// The residuals of refinement.h and their derivatives, in blocks. The points of a block lie close together
+// and share one list of spheres.
 #pragma once
 
 #include <cstdint>
@@ -14,40 +15,40 @@ namespace astrolith {
 
 enum class PointCondition { on_surface, inside, outside };
 
-// One group of near points: its residuals and their derivatives by the spheres that reach it.
+// A group of points with one condition, its residuals, and their derivatives by the spheres that reach it.
 struct ResidualBlock {
   PointCondition condition;
   std::vector<Vec3d> points;
-  std::vector<std::int32_t> neighbours;      // spheres with derivatives, ascending
+  std::vector<std::int32_t> neighbours;      // spheres by which derivatives are taken, ascending
   std::vector<double> residuals;             // (#points)
   std::vector<SphereDerivatives> by_sphere;  // (#points x #neighbours)
   std::vector<double> by_sharpness;          // (#points)
 };
 
-// weight * max(0, r / 20 - d(c)) of one sphere, and its derivatives.
+// The residual weight * max(0, r / 20 - d(c)) of one sphere, and its derivatives.
 struct CenterCondition {
   double residual = 0.0;
   SphereDerivatives derivatives{};
 };
 
-// A residual and what its derivative by the model's value is multiplied with.
+// A residual as a function of the model's distance or level.
 struct ScaledResidual {
   double value;
-  double derivative;
+  double derivative;  // by the distance or the level
 };
 
-// All blocks of one round: their lists of spheres are made for the parameters at its start.
+// All blocks of one round. Their lists of spheres are made for the parameters at the start of the round.
 class ResidualBlocks {
  public:
   // `options` and `parameters` must outlive the blocks.
   ResidualBlocks(const FitPoints& points, const RefinementOptions& options,
                  const RefinementParameters& parameters);
 
-  // Every block at the present parameters, in parallel.
+  // Evaluates every block at the present parameters, in parallel.
   void evaluate(bool with_derivatives);
 
   const std::vector<ResidualBlock>& blocks() const { return blocks_; }
-  // One a sphere; none where centres may be anywhere.
+  // One condition for each sphere, or none if the options let centres leave the target.
   const std::vector<CenterCondition>& center_conditions() const { return center_conditions_; }
   // Half the sum of squares of all residuals.
   double cost() const;
@@ -71,7 +72,7 @@ class ResidualBlocks {
   const RefinementOptions& options_;
   const RefinementParameters& parameters_;
   std::vector<ResidualBlock> blocks_;
-  std::vector<PointCluster> reach_;
+  std::vector<PointCluster> clusters_;  // one for each block
   std::vector<CenterCondition> center_conditions_;
 };
 

@@ -12,43 +12,43 @@
 namespace astrolith {
 namespace {
 
-// As many as SurfaceTree takes the union of.
-constexpr std::size_t kMaxParts = 64;
+// SurfaceTree takes the union of this many components at most.
+constexpr std::size_t kMaxComponents = 64;
 
-struct Part {
-  TriangleMesh mesh;  // all vertices of the whole, its own triangles
-  std::vector<Vec3d> vertices;
+struct Component {
+  TriangleMesh mesh;            // all vertices of the whole mesh, and the component's own triangles
+  std::vector<Vec3d> vertices;  // the corners of its triangles, with repetitions
 };
 
-// Empty where there are too many.
-std::vector<Part> separate(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
+// Returns an empty list if there are too many components.
+std::vector<Component> separate(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
   const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
-  if (count > kMaxParts) return {};
-  std::vector<Part> parts(count);
-  for (Part& part : parts) part.mesh.vertices = mesh.vertices;
+  if (count > kMaxComponents) return {};
+  std::vector<Component> components(count);
+  for (Component& one : components) one.mesh.vertices = mesh.vertices;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    Part& part = parts[component[t]];
-    part.mesh.triangles.push_back(mesh.triangles[t]);
-    for (const std::uint32_t v : mesh.triangles[t]) part.vertices.push_back(mesh.vertices[v]);
+    Component& own = components[component[t]];
+    own.mesh.triangles.push_back(mesh.triangles[t]);
+    for (const std::uint32_t v : mesh.triangles[t]) own.vertices.push_back(mesh.vertices[v]);
   }
-  return parts;
+  return components;
 }
 
-bool reaches_into(const Part& part, const SurfaceTree& other) {
-  return std::any_of(part.vertices.begin(), part.vertices.end(),
+bool reaches_into(const Component& component, const SurfaceTree& other) {
+  return std::any_of(component.vertices.begin(), component.vertices.end(),
                      [&](const Vec3d& p) { return other.signed_distance(p) > 0.0; });
 }
 
-// (#parts) which part of the union each belongs to, numbered from 0.
-std::vector<std::uint32_t> groups_of_union(const std::vector<Part>& parts) {
-  std::vector<std::uint32_t> group(parts.size());
+// (#components) the component of the union that each component of the mesh belongs to, numbered from 0.
+std::vector<std::uint32_t> groups_of_union(const std::vector<Component>& components) {
+  std::vector<std::uint32_t> group(components.size());
   std::iota(group.begin(), group.end(), 0u);
-  for (std::size_t b = 0; b < parts.size(); ++b) {
-    const SurfaceTree tree(parts[b].mesh);
-    for (std::size_t a = 0; a < parts.size(); ++a) {
-      // Copies: std::replace would see the group change under its references.
+  for (std::size_t b = 0; b < components.size(); ++b) {
+    const SurfaceTree tree(components[b].mesh);
+    for (std::size_t a = 0; a < components.size(); ++a) {
+      // std::replace takes references, so it needs copies: `group` changes while it runs.
       const std::uint32_t from = group[a], to = group[b];
-      if (from != to && reaches_into(parts[a], tree)) std::replace(group.begin(), group.end(), from, to);
+      if (from != to && reaches_into(components[a], tree)) std::replace(group.begin(), group.end(), from, to);
     }
   }
   std::vector<std::uint32_t> names = group;
@@ -85,14 +85,16 @@ TriangleMesh without_buried(const TriangleMesh& mesh, const SurfaceTree& tree, d
 }  // namespace
 
 OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, double depth) {
-  std::vector<std::uint32_t> part_of_triangle = triangle_components(mesh);
-  const std::vector<Part> parts = separate(mesh, part_of_triangle);
-  const bool solid =
-      std::all_of(parts.begin(), parts.end(), [](const Part& part) { return volume(part.mesh) > 0.0; });
-  if (parts.size() < 2 || !solid) return {mesh, count_of(part_of_triangle), std::move(part_of_triangle)};
-  const std::vector<std::uint32_t> group = groups_of_union(parts);
-  for (std::uint32_t& part : part_of_triangle) part = group[part];
-  return {without_buried(mesh, tree, depth), count_of(group), std::move(part_of_triangle)};
+  std::vector<std::uint32_t> component_of_triangle = triangle_components(mesh);
+  const std::vector<Component> components = separate(mesh, component_of_triangle);
+  const bool solid = std::all_of(components.begin(), components.end(),
+                                 [](const Component& one) { return volume(one.mesh) > 0.0; });
+  if (components.size() < 2 || !solid) {
+    return {mesh, count_of(component_of_triangle), std::move(component_of_triangle)};
+  }
+  const std::vector<std::uint32_t> group = groups_of_union(components);
+  for (std::uint32_t& component : component_of_triangle) component = group[component];
+  return {without_buried(mesh, tree, depth), count_of(group), std::move(component_of_triangle)};
 }
 
 }  // namespace astrolith

@@ -1,5 +1,5 @@
-// The surface of the union where a mesh's parts reach into one another, as the lobes of a contact binary do:
-// walls buried in another part bound nothing, and no fit can follow them.
+// The outer surface of a mesh whose components overlap, as the lobes of a contact binary do: the surface of
+// their union. Walls that are buried in another component bound nothing, and no fit can follow them.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 namespace astrolith {
 
 struct OuterSurface {
-  TriangleMesh mesh;       // without the buried triangles; open along the seam where parts meet
-  std::int64_t parts = 1;  // of the union
-  // (#F of the whole mesh) which of them, 0 .. parts - 1.
-  std::vector<std::uint32_t> part_of_triangle;
+  TriangleMesh mesh;            // without the buried triangles; open along the seam where components meet
+  std::int64_t components = 1;  // number of components of the union
+  // (#F of the whole mesh) the union's component that each triangle belongs to, 0 .. components - 1
+  std::vector<std::uint32_t> component_of_triangle;
 };
 
-// `mesh` is closed and oriented, `tree` was made of it. Triangles whose centroid lies deeper than `depth`
-// inside the union are buried. Meshes of one part, with cavities or of more than 64 parts come back as they
-// are.
+// `mesh` is closed and oriented, and `tree` was made of it. A triangle is buried if its centroid lies deeper
+// than `depth` inside the union; `depth` is in the mesh's unit. The mesh comes back unchanged if it has one
+// component, more than 64 components, or cavities.
 OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, double depth);
 
 }  // namespace astrolith

@@ -1,9 +1,9 @@
-// The parts of a fit's surface beside those of its target: which the target has not, and which are missing.
+// Compares the connected components of a fit's surface with those of its target.
 //
-// A closed piece of the fit's mesh belongs to the part of the target that is nearest to most of its vertices,
-// walls of bodies and of cavities apart. Of the pieces that belong to one part the largest is that part, and
-// the others are strays: islands in the air and cavities inside. A part without a piece was lost, or joined
-// to another.
+// A component of the fit belongs to the target's component that is nearest to most of its vertices, provided
+// that both bound a body or both bound a cavity. The largest component that belongs to one of the target's is
+// its counterpart. All others are strays: islands outside the body and cavities inside it. A component of the
+// target without a counterpart is missing: the fit lost it, or joined it to another.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@
 
 namespace astrolith {
 
-struct StrayPart {
-  bool cavity;    // the fit's surface looks inwards there
-  Vec3d center;   // of its box
-  double radius;  // of the ball about center that holds its vertices
+struct StrayComponent {
+  bool cavity;    // a wall whose normals point inwards; otherwise an island
+  Vec3d center;   // centre of its bounding box
+  double radius;  // radius of the ball about `center` that holds its vertices
 };
 
-struct PartsComparison {
-  std::vector<StrayPart> strays;
-  std::int64_t missing = 0;
+struct ComponentComparison {
+  std::vector<StrayComponent> strays;  // largest volume first
+  std::int64_t missing = 0;            // number of the target's components without a counterpart
 
   std::int64_t wrong() const { return missing + static_cast<std::int64_t>(strays.size()); }
 };
 
 // `fit` is closed and oriented, in the target's frame.
-PartsComparison compare_parts(const TargetBody& target, const TriangleMesh& fit);
+ComponentComparison compare_components(const TargetBody& target, const TriangleMesh& fit);
 
 }  // namespace astrolith

@@ -20,17 +20,18 @@
 namespace astrolith {
 namespace {
 
-// A body with less than this share of its diagonal's cube is a sheet or a thread: no sphere fits inside.
+// A body with a volume below this share of its diagonal's cube is a sheet or a thread: no sphere fits inside.
 constexpr double kSmallestVolume = 1e-6;
 
-// Faces deeper than this part of the diagonal inside another part of the body are no surface of it.
+// A face deeper than this inside another component is buried (fraction of the diagonal).
 constexpr double kBuriedDepth = 1e-5;
 
-// Places just under the surface that are asked whether it goes around them once: as many as this number of
-// triangles summed over allows, within these limits.
+// The winding number is checked at places just under the surface. Each place costs a sum over all triangles,
+// so the number of places times the number of triangles is bounded, within the limits below.
 constexpr std::int64_t kWindingTriangles = 20000000, kMostWindings = 200, kFewestWindings = 20;
-constexpr double kJustUnder = 1e-5;      // fraction of the diagonal
-constexpr double kWrongWindings = 0.02;  // share of the places that may lie beyond an edge or in a thin wall
+constexpr double kJustUnder = 1e-5;  // fraction of the diagonal
+// A place may lie beyond a sharp edge or a thin wall, so this share of the places may have a wrong number.
+constexpr double kWrongWindings = 0.02;
 
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
@@ -69,7 +70,7 @@ void turn_inside_out(TriangleMesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-// Checks what cannot be mended, and orients the faces.
+// Throws InputError for defects that cannot be mended, and orients the faces outwards.
 void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vector<std::string>& remarks) {
   MeshTopology topology = analyze_topology(mesh);
   if (!topology.closed) {
@@ -93,7 +94,8 @@ void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vecto
   }
 }
 
-// Share of the surface just under which the body is not, or is twice.
+// The share of the surface just under which the winding number is not 1: places that lie outside the body, or
+// inside it twice.
 double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& surface) {
   const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
   const std::int64_t count = std::clamp(kWindingTriangles / triangles, kFewestWindings, kMostWindings);
@@ -143,7 +145,7 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
   SurfaceTree tree(mesh);
   OuterSurface outer = outer_surface(mesh, tree, kBuriedDepth);
   if (outer.mesh.triangles.size() < mesh.triangles.size()) {
-    remarks.push_back("parts overlap; their union is fitted, walls inside it are left out (" +
+    remarks.push_back("components overlap; their union is fitted, walls inside it are left out (" +
                       std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
   }
   require_no_crossing(mesh, outer.mesh, name);
@@ -153,8 +155,8 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
           std::move(outer.mesh),
           area,
           body_volume,
-          outer.parts,
-          std::move(outer.part_of_triangle),
+          outer.components,
+          std::move(outer.component_of_triangle),
           box.center(),
           diagonal,
           std::move(remarks)};
@@ -202,7 +204,8 @@ void add_containment_points(const TargetBody& target, double depth, int count, s
 
 void add_shell_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
                       FitPoints& points) {
-  // Where the surface bends back the offset point lies nearer than this part of the distance, or across.
+  // Where the surface bends back, an offset point may lie too near to the surface or on its other side.
+  // Points nearer than this share of the distance are left out.
   constexpr double kSurelyAway = 0.7;
   const SurfaceSamples samples = sample_surface(target.surface, count, seed, SampleNormals::interpolated);
   std::vector<Vec3d> inner(samples.points.size()), outer(samples.points.size());

@@ -21,7 +21,7 @@ FractalLayer layer_of(Noise noise, double amplitude, double frequency) {
   return layer;
 }
 
-// Of all noises, of none, and of several layers.
+// Candidates with each of the noises alone, with no layer, and with several layers.
 std::vector<std::vector<FractalLayer>> swarm() {
   std::vector<std::vector<FractalLayer>> candidates{{}};
   for (int noise = 0; noise < 5; ++noise) {
@@ -32,14 +32,14 @@ std::vector<std::vector<FractalLayer>> swarm() {
   return candidates;
 }
 
-void expect_the_scores_of_the_cpu(CandidateEvaluator& machine) {
+void expect_the_scores_of_the_cpu(CandidateEvaluator& evaluator) {
   const TargetBody target = with_details({layer_of(Noise::kSimplex, 0.03, 4.0)}, 50);
   FitnessOptions options;
   options.samples = 500;
   options.lines = 300;
   const DetailFitness fitness(target, in_target_frame(target, three_spheres()), options);
   const auto candidates = swarm();
-  const std::vector<DetailScore> scores = fitness.scores(candidates, machine);
+  const std::vector<DetailScore> scores = fitness.scores(candidates, evaluator);
   ASSERT_EQ(scores.size(), candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const DetailScore one = fitness.score(candidates[i]);

@@ -34,7 +34,7 @@ FractalLayer hills(Noise noise, double amplitude, double frequency) {
   return layer;
 }
 
-// Lengths are of a body about 4.2 long.
+// The body is about 4.2 long.
 TEST(DetailsFit, FindsAmplitudeAndFrequencyAgain) {
   for (const Noise noise : {Noise::kPerlin, Noise::kSimplex}) {
     const FractalLayer truth = hills(noise, 0.05, 3.0);
@@ -58,7 +58,7 @@ TEST(DetailsFit, ASmoothBodyGetsNoDetailsThatShow) {
   EXPECT_LT(amplitude, 1e-3);
 }
 
-TEST(DetailsFit, SameLayersByAnotherMachine) {
+TEST(DetailsFit, SameLayersByAnotherBackend) {
   const TargetBody target = with_details({hills(Noise::kSimplex, 0.03, 4.0)}, 40);
   const MetaballBody base = in_target_frame(target, three_spheres());
   for (const auto optimizer : {OptimizerAlgorithm::pso, OptimizerAlgorithm::cmaes}) {

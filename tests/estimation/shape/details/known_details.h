@@ -13,7 +13,7 @@
 
 namespace astrolith::testing {
 
-// About 4.2 long.
+// A body about 4.2 long.
 inline MetaballBody three_spheres() {
   MetaballBody body;
   body.blend_exponent = 2.5;
@@ -21,7 +21,7 @@ inline MetaballBody three_spheres() {
   return body;
 }
 
-// The mesh of three_spheres with layers, as a target; the seed is of the noise.
+// The mesh of three_spheres with layers, as a target. The seed is that of the noise.
 inline TargetBody with_details(const std::vector<FractalLayer>& layers, int resolution,
                                std::uint64_t seed = 77) {
   Recipe recipe;
@@ -34,11 +34,13 @@ inline TargetBody with_details(const std::vector<FractalLayer>& layers, int reso
   return prepare_target(std::move(collector.mesh), "body with details");
 }
 
-// What of layers is unique (sums of different noises and octaves can be the same to the eye): the root mean
-// square height, and the root mean square slope over that, by 2 pi.
+// Two measures of layers that can be recovered from a surface. Parameters cannot: sums of different noises
+// and octaves may look alike.
 struct MeasuredLayers {
-  double height = 0.0, frequency = 0.0;
+  double height = 0.0;     // root mean square height
+  double frequency = 0.0;  // root mean square slope over 2 pi times the height
 };
+
 inline MeasuredLayers measured(const std::vector<FractalLayer>& layers) {
   const Box domain{{-3, -3, -3}, {3, 3, 3}};
   const int n = 20000;

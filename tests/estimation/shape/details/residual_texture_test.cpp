@@ -11,7 +11,7 @@ namespace {
 using testing::three_spheres;
 using testing::with_details;
 
-// Of all lobes, weighted by their variance; cycles per pixel.
+// The mean frequency of all lobes, weighted by their variance, in cycles per pixel.
 double mean_frequency(const GaborLayer& layer) {
   double sum = 0.0, variance = 0.0;
   for (const GaborLobe& lobe : layer.lobes) {

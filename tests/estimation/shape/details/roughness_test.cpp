@@ -11,7 +11,7 @@ namespace astrolith {
 namespace {
 
 TEST(Roughness, OfAParabolaGrowsWithTheSquareOfTheLag) {
-  // t = x^2 / 2: every second difference is r^2.
+  // Every second difference of t = x^2 / 2 is r^2.
   std::vector<double> heights;
   std::vector<std::vector<HeightTriple>> triples(2);
   for (const double r : {0.1, 0.3}) {
@@ -26,7 +26,7 @@ TEST(Roughness, OfAParabolaGrowsWithTheSquareOfTheLag) {
   EXPECT_NEAR(nu[1], 0.09, 1e-12);
 }
 
-// Fractal sums as synthesis makes them, against the closed form.
+// Compares fractal sums as synthesis makes them with the closed form.
 TEST(RoughnessModel, AgreesWithSynthesisedNoise) {
   const RoughnessModel model;
   const std::vector<double> lags{0.02, 0.05, 0.1};
@@ -72,7 +72,7 @@ TEST(RoughnessModel, ANoiseIsFoundAgainFromItsRoughness) {
       const PlainNoise truth{which, 1.0, 20.0, 3, gain};
       std::vector<double> wanted = model.of(truth, lags);
       for (double& v : wanted) v *= 2e-3;
-      // The fewest octaves that do come first: a gain of 0 is one octave.
+      // A gain of 0 leaves one octave.
       const std::vector<PlainNoise> good = noises_as_rough_as(wanted, lags, which, ranges, model);
       ASSERT_FALSE(good.empty());
       const auto same = std::find_if(good.begin(), good.end(),

@@ -1,14 +1,14 @@
 #include "estimation/shape/fit/component_repair.h"
 
 #include "estimation/shape/fit/fit_check.h"
-#include "estimation/shape/model/model_evaluation_internal.h"
+#include "estimation/shape/model/model_levels.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
 
-// Spheres all around just under a ball's surface (radius 0.3): it is hollow within.
+// Metaballs just under the surface of a ball with radius 0.3. The model has a cavity in the middle.
 MetaballModel hollow_ball() {
   MetaballModel model{3.0, {}};
   for (const Vec3d& p : testing::icosphere(1, 0.22).vertices) model.spheres.push_back({p, 0.1});
@@ -17,40 +17,40 @@ MetaballModel hollow_ball() {
 
 TargetBody ball() { return prepare_target(testing::icosphere(3, 0.5 / std::sqrt(3.0)), "ball"); }
 
-PartsComparison parts_of(const TargetBody& target, const MetaballModel& model) {
-  return compare_parts(target, check_fit(target, metaball_body(model), 64, 1000, 1).mesh);
+ComponentComparison components_of(const TargetBody& target, const MetaballModel& model) {
+  return compare_components(target, check_fit(target, metaball_body(model), 64, 1000, 1).mesh);
 }
 
-TEST(PartRepair, CavitiesAreFilledAndTheCountStays) {
+TEST(ComponentRepair, CavitiesAreFilledAndTheCountStays) {
   const TargetBody target = ball();
   MetaballModel model = hollow_ball();
-  const PartsComparison before = parts_of(target, model);
+  const ComponentComparison before = components_of(target, model);
   ASSERT_EQ(before.strays.size(), 1u);
   EXPECT_TRUE(before.strays[0].cavity);
   const std::size_t count = model.spheres.size();
   fill_cavities(model, before.strays, sample_surface(target.mesh, 500, 1).points);
   EXPECT_EQ(model.spheres.size(), count);
-  EXPECT_TRUE(parts_of(target, model).strays.empty());
+  EXPECT_TRUE(components_of(target, model).strays.empty());
 }
 
-TEST(PartRepair, WhatTakesTooMuchAwayGoes) {
+TEST(ComponentRepair, SubtractiveMetaballsThatMakeACavityAreRemoved) {
   const TargetBody target = ball();
   MetaballModel model{3.0, {{{0, 0, 0}, 0.29}, {{0.1, 0, 0}, 0.1, true}}};
   model.spheres.emplace_back(Vec3d{-0.1, 0, 0}, 0.1);
   model.spheres[1].radius = 0.15;
-  const PartsComparison before = parts_of(target, model);
+  const ComponentComparison before = components_of(target, model);
   ASSERT_EQ(before.strays.size(), 1u);
   EXPECT_TRUE(before.strays[0].cavity);
   fill_cavities(model, before.strays, sample_surface(target.mesh, 500, 1).points);
   EXPECT_TRUE(std::none_of(model.spheres.begin(), model.spheres.end(),
                            [](const ModelSphere& s) { return s.subtractive; }));
-  EXPECT_TRUE(parts_of(target, model).strays.empty());
+  EXPECT_TRUE(components_of(target, model).strays.empty());
 }
 
-TEST(PartRepair, IslandsGo) {
+TEST(ComponentRepair, IslandsAreRemoved) {
   const TargetBody target = ball();
   MetaballModel model{3.0, {{{0, 0, 0}, 0.28}, {{0.6, 0, 0}, 0.05}}};
-  const PartsComparison before = parts_of(target, model);
+  const ComponentComparison before = components_of(target, model);
   ASSERT_EQ(before.strays.size(), 1u);
   EXPECT_FALSE(before.strays[0].cavity);
   remove_islands(model, before.strays);
@@ -58,7 +58,7 @@ TEST(PartRepair, IslandsGo) {
   EXPECT_EQ(model.spheres[0].radius, 0.28);
 }
 
-TEST(PartRepair, TheWatchFindsDipsOnce) {
+TEST(ComponentRepair, TheWatchFindsDipsOnce) {
   InsideWatch watch(ball());
   std::vector<Vec3d> dips;
   watch.add_dips({3.0, {{{0, 0, 0}, 0.29}}}, dips);

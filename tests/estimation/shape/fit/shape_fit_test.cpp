@@ -39,7 +39,7 @@ TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
   EXPECT_LT(fit.check.distance.mean, 2e-3);
 }
 
-// Bodies of each kernel, fitted with the same.
+// Bodies of each kernel, fitted with the kernel that they are made of.
 class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
 
 TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballs) {
@@ -61,22 +61,23 @@ TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballs) {
   EXPECT_NEAR(fit.check.volume_ratio, 1.0, GetParam() == Kernel::kGaussian ? 2e-3 : 4e-3);
   EXPECT_TRUE(fit.check.topology.closed && fit.check.topology.manifold);
   EXPECT_EQ(fit.check.topology.components, 1);
-  // Kernels that end leave bumps where supports end, which normals see first: the fit's default has none.
+  // Compact kernels leave bumps where their supports end, and the similarity sees bumps in the normals. The
+  // Gaussian has none.
   EXPECT_GT(fit.similarity, (GetParam() == Kernel::kGaussian ? 0.95 : 0.75) * fit.similarity_floor);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels));
 
-// Bodies of several parts, and with a hole.
-struct PartsCase {
+// Bodies with several components, and a body with a hole.
+struct ComponentsCase {
   const char* name;
   TriangleMesh (*mesh)();
   std::int64_t components, genus;
 };
 
-class ShapeFitParts : public ::testing::TestWithParam<PartsCase> {};
+class ShapeFitComponents : public ::testing::TestWithParam<ComponentsCase> {};
 
-TEST_P(ShapeFitParts, AreThoseOfTheTarget) {
+TEST_P(ShapeFitComponents, AreThoseOfTheTarget) {
   const TargetBody target = prepare_target(GetParam().mesh(), GetParam().name);
   for (const std::uint64_t seed : {1u, 2u}) {
     ShapeFitOptions options = quick(16);
@@ -89,12 +90,13 @@ TEST_P(ShapeFitParts, AreThoseOfTheTarget) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Parts, ShapeFitParts,
-    ::testing::Values(PartsCase{"Apart", [] { return testing::two_spheres(3, 1.0, 2.6); }, 2, 0},
-                      PartsCase{"NearlyTouching", [] { return testing::two_spheres(3, 1.0, 2.1); }, 2, 0},
-                      PartsCase{"Overlapping", [] { return testing::two_spheres(3, 1.0, 1.8); }, 1, 0},
-                      PartsCase{"Ring", [] { return testing::torus(1.0, 0.45); }, 1, 1}),
-    [](const ::testing::TestParamInfo<PartsCase>& parts) { return std::string(parts.param.name); });
+    Components, ShapeFitComponents,
+    ::testing::Values(ComponentsCase{"Apart", [] { return testing::two_spheres(3, 1.0, 2.6); }, 2, 0},
+                      ComponentsCase{"NearlyTouching", [] { return testing::two_spheres(3, 1.0, 2.1); }, 2,
+                                     0},
+                      ComponentsCase{"Overlapping", [] { return testing::two_spheres(3, 1.0, 1.8); }, 1, 0},
+                      ComponentsCase{"Ring", [] { return testing::torus(1.0, 0.45); }, 1, 1}),
+    [](const ::testing::TestParamInfo<ComponentsCase>& body) { return std::string(body.param.name); });
 
 TEST(ShapeFit, SameBodyForOneAndTwoThreads) {
   const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
@@ -130,7 +132,12 @@ TEST(ShapeFit, ToleranceEndsTheGrowth) {
 
 TEST(ShapeFit, RefusesOptionsOutOfRange) {
   const TargetBody target = prepare_target(testing::icosphere(2), "sphere");
-  EXPECT_THROW(fit_shape(target, quick(0)), InputError);
+  try {
+    fit_shape(target, quick(0));
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(), "spheres: give 1 to 10000");
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimation/shape/model/isosurface_projection.h"
+#include "estimation/shape/model/model_levels.h"
 #include "geometry/mesh_measure.h"
 #include "tests/support/meshes.h"
 
@@ -25,7 +26,7 @@ TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {
   EXPECT_FALSE(grown[0].subtractive);
 }
 
-TEST(SphereGrowth, WhereTheModelSticksOutNewSpheresTakeAway) {
+TEST(SphereGrowth, WhereTheModelSticksOutNewSpheresAreSubtractive) {
   TriangleMesh mesh = testing::icosphere(4);
   for (Vec3d& p : mesh.vertices) {
     if (p.x > 0.9) p = p * 0.85;
@@ -57,7 +58,7 @@ TEST(SphereGrowth, BumpsAreAsWideAtEverySharpness) {
   EXPECT_NEAR(width(0.4), width(4.0), 1e-12);
 }
 
-TEST(SphereGrowth, IdleAndOutsideSpheresGo) {
+TEST(SphereGrowth, IdleAndOutsideSpheresAreRemoved) {
   const TriangleMesh mesh = testing::icosphere(3);
   FitPoints points;
   points.on_surface = sample_surface(mesh, 500, 1).points;
@@ -80,12 +81,12 @@ TEST(SphereGrowth, TheLeastUsefulSphereGoesFirst) {
   EXPECT_EQ(model.spheres[1].radius, 0.3);
 }
 
-TEST(SphereGrowth, OneThatAddsStays) {
+TEST(SphereGrowth, OneAdditiveSphereStays) {
   FitPoints points;
   points.on_surface = sample_surface(testing::icosphere(3), 500, 1).points;
   MetaballModel model{6.0, {{{0, 0, 0}, 0.01}, {{1.2, 0, 0}, 0.4, true}}};
   remove_least_useful_spheres(model, points.on_surface, 1);
-  EXPECT_EQ(model.spheres.size(), 2u) << "the one that adds is the less useful";
+  EXPECT_EQ(model.spheres.size(), 2u) << "the additive one is the less useful";
   EXPECT_EQ(remove_idle_spheres(model, points, 0.02), 0);
 }
 

@@ -19,8 +19,8 @@ MetaballModel random_model(std::uint64_t seed, int count, double sharpness,
   return model;
 }
 
-// Every third sphere takes away.
-MetaballModel dented(MetaballModel model) {
+// Makes every third metaball subtractive.
+MetaballModel with_subtractive(MetaballModel model) {
   for (std::size_t i = 2; i < model.spheres.size(); i += 3) model.spheres[i].subtractive = true;
   return model;
 }
@@ -31,7 +31,8 @@ std::vector<std::int32_t> all_of(const MetaballModel& model) {
   return indices;
 }
 
-// The model after parameter `which` of sphere `i` (centre, log radius) grew by h; i = -1: log sharpness.
+// The model after parameter `which` of sphere `i` has grown by h: 0 to 2 is the centre, 3 the log radius.
+// With i = -1 the log sharpness grows.
 MetaballModel nudged(MetaballModel model, int i, int which, double h) {
   if (i < 0) {
     model.sharpness *= std::exp(h);
@@ -48,8 +49,8 @@ MetaballModel nudged(MetaballModel model, int i, int which, double h) {
 using Function = double (*)(const MetaballModel&, const ModelEvaluation&, std::span<const std::int32_t>,
                             const Vec3d&, std::span<SphereDerivatives>, double*);
 
-// Every derivative against a central difference, with the support held fixed: the derivatives ignore how the
-// cut-off and the gradient floor follow the model.
+// Compares every derivative with a central difference. The cut-off and the gradient floor are held fixed,
+// because the derivatives treat them as constant.
 void check_derivatives(Function function, const MetaballModel& model, const Vec3d& p) {
   const auto neighbours = all_of(model);
   const ModelEvaluation fixed = evaluation_parameters(model);
@@ -93,24 +94,24 @@ TEST_P(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
   }
 }
 
-TEST(FieldDerivativesOfDents, DistanceAndLevelAgreeWithDifferences) {
+TEST(FieldDerivativesWithSubtractive, DistanceAndLevelAgreeWithDifferences) {
   for (const double sharpness : {0.7, 2.0, 9.0}) {
-    const MetaballModel model = dented(random_model(3, 9, sharpness));
+    const MetaballModel model = with_subtractive(random_model(3, 9, sharpness));
     CounterRandom random(11);
     for (int k = 0; k < 20; ++k) {
       const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
                    z = random.uniform(-1.2, 1.2);
       const double level =
           level_with_derivatives(model, evaluation_parameters(model), all_of(model), {x, y, z}, {}, nullptr);
-      if (sharpness * level < -8.0) continue;  // next to nothing is left: the floor hides the rest
+      if (sharpness * level < -8.0) continue;  // the kernel floor dominates such a sum
       check_derivatives(level_with_derivatives, model, {x, y, z});
       check_derivatives(distance_with_derivatives, model, {x, y, z});
     }
   }
 }
 
-TEST(FieldDerivativesOfDents, TheModelIsTheBodyThatSynthesisMakes) {
-  const MetaballModel model = dented(random_model(3, 9, 2.0));
+TEST(FieldDerivativesWithSubtractive, TheModelIsTheBodyThatSynthesisMakes) {
+  const MetaballModel model = with_subtractive(random_model(3, 9, 2.0));
   const PreparedMetaballs body = prepare_metaballs(metaball_body(model));
   const ModelEvaluation parameters = evaluation_parameters(model);
   const auto neighbours = all_of(model);

@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-// J and r with one row a residual, written out from the blocks.
+// Writes J and r as dense matrices, with one row for each residual.
 void dense(const ResidualBlocks& residuals, Eigen::Index spheres, Eigen::MatrixXd& j, Eigen::VectorXd& r) {
   Eigen::Index rows = 0;
   for (const ResidualBlock& block : residuals.blocks())

@@ -7,7 +7,7 @@
 namespace astrolith {
 namespace {
 
-// Even points on a sphere (golden spiral).
+// Evenly spaced points on a sphere (golden spiral).
 std::vector<Vec3d> points_on_sphere(int n, double radius, const Vec3d& center) {
   std::vector<Vec3d> points;
   for (int i = 0; i < n; ++i) {

@@ -61,7 +61,7 @@ TEST(TargetBody, RefusesWhatIsNoBody) {
 }
 
 TEST(TargetBody, RefusesASurfaceThroughItself) {
-  // Pulled through itself, the upper half is inside out; one ring of the other is in the lower half.
+  // The upper half is pulled through itself and is then inside out.
   TriangleMesh bow_tie = icosphere(3);
   for (Vec3d& p : bow_tie.vertices) {
     const double width = p.z < 0.0 ? 1.0 : 1.0 - 2.3 * p.z;
@@ -73,14 +73,14 @@ TEST(TargetBody, RefusesASurfaceThroughItself) {
   EXPECT_NE(error_of(one_reversed).find("has parts inside out"), std::string::npos);
 }
 
-TEST(TargetBody, AcceptsCavitiesAndParts) {
+TEST(TargetBody, AcceptsCavitiesAndSeveralComponents) {
   const TriangleMesh hollow = testing::joined(icosphere(3), testing::reversed(icosphere(3, 0.5)));
   EXPECT_EQ(error_of(hollow), "");
   EXPECT_EQ(error_of(testing::two_spheres(3, 1.0, 2.6)), "");
   EXPECT_EQ(error_of(testing::torus(1.0, 0.3)), "");
 }
 
-TEST(TargetBody, OverlappingPartsBecomeTheirUnion) {
+TEST(TargetBody, OverlappingComponentsBecomeTheirUnion) {
   const TargetBody apart = prepare_target(testing::two_spheres(3, 1.0, 2.6), "apart");
   EXPECT_EQ(apart.components, 2);
   EXPECT_EQ(apart.surface.triangles.size(), apart.mesh.triangles.size());
