@@ -46,8 +46,8 @@ struct PairBorders {
   constexpr PairBorders() {
     for (int k = 0; k < kSide; ++k) {
       const int twice = kEven ? 2 * (k + 1) : 2 * k + 1;  // the border is twice / kBins of the half axis
-      const double part = static_cast<double>(twice) / kBins, c = cosine(part), c2 = c * c;
-      unit[at(k)] = static_cast<float>(part * part);
+      const double fraction = static_cast<double>(twice) / kBins, c = cosine(fraction), c2 = c * c;
+      unit[at(k)] = static_cast<float>(fraction * fraction);
       right[at(k)] = 2 * twice == kBins;
       obtuse[at(k)] = 2 * twice > kBins;
       tangent[at(k)] = right[at(k)] ? 0.0f : static_cast<float>((1 - c2) / c2);

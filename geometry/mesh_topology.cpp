@@ -55,16 +55,16 @@ std::vector<std::uint32_t> count_fans(const TriangleMesh& mesh, DisjointSets& fa
 }
 
 std::int64_t count_components(const TriangleMesh& mesh) {
-  DisjointSets pieces(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const Triangle& t : mesh.triangles) {
     if (is_degenerate(t)) continue;
     used[t[0]] = used[t[1]] = used[t[2]] = true;
-    pieces.unite(t[0], t[1]);
-    pieces.unite(t[0], t[2]);
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
   }
   std::int64_t components = 0;
-  for (std::uint32_t v = 0; v < used.size(); ++v) components += used[v] && pieces.find(v) == v;
+  for (std::uint32_t v = 0; v < used.size(); ++v) components += used[v] && sets.find(v) == v;
   return components;
 }
 
@@ -99,16 +99,16 @@ std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh) {
 
 std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
-  DisjointSets pieces(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
-    pieces.unite(t[0], t[1]);
-    pieces.unite(t[0], t[2]);
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
   }
   std::vector<std::uint32_t> number(mesh.vertices.size(), kUnseen), components;
   components.reserve(mesh.triangles.size());
   std::uint32_t next = 0;
   for (const Triangle& t : mesh.triangles) {
-    std::uint32_t& component = number[pieces.find(t[0])];
+    std::uint32_t& component = number[sets.find(t[0])];
     if (component == kUnseen) component = next++;
     components.push_back(component);
   }

@@ -22,6 +22,10 @@ ASTROLITH_HD inline double largest_coordinate(const Box& box) {
   return std::max(std::max(x, y), z);
 }
 
+// How many cells from the origin a lattice may reach, along an axis: 2^20. Farther out a float coordinate,
+// counted in cells, has fewer than three bits left within a cell, and points of one cell fall together.
+inline constexpr double kLargestCell = 0x1p20;
+
 ASTROLITH_HD inline double clamped(double v, double low, double high) {
   return std::min(std::max(v, low), high);
 }

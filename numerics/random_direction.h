@@ -3,6 +3,7 @@
 
 #include "numerics/host_device.h"
 #include "numerics/scalar_math.h"
+#include "numerics/tangent_frame.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
@@ -12,11 +13,7 @@ namespace astrolith {
 ASTROLITH_KERNEL Vec3f direction_in_cone(const Vec3f& axis, float spread, float a, float b) {
   const float along = 1.0f - spread * a;
   const float across = math::sqrt(math::max(0.0f, math::fma(-along, along, 1.0f)));
-  // A frame about the axis (Duff et al. 2017), without branches on which axis is longest.
-  const float sign = axis.z < 0.0f ? -1.0f : 1.0f;
-  const float s = -1.0f / (sign + axis.z), t = axis.x * axis.y * s;
-  const Vec3f u{math::fma(sign * axis.x * axis.x, s, 1.0f), sign * t, -sign * axis.x};
-  const Vec3f v{t, math::fma(axis.y * axis.y, s, sign), -axis.y};
+  const auto [u, v] = duff_tangents<SumRounding::kFused>(axis, axis.z < 0.0f ? -1.0f : 1.0f);
   const float c = across * math::cos_turns(b), d = across * math::sin_turns(b);
   return {math::fma(c, u.x, math::fma(d, v.x, along * axis.x)),
           math::fma(c, u.y, math::fma(d, v.y, along * axis.y)),

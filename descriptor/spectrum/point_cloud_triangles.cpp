@@ -7,6 +7,7 @@
 #include "geometry/points/nearest_neighbours.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/tangent_frame.h"
 
 namespace astrolith {
 namespace {
@@ -42,8 +43,7 @@ std::vector<PlanePoint> convex_hull(std::vector<PlanePoint> points) {
 // origin become lines, so that the origin's Delaunay neighbours are the corners of a convex hull.
 std::vector<PlanePoint> inverted_neighbours(std::span<const Vec3d> points, std::uint32_t i,
                                             const Vec3d& normal, std::span<const std::uint32_t> around) {
-  const Vec3d axis = std::fabs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d u = normalized(cross(normal, axis)), v = cross(normal, u);
+  const auto [u, v] = crossed_tangents(normal);
   std::vector<PlanePoint> inverted;
   for (const std::uint32_t j : around) {
     const Vec3d d = points[j] - points[i];

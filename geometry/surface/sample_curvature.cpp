@@ -9,6 +9,7 @@
 #include "geometry/points/point_tree_internal.h"
 #include "geometry/surface/curvature.h"
 #include "numerics/parallel_for.h"
+#include "numerics/tangent_frame.h"
 
 namespace astrolith {
 namespace {
@@ -38,13 +39,6 @@ double farthest_corner(const TriangleMesh& mesh, const Triangle& triangle, const
   double farthest = 0;
   for (const std::uint32_t v : triangle) farthest = std::max(farthest, norm(mesh.vertices[v] - place));
   return farthest;
-}
-
-// Two directions at right angles to a unit vector and to each other.
-std::pair<Vec3d, Vec3d> tangents(const Vec3d& n) {
-  const Vec3d axis = std::fabs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d first = normalized(cross(n, axis));
-  return {first, cross(n, first)};
 }
 
 // K at the origin of z over (x, y), heights above a tangent plane; all lengths divided by their largest
@@ -97,7 +91,7 @@ SampleCurvature point_curvature(std::span<const Vec3d> points, std::span<const V
                                 int neighbours) {
   const PointTree tree(points);
   return at_all(points.size(), [&](std::size_t i) {
-    const auto [x, y] = tangents(normals[i]);
+    const auto [x, y] = crossed_tangents(normals[i]);
     std::vector<Vec3d> heights;
     for (const std::uint32_t j : tree.nearest(points[i], static_cast<std::size_t>(neighbours))) {
       const Vec3d r = points[j] - points[i];

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/interval.h"
+
 namespace astrolith {
 namespace {
-
-constexpr double kLargestCell =
-    1048576.0;  // 2^20 cells from the origin: floats hold three bits within a cell
 
 // On a flat patch an impulse beyond 1/a from the surface reaches none of it. Kernels that are small beside
 // the body, to which it is nearly flat, leave out those beyond 1.25/a; s is true to first order only, so that

@@ -21,11 +21,11 @@ namespace astrolith {
 class ComponentLabels {
  public:
   // Labels of a batch's vertices, once all triangles that follow it are known. A piece may have several
-  // labels, which piece_of brings together.
+  // labels, which component_of brings together.
   std::vector<std::uint32_t> label(std::size_t num_vertices, std::span<const Triangle> triangles);
 
   // After the last batch: the same number for all labels of a piece, the lowest of them.
-  std::uint32_t piece_of(std::uint32_t label) const;
+  std::uint32_t component_of(std::uint32_t label) const;
   std::uint32_t num_labels() const { return static_cast<std::uint32_t>(parent_.size()); }
 
  private:
@@ -39,8 +39,8 @@ class ComponentLabels {
 
 // Which labels' pieces are to stay.
 struct ComponentChoice {
-  std::vector<char> keep;           // by label
-  std::int64_t dropped_pieces = 0;  // the others
+  std::vector<char> keep;               // by label
+  std::int64_t dropped_components = 0;  // the others
 };
 
 // The volume that each piece encloses.

@@ -9,8 +9,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kLargestLatticeCoordinate = 1048576.0;  // 2^20: leaves three bits within a cell
-constexpr double kSteepestOctave = 1e12;                 // keeps the squares of slopes finite in a float
+constexpr double kSteepestOctave = 1e12;  // keeps the squares of slopes finite in a float
 
 // One loop a noise: a choice inside it would keep it from vectorising.
 #define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
@@ -55,7 +54,7 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
   std::vector<NoiseOctave> octaves;
   double slope = 1.0;
   for (int o = 0; o < count; ++o) {
-    if (!(frequency * farthest <= kLargestLatticeCoordinate)) break;
+    if (!(frequency * farthest <= kLargestCell)) break;
     const std::uint32_t stream = seeds.first_stream + static_cast<std::uint32_t>(o) * seeds.stream_step;
     octaves.push_back({static_cast<float>(frequency),
                        static_cast<float>(amplitude),

@@ -11,7 +11,6 @@ namespace {
 
 constexpr int kChunk = 128;
 using Chunk = std::array<float, kChunk>;
-constexpr double kLargestCell = 1048576.0;  // 2^20
 
 // real, imaginary += the k-th impulse of the cell (dx, dy, dz) away from each point's; points in cells.
 ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, float dy, float dz,

@@ -14,8 +14,7 @@ namespace {
 constexpr int kChunk = 128;  // an array a corner's windows stays in the first cache
 using Chunk = std::array<float, kChunk>;
 
-constexpr double kMostTurns = 262144.0;     // 2^18: floats hold five bits of a turn
-constexpr double kLargestCell = 1048576.0;  // 2^20
+constexpr double kMostTurns = 262144.0;  // 2^18: floats hold five bits of a turn
 constexpr double kClip = 6.0;
 constexpr std::uint32_t kWaveStream = 0x77617665u;
 

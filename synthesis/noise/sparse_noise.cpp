@@ -9,9 +9,6 @@
 namespace astrolith {
 namespace {
 
-// 2^20 cells from the origin: floats hold three bits within a cell.
-constexpr double kLargestCell = 1048576.0;
-
 ASTROLITH_SIMD_CLONES void upscale(int n, const float* __restrict x, const float* __restrict y,
                                    const float* __restrict z, float frequency, std::uint32_t seed,
                                    float probability, float inverse_probability, float* __restrict noise) {

@@ -9,6 +9,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "numerics/scalar_math.h"
+#include "numerics/tangent_frame.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/ray_scene_internal.h"
 
@@ -23,17 +24,10 @@ constexpr float kLift = 2e-5f;
 // Share of Lommel and Seeliger's law in the reflectance (McEwen 1991): full moons look flat, rocks less so.
 constexpr float kLunarShare = 0.35f;
 
-// Two directions at right angles to a unit vector and to each other (Duff et al. 2017).
-struct Tangents {
-  explicit Tangents(const Vec3f& n) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    first = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    second = {b, sign + n.y * n.y * a, -n.y};
-  }
-  Vec3f first, second;
-};
+// The frame across a unit vector, whose bits pictures have kept: plain sums, and the sign bit of n.z decides.
+Tangents<float> tangents_about(const Vec3f& n) {
+  return duff_tangents<SumRounding::kTwice>(n, std::copysign(1.0f, n.z));
+}
 
 // Orthographic, in the unit ball of the scene.
 struct Camera {
@@ -47,7 +41,7 @@ void light(Camera& camera, const PreviewOptions& options) {
   const Vec3d sun = normalized(options.sun);
   camera.sun = to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from);
   const auto radius = static_cast<float>(std::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
-  const Tangents tangents(camera.sun);
+  const Tangents<float> tangents = tangents_about(camera.sun);
   camera.sun_first = radius * tangents.first;
   camera.sun_second = radius * tangents.second;
 }
@@ -187,7 +181,7 @@ class Painter {
     if (options_.fill_light <= 0.0) return 0.0f;
     const auto [dx, dy] = disk_point(random);
     const float dz = math::sqrt(std::max(0.0f, 1.0f - dx * dx - dy * dy));
-    const Tangents tangents(normal);
+    const Tangents<float> tangents = tangents_about(normal);
     const Vec3f towards = normalized(dx * tangents.first + dy * tangents.second + dz * normal);
     if (scene_.occluded(start, towards)) return 0.0f;
     const float facing = std::max(0.0f, dot(normal, to_viewer));

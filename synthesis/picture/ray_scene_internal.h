@@ -3,13 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <vector>
 
+#include "geometry/surface/triangle_scene.h"
 #include "geometry/triangle_mesh.h"
-
-struct RTCDeviceTy;
-struct RTCSceneTy;
 
 namespace astrolith {
 
@@ -31,21 +27,11 @@ class RayScene {
   RayHit first_hit(const Vec3f& origin, const Vec3f& direction) const;
   bool occluded(const Vec3f& origin, const Vec3f& direction) const;
 
-  // Into the unit ball: (p - center) * scale.
-  Vec3d to_unit(const Vec3d& p) const { return (p - center_) * scale_; }
+  // A position of the mesh in the unit ball.
+  Vec3d to_unit(const Vec3d& p) const { return scene_.to_scene(p); }
 
  private:
-  struct Release {
-    void operator()(RTCDeviceTy* device) const;
-    void operator()(RTCSceneTy* scene) const;
-  };
-
-  void build(const TriangleMesh& mesh);
-
-  Vec3d center_;
-  double scale_ = 1.0;
-  std::unique_ptr<RTCDeviceTy, Release> device_;
-  std::unique_ptr<RTCSceneTy, Release> scene_;
+  TriangleScene scene_;
 };
 
 }  // namespace astrolith

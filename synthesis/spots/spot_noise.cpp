@@ -13,8 +13,6 @@
 namespace astrolith {
 namespace {
 
-constexpr double kLargestCell =
-    1048576.0;                 // 2^20 cells from the origin: floats hold three bits within a cell
 constexpr double kClip = 2.0;  // of a sum of overlapping spots, in greatest kernels
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 

@@ -15,15 +15,10 @@ struct Oriented {
   Vec3d point, normal;
 };
 
-Surflet single(const Oriented& s) {
-  const auto f = [](const Vec3d& v) {
-    return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  };
-  return surflet(f(s.point), f(s.normal));
-}
+Surflet single(const Oriented& s) { return surflet(to_float(s.point), to_float(s.normal)); }
 
 // 0 .. bins - 1 of a value in [-1, 1], or nothing when it is within margin of a border.
-std::optional<int> part(double value, int bins, double margin) {
+std::optional<int> bin_unless_at_border(double value, int bins, double margin) {
   const double position = (value + 1) / 2 * bins;
   const double to_border = std::fabs(position - std::round(position));
   const bool at_end = position < 0.5 || position > bins - 0.5;
@@ -48,8 +43,10 @@ std::optional<Expected> bin_by_definition(const Oriented& i, const Oriented& j, 
   const double alpha = std::atan2(dot(w, two.normal), dot(u, two.normal));
   const double wide = margin / norm(r) / norm(d_u);
   if (std::fabs(std::fabs(alpha) - std::numbers::pi) < wide) return {};
-  const auto a = part(alpha / std::numbers::pi, bins, wide), b = part(dot(v, two.normal), bins, wide),
-             c = part(dot(u, d), bins, wide), e = part(2 * norm(r) - 1, bins, margin);
+  const auto a = bin_unless_at_border(alpha / std::numbers::pi, bins, wide),
+             b = bin_unless_at_border(dot(v, two.normal), bins, wide),
+             c = bin_unless_at_border(dot(u, d), bins, wide),
+             e = bin_unless_at_border(2 * norm(r) - 1, bins, margin);
   if (!a || !b || !c || !e) return {};
   return Expected{((*a * bins + *b) * bins + *c) * bins + *e, a_i > a_j};
 }

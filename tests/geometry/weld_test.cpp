@@ -56,9 +56,9 @@ TEST(Weld, AgreesWithBruteForce) {
   const double tolerance = 0.04, reach = tolerance * mesh.bounds().diagonal();
   std::vector<Vec3d> kept;
   for (const Vec3d& p : mesh.vertices) {
-    bool near = false;
-    for (const Vec3d& q : kept) near = near || norm(p - q) <= reach;
-    if (!near) kept.push_back(p);
+    bool has_kept_neighbour = false;
+    for (const Vec3d& q : kept) has_kept_neighbour = has_kept_neighbour || norm(p - q) <= reach;
+    if (!has_kept_neighbour) kept.push_back(p);
   }
   EXPECT_LT(kept.size(), 500u);
   EXPECT_TRUE(weld_vertices(mesh, tolerance).vertices == kept);
