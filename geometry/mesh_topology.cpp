@@ -16,12 +16,11 @@ bool runs_both_ways_equally(std::span<const TriangleSide> edge) {
          static_cast<std::ptrdiff_t>(edge.size());
 }
 
-// What the edges tell: counts, which corners around a vertex are joined by an edge, which vertices lie on an
-// edge of three or more triangles.
+// Results of one pass over all edges.
 struct EdgeWalk {
   std::int64_t edges = 0;
-  DisjointSets fans;              // over the 3 #F corners
-  std::vector<bool> on_bad_edge;  // (#V)
+  DisjointSets fans;              // 3 #F corners; shared edges join corners of one vertex
+  std::vector<bool> on_bad_edge;  // (#V) whether an edge of three or more triangles ends here
 };
 
 EdgeWalk walk_edges(const TriangleMesh& mesh, MeshTopology& topology) {
@@ -42,7 +41,7 @@ EdgeWalk walk_edges(const TriangleMesh& mesh, MeshTopology& topology) {
   return walk;
 }
 
-// Fans of triangles around each vertex: 1 for a disk or half disk, 0 for an unused vertex.
+// (#V) the number of fans of triangles around each vertex: 1 for a disk or half disk, 0 for an unused vertex.
 std::vector<std::uint32_t> count_fans(const TriangleMesh& mesh, DisjointSets& fans) {
   std::vector<std::uint32_t> count(mesh.vertices.size(), 0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-// For each face and side the neighbour across it, or none, and whether the two are wound alike.
+// The face across one side of a face, or kNone, and whether the two faces are wound alike.
 struct Neighbour {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::uint32_t face = kNone;
@@ -32,7 +32,8 @@ double cone_volume(const TriangleMesh& mesh, const Vec3d& origin, const Triangle
   return dot(corner(0), cross(corner(1), corner(2)));
 }
 
-// Faces reached from a seed across shared edges; flipped says which of all faces are to be reversed.
+// Extends `component` from its first face to all faces reached across shared edges. Marks in `flipped` the
+// faces to be reversed, and returns six times the signed volume of the component after these reversals.
 double wind_alike(const TriangleMesh& mesh, const std::vector<std::array<Neighbour, 3>>& adjacent,
                   const Vec3d& origin, std::vector<std::uint32_t>& component,
                   std::vector<std::uint8_t>& visited, std::vector<std::uint8_t>& flipped) {
@@ -55,7 +56,7 @@ double wind_alike(const TriangleMesh& mesh, const std::vector<std::array<Neighbo
 
 TriangleMesh orient_faces(TriangleMesh mesh) {
   const auto adjacent = neighbours(mesh);
-  // An open component has a volume only with respect to a point: the box's middle.
+  // The volume of an open component depends on the apex of its cones: the centre of the bounding box.
   const Vec3d origin = mesh.bounds().center();
   std::vector<std::uint8_t> visited(mesh.triangles.size(), 0), flipped(mesh.triangles.size(), 0);
   std::vector<std::uint32_t> component;

@@ -1,4 +1,4 @@
-// Random directions about an axis, for waves and kernels that have one.
+// Random directions about an axis, for the waves and kernels of noises.
 #pragma once
 
 #include "numerics/host_device.h"
@@ -8,8 +8,10 @@
 
 namespace astrolith {
 
-// Uniform over the cap of directions whose cosine with the unit vector `axis` is at least 1 - spread: 0 is
-// the axis itself, 1 a hemisphere, which is every direction of a wave. a, b: uniform in [0, 1).
+// A random unit vector, uniform over the directions whose cosine with the unit vector `axis` is at least 1 -
+// spread. spread is in [0, 1]: 0 gives the axis itself, 1 the hemisphere about it. A wave of either sign of
+// its direction is one wave, so that a hemisphere holds all directions of a wave. a and b are uniform in [0,
+// 1).
 ASTROLITH_KERNEL Vec3f direction_in_cone(const Vec3f& axis, float spread, float a, float b) {
   const float along = 1.0f - spread * a;
   const float across = math::sqrt(math::max(0.0f, math::fma(-along, along, 1.0f)));

@@ -17,7 +17,7 @@ struct Tangents {
   Vec3<T> first, second;
 };
 
-// How a b + c is rounded: once, as explicit fma, or after the product and again after the sum.
+// The rounding of a b + c: once, as explicit fma, or twice, after the product and after the sum.
 enum class SumRounding { kFused, kTwice };
 template <SumRounding kRounding>
 ASTROLITH_KERNEL float multiply_add(float a, float b, float c) {

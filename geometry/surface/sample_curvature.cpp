@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-// Fills gaussian with curvature_at(i) and counts what is undefined.
+// The curvatures curvature_at(i), i = 0 .. n - 1. Values that are not finite count as undefined and become 0.
 template <typename CurvatureAt>
 SampleCurvature at_all(std::size_t n, const CurvatureAt& curvature_at) {
   SampleCurvature result;
@@ -41,8 +41,8 @@ double farthest_corner(const TriangleMesh& mesh, const Triangle& triangle, const
   return farthest;
 }
 
-// K at the origin of z over (x, y), heights above a tangent plane; all lengths divided by their largest
-// before the fit, so that the rank does not depend on the unit.
+// K at (0, 0) of the quadric fitted to heights z over the tangent plane (x, y). All lengths are divided by
+// the largest before the fit, so that the rank does not depend on the unit.
 double quadric_curvature(const std::vector<Vec3d>& heights) {
   double size = 0;
   for (const Vec3d& h : heights) size = std::max(size, norm(h));

@@ -35,8 +35,8 @@ TriangleScene unit_scene(const TriangleMesh& mesh) {
   return {mesh, box.center(), box.diagonal() > 0 ? 2 / box.diagonal() : 1};
 }
 
-// (3 #F) pseudo-normals of the sides that start at each corner: the sum of the unit normals of all triangles
-// at the edge.
+// (3 #F) pseudo-normals of the sides that start at each corner: the normalised sum of the unit normals of all
+// triangles at the edge.
 std::vector<Vec3d> side_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& faces) {
   std::vector<Vec3d> normals(3 * mesh.triangles.size());
   for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
@@ -81,11 +81,12 @@ struct SurfaceTree::State {
 
 namespace {
 
-// Overlaps are looked for among at most so many components: each pair is compared, each gets a tree.
+// Overlaps are sought among at most this many components. All pairs are compared, and each component gets a
+// tree.
 constexpr std::size_t kMaxBodies = 64;
 
-// The components as meshes of their own when their number is 2 to kMaxBodies and all are wound outwards;
-// none otherwise.
+// The components as separate meshes, when there are 2 to kMaxBodies of them and all are wound outwards;
+// otherwise an empty list.
 std::vector<TriangleMesh> separate_bodies(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
@@ -110,7 +111,7 @@ std::vector<TriangleMesh> separate_bodies(const TriangleMesh& mesh) {
   return outwards ? bodies : std::vector<TriangleMesh>();
 }
 
-// Beyond this many radii from the mesh single precision could not tell its boxes apart.
+// Beyond this many radii from the mesh, boxes cannot be told apart in single precision.
 constexpr double kFarInRadii = 1e5;
 
 // The best candidate of one query.
@@ -120,7 +121,7 @@ struct Search {
   std::uint32_t triangle = 0;
   ClosestOnTriangle best{{}, std::numeric_limits<double>::infinity(), TriangleFeature::face};
 
-  // True when the triangle is nearer, or as near and of a lower index.
+  // Takes the candidate and returns true when it is nearer than the best one, or as near with a lower index.
   bool offer(const ClosestOnTriangle& candidate, std::uint32_t t) {
     const double d2 = candidate.squared_distance;
     if (d2 > best.squared_distance || (d2 == best.squared_distance && t >= triangle)) return false;
@@ -128,8 +129,8 @@ struct Search {
     triangle = t;
     return true;
   }
-  // A radius in single precision that surely reaches the best candidate: positions and distances carry
-  // rounding errors of a few 2^-24 of the numbers involved; 16 times 2^-24 is left for them.
+  // A radius in single precision that surely reaches the best candidate. Positions and distances carry
+  // rounding errors of a few 2^-24 of the numbers involved; 16 times 2^-24 is allowed for them.
   float safe_radius(double scale) const {
     return static_cast<float>(std::sqrt(best.squared_distance) * scale * (1 + 1e-6) +
                               1e-6 * (1 + scaled_norm));
@@ -186,7 +187,8 @@ ClosestPoint SurfaceTree::closest(const Vec3d& p) const {
 double SurfaceTree::signed_distance(const Vec3d& p) const {
   const ClosestPoint nearest = closest(p);
   double distance = dot(p - nearest.point, nearest.normal) > 0 ? -nearest.distance : nearest.distance;
-  // Inside the union is inside any of them; a body that p is outside of can only offer less.
+  // A point inside any of the bodies is inside their union. A body that p is outside of offers only smaller
+  // values.
   for (const Body& body : state_->bodies) {
     if (boxes_touch(body.box, {p, p})) distance = std::max(distance, body.tree.signed_distance(p));
   }
