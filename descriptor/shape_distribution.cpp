@@ -28,7 +28,8 @@ void check(std::span<const Vec3d> points, int bins) {
   }
 }
 
-// Sums of rows are added in their order, so that the mean has the same bits for every thread count.
+// The mean distance of all pairs. Sums of rows are added in the order of the rows, so that the mean has the
+// same bits for any number of threads.
 double mean_distance(std::span<const Vec3d> points, double pairs) {
   std::vector<double> rows(points.size(), 0.0);
   parallel_for(
