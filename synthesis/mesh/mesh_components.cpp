@@ -12,7 +12,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 Vec3d in_double(const Vec3f& p) { return {p.x, p.y, p.z}; }
 
-// Union-find with path halving over the vertices of one batch.
+// Union-find with path halving over the vertices of one batch, with a label for each root.
 class BatchSets {
  public:
   explicit BatchSets(std::size_t size) : parent_(size), label_(size, kNone) {

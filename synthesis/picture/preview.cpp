@@ -19,22 +19,26 @@ namespace {
 constexpr double kFilled = 0.92;  // share of a tile that the largest view spans
 constexpr Vec3f kBackground{0.0030f, 0.0034f, 0.0048f};
 constexpr Vec3f kNeutralAlbedo{0.58f, 0.56f, 0.535f};
-// Start of secondary rays above the surface, in radii of the body: above the rounding errors of a hit.
+// The height above the surface at which secondary rays start, in radii of the body. It exceeds the rounding
+// errors of a hit.
 constexpr float kLift = 2e-5f;
-// Share of Lommel and Seeliger's law in the reflectance (McEwen 1991): full moons look flat, rocks less so.
+// The share of the law of Lommel and Seeliger in the reflectance (McEwen 1991), which makes full moons look
+// flat. Rocks look less flat: the rest of the reflectance follows Lambert.
 constexpr float kLunarShare = 0.35f;
 
-// The frame across a unit vector, whose bits pictures have kept: plain sums, and the sign bit of n.z decides.
+// A frame across the unit vector n. Sums are rounded twice and the sign bit of n.z decides the frame, because
+// pictures have always had these bits.
 Tangents<float> tangents_about(const Vec3f& n) {
   return duff_tangents<SumRounding::kTwice>(n, std::copysign(1.0f, n.z));
 }
 
-// Orthographic, in the unit ball of the scene.
+// An orthographic camera in the unit ball of the scene.
 struct Camera {
   Vec3f to_viewer, sun;         // unit vectors
-  Vec3f sun_first, sun_second;  // across the sun's disk, as long as its radius seen from the body
+  Vec3f sun_first, sun_second;  // across the sun's disk, as long as its apparent radius
   Vec3d right, up, from;        // orthonormal
-  double center_x = 0, center_y = 0, half_width = 0, half_height = 0;  // of the body in the picture plane
+  // The centre and the half sides of the body's box in the picture plane.
+  double center_x = 0, center_y = 0, half_width = 0, half_height = 0;
 };
 
 void light(Camera& camera, const PreviewOptions& options) {
@@ -69,7 +73,7 @@ Camera make_camera(const PreviewView& view, const PreviewOptions& options, const
   return camera;
 }
 
-// Uniform numbers of one ray, by what they are for.
+// Uniform random numbers of one ray, as hashes of the pixel and the ray.
 class RayRandom {
  public:
   RayRandom(std::uint64_t seed, int x, int y, int ray) : hash_(hash_cell(hash_seed(seed, 0), x, y, ray)) {}
@@ -109,7 +113,7 @@ class Painter {
     Vec3f sum;
     bool is_hit = false;
     for (int k = 0; k < rays; ++k) {
-      // Two opposite corners first: where both miss, so does the pixel.
+      // The rays at two opposite corners come first. Where both miss the body, the whole pixel is background.
       const int ray = k == 1 ? rays - 1 : k > 1 ? k - 1 : 0;
       RayRandom random(options_.seed, x, y, ray);
       const double px = x + (ray % n + double(random.next())) / n;
@@ -141,7 +145,7 @@ class Painter {
     return shade(camera, origin - hit.distance * camera.to_viewer, hit, random);
   }
 
-  // A value at the corners of the hit triangle, interpolated.
+  // Interpolates a value at the corners of the triangle that was hit.
   template <typename T>
   Vec3f interpolate(const std::vector<Vec3<T>>& corners, const RayHit& hit) const {
     const Triangle& t = mesh_.triangles[hit.triangle];
@@ -155,7 +159,7 @@ class Painter {
     Vec3f face = hit.normal;
     Vec3f normal = normalized(interpolate(normals_, hit));
     if (squared_norm(normal) < 0.5f) normal = face;
-    // Surfaces seen from behind, in open or inverted meshes, are lit like the others.
+    // In open or inverted meshes a surface may be seen from behind. It is lit like the others.
     if (dot(face, to_viewer) < 0.0f) face = -face;
     if (dot(normal, face) < 0.0f) normal = -normal;
     const Vec3f start = point + kLift * face;
@@ -175,8 +179,8 @@ class Painter {
     return kLunarShare * 2.0f * incidence / (incidence + emission) + (1.0f - kLunarShare) * incidence;
   }
 
-  // Light of a sky brightest behind the viewer, which one cosine-weighted ray finds open or not: in the
-  // shadows, slopes stay legible and hollows look hollow.
+  // Light from a sky that is brightest behind the viewer. One cosine-weighted ray tests whether the sky is
+  // open. In shadows this keeps slopes legible and makes hollows look hollow.
   float sky_light(const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer, RayRandom& random) const {
     if (options_.fill_light <= 0.0) return 0.0f;
     const auto [dx, dy] = disk_point(random);

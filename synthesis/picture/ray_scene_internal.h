@@ -1,5 +1,5 @@
-// A mesh that rays can be shot at: Embree 3 behind two questions. The mesh is moved and scaled into the unit
-// ball, where single precision serves any body.
+// A mesh that answers two questions about rays, by Embree 3. The mesh is moved and scaled into the unit ball,
+// where single precision is enough for any body.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ struct RayHit {
   float distance = 0.0f;
   std::uint32_t triangle = 0;
   float u = 0.0f, v = 0.0f;  // weights of the triangle's second and third corner
-  Vec3f normal;              // of the triangle, unit length
+  Vec3f normal;              // normal of the triangle, unit length
 };
 
 class RayScene {
  public:
-  // Throws InputError for a mesh without triangles, with indices out of range or positions that are not
-  // finite.
+  // Throws InputError for a mesh without triangles, with indices out of range or with positions that are not
+  // finite, and WorkError when Embree does not start or runs out of memory.
   explicit RayScene(const TriangleMesh& mesh);
 
-  // Directions have unit length; const queries may run in parallel.
+  // Origins and directions are in the unit ball; directions have unit length. Queries may run in parallel.
   RayHit first_hit(const Vec3f& origin, const Vec3f& direction) const;
   bool occluded(const Vec3f& origin, const Vec3f& direction) const;
 
-  // A position of the mesh in the unit ball.
+  // Maps a position of the mesh into the unit ball.
   Vec3d to_unit(const Vec3d& p) const { return scene_.to_scene(p); }
 
  private:
