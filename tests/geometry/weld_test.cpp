@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-// Every triangle with corners of its own, moved by up to noise.
+// Gives every triangle corners of its own, each moved by up to `noise`.
 TriangleMesh soup(const TriangleMesh& mesh, double noise = 0.0) {
   TriangleMesh result;
   CounterRandom random(1);
@@ -47,7 +47,7 @@ TEST(Weld, ToleranceIsAFractionOfTheDiagonal) {
   EXPECT_TRUE(analyze_topology(weld_vertices(noisy, 2.1e-5)).closed);
 }
 
-// Pairs straddle cell borders wherever they fall; the brute-force answer is the same rule without a grid.
+// Pairs lie across cell borders wherever they fall. The expected answer follows the same rule without a grid.
 TEST(Weld, AgreesWithBruteForce) {
   CounterRandom random(7);
   TriangleMesh mesh;

@@ -15,7 +15,7 @@ namespace {
 using testing::AnalyticField;
 using testing::cube;
 
-// A hollow ball, a torus and crumbs.
+// A hollow ball, a torus and two crumbs: with the wall of the cavity, five components.
 double five_components(const Vec3d& p) {
   const double ball = 0.45 - norm(p - Vec3d{-0.4, 0, 0}), hollow = 0.15 - norm(p - Vec3d{-0.45, 0, 0});
   const Vec3d q = p - Vec3d{0.55, 0, 0};
@@ -40,7 +40,7 @@ TriangleMesh kept(double least_share, std::int64_t* dropped = nullptr, int resol
 }
 
 TEST(MeshComponents, SmallComponentsAreDroppedAndTheOthersStayTheSame) {
-  // Volumes over the ball's .382: cavity .037, torus .13, crumbs .0024 and .0014.
+  // Volumes relative to the ball, .382: cavity .037, torus .13, crumbs .0024 and .0014.
   struct Expected {
     double least_share;
     std::int64_t components, dropped;
@@ -74,7 +74,7 @@ TEST(MeshComponents, TheKeptMeshIsAStreamAgain) {
   EXPECT_EQ(report.genus, 1);
 }
 
-// Horseshoes: arms that join only at the last layers have one label each until then.
+// Horseshoes: arms that join only in the last layers have a label each until then.
 TEST(MeshComponents, ArmsThatJoinLateAreOnePiece) {
   const AnalyticField comb(
       [](const Vec3d& p) {
