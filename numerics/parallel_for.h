@@ -25,8 +25,8 @@ class ThreadLimit {
   tbb::global_control control_;
 };
 
-// Calls body(i) for every i in [begin, end), in any order, `grain` or more of them in one task. An exception
-// that a body throws is rethrown here.
+// Calls body(i) for every i in [begin, end), in any order and in tasks of about `grain` indices or more. An
+// exception that a body throws is rethrown here.
 template <typename Body>
 void parallel_for(std::int64_t begin, std::int64_t end, const Body& body, std::int64_t grain = 1) {
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(begin, end, static_cast<std::size_t>(grain)),
