@@ -38,7 +38,7 @@ double squared_distance(std::span<const double> f, std::span<const double> g) {
 // x log2(x / mean), which tends to 0 with x.
 double entropy_term(double x, double mean) { return x > 0 ? x * std::log2(x / mean) : 0; }
 
-// F_k - G_k.
+// The differences F_k - G_k of the cumulative sums.
 std::vector<double> cumulative_differences(std::span<const double> f, std::span<const double> g) {
   check_sizes(f, g);
   std::vector<double> sums(f.size());

@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-// Points around the box's centre, the outermost first, one array a coordinate.
+// The points relative to the centre of their box, the outermost first, one array for each coordinate.
 struct ByRadius {
   std::vector<double> x, y, z, radius;
 
@@ -31,7 +31,7 @@ struct ByRadius {
   }
 };
 
-// Largest squared distance from point i to the points before it.
+// The largest squared distance from point i to the points before it.
 ASTROLITH_SIMD_CLONES double farthest_squared(const double* x, const double* y, const double* z,
                                               std::int64_t i) {
   double largest = 0;
@@ -51,7 +51,8 @@ double largest_distance(std::span<const Vec3d> points) {
   const ByRadius p(points);
   const auto n = static_cast<std::int64_t>(points.size());
   const auto row = [&](std::int64_t i) { return farthest_squared(p.x.data(), p.y.data(), p.z.data(), i); };
-  // A first bound from a few outermost points, then every row that might exceed it: |p - q| <= |p| + |q|.
+  // The outermost points give a first bound. By |p - q| <= |p| + |q| only the rows up to `reach` can exceed
+  // it.
   double largest = 0;
   const std::int64_t first = std::min<std::int64_t>(n, 64);
   for (std::int64_t i = 0; i < first; ++i) largest = std::max(largest, row(i));

@@ -7,9 +7,9 @@
 
 namespace astrolith {
 
-// Exact up to rounding: the largest distance between two of the points, in their unit; 0 for fewer than two.
-// Points must be finite. Pairs that cannot reach it, by their distances from the box's centre, are not looked
-// at.
+// The largest distance between two of the points, in their unit, exact up to rounding; 0 for fewer than two
+// points. Points must be finite. Pairs that cannot reach it, judged by their distances from the centre of the
+// bounding box, are not examined.
 double largest_distance(std::span<const Vec3d> points);
 
 }  // namespace astrolith

@@ -7,7 +7,7 @@
 namespace astrolith {
 namespace {
 
-// Among equal bins of [0, 1].
+// The bin of a number in [0, 1] among equal bins.
 std::int32_t bin_of(double fraction, int bins) {
   return std::clamp(static_cast<std::int32_t>(std::floor(fraction * bins)), 0, bins - 1);
 }

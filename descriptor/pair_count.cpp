@@ -14,26 +14,27 @@
 namespace astrolith {
 namespace {
 
-// Rows a task; times the largest number of points it stays below 2^32, the range of a counter.
+// Rows of pairs in one task. Times the largest number of points this stays below 2^32, the range of a
+// counter.
 constexpr std::int64_t kRowsPerTask = 64;
-// A report follows so many tasks: at a million points, some hundred reports.
+// Progress is reported after this many tasks: some hundred times for a million points.
 constexpr std::int64_t kTasksPerReport = 128;
 // One AVX-512 vector of codes.
 constexpr std::int64_t kLanes = 16;
-// Codes wait so many vectors before they are counted: the machine then computes and counts at the same time,
-// and need not wait for a vector to be written before it reads its parts.
+// Codes wait for this many vectors before they are counted. The processor then computes and counts at the
+// same time and need not wait until a vector has been written before it reads the vector's parts.
 constexpr std::int64_t kDelay = 3, kRing = kDelay + 1;
 static_assert(kRing * kLanes <= std::int64_t{kSurfletPadding});
-// Counters in copies, so that an increment need not wait for the one before it.
+// There are this many copies of the counters, so that an increment need not wait for the one before it.
 constexpr std::int64_t kCopies = 4;
 
-// Two for each surflet bin: pairs whose origin is the first and the second of the two.
+// The number of codes: two for each surflet bin, since the first or the second point may be the origin.
 template <int kBins>
 constexpr std::int64_t kCodes = 2 * bin_count(PairFeatures::wahl, kBins);
 
-// That the loop below calls a function which makes its Surflet, rather than making it in its own body, is
-// what lets the compiler keep it in vector registers; that all it calls is always inlined is what lets it
-// vectorise the loop in every clone.
+// The loop below calls this function, which makes its Surflet itself. If the loop made it in its own body,
+// the compiler would not keep it in vector registers. Everything that is called is always inlined, so that
+// the compiler vectorises the loop in every clone.
 template <int kBins>
 ASTROLITH_KERNEL std::int32_t code_with(const SurfletRun& run, const Surflet& one, std::int64_t k) {
   const auto& c = run.c;
@@ -56,7 +57,7 @@ ASTROLITH_KERNEL void count_codes(const Codes& codes, std::uint32_t* counters) {
   for (std::int64_t k = 0; k < kLanes; ++k) ++counters[k % kCopies * kCodes<kBins> + codes[k]];
 }
 
-// Adds the pairs of one surflet with `count` of the run to kCopies tables of kCodes<kBins> counters.
+// Adds the pairs of one surflet with `count` surflets of the run to kCopies tables of kCodes<kBins> counters.
 template <int kBins>
 ASTROLITH_SIMD_CLONES void count_row(const Surflet& given, SurfletRun run, std::int64_t count,
                                      std::uint32_t* __restrict counters) {
@@ -80,7 +81,7 @@ void add_half(const std::vector<std::uint32_t>& counters, std::int64_t half, std
   }
 }
 
-// Some rows of one local code: their pairs with all points before them.
+// Some rows of one local code: the pairs of their points with all points before them.
 struct Task {
   std::int64_t local, first_row, last_row;
 };
@@ -96,7 +97,8 @@ std::vector<Task> tasks_of(const SurfletArrays& s) {
   return tasks;
 }
 
-// Between two local codes only the side of the origin is left to tell, so the counters stay few.
+// Counts the pairs of a task, for one other local code at a time. With both local codes fixed, only the side
+// of the origin distinguishes pairs, and few counters are enough.
 template <int kBins>
 void count_task(const SurfletArrays& s, const Task& task, std::vector<std::uint64_t>& total) {
   constexpr std::int64_t kHalf = kCodes<kBins> / 2;
@@ -119,9 +121,9 @@ std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local, con
   const std::vector<Task> tasks = tasks_of(s);
   const auto num_tasks = static_cast<std::int64_t>(tasks.size());
   const auto size = static_cast<std::size_t>(num_local * kCodes<kBins> / 2);
-  // Sums of integers are the same in any order, so each thread may keep its own.
+  // Sums of integers do not depend on their order, so that each thread may keep its own.
   tbb::combinable<std::vector<std::uint64_t>> totals([&] { return std::vector<std::uint64_t>(size, 0); });
-  // The longest rows first, so that no thread is left with one at the end.
+  // The longest rows come first, so that no thread is left with one at the end.
   for (std::int64_t end = num_tasks; end > 0; end -= kTasksPerReport) {
     const std::int64_t count = std::min(end, kTasksPerReport);
     parallel_for(0, count, [&](std::int64_t t) {

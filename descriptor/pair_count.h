@@ -1,4 +1,4 @@
-// Counts all pairs of oriented points by their surflet codes and by a code that each point has of its own.
+// Counts all pairs of oriented points by their surflet code and by the local code of one of the two points.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,17 @@
 
 namespace astrolith {
 
-// (num_local * bins^4) local-major: how many unordered pairs have surflet bin s and the local code l of their
-// origin at [l * bins^4 + s]. Points are in units of their largest distance, their box around 0; normals have
-// unit length; local codes are in [0, num_local). Should both points qualify as origin, their
-// local codes decide. kMinBins <= bins <= kMaxBins. Time O(n^2), memory O(n) and num_local * bins^4 a thread.
-// Throws WorkError when progress asks to stop.
+// (num_local * bins^4) the element [l * bins^4 + s] is the number of unordered pairs with surflet bin s whose
+// origin has local code l. Points are in units of their largest distance, the middle of their box is 0, and
+// normals have unit length. Local codes are in [0, num_local), and kMinBins <= bins <= kMaxBins. Where both
+// points qualify as origin, their local codes decide. Takes time O(n^2), and memory O(n) and num_local *
+// bins^4 for each thread. Throws WorkError when progress asks to stop.
 std::vector<std::uint64_t> count_pairs(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                                        std::span<const std::int32_t> local, int num_local, int bins,
                                        const Progress& progress);
 
-// Whoever can do the same, count for count; the one above where it is empty.
+// A function that gives the same counts as count_pairs, for instance on a GPU. An empty one stands for
+// count_pairs.
 using PairCounter = std::function<std::vector<std::uint64_t>(
     std::span<const Vec3d> points, std::span<const Vec3d> normals, std::span<const std::int32_t> local,
     int num_local, int bins, const Progress& progress)>;

@@ -15,10 +15,10 @@
 namespace astrolith {
 namespace {
 
-// Of the root mean square distance from the centre: craters and boulders of this size shape kappa, smaller
-// ones are averaged. A smaller radius tells bodies better apart and a body from its own coarser mesh too;
-// this one is two edges of a mesh of 3,000 triangles, so that most meshes of a body give nearly the same
-// kappa.
+// The radius of the balls in which curvature is averaged, as a fraction of the root mean square distance from
+// the centre. Craters and boulders of this size shape kappa; smaller ones are averaged out. A smaller radius
+// tells bodies apart better, but also tells a body from its own coarser mesh. This radius is two edges of a
+// mesh of 3,000 triangles, so that most meshes of a body give nearly the same kappa.
 constexpr double kCurvatureRadius = 0.2;
 
 void check(const DescriptionOptions& options) {
@@ -44,7 +44,7 @@ void add_curvature(const SurfaceSamples& s, const SampleCurvature& curvature,
   }
 }
 
-// Which points no earlier point repeats, in the order given.
+// The numbers of the points that no earlier point repeats, ascending.
 std::vector<std::size_t> distinct(std::span<const Vec3d> points) {
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -56,7 +56,7 @@ std::vector<std::size_t> distinct(std::span<const Vec3d> points) {
   return order;
 }
 
-// count of them, each with equal chance, in the order given.
+// `count` of the numbers, chosen with equal chances, ascending.
 std::vector<std::size_t> chosen(std::vector<std::size_t> from, std::size_t count, std::uint64_t seed) {
   for (std::size_t k = 0; k < count; ++k) {
     std::swap(from[k], from[k + CounterRandom(seed, k).below(from.size() - k)]);

@@ -28,7 +28,8 @@ void check(std::span<const Vec3d> points, int bins) {
   }
 }
 
-// Sums of rows are added in their order, so that the mean has the same bits for every thread count.
+// The mean distance of all pairs. Sums of rows are added in the order of the rows, so that the mean has the
+// same bits for any number of threads.
 double mean_distance(std::span<const Vec3d> points, double pairs) {
   std::vector<double> rows(points.size(), 0.0);
   parallel_for(
@@ -82,8 +83,8 @@ ShapeDistribution shape_distribution(std::span<const Vec3d> points, int bins) {
     const std::size_t last = std::min<std::size_t>(first + kRowsPerChunk, points.size());
     counts[static_cast<std::size_t>(chunk)] = count_rows(points, first, last, bins_per_unit, bins);
   });
-  for (const auto& part : counts) {
-    for (std::size_t b = 0; b < d.counts.size(); ++b) d.counts[b] += part[b];
+  for (const auto& of_chunk : counts) {
+    for (std::size_t b = 0; b < d.counts.size(); ++b) d.counts[b] += of_chunk[b];
   }
   return d;
 }

@@ -1,4 +1,5 @@
-// A shape's fingerprint: how often each combination of features occurs among all pairs of its points.
+// The histogram that describes a shape: how often each combination of features occurs among all pairs of its
+// points.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +9,12 @@ namespace astrolith {
 
 enum class PairFeatures {
   wahl,  // alpha, beta, gamma, delta of descriptor/surflet_pair.h
-  ahd    // these, and eta and kappa of the pair's origin, descriptor/local_features.h
+  ahd    // the four of wahl, and eta and kappa of the pair's origin, descriptor/local_features.h
 };
 
 constexpr int dimensions(PairFeatures features) { return features == PairFeatures::wahl ? 4 : 6; }
 
-// bins^dimensions: 625 and 15,625 for five bins.
+// The number of bins, bins^dimensions: 625 (wahl) or 15,625 (ahd) for five bins along each axis.
 constexpr std::int64_t bin_count(PairFeatures features, int bins) {
   std::int64_t count = 1;
   for (int d = 0; d < dimensions(features); ++d) count *= bins;
@@ -25,12 +26,12 @@ inline constexpr int kMinBins = 2, kMaxBins = 10;
 
 struct ShapeHistogram {
   PairFeatures features = PairFeatures::wahl;
-  int bins = kDefaultBins;            // an axis
+  int bins = kDefaultBins;            // along each axis
   std::vector<std::uint64_t> counts;  // (bins, ... , bins) row-major: alpha beta gamma delta [eta kappa]
   std::uint64_t pairs = 0;            // sum of counts: n (n - 1) / 2
-  double max_distance = 0;            // that delta is a fraction of, in the points' unit
+  double max_distance = 0;            // delta = 1 stands for it; in the unit of the points
 
-  // As counts, divided by pairs; zeros when there are no pairs.
+  // The counts divided by the number of pairs; zeros where there are no pairs.
   std::vector<double> frequencies() const;
 };
 

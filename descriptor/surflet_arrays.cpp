@@ -22,7 +22,7 @@ std::uint32_t hash_of(const Vec3d& p) {
 
 std::vector<std::uint32_t> order_of(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                                     std::span<const std::int32_t> local) {
-  // Places with the same hash, such as points that repeat, are told apart by all their numbers.
+  // Places with the same hash, such as repeated points, are ordered by all their numbers.
   const auto all = [&](std::uint32_t i) {
     const Vec3d &p = points[i], &n = normals[i];
     return std::tuple(p.x, p.y, p.z, n.x, n.y, n.z);

@@ -1,5 +1,5 @@
-// The oriented points of a pair count in the order in which they are counted, for CPU and GPU alike: which of
-// two points comes first decides how a pair on a bin's border is rounded.
+// The oriented points (surflets) of a pair count, in the order in which the CPU and the GPU both count them.
+// The order matters: which of two points comes first decides how a pair on the border of a bin is rounded.
 #pragma once
 
 #include <array>
@@ -12,23 +12,24 @@
 
 namespace astrolith {
 
-// Pointers to a run of surflets: point, normal, moment.
+// Pointers to the coordinates of consecutive surflets: point, normal, moment.
 struct SurfletRun {
   std::array<const float*, 9> c;
 };
 
-// What may be read behind the last surflet of a run.
+// The number of elements that may be read behind the last surflet of a run.
 inline constexpr std::size_t kSurfletPadding = 64;
 
-// One array a coordinate, for vector loads, with room behind the last point. Points of one local code stand
-// together. Within them the order is that of a hash of the position: the order given then changes nothing,
-// and neighbours in space, whose pairs with a third point often share a bin, do not follow one another.
+// One array for each coordinate, for vector loads, with room behind the last point. Points of one local code
+// stand together. Among them a hash of the position decides the order. The order in which points are given
+// therefore changes nothing, and neighbours in space do not follow one another; their pairs with a third
+// point often share a bin.
 struct SurfletArrays {
   std::array<std::vector<float>, 9> c;      // (n + kSurfletPadding) each
   std::vector<std::int64_t> first_of_code;  // (num_local + 1)
 
-  // Points are in units of their largest distance, normals have unit length, local codes are in
-  // [0, num_local).
+  // Points must be in units of their largest distance, normals must have unit length, and local codes must be
+  // in [0, num_local).
   SurfletArrays(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                 std::span<const std::int32_t> local, int num_local);
 

@@ -45,7 +45,7 @@ std::vector<Vec3d> unit_vectors(std::span<const Vec3d> vectors) {
   return unit;
 }
 
-// In units of the largest distance, the middle of the box at 0.
+// The points in units of their largest distance, with the middle of their box at 0.
 std::vector<Vec3d> scaled(std::span<const Vec3d> points, double max_distance) {
   Box box;
   for (const Vec3d& p : points) box.extend(p);
@@ -55,7 +55,7 @@ std::vector<Vec3d> scaled(std::span<const Vec3d> points, double max_distance) {
   return result;
 }
 
-// From (local, surflet) to (surflet, local).
+// Reorders counts from (local, surflet) to (surflet, local).
 std::vector<std::uint64_t> local_last(std::span<const std::uint64_t> counts, std::size_t num_local) {
   const std::size_t bins = counts.size() / num_local;
   std::vector<std::uint64_t> result(counts.size());

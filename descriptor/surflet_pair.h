@@ -1,17 +1,18 @@
 // The histogram bin of one pair of oriented points: one float function for CPU and GPU, without branches.
 //
 // Wahl, Hillenbrand and Hirzinger, "Surflet-pair-relation histograms", 3DIM 2003. Of two surflets the origin
-// (p1, n1) is the one with |n1.(p2 - p1)| <= |n2.(p2 - p1)|: the normal that makes the larger angle with the
+// (p1, n1) is the one with |n1.(p2 - p1)| <= |n2.(p2 - p1)|. Its normal makes the larger angle with the
 // connecting line, which keeps the frame well defined (thesis eq. 3.1; the Point Cloud Library chooses the
-// other one). Should both be equal, the one with n1.(p2 - p1) >= 0, so that the order of the two never
-// matters. With d = (p2 - p1) / |p2 - p1| the frame is u = n1, v = d x u / |d x u|, w = u x v, and
+// other surflet). Where both are equal, the origin is the one with n1.(p2 - p1) >= 0, so that the order of
+// the two never matters. With d = (p2 - p1) / |p2 - p1| the frame is u = n1, v = d x u / |d x u|, w = u x v,
+// and
 //   alpha = atan2(w.n2, u.n2) in (-pi, pi]     beta  = v.n2 in [-1, 1]
 //   gamma = u.d in [-1, 1]                     delta = |p2 - p1| / largest distance in (0, 1]
-// are cut into equal bins. The ranges are those that Wahl's formulas have; the thesis (3.3.1) prints others,
+// are cut into equal bins. These ranges follow from Wahl's formulas. The thesis (3.3.1) prints other ranges,
 // and -d in gamma, which mirrors that axis.
 //
-// No root, quotient or arc tangent is taken: a feature is beyond a border when its square is, and on which
-// side of a border's direction an angle lies follows from squares and signs.
+// The code takes no root, quotient or arc tangent. A feature is beyond a border when its square is beyond the
+// square of the border. Squares and signs also tell on which side of the direction of a border an angle lies.
 #pragma once
 
 #include <array>
@@ -31,23 +32,23 @@ struct Surflet {
 
 ASTROLITH_KERNEL Surflet surflet(Vec3f point, Vec3f normal) { return {point, normal, cross(normal, point)}; }
 
-// Squares of the borders between kBins equal bins, those on one side of the middle; an even number of bins
-// has one more border, in the middle itself.
+// Squares of the borders between kBins equal bins, on one side of the middle. An even number of bins has one
+// more border, at the middle itself.
 template <int kBins>
 struct PairBorders {
   static constexpr int kSide = (kBins - 1) / 2;
   static constexpr bool kEven = kBins % 2 == 0;
-  std::array<float, kSide> unit{};        // of [-1, 1]
-  std::array<float, kSide> tangent{};     // tan^2 of those of (-pi, pi]
-  std::array<bool, kSide> obtuse{};       // whether that border is beyond pi / 2 ...
+  std::array<float, kSide> unit{};        // borders of [-1, 1]
+  std::array<float, kSide> tangent{};     // tan^2 of the borders of (-pi, pi]
+  std::array<bool, kSide> obtuse{};       // whether this border is beyond pi / 2 ...
   std::array<bool, kSide> right{};        // ... or at pi / 2
-  std::array<float, kBins - 1> length{};  // of [0, 1]
+  std::array<float, kBins - 1> length{};  // borders of [0, 1]
 
   constexpr PairBorders() {
     for (int k = 0; k < kSide; ++k) {
       const int twice = kEven ? 2 * (k + 1) : 2 * k + 1;  // the border is twice / kBins of the half axis
-      const double part = static_cast<double>(twice) / kBins, c = cosine(part), c2 = c * c;
-      unit[at(k)] = static_cast<float>(part * part);
+      const double fraction = static_cast<double>(twice) / kBins, c = cosine(fraction), c2 = c * c;
+      unit[at(k)] = static_cast<float>(fraction * fraction);
       right[at(k)] = 2 * twice == kBins;
       obtuse[at(k)] = 2 * twice > kBins;
       tangent[at(k)] = right[at(k)] ? 0.0f : static_cast<float>((1 - c2) / c2);
@@ -59,7 +60,7 @@ struct PairBorders {
 
  private:
   static constexpr std::size_t at(int k) { return static_cast<std::size_t>(k); }
-  // cos(pi x) for x in [0, 1] by its series: the standard library's is no constant expression.
+  // cos(pi x) for x in [0, 1] by its Taylor series; std::cos is no constant expression.
   static constexpr double cosine(double x) {
     const double t2 = 3.14159265358979323846 * 3.14159265358979323846 * x * x;
     double term = 1, sum = 1;
@@ -68,12 +69,12 @@ struct PairBorders {
   }
 };
 
-// What the four features are made of; r = p2 - p1.
+// The numbers that the four features are made of; r = p2 - p1.
 struct SurfletPair {
   bool origin_is_j;  // the second of the two surflets given is p1
   float length2;     // |r|^2
   float u_r;         // u.r
-  float across2;     // |r x u|^2, not below 1e-12: so a line along both normals has a defined alpha
+  float across2;     // |r x u|^2, at least 1e-12, so that alpha is defined for a line along both normals
   float cosine;      // u.n2
   float v_n2;        // v.n2 |r x u|
   float w_n2;        // w.n2 |r x u|
@@ -88,9 +89,11 @@ ASTROLITH_KERNEL SurfletPair surflet_pair(const Surflet& i, const Surflet& j) {
   SurfletPair pair;
   pair.length2 = fma(rx, rx, fma(ry, ry, rz * rz));
   pair.cosine = fma(n.x, m.x, fma(n.y, m.y, n.z * m.z));
-  // (r x u).n2 = r.(n x m), whichever of the two is the origin: the reciprocal product of the normals' lines.
+  // (r x u).n2 = r.(n x m), whichever surflet is the origin. It is the reciprocal product of the lines along
+  // the two normals.
   pair.v_n2 = fma(n.x, b.x, fma(n.y, b.y, fma(n.z, b.z, fma(m.x, a.x, fma(m.y, a.y, m.z * a.z)))));
-  // A relative 2e-7 in favour of a positive along_i settles the tie of parallel normals, rounded or not.
+  // A relative 2e-7 in favour of a positive along_i decides for parallel normals, whose values may differ by
+  // rounding.
   pair.origin_is_j = math::abs(along_j) < fma(-2e-7f, along_i, math::abs(along_i));
   pair.u_r = pair.origin_is_j ? along_j : along_i;
   const float minus_n2_r = pair.origin_is_j ? along_i : along_j;
@@ -99,18 +102,18 @@ ASTROLITH_KERNEL SurfletPair surflet_pair(const Surflet& i, const Surflet& j) {
   return pair;
 }
 
-// amount when the condition holds: in the form that compilers turn into masked additions.
+// Adds `amount` when the condition holds, in a form that compilers turn into masked additions.
 ASTROLITH_KERNEL void add_if(bool condition, float amount, float& sum) {
   sum = condition ? sum + amount : sum;
 }
 
-// stride with the sign of value.
+// `stride` with the sign of `value`.
 ASTROLITH_KERNEL float signed_as(float value, float stride) {
   return math::float_of((math::bits_of(value) & INT32_MIN) | math::bits_of(stride));
 }
 
-// Adds stride times the bin, counted from the middle one, of value / scale among the bins of [-1, 1], from
-// the squares of both; a value on a border belongs to the bin nearer to zero, 0/0 to the middle.
+// Adds stride times the bin of value / scale among the bins of [-1, 1], counted from the middle one, from the
+// squares of both. A value on a border belongs to the bin nearer to zero, and 0/0 to the middle bin.
 template <int kBins>
 ASTROLITH_KERNEL void add_unit_bin(float value, float scale2, float stride, float& sum) {
   constexpr PairBorders<kBins> borders;
@@ -123,7 +126,8 @@ ASTROLITH_KERNEL void add_unit_bin(float value, float scale2, float stride, floa
   }
 }
 
-// The same for the angle atan2(y, x) among the bins of (-pi, pi], from y^2 and x |x|.
+// Adds stride times the bin of the angle atan2(y, x) among the bins of (-pi, pi], counted from the middle
+// one, from y and x |x|.
 template <int kBins>
 ASTROLITH_KERNEL void add_angle_bin(float y, float signed_x2, float stride, float& sum) {
   constexpr PairBorders<kBins> borders;
@@ -141,16 +145,16 @@ ASTROLITH_KERNEL void add_angle_bin(float y, float signed_x2, float stride, floa
   }
 }
 
-// ((alpha kBins + beta) kBins + gamma) kBins + delta with bins 0 .. kBins - 1, the same for (i, j) and (j, i)
-// but for rounding; plus kBins^4 where j is the origin. Always defined: of points in the same place beta and
-// gamma are in the middle and delta is 0; there, and where both normals lie along the connecting line, alpha
-// is 0 or pi as the normals agree or oppose.
+// The code ((alpha kBins + beta) kBins + gamma) kBins + delta with bins 0 .. kBins - 1, plus kBins^4 where j
+// is the origin. The bins are the same for (i, j) and (j, i), but for rounding. The code is always defined:
+// for points in the same place beta and gamma are in the middle bin and delta is 0. There, and where both
+// normals lie along the connecting line, alpha is 0 or pi as the normals agree or oppose.
 template <int kBins>
 ASTROLITH_KERNEL std::int32_t surflet_code(const Surflet& i, const Surflet& j) {
   constexpr PairBorders<kBins> borders;
   constexpr float kGamma = kBins, kBeta = kGamma * kBins, kAlpha = kBeta * kBins;
   const SurfletPair pair = surflet_pair(i, j);
-  // Whole numbers below 2^24 are exact in floats, whose signs are free.
+  // Floats hold whole numbers below 2^24 exactly, and the sign of a float costs nothing.
   float code = kBins / 2 * (kAlpha + kBeta + kGamma);
   ASTROLITH_UNROLL
   for (int k = 0; k + 1 < kBins; ++k) {

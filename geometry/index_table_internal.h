@@ -1,4 +1,5 @@
-// A hash table from keys to small integers that its user compares: chains in two flat arrays.
+// A hash table of indices: chains of small integers in two flat arrays. The user of the table compares the
+// keys.
 #pragma once
 
 #include <algorithm>
@@ -20,16 +21,16 @@ class IndexTable {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  // expected: about how many indices will come; more only make it slower.
+  // `expected`: about how many indices will be inserted. The table works with more of them, at a higher cost.
   explicit IndexTable(std::size_t expected)
       : heads_(std::bit_ceil(std::max<std::size_t>(expected, 16)), kNone) {}
 
-  // Calls visitor(index) for every index inserted under this hash, and for some under others.
+  // Calls visitor(index) for every index inserted under this hash, and for some indices of other hashes.
   template <typename Visitor>
   void visit(std::uint64_t hash, const Visitor& visitor) const {
     for (std::uint32_t i = heads_[slot(hash)]; i != kNone; i = next_[i]) visitor(i);
   }
-  // Indices come in the order 0, 1, 2, ...
+  // The k-th call inserts index k, counted from 0.
   void insert(std::uint64_t hash, std::uint32_t index) {
     std::uint32_t& head = heads_[slot(hash)];
     next_.push_back(head);

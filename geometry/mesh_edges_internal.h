@@ -1,4 +1,4 @@
-// The edges of a triangle mesh as a sorted array, and disjoint sets: what topology counts are made of.
+// The edges of a triangle mesh as a sorted array, and disjoint sets: the tools for counting topology.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace astrolith {
 struct TriangleSide {
   std::uint32_t low, high;  // low < high
   std::uint32_t triangle;
-  std::uint8_t corner;  // where the side starts in its triangle: it runs from corner to corner + 1
-  bool forward;         // starts at low
+  std::uint8_t corner;  // first corner: the side runs from corner to corner + 1
+  bool forward;         // the side starts at low
 
   bool same_edge(const TriangleSide& o) const { return low == o.low && high == o.high; }
   std::uint32_t corner_of_low() const { return 3 * triangle + (forward ? corner : (corner + 1u) % 3); }
@@ -27,7 +27,7 @@ inline bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[
 // Throws InputError for a triangle that names a vertex which does not exist.
 void check_indices(const TriangleMesh& mesh);
 
-// Sides of all triangles that name three different vertices, sorted by edge, then triangle.
+// The sides of all triangles that name three different vertices, sorted by edge and then by triangle.
 std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh);
 
 // Calls visit(span of the sides of one edge) for each edge in order.

@@ -3,8 +3,8 @@
 namespace astrolith {
 namespace {
 
-// Six times the signed volume of the tetrahedron over a triangle with its apex at the origin given, which
-// lies near the mesh so that meshes far from zero lose no digits.
+// Six times the signed volume of the tetrahedron with corners a, b, c and 0. Callers move the origin near the
+// mesh, so that meshes far from zero lose no digits.
 double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return dot(a, cross(b, c)); }
 
 }  // namespace

@@ -9,14 +9,16 @@ double triangle_area(const TriangleMesh& mesh, const Triangle& triangle);
 
 double surface_area(const TriangleMesh& mesh);
 
-// Signed: positive for a closed mesh whose faces are counter-clockwise from outside. For an open mesh it is
-// the volume of the cone over the box's centre and depends on that choice.
+// The signed volume: positive for a closed mesh whose faces are counter-clockwise seen from outside. For an
+// open mesh it is the volume of the cone over the centre of the bounding box, and depends on that choice.
 double volume(const TriangleMesh& mesh);
 
-// Centre of mass of the solid at constant density; the box's centre when the volume is zero.
+// The centre of mass of the solid at constant density. The centre of the bounding box when the volume is
+// zero.
 Vec3d volume_centroid(const TriangleMesh& mesh);
 
-// Centre of mass of the surface at constant density; the box's centre when the area is zero.
+// The centre of mass of the surface at constant density. The centre of the bounding box when the area is
+// zero.
 Vec3d surface_centroid(const TriangleMesh& mesh);
 
 }  // namespace astrolith

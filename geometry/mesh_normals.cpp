@@ -5,7 +5,7 @@
 namespace astrolith {
 namespace {
 
-// Angle between two vectors in [0, pi]; accurate near both ends, unlike the arc cosine.
+// The angle between two vectors in [0, pi]. It is accurate near 0 and pi, unlike the arc cosine.
 double angle_between(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where a mesher pours vertices and triangles as it makes them, so that no mesh need be held whole.
+// The receiver of a mesh that is passed on in pieces while it is made, so that no mesh need be held whole.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class MeshSink {
   virtual void add_triangles(std::span<const Triangle> triangles) = 0;
 };
 
-// For counts alone.
+// Keeps nothing: for callers who only want the counts of a mesher.
 class MeshDiscard : public MeshSink {
  public:
   void add_vertices(std::span<const MeshVertex>) override {}

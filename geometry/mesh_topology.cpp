@@ -16,12 +16,11 @@ bool runs_both_ways_equally(std::span<const TriangleSide> edge) {
          static_cast<std::ptrdiff_t>(edge.size());
 }
 
-// What the edges tell: counts, which corners around a vertex are joined by an edge, which vertices lie on an
-// edge of three or more triangles.
+// Results of one pass over all edges.
 struct EdgeWalk {
   std::int64_t edges = 0;
-  DisjointSets fans;              // over the 3 #F corners
-  std::vector<bool> on_bad_edge;  // (#V)
+  DisjointSets fans;              // 3 #F corners; shared edges join corners of one vertex
+  std::vector<bool> on_bad_edge;  // (#V) whether an edge of three or more triangles ends here
 };
 
 EdgeWalk walk_edges(const TriangleMesh& mesh, MeshTopology& topology) {
@@ -42,7 +41,7 @@ EdgeWalk walk_edges(const TriangleMesh& mesh, MeshTopology& topology) {
   return walk;
 }
 
-// Fans of triangles around each vertex: 1 for a disk or half disk, 0 for an unused vertex.
+// (#V) the number of fans of triangles around each vertex: 1 for a disk or half disk, 0 for an unused vertex.
 std::vector<std::uint32_t> count_fans(const TriangleMesh& mesh, DisjointSets& fans) {
   std::vector<std::uint32_t> count(mesh.vertices.size(), 0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -55,16 +54,16 @@ std::vector<std::uint32_t> count_fans(const TriangleMesh& mesh, DisjointSets& fa
 }
 
 std::int64_t count_components(const TriangleMesh& mesh) {
-  DisjointSets pieces(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const Triangle& t : mesh.triangles) {
     if (is_degenerate(t)) continue;
     used[t[0]] = used[t[1]] = used[t[2]] = true;
-    pieces.unite(t[0], t[1]);
-    pieces.unite(t[0], t[2]);
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
   }
   std::int64_t components = 0;
-  for (std::uint32_t v = 0; v < used.size(); ++v) components += used[v] && pieces.find(v) == v;
+  for (std::uint32_t v = 0; v < used.size(); ++v) components += used[v] && sets.find(v) == v;
   return components;
 }
 
@@ -99,16 +98,16 @@ std::vector<TriangleSide> sorted_sides(const TriangleMesh& mesh) {
 
 std::vector<std::uint32_t> triangle_components(const TriangleMesh& mesh) {
   constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
-  DisjointSets pieces(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
-    pieces.unite(t[0], t[1]);
-    pieces.unite(t[0], t[2]);
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
   }
   std::vector<std::uint32_t> number(mesh.vertices.size(), kUnseen), components;
   components.reserve(mesh.triangles.size());
   std::uint32_t next = 0;
   for (const Triangle& t : mesh.triangles) {
-    std::uint32_t& component = number[pieces.find(t[0])];
+    std::uint32_t& component = number[sets.find(t[0])];
     if (component == kUnseen) component = next++;
     components.push_back(component);
   }

@@ -16,8 +16,9 @@ std::uint64_t hash_cell_of(const Vec3d& cell) {
   return mix_bits_64(h ^ std::bit_cast<std::uint64_t>(cell.z));
 }
 
-// Kept vertices by grid cell. Cells are a little wider than the radius, so that the 27 around a point hold
-// all within reach however its cell was rounded; radius 0 makes every coordinate triple its own cell.
+// The kept vertices, hashed by the grid cell that they lie in. Cells are a little wider than the radius: the
+// 27 cells around a point then hold all vertices within the radius, whichever way its cell was rounded.
+// Radius 0 makes every triple of coordinates its own cell.
 class VertexGrid {
  public:
   VertexGrid(const TriangleMesh& mesh, double radius)
@@ -43,7 +44,8 @@ class VertexGrid {
   void insert(const Vec3d& p, std::uint32_t index) { table_.insert(hash_cell_of(cell_of(p)), index); }
 
  private:
-  // Whole numbers as doubles: no tolerance is small enough to overflow them. Adding zero makes -0 and 0 one.
+  // Cell coordinates are whole numbers in doubles, which no small tolerance can overflow. Adding zero turns
+  // -0 into 0.
   Vec3d cell_of(const Vec3d& p) const {
     if (radius_ == 0.0) return p + Vec3d{0.0, 0.0, 0.0};
     const Vec3d q = (p - origin_) * (0.999 / radius_);

@@ -1,19 +1,19 @@
-// Makes one vertex of vertices at the same place, and one face of faces on the same vertices: what files
-// without shared vertices need before their edges can be said to meet.
+// Welding: vertices at one place become one vertex, and faces on the same vertices become one face. Files
+// without shared vertices need it before their faces can share edges.
 #pragma once
 
 #include "geometry/triangle_mesh.h"
 
 namespace astrolith {
 
-// Merges each vertex into the first earlier one that was kept and lies within tolerance * bounding-box
-// diagonal; tolerance 0 merges equal coordinates only. Order is kept, the first of each place with its normal
-// stays. Faces are renumbered, never dropped: they may then name a vertex twice. Throws std::invalid_argument
-// unless 0 <= tolerance < 0.1. Indices must be in range.
+// Merges each vertex into the first kept vertex within tolerance * bounding-box diagonal. Tolerance 0 merges
+// only vertices with equal coordinates. The kept vertices stay in their order and keep their normals. Faces
+// are renumbered and never dropped, so that a face may name a vertex twice afterwards. Throws
+// std::invalid_argument unless 0 <= tolerance < 0.1. Indices must be in range.
 TriangleMesh weld_vertices(TriangleMesh mesh, double tolerance);
 
-// Drops faces that name a vertex twice and faces on three vertices that an earlier face has already joined,
-// in the same winding or in the other. Vertices stay.
+// Drops faces that name a vertex twice, and faces on the same three vertices as an earlier face, in the same
+// winding or the other. All vertices stay.
 TriangleMesh drop_degenerate_and_repeated_faces(TriangleMesh mesh);
 
 }  // namespace astrolith

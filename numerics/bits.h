@@ -1,4 +1,4 @@
-// Bits of a word, on both machines.
+// Counts and positions of the set bits of a 32-bit word, on the CPU and on a GPU.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@ ASTROLITH_HD inline int count_bits(std::uint32_t bits) {
 #endif
 }
 
-// Number of the lowest bit that is set; there must be one.
+// The position of the lowest set bit, 0 .. 31. `bits` must not be 0.
 ASTROLITH_HD inline int lowest_bit(std::uint32_t bits) {
 #ifdef __CUDA_ARCH__
   return __ffs(static_cast<int>(bits)) - 1;

@@ -8,7 +8,7 @@ namespace astrolith {
 namespace {
 
 constexpr std::uint32_t kLeafBoxes = 4;
-// Halving leaves at most 2^32 / 2^32 boxes, and each level leaves one node behind.
+// Halving 2^32 boxes gives at most 32 levels, and each level leaves one node pending.
 constexpr std::size_t kMaxDepth = 64;
 
 double coordinate(const Vec3d& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }

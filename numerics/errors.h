@@ -1,4 +1,4 @@
-// Two kinds of failure cross library borders as exceptions; programs turn them into exit status 2 and 1.
+// Failures cross library borders as one of two exceptions; programs turn them into exit status 2 and 1.
 #pragma once
 
 #include <stdexcept>

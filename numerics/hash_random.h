@@ -1,6 +1,6 @@
-// Random numbers as hashes of what they are for: (seed, layer, cell, index) on both machines, (seed, stream,
-// counter) in sequential algorithms. No state is shared, so no thread count, order or device changes a
-// number.
+// Random numbers are hashes of what they are for. Code that runs on CPU and GPU hashes (seed, layer, cell,
+// index); sequential algorithms on the host hash (seed, stream, counter). No state is shared, so neither the
+// number of threads nor the order nor the device changes a number.
 #pragma once
 
 #include <cmath>

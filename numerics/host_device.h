@@ -6,13 +6,15 @@
 #define ASTROLITH_KERNEL __host__ __device__ __forceinline__
 #else
 #define ASTROLITH_HD
-// For per-point functions so long that the compiler would rather call them: a call keeps a loop scalar.
+// Long per-point functions are marked with ASTROLITH_KERNEL. The compiler would not inline them by itself,
+// and a call inside a loop would keep the loop from being vectorised.
 #define ASTROLITH_KERNEL inline __attribute__((always_inline))
 #endif
 
-// A loop marked with ASTROLITH_SIMD_CLONES is compiled for baseline x86-64, AVX2 and AVX-512, and the
-// machine chooses at start. All give the same bits: the code says fma where it means it, and nothing else is
-// contracted. Sanitizers instrument the resolver before they are ready: one version, as with ASTROLITH_SIMD.
+// A function marked with ASTROLITH_SIMD_CLONES is compiled for baseline x86-64, AVX2 and AVX-512, and the
+// machine chooses one when the program starts. All versions give the same bits: the code writes fma where it
+// means it, and the compiler contracts nothing else. Sanitizers instrument the function that chooses before
+// they are ready, so sanitized builds have one version. ASTROLITH_SIMD builds have one version too.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__) && \
     !defined(ASTROLITH_SANITIZED) && !defined(ASTROLITH_ONE_SIMD)
 #define ASTROLITH_SIMD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
@@ -20,7 +22,8 @@
 #define ASTROLITH_SIMD_CLONES
 #endif
 
-// Before a short loop of constant length inside a loop that is to be vectorised: unrolled in time for that.
+// Stands before a short loop of constant length inside a loop that is to be vectorised. The short loop is
+// then unrolled early enough for the outer one to be vectorised.
 #if defined(__CUDACC__) || defined(__clang__)
 #define ASTROLITH_UNROLL _Pragma("unroll")
 #else

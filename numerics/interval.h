@@ -1,4 +1,4 @@
-// Intervals and boxes as the bounds of fields use them, on CPU and GPU.
+// Interval arithmetic and boxes for the bounds of fields, on the CPU and on a GPU.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,13 @@
 
 namespace astrolith {
 
-// All values that a quantity takes, float rounding included.
+// The values that a quantity may take, with rounding in float included: low <= high.
 struct Interval {
   double low = 0.0, high = 0.0;
 };
 
-// The largest |coordinate| of a point of the box: float positions in the box are rounded in proportion to it.
+// The largest |coordinate| of any point of the box. Rounding errors of float positions are proportional to
+// it.
 ASTROLITH_HD inline double largest_coordinate(const Box& box) {
   const double x = std::max(std::fabs(box.min.x), std::fabs(box.max.x)),
                y = std::max(std::fabs(box.min.y), std::fabs(box.max.y)),
@@ -23,9 +24,15 @@ ASTROLITH_HD inline double largest_coordinate(const Box& box) {
   return std::max(std::max(x, y), z);
 }
 
+// The largest distance of a lattice cell from the origin along an axis, in cells. Up to 2^20 cells a float
+// coordinate keeps at least three bits within a cell. Farther out points of one cell would fall together.
+inline constexpr double kLargestCell = 0x1p20;
+
+// v, or the nearest number in low .. high.
 ASTROLITH_HD inline double clamped(double v, double low, double high) {
   return std::min(std::max(v, low), high);
 }
+// The point of the box low .. high that is nearest to p.
 ASTROLITH_HD inline Vec3d moved_into(const Vec3d& p, const Vec3f& low, const Vec3f& high) {
   return {clamped(p.x, double{low.x}, double{high.x}), clamped(p.y, double{low.y}, double{high.y}),
           clamped(p.z, double{low.z}, double{high.z})};
@@ -33,7 +40,7 @@ ASTROLITH_HD inline Vec3d moved_into(const Vec3d& p, const Vec3f& low, const Vec
 ASTROLITH_HD inline Vec3f moved_into(const Vec3f& p, const Vec3f& low, const Vec3f& high) {
   return {math::clamp(p.x, low.x, high.x), math::clamp(p.y, low.y, high.y), math::clamp(p.z, low.z, high.z)};
 }
-// What the points of a box become that are moved into the domain low .. high.
+// The box of the points of `box` after each has been clamped into low .. high.
 ASTROLITH_HD inline Box moved_into(const Box& box, const Vec3f& low, const Vec3f& high) {
   return {moved_into(box.min, low, high), moved_into(box.max, low, high)};
 }
@@ -41,7 +48,7 @@ ASTROLITH_HD inline Box moved_into(const Box& box, const Vec3f& low, const Vec3f
 ASTROLITH_HD inline Interval plus(const Interval& a, const Interval& b) {
   return {a.low + b.low, a.high + b.high};
 }
-// Of intervals that do not reach below 0.
+// The product of two intervals that hold no negative number.
 ASTROLITH_HD inline Interval product(const Interval& a, const Interval& b) {
   return {a.low * b.low, a.high * b.high};
 }

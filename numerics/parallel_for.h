@@ -1,5 +1,5 @@
-// The parallel loop. Bodies write only to their own index, and whoever sums does so afterwards in index
-// order: that is all it takes for results that do not depend on the thread count.
+// The parallel loop. A body writes to its own index only, and sums are taken afterwards in index order.
+// Results then do not depend on the number of threads.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -11,7 +11,7 @@
 
 namespace astrolith {
 
-// Limits all parallel loops to num_threads (0 = every hardware thread) while it lives.
+// Limits all parallel loops to num_threads threads while it lives; 0 stands for all hardware threads.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int num_threads)
@@ -25,7 +25,8 @@ class ThreadLimit {
   tbb::global_control control_;
 };
 
-// Calls body(i) for i in [begin, end), in any order. The first exception thrown is rethrown.
+// Calls body(i) for every i in [begin, end), in any order and in tasks of about `grain` indices or more. An
+// exception that a body throws is rethrown here.
 template <typename Body>
 void parallel_for(std::int64_t begin, std::int64_t end, const Body& body, std::int64_t grain = 1) {
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(begin, end, static_cast<std::size_t>(grain)),

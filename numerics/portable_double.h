@@ -1,6 +1,7 @@
 // Exponential, logarithm and power of doubles with the same bits on every CPU and every GPU, for bounds that
-// both must agree upon: our own polynomials of products and sums, nothing contracted. There is no fma, which
-// is a call where a program is built for every x86-64. Points are evaluated in float (scalar_math.h).
+// the CPU and the GPU must agree upon. They are polynomials of products and sums, of which nothing is
+// contracted. fma is avoided because it is a function call in programs built for every x86-64. Points are
+// evaluated in float (scalar_math.h).
 #pragma once
 
 #include <bit>
@@ -49,15 +50,16 @@ ASTROLITH_HD inline double exp(double x) {
   p = p * r + 0.5;
   p = p * r + 1.0;
   p = p * r + 1.0;
-  // In two factors: 2^1023 times the polynomial is finite, 2^1024 is not a double.
+  // The power of two is applied in two factors, so that neither factor leaves the range of doubles (2^1024
+  // does).
   const auto whole = static_cast<std::int64_t>(n);
   const std::int64_t half = whole / 2;
   const double scaled = p * double_of((half + 1023) << 52) * double_of((whole - half + 1023) << 52);
   return x < -708.0 ? 0.0 : scaled;
 }
 
-// Natural logarithm within 2e-15 (absolute near 1, else relative) for normal positive x; about -708.4 for all
-// below.
+// Natural logarithm of a normal positive x, with an error of at most 2e-15, absolute near 1 and relative
+// elsewhere. Smaller x, zero and negative x give about -708.4.
 ASTROLITH_HD inline double log(double x) {
   const double normal = x > 2.2250738585072014e-308 ? x : 2.2250738585072014e-308;
   const std::int64_t i = bits_of(normal);

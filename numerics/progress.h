@@ -1,4 +1,4 @@
-// How long work reports back: libraries never print, they call.
+// Progress of long work: libraries never print, they call a function.
 #pragma once
 
 #include <functional>

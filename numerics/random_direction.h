@@ -1,22 +1,21 @@
-// Random directions about an axis, for waves and kernels that have one.
+// Random directions about an axis, for the waves and kernels of noises.
 #pragma once
 
 #include "numerics/host_device.h"
 #include "numerics/scalar_math.h"
+#include "numerics/tangent_frame.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
 
-// Uniform over the cap of directions whose cosine with the unit vector `axis` is at least 1 - spread: 0 is
-// the axis itself, 1 a hemisphere, which is every direction of a wave. a, b: uniform in [0, 1).
+// A random unit vector, uniform over the directions whose cosine with the unit vector `axis` is at least 1 -
+// spread. spread is in [0, 1]: 0 gives the axis itself, 1 the hemisphere about it. A wave of either sign of
+// its direction is one wave, so that a hemisphere holds all directions of a wave. a and b are uniform in [0,
+// 1).
 ASTROLITH_KERNEL Vec3f direction_in_cone(const Vec3f& axis, float spread, float a, float b) {
   const float along = 1.0f - spread * a;
   const float across = math::sqrt(math::max(0.0f, math::fma(-along, along, 1.0f)));
-  // A frame about the axis (Duff et al. 2017), without branches on which axis is longest.
-  const float sign = axis.z < 0.0f ? -1.0f : 1.0f;
-  const float s = -1.0f / (sign + axis.z), t = axis.x * axis.y * s;
-  const Vec3f u{math::fma(sign * axis.x * axis.x, s, 1.0f), sign * t, -sign * axis.x};
-  const Vec3f v{t, math::fma(axis.y * axis.y, s, sign), -axis.y};
+  const auto [u, v] = duff_tangents<SumRounding::kFused>(axis, axis.z < 0.0f ? -1.0f : 1.0f);
   const float c = across * math::cos_turns(b), d = across * math::sin_turns(b);
   return {math::fma(c, u.x, math::fma(d, v.x, along * axis.x)),
           math::fma(c, u.y, math::fma(d, v.y, along * axis.y)),

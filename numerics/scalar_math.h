@@ -1,6 +1,6 @@
-// Elementary functions of one float whose bits are the same on every CPU, every vector width and every GPU:
-// our own polynomials, explicit fma, no branches and no tables, so that compilers vectorise loops over them.
-// The double overloads are the standard library's; they serve as references and in fits.
+// Elementary functions of one float with the same bits on every CPU, every vector width and every GPU. They
+// are our own polynomials with explicit fma and without branches or tables, so that compilers vectorise loops
+// over them. The double overloads are those of the standard library; they serve as references and in fits.
 #pragma once
 
 #include <bit>
@@ -52,8 +52,8 @@ ASTROLITH_HD inline float min(float a, float b) { return a < b ? a : b; }
 ASTROLITH_HD inline float max(float a, float b) { return a > b ? a : b; }
 ASTROLITH_HD inline float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
 
-// Nearest integer as a float, ties to even; |x| < 2^22. Adding 1.5 * 2^23 leaves no fraction bits, and works
-// where the baseline instruction set has no rounding instruction.
+// The nearest integer as a float, ties to even, for |x| < 2^22. Adding 1.5 * 2^23 leaves no bits for a
+// fraction. This also works where the baseline instruction set has no rounding instruction.
 ASTROLITH_HD inline float round_even(float x) {
   constexpr float kMagic = 12582912.0f;
   return (x + kMagic) - kMagic;
@@ -105,13 +105,14 @@ ASTROLITH_HD inline float log(float x) {
   p = fma(p, z, 2.0f / 3.0f);
   const float tail = s * z * p;
   const float k = static_cast<float>(e);
-  // 2s = f - s f: written so that f keeps its bits next to the small corrections.
+  // log(m) = 2 s + tail with 2 s = f - s f, written so that f keeps its bits next to the small corrections.
   const float log_m = f - (s * f - tail);
   return fma(k, 0.693145751953125f, fma(k, 1.42860677e-6f, log_m));
 }
 ASTROLITH_HD inline double log(double x) { return std::log(x); }
 
-// sin(2 pi x) for |x| < 2^22: arguments in turns need no multiple-precision reduction. Absolute error < 2e-7.
+// sin(2 pi x) for |x| < 2^22, with an absolute error below 2e-7. Arguments in turns need no
+// multiple-precision reduction.
 ASTROLITH_HD inline float sin_turns(float x) {
   const float r = x - round_even(x);  // [-1/2, 1/2]
   // Fold to [-1/4, 1/4] with sin(pi - t) = sin t.
@@ -131,8 +132,8 @@ ASTROLITH_HD inline double sin_turns(double x) {
   return std::sin(6.283185307179586476925 * (x - std::round(x)));
 }
 
-// cos(2 pi x) = 1 - 2 sin^2(pi x) for |x| < 2^22: no quadrant to fold, at the price of four times the error
-// of the sine. Absolute error < 7e-7.
+// cos(2 pi x) = 1 - 2 sin^2(pi x) for |x| < 2^22, with an absolute error below 7e-7. This form has no
+// quadrants to fold, and pays with four times the error of the sine.
 ASTROLITH_HD inline float cos_turns(float x) {
   const float r = x - round_even(x);  // [-1/2, 1/2]
   const float z = r * r;

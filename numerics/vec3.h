@@ -1,4 +1,4 @@
-// Three-component vectors for points, directions and frequencies; the scalar may be float, double or a Ceres
+// Three-component vectors for points, directions and frequencies. The scalar may be float, double or a Ceres
 // Jet.
 #pragma once
 
@@ -60,10 +60,11 @@ ASTROLITH_HD T norm(const Vec3<T>& a) {
   using std::sqrt;
   return sqrt(dot(a, a));
 }
+// Rounds each coordinate to the nearest float.
 inline ASTROLITH_HD Vec3f to_float(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
-// The zero vector stays zero.
+// a / |a|; the zero vector gives the zero vector.
 template <typename T>
 ASTROLITH_HD Vec3<T> normalized(const Vec3<T>& a) {
   const T n = norm(a);
@@ -82,7 +83,7 @@ struct Box {
   bool empty() const { return !(min.x <= max.x); }
   ASTROLITH_HD Vec3d extent() const { return max - min; }
   ASTROLITH_HD Vec3d center() const { return 0.5 * (min + max); }
-  // The length that errors are stated in: "fraction of the bounding-box diagonal".
+  // The length of the diagonal. Errors are stated as fractions of it.
   double diagonal() const { return norm(extent()); }
 };
 
@@ -92,7 +93,7 @@ ASTROLITH_HD inline Box widened(const Box& box, double margin) {
   return {box.min - m, box.max + m};
 }
 
-// Whether two boxes share a point.
+// True when two boxes share a point.
 ASTROLITH_HD inline bool boxes_touch(const Box& a, const Box& b) {
   return a.min.x <= b.max.x && a.max.x >= b.min.x && a.min.y <= b.max.y && a.max.y >= b.min.y &&
          a.min.z <= b.max.z && a.max.z >= b.min.z;

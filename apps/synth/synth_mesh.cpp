@@ -120,7 +120,7 @@ MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field,
   ComponentSizes sizes;
   mesh_region(field, region, resolution, sizes, program.progress("pieces"), device);
   ComponentChoice choice = sizes.larger_than(least_component);
-  program.summary["dropped_components"] = choice.dropped_pieces;
+  program.summary["dropped_components"] = choice.dropped_components;
   ComponentFilter filter(std::move(choice), sink);
   const MeshStatistics statistics =
       mesh_region(field, region, resolution, filter, program.progress("mesh"), device);

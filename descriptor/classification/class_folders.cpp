@@ -31,7 +31,7 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-// The last part of the name, also of "classes/bird/" and of ".".
+// The last part of the name of a folder, also for "classes/bird/" and ".".
 std::string name_of(const fs::path& folder) {
   fs::path full = fs::absolute(folder).lexically_normal();
   if (!full.has_filename()) full = full.parent_path();
@@ -40,7 +40,7 @@ std::string name_of(const fs::path& folder) {
 
 std::vector<fs::path> folders_in(const fs::path& folder) {
   std::vector<fs::path> folders = entries_of(folder);
-  std::error_code unused;  // what cannot be looked at is no folder
+  std::error_code unused;  // an entry without a status counts as no folder
   std::erase_if(folders, [&](const fs::path& p) { return !fs::is_directory(p, unused); });
   return folders;
 }

@@ -1,4 +1,4 @@
-// Labelled meshes as folders hold them.
+// Finds labelled meshes in folders: the name of a folder is the label of its meshes.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,21 @@
 namespace astrolith {
 
 struct LabelledFiles {
-  std::vector<std::string> classes;          // names of folders, sorted
-  std::vector<std::filesystem::path> files;  // of each class in turn, sorted by name
+  std::vector<std::string> classes;          // names of the folders, sorted
+  std::vector<std::filesystem::path> files;  // the files of each class in turn, sorted by name
   std::vector<int> labels;                   // (#files) indices into classes
 };
 
 // True for the extensions of mesh formats (obj, ply, stl, off, tab, plt, icq, bmf), in either case.
 bool has_mesh_extension(const std::filesystem::path& file);
 
-// A folder with folders in it: each of these is a class, named as the folder is. A folder without: it is one
-// class. Files without a mesh's extension and hidden ones are passed over; folders of the same name are one
-// class. Throws InputError for what is no folder, for meshes beside class folders (are they a class or not?)
-// and for a class without meshes.
+// If a folder contains folders, each of these is a class with the name of the inner folder. A folder without
+// inner folders is one class. Hidden files and files without the extension of a mesh are ignored. Folders of
+// the same name are one class. Throws InputError for anything that is no folder, for meshes beside class
+// folders (they might be a class or not), and for a class without meshes.
 LabelledFiles find_classes(std::span<const std::filesystem::path> folders);
 
-// The meshes in a folder, not in those within, sorted by name.
+// The meshes in a folder itself, without those in inner folders, sorted by name.
 std::vector<std::filesystem::path> meshes_in(const std::filesystem::path& folder);
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// What reader and writer of a classifier's file agree on.
+// Constants that the reader and the writer of classifier files share.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace astrolith {
 
 inline constexpr const char* kClassifierFormat = "astrolith classifier";
 inline constexpr int kClassifierVersion = 1;
-// Parsed, a file takes up to some twenty times its size.
+// A parsed file takes up to about twenty times the memory of its size.
 inline constexpr std::uintmax_t kMaxClassifierBytes = std::uintmax_t{128} << 20;
 
 }  // namespace astrolith

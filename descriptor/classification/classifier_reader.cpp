@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kMaxClasses = 100000, kMaxComponents = 100000;
 
-// Every accessor names the place that is wrong.
+// A value in the file together with its place. Every accessor throws an InputError that names the place.
 class Place {
  public:
   Place(const Json& json, std::string name) : json_(json), name_(std::move(name)) {}
@@ -41,7 +41,7 @@ class Place {
     if (!json_.is_string()) fail("is no text");
     return json_.get<std::string>();
   }
-  // Between low and high, which a double holds exactly.
+  // A whole number between low and high, both of which a double holds exactly.
   std::int64_t integer(std::int64_t low, std::int64_t high) const {
     const double value = json_.is_number_integer() ? json_.get<double>() : std::nan("");
     if (!(value >= static_cast<double>(low) && value <= static_cast<double>(high))) {
@@ -106,7 +106,8 @@ PrincipalComponents components_from(const Place& place, std::size_t features) {
   return components;
 }
 
-// A tree as converted: read node by node, it must close exactly at its end.
+// A tree in the order of converted_tree. Nodes are read one by one, and the tree must be complete exactly at
+// the end of the list.
 DecisionTree tree_from(const Place& place, std::int64_t features, std::int64_t classes) {
   DecisionTree tree;
   std::vector<std::size_t> open;  // the nodes whose right side has not begun
@@ -117,7 +118,7 @@ DecisionTree tree_from(const Place& place, std::int64_t features, std::int64_t c
     const bool leaf = row.size() == 1;
     if (!leaf && row.size() != 3) row.fail("has neither one nor three numbers");
     if (i > 0 && tree.back().feature < 0) {
-      // After a leaf comes the right side of the last open node.
+      // A leaf is followed by the right side of the last open node.
       if (open.empty()) row.fail("does not belong to the tree");
       if (static_cast<std::size_t>(tree[open.back()].next) != i) row.fail("is not where its parent says");
       open.pop_back();

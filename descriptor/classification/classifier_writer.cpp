@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-// Numbers are floats, written with as many digits as a float needs.
+// JSON whose numbers are floats, written with as many digits as a float needs.
 using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t,
                                   std::uint64_t, float>;
 

@@ -40,7 +40,7 @@ LabelledFeatures without_fold(const LabelledFeatures& data, const std::vector<in
 
 std::vector<int> stratified_folds(std::span<const int> labels, int classes, int folds, std::uint64_t seed) {
   std::vector<int> fold_of(labels.size(), 0);
-  int next = 0;  // goes on from class to class, so that no fold gets all the remainders
+  int next = 0;  // counts on from class to class, so that no fold gets all remainders
   for (int c = 0; c < classes; ++c) {
     std::vector<std::size_t> members;
     for (std::size_t i = 0; i < labels.size(); ++i) {

@@ -1,4 +1,4 @@
-// How well votes agree with the truth.
+// Measures how well votes agree with the true classes.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@ namespace astrolith {
 using VoteRows = std::vector<std::vector<double>>;  // (#shapes x #classes)
 
 struct ClassScore {
-  int shapes = 0;           // of this class
-  double precision = 0;     // of those called this class, the share that is; 0 where none is called so
-  double recall = 0;        // of this class, the share called so
-  PrecisionRecall ranking;  // of all shapes by their votes for this class
+  int shapes = 0;           // number of shapes of this class
+  double precision = 0;     // share of true members among the shapes called this class; 0 if none
+  double recall = 0;        // share of the shapes of this class that are called so
+  PrecisionRecall ranking;  // all shapes, ranked by their votes for this class
 };
 
 struct Evaluation {
@@ -25,7 +25,7 @@ struct Evaluation {
   std::vector<ClassScore> classes;          // (#classes)
 };
 
-// labels (#shapes) in 0 .. classes - 1.
+// Evaluates votes on shapes whose true labels (#shapes) are in 0 .. classes - 1.
 Evaluation evaluate(const VoteRows& votes, std::span<const int> labels, int classes);
 
 }  // namespace astrolith

@@ -11,7 +11,8 @@
 namespace astrolith {
 namespace {
 
-// Messages of readers begin with the file's name, those of descriptors do not.
+// The message with the name of the file in front. Messages of readers begin with it already; those of
+// descriptors do not.
 std::string naming(const std::filesystem::path& file, const std::string& message) {
   const std::string name = file.string();
   return message.starts_with(name) ? message : name + ": " + message;

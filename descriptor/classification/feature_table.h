@@ -1,4 +1,4 @@
-// Feature vectors of many mesh files; those that cannot be used are named, and the work goes on.
+// Computes the feature vectors of many mesh files. Files that cannot be used are named, and the work goes on.
 #pragma once
 
 #include <filesystem>
@@ -14,15 +14,15 @@ namespace astrolith {
 
 struct FeatureTable {
   FeatureRows rows;                   // (#files); empty where the file could not be used
-  std::vector<std::string> failures;  // a line each, which names the file
+  std::vector<std::string> failures;  // one line for each such file, with its name
 };
 
-// Files are read in parallel; the result does not depend on how many at a time. Stopped by its progress it
-// throws WorkError. Throws InputError for options out of range.
+// Reads the files in parallel; the result does not depend on the number of threads. Throws InputError for
+// options out of range, and WorkError when progress asks to stop.
 FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
                                const Progress& progress = {});
 
-// The rows that are not empty with their labels.
+// The rows that are not empty, with their labels.
 LabelledFeatures labelled(const LabelledFiles& files, const FeatureTable& table);
 
 }  // namespace astrolith

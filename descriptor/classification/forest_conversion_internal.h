@@ -1,4 +1,4 @@
-// OpenCV's trained trees as the arrays that astrolith keeps.
+// Converts OpenCV's trained trees to the arrays of RandomForest.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@ inline DecisionTree converted_tree(const cv::ml::DTrees& trees, int root, const 
   const auto& nodes = trees.getNodes();
   const auto& splits = trees.getSplits();
   DecisionTree tree;
-  std::vector<std::pair<int, int>> open{{root, -1}};  // node, and the parent whose right side it is
+  std::vector<std::pair<int, int>> open{{root, -1}};  // a node, and the parent if the node is its right side
   while (!open.empty()) {
     const auto [index, parent] = open.back();
     open.pop_back();
     if (parent >= 0) tree[static_cast<std::size_t>(parent)].next = static_cast<std::int32_t>(tree.size());
     const auto& node = nodes[static_cast<std::size_t>(index)];
     if (node.split < 0) {
-      // The value is the label itself; classIdx counts only the labels that occurred.
+      // The value of a node is the label itself, whereas classIdx counts only labels that occurred.
       tree.push_back({-1, 0, static_cast<std::int32_t>(node.value)});
       continue;
     }
@@ -33,7 +33,7 @@ inline DecisionTree converted_tree(const cv::ml::DTrees& trees, int root, const 
   return tree;
 }
 
-// columns[v] is the feature that variable v was trained from.
+// columns[v] is the feature that variable v was trained on.
 inline RandomForest converted(const cv::ml::DTrees& trees, const std::vector<int>& columns, int classes) {
   RandomForest forest;
   forest.classes = classes;

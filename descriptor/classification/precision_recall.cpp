@@ -37,7 +37,8 @@ PrecisionRecall precision_recall(std::span<const double> scores, const std::vect
     before = step.recall;
   }
   for (int level = 0; level < kRecallLevels; ++level) {
-    // Recall is a ratio of small integers: a level that it should reach is reached.
+    // Recall is a ratio of small integers. The tolerance ensures that a level which should be reached is
+    // reached.
     const double least = static_cast<double>(level) / (kRecallLevels - 1) - 1e-12;
     double& best = result.curve[static_cast<std::size_t>(level)];
     for (const Step& step : steps) {

@@ -1,7 +1,7 @@
 // Precision and recall of a ranked list, for retrieval and for votes.
 //
-// Of the first K of the list, precision is the share that is relevant, recall the share of everything
-// relevant that is among them.
+// Among the first K entries of the list, precision is the share of entries that are relevant. Recall is the
+// share of all relevant entries that are among them.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace astrolith {
 
-// Recall levels 0, 0.05, ... 1 of the curves.
+// The number of recall levels of a curve: 0, 0.05, ... 1.
 inline constexpr int kRecallLevels = 21;
 using PrecisionCurve = std::array<double, kRecallLevels>;
 
 struct PrecisionRecall {
-  // Sum over the list of (recall step) x (precision there): the area under the curve, 1 when all relevant
-  // entries come first.
+  // The sum over the list of (recall step) x (precision there). This is the area under the curve, and 1 when
+  // all relevant entries come first.
   double average_precision = 0;
-  // At each level the highest precision reached at that recall or a higher one.
+  // At each level: the highest precision that is reached at this recall or a higher one.
   PrecisionCurve curve{};
 };
 
-// scores and relevant (n); the highest score comes first, entries of equal score come together, so that their
-// order cannot matter. All zero without a relevant entry.
+// Ranks entries by `scores` (n), the highest first; relevant (n). Entries of equal score come together, so
+// that their order does not matter. Everything is 0 when no entry is relevant.
 PrecisionRecall precision_recall(std::span<const double> scores, const std::vector<bool>& relevant);
 
 }  // namespace astrolith

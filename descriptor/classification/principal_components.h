@@ -1,4 +1,4 @@
-// The few directions along which feature vectors vary most.
+// Principal components: the few directions along which feature vectors vary most.
 #pragma once
 
 #include <span>
@@ -10,13 +10,14 @@ using FeatureRows = std::vector<std::vector<float>>;  // (#shapes x #features)
 
 struct PrincipalComponents {
   std::vector<float> mean;  // (#features)
-  FeatureRows axes;         // (#components x #features) orthonormal, by falling variance
+  FeatureRows axes;         // (#components x #features) orthonormal, sorted by falling variance
 
-  // (#components) of a vector (#features).
+  // (#components) the coordinates of a vector (#features) along the axes.
   std::vector<float> apply(std::span<const float> features) const;
 };
 
-// By OpenCV. Throws InputError unless 1 <= components <= min(#shapes - 1, #features).
+// Computes principal components with OpenCV. Throws InputError unless 1 <= components <= min(#shapes - 1,
+// #features).
 PrincipalComponents principal_components(const FeatureRows& rows, int components);
 
 }  // namespace astrolith

@@ -11,7 +11,8 @@
 namespace astrolith {
 namespace {
 
-// Most of 15,625 bins stay empty in every shape; a draw of features that fell on them would be lost.
+// The columns that vary over the rows. Most of 15,625 bins stay empty in every shape, and features drawn from
+// them would be wasted.
 std::vector<int> varying_columns(const FeatureRows& rows) {
   std::vector<int> columns;
   for (std::size_t c = 0; c < rows.front().size(); ++c) {

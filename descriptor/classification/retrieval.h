@@ -1,4 +1,5 @@
-// Asks with each shape for the others of its class: how good a descriptor is without any training.
+// Retrieval: each shape in turn asks for the others of its class. This shows how good a descriptor is without
+// any training.
 #pragma once
 
 #include <functional>
@@ -11,15 +12,15 @@
 namespace astrolith {
 
 struct Retrieval {
-  double mean_average_precision = 0;       // over all shapes that have others of their class
-  double nearest_accuracy = 0;             // share of shapes whose nearest other is of their class
-  PrecisionCurve curve{};                  // mean over the same shapes
+  double mean_average_precision = 0;       // over the shapes that have others of their class
+  double nearest_accuracy = 0;             // share of these shapes whose nearest other is of their class
+  PrecisionCurve curve{};                  // mean over these shapes
   std::vector<double> average_precisions;  // (#classes) means over each class's shapes
 };
 
 using FeatureDistance = std::function<double(std::span<const float>, std::span<const float>)>;
 
-// Every shape asks, all others are ranked by their distance to it. labels (#rows) in 0 .. classes - 1. Time
+// Every shape ranks all others by their distance to it. labels (#rows) are in 0 .. classes - 1. Takes time
 // O(#rows^2 #features).
 Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, int classes,
                    const FeatureDistance& distance);

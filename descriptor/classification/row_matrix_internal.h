@@ -1,4 +1,4 @@
-// Feature vectors as OpenCV takes them.
+// Converts feature vectors to a matrix of OpenCV.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace astrolith {
 
-// (#rows x #columns) float; rows must be equally long.
+// A matrix (#rows x #columns) of floats. Rows must be equally long.
 inline cv::Mat row_matrix(const FeatureRows& rows) {
   cv::Mat matrix(static_cast<int>(rows.size()), static_cast<int>(rows.front().size()), CV_32F);
   for (int i = 0; i < matrix.rows; ++i) {

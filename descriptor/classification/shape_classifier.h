@@ -1,4 +1,4 @@
-// Learns to tell classes of shapes apart from labelled feature vectors.
+// A classifier that learns classes of shapes from labelled feature vectors.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct LabelledFeatures {
 };
 
 struct TrainingOptions {
-  int components = 0;  // principal components that the forest sees in place of the features; 0 = none
+  int components = 0;  // principal components in place of the features; 0 = none
   ForestOptions forest;
 };
 
@@ -29,11 +29,12 @@ struct ShapeClassifier {
   std::optional<PrincipalComponents> components;
   RandomForest forest;
 
-  // (#classes) shares of the trees, of a feature vector of the options above.
+  // (#classes) the share of the trees that vote for each class. `shape` is a feature vector made with the
+  // options above.
   std::vector<double> votes(std::span<const float> shape) const;
 };
 
-// Throws InputError as train_forest and principal_components do.
+// Trains a classifier. Throws InputError as train_forest and principal_components do.
 ShapeClassifier train_classifier(const LabelledFeatures& data, const FeatureOptions& features,
                                  const TrainingOptions& options);
 

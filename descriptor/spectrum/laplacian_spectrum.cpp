@@ -17,19 +17,21 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-// What the factorisation of half a million vertices needs is about a gigabyte.
+// The factorisation for half a million vertices needs about a gigabyte.
 constexpr std::size_t kMaxVertices = 500000;
-// Delaunay neighbours lie among the nearest few; 20 hold them all unless the sampling is very uneven.
+// Delaunay neighbours are among the nearest few points; 20 hold them all unless the sampling is very uneven.
 constexpr int kCloudNeighbours = 20;
-// Below the whole spectrum, so that the shifted matrix is positive definite, and near its low end.
+// The shift lies below the whole spectrum, so that the shifted matrix is positive definite, and near its low
+// end.
 constexpr double kShift = -1;
-// Flatter triangles, of which the sine of an angle is less, have cotangents that drown all others.
+// Triangles with a smaller sine of an angle are left out: their cotangents would drown all others.
 constexpr double kSmallestSine = 1e-8;
 
-// S = M^-1/2 L M^-1/2 over the vertices that have a mass, which has the eigenvalues of L x = lambda M x.
+// The operator S = M^-1/2 L M^-1/2 over the vertices that have a mass. Its eigenvalues are those of L x =
+// lambda M x.
 struct Operator {
   SparseMatrix matrix;
-  double mass = 0;  // of all: the area of all triangles
+  double mass = 0;  // the area of all triangles
   std::int64_t left_out = 0;
 };
 
@@ -94,8 +96,8 @@ class Assembly {
   std::int64_t left_out_ = 0;
 };
 
-// (S - shift)^-1 x, the face that Spectra wants of it. The matrix is positive definite: Cholesky, where
-// Spectra's own class takes the slower LU.
+// (S - shift)^-1 x in the interface that Spectra expects. The matrix is positive definite, so that Cholesky
+// serves; Spectra's own class uses LU, which is slower.
 class ShiftedInverse {
  public:
   using Scalar = double;
@@ -127,7 +129,7 @@ std::vector<double> lowest_eigenvalues(const SparseMatrix& matrix, int count) {
                      " vertices; ask for at least 1 and for fewer than there are vertices");
   }
   ShiftedInverse inverse(matrix);
-  // One more than asked for: the zero of the constant function is dropped.
+  // One eigenvalue more is sought: the zero of the constant function is dropped.
   const Eigen::Index wanted = std::min<Eigen::Index>(count + 1, n - 1);
   const Eigen::Index basis = std::min<Eigen::Index>(n, 2 * wanted + 20);
   Spectra::SymEigsShiftSolver<ShiftedInverse> solver(inverse, wanted, basis, kShift);
@@ -142,7 +144,7 @@ std::vector<double> lowest_eigenvalues(const SparseMatrix& matrix, int count) {
   return {values.begin() + 1, values.begin() + 1 + count};
 }
 
-// covers: how often the triangles cover the surface.
+// `covers` is how often the triangles cover the surface.
 LaplacianSpectrum spectrum_of(std::span<const Vec3d> points, std::span<const Triangle> triangles,
                               double covers, int count) {
   Assembly assembly(points);

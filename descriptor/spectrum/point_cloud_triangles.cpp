@@ -7,6 +7,7 @@
 #include "geometry/points/nearest_neighbours.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/tangent_frame.h"
 
 namespace astrolith {
 namespace {
@@ -16,7 +17,7 @@ struct PlanePoint {
   std::uint32_t index;
 };
 
-// z of (b - a) x (c - a): positive for a turn to the left.
+// The z component of (b - a) x (c - a): positive for a turn to the left.
 double turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -38,12 +39,12 @@ std::vector<PlanePoint> convex_hull(std::vector<PlanePoint> points) {
   return hull;
 }
 
-// Neighbours in the tangent plane of point i, each moved to 1 / |q|^2 of its place q: circles through the
-// origin become lines, so that the origin's Delaunay neighbours are the corners of a convex hull.
+// The neighbours of point i in its tangent plane, relative to i and inverted: a place q becomes q / |q|^2.
+// Circles through the origin become lines, so that the Delaunay neighbours of the origin are the corners of a
+// convex hull.
 std::vector<PlanePoint> inverted_neighbours(std::span<const Vec3d> points, std::uint32_t i,
                                             const Vec3d& normal, std::span<const std::uint32_t> around) {
-  const Vec3d axis = std::fabs(normal.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d u = normalized(cross(normal, axis)), v = cross(normal, u);
+  const auto [u, v] = crossed_tangents(normal);
   std::vector<PlanePoint> inverted;
   for (const std::uint32_t j : around) {
     const Vec3d d = points[j] - points[i];
@@ -61,7 +62,7 @@ std::vector<Triangle> star(std::span<const Vec3d> points, std::uint32_t i, const
   std::vector<Triangle> triangles;
   for (std::size_t k = 0; k < hull.size(); ++k) {
     const PlanePoint &a = hull[k], &b = hull[(k + 1) % hull.size()];
-    // A side that does not run counter-clockwise around the origin is a gap: i lies on a border.
+    // A side that does not run counter-clockwise around the origin is a gap, because i lies on a border.
     if (a.x * b.y - a.y * b.x > 0) triangles.push_back({i, a.index, b.index});
   }
   return triangles;

@@ -1,9 +1,9 @@
-// Triangles between the points of a cloud, enough of them for a Laplacian though not a surface.
+// Triangles between the points of a cloud: enough of them for a Laplacian, though they form no surface.
 //
-// Sharp and Crane, "A Laplacian for nonmanifold triangle meshes", SGP 2020, section 5.7: the neighbours of
-// each point are laid into its tangent plane, and the triangles that meet at the point in their Delaunay
-// triangulation are taken. Most triangles are found from each of their corners, so the whole covers the
-// surface about three times.
+// Sharp and Crane, "A Laplacian for nonmanifold triangle meshes", SGP 2020, section 5.7. The neighbours of
+// each point are projected into its tangent plane, and the triangles that meet at the point in their Delaunay
+// triangulation are taken. Most triangles are found from each of their corners, so that all triangles
+// together cover the surface about three times.
 #pragma once
 
 #include <span>
@@ -13,8 +13,8 @@
 
 namespace astrolith {
 
-// Of each point and its `neighbours` nearest ones; 3 <= neighbours < n. normals (n) unit vectors. Throws
-// InputError for other numbers.
+// Triangles among each point and its `neighbours` nearest points. normals (n) are unit vectors. Throws
+// InputError unless there is a normal for each point and 3 <= neighbours < n.
 std::vector<Triangle> point_cloud_triangles(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                                             int neighbours);
 

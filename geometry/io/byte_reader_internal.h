@@ -1,4 +1,4 @@
-// Walks over a binary file from one number to the next, in either byte order, and never past its end.
+// Reads a binary file number by number, in either byte order, and never past its end.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,8 @@ class ByteReader {
     need(bytes, what);
     at_ += bytes;
   }
-  // Throws unless count rows of row_bytes still follow: call it before making room for them.
+  // Throws unless `count` rows of row_bytes still follow. Readers call it before they allocate memory for the
+  // rows.
   void need_rows(std::uint64_t count, std::size_t row_bytes, std::string_view rows) const {
     if (row_bytes != 0 && count > bytes_left() / row_bytes) {
       fail(std::to_string(count) + " " + std::string(rows) + " are declared, but only " +

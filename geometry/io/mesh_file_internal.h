@@ -1,4 +1,4 @@
-// A mesh file in memory, and the one way its readers complain.
+// A mesh file in memory, and the one form of its readers' error messages.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,19 @@ struct MeshFile {
   std::filesystem::path path;
   std::string bytes;
 
-  // "FILE: place: what; remedy".
+  // Throws InputError("FILE: place: what; remedy"). An empty place is left out.
   [[noreturn]] void fail(std::string_view place, std::string_view what, std::string_view remedy) const;
 };
 
-// The whole file in one read. Throws InputError when it is missing, a folder, empty, or not a plain file.
+// Reads the whole file. Throws InputError when it is missing, empty, a folder, or not a plain file.
 MeshFile load_mesh_file(const std::filesystem::path& path);
 
-// At most 40 characters of a piece of a file, fit for a one-line message: what is not printable ASCII is
-// shown as '?'.
+// At most 40 characters of a piece of a file, in quotes, for a one-line message. Characters that are not
+// printable ASCII become '?'.
 std::string quoted(std::string_view piece);
 
-// One reader a format. They may leave indices out of range and coordinates not finite: read_mesh checks both.
+// One reader for each format. Readers may leave indices out of range and coordinates that are not finite;
+// read_mesh checks both.
 TriangleMesh read_obj(const MeshFile& file);
 TriangleMesh read_ply(const MeshFile& file);
 TriangleMesh read_stl_ascii(const MeshFile& file);

@@ -40,7 +40,7 @@ struct Signature {
   const char* name;
 };
 
-// What people hand over by mistake.
+// Files of other kinds that users hand over by mistake.
 constexpr Signature kOtherFiles[] = {
     {"\x89PNG", "a PNG picture"},
     {"\xff\xd8\xff", "a JPEG picture"},
@@ -62,7 +62,8 @@ bool starts_with_any(std::string_view text, std::span<const std::string_view> st
   return std::any_of(starts.begin(), starts.end(), [&](std::string_view s) { return text.starts_with(s); });
 }
 
-// 80 bytes, a count, 50 bytes a triangle: nothing else has exactly this size.
+// A binary STL has 80 bytes, a count and 50 bytes for each triangle. Files of other formats do not have
+// exactly this size.
 bool is_binary_stl(std::string_view bytes) {
   if (bytes.size() < 84) return false;
   std::uint32_t count = 0;
@@ -70,7 +71,7 @@ bool is_binary_stl(std::string_view bytes) {
   return bytes.size() == 84 + std::uint64_t{50} * count;
 }
 
-// The numbers on the next filled line; 0 when it holds anything else.
+// The number of numbers on the next filled line; 0 when the line holds anything else.
 int count_numbers(TextScanner& scan) {
   if (!scan.next_filled_line()) return 0;
   int count = 0;
@@ -81,8 +82,8 @@ int count_numbers(TextScanner& scan) {
   return count;
 }
 
-// Tables of numbers: an ICQ states Q and goes on with "x y z"; a plate model states its count (or both
-// counts) and goes on with "i x y z".
+// Tells tables of numbers apart. An ICQ states Q and goes on with "x y z". A plate model states its count (or
+// both counts) and goes on with "i x y z".
 Format sniff_table(const MeshFile& file) {
   TextScanner scan(file);
   const int first = count_numbers(scan);
@@ -116,7 +117,7 @@ Format sniff(const MeshFile& file) {
   return sniff_words(file);
 }
 
-// The formats that a name may stand for, the likeliest first; empty for a name that says nothing.
+// The formats that an extension may stand for, the likeliest first; none for an unknown extension.
 std::span<const Format> formats_of(const std::string& extension) {
   using enum Format;
   static constexpr Format kTable[] = {plate, icq, obj};

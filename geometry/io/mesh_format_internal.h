@@ -1,4 +1,4 @@
-// Which format a file has, by its name and by its content.
+// Finds the format of a file by its name and by its content.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,13 @@
 
 namespace astrolith {
 
-// ".ply" for "Bennu.PLY".
+// The extension in lower case: ".ply" for "Bennu.PLY".
 std::string lower_extension(const std::filesystem::path& file);
 
 using MeshReader = TriangleMesh (*)(const MeshFile&);
 
-// The reader for the file. Throws InputError when the extension names one format and the content is
-// unmistakably another, or when neither tells.
+// The reader for the file. Throws InputError when the extension names one format and the content is clearly
+// another, and when neither tells the format.
 MeshReader reader_for(const MeshFile& file);
 
 }  // namespace astrolith

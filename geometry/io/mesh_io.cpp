@@ -15,7 +15,7 @@ namespace {
 // Squares of coordinates must stay finite in float32, which renderers and distance trees compute in.
 constexpr double kLargestCoordinate = 1e18;
 
-// The shortest decimals that read back as the same doubles.
+// The coordinates as the shortest decimals that read back as the same doubles.
 std::string point_text(const Vec3d& p) {
   std::string text;
   for (const double coordinate : {p.x, p.y, p.z}) {

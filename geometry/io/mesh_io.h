@@ -1,4 +1,4 @@
-// Triangle meshes from files and into files.
+// Reads triangle meshes from files and writes them into files.
 #pragma once
 
 #include <filesystem>
@@ -10,44 +10,45 @@
 
 namespace astrolith {
 
-// Reads a mesh; the extension and the content must agree on the format:
-//  - .obj: Wavefront; polygons, v/vt/vn corners, negative indices; texture and normals are passed over
-//  - .ply: ascii, binary little and big endian; unit vertex normals are kept
-//  - .stl: ascii and binary; corners at the same coordinates become one vertex
-//  - .off: with or without colours and normals
-//  - .tab .plt .txt: PDS plate model of rows "i x y z" and "i a b c", or "v x y z" and "f a b c"
-//  - .icq (or .tab .plt .txt): Gaskell's implicitly connected quadrilaterals; the faces' edges are merged
-//  - .bmf: bodies of OpenUniverse, in kilometres; welded, one winding of each triangle
-// Another extension is decided by the content. Polygons become fans. Lengths stay in the file's unit.
+// Reads a mesh. The extension and the content must agree on the format:
+// - .obj: Wavefront; polygons, corners v, v/vt, v/vt/vn, negative indices; texture and normals are ignored
+// - .ply: ascii, binary little and big endian; unit vertex normals are kept
+// - .stl: ascii and binary; corners at the same coordinates become one vertex
+// - .off: with or without colours and normals
+// - .tab .plt .txt: PDS plate model with rows "i x y z" and "i a b c", or "v x y z" and "f a b c"
+// - .icq (or .tab .plt .txt): Gaskell's implicitly connected quadrilaterals; the faces' edges are merged
+// - .bmf: bodies of OpenUniverse, in kilometres; welded, with one winding of each triangle
+// For any other extension the content decides. Polygons become fans. Lengths stay in the file's unit.
 //
 // The mesh has coordinates of at most 1e18, at least one face and every index in range; it need not be
-// closed. Throws InputError ("FILE: line 7: what is wrong; what to do"). Memory is bounded by the file's
-// size, whatever the file declares.
+// closed. Throws InputError ("FILE: line 7: what is wrong; what to do"). The size of the file bounds the
+// memory used, whatever counts the file declares.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-// The same, but points with unit normals and no faces will do as well (.ply): the mesh then has vertices and
-// normals and no triangles.
+// Reads as read_mesh does, but also accepts points with unit normals and without faces (.ply). The mesh then
+// has vertices and normals and no triangles.
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file);
 
-// What a mesh file says about itself; empty texts are left out.
+// Statements of a mesh file about itself. Empty texts are not written.
 struct MeshFileInfo {
   std::string length_unit;  // "m", "km", ...: what one unit of a coordinate is
   std::string frame;        // "body-fixed, +z spin pole, +x prime meridian"
-  std::string comment;      // anything else, one line
-  // In that frame, of coordinates that are relative to a point of it; absent: the frame's own.
+  std::string comment;      // any other text, one line
+  // The place in `frame` of the point that coordinates are relative to; absent where they are relative to the
+  // origin of the frame.
   std::optional<Vec3d> origin = std::nullopt;
-  std::vector<std::string> notes = {};  // further lines
+  std::vector<std::string> notes = {};  // further comment lines
 };
 
 // Writes .ply (binary little endian, float32), .obj (text, exact), .stl (binary, float32) or .glb (glTF 2.0,
-// float32, a node that turns +z up into +y up and scales m, km, cm, mm into metres). Normals are written
-// where the mesh has them. Throws InputError for another extension or a folder that cannot be written,
+// float32; a node turns +z up into +y up and scales m, km, cm, mm to metres). Normals are written where the
+// mesh has them. Throws InputError for another extension and for a folder that cannot be written. Throws
 // WorkError for a mesh without triangles, with indices out of range, or with coordinates that float32 cannot
 // hold.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
-// Throws the InputError that write_mesh would throw for the extension: for programs that compute long before
-// they write.
+// Throws the InputError that write_mesh would throw for the extension. Programs that compute long before they
+// write call it first.
 void check_mesh_extension(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// One writer a format, and what they share.
+// One writer for each format, and what the writers share.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,18 @@
 
 namespace astrolith {
 
-// They rely on what write_mesh has checked: at least one triangle, indices in range, coordinates that float32
-// can hold.
+// Writers rely on what write_mesh has checked: at least one triangle, indices in range, and coordinates that
+// float32 can hold.
 void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
-// "length unit: km", "frame: ...", the comment and the program: each one line, empty ones left out.
+// The lines of a file's comment: "length unit: km", "frame: ...", the comment and the program. Empty texts
+// give no line.
 std::vector<std::string> info_lines(const MeshFileInfo& info);
 
-// Gathers small pieces into large writes.
+// Collects small pieces into large writes.
 class BufferedOutput {
  public:
   explicit BufferedOutput(OutputFile& file) : file_(file) {}

@@ -8,7 +8,7 @@ namespace {
 
 PlyType parse_type(const TextScanner& scan, std::string_view word) {
   using enum PlyType;
-  // Turk's names and the later ones with their sizes.
+  // The names of Turk 1994, and later names that state the size.
   static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames{{
       {"char", int8},
       {"int8", int8},

@@ -1,4 +1,4 @@
-// The header of a PLY file (Turk 1994): which elements follow, how often, and what their rows are made of.
+// The header of a PLY file (Turk 1994): its elements, their counts, and the properties in each row.
 #pragma once
 
 #include <bit>
@@ -17,9 +17,9 @@ std::size_t size_of(PlyType type);
 
 struct PlyProperty {
   std::string name;
-  PlyType type{};  // of the value, or of a list's entries
+  PlyType type{};  // type of the value, or of the entries of a list
   bool is_list = false;
-  PlyType count_type{};  // of a list's length
+  PlyType count_type{};  // type of the length of a list
 };
 
 struct PlyElement {
@@ -27,7 +27,7 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  // The fewest bytes that a row takes in a binary file, its lists being empty.
+  // The fewest bytes that a row takes in a binary file: every list is empty.
   std::size_t least_row_bytes() const;
 };
 
@@ -37,7 +37,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-// Leaves scan at the end of the line "end_header".
+// Reads the header and leaves `scan` at the end of the line "end_header".
 PlyHeader read_ply_header(TextScanner& scan);
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// The bytes of the PLY files that we write.
+// The layout of the PLY files that Astrolith writes.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@ namespace astrolith {
 
 inline constexpr std::size_t kPlyTriangleBytes = 13;
 
-// The header, of the same length for all counts: a comment takes up what the digits leave.
+// The header of a PLY file. It has the same length for all counts: a comment fills up what the digits leave.
 std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
                        bool with_normals, bool with_labels);
 
-// One uchar 3 and three little-endian uint32.
+// A triangle as one uchar, 3, and three little-endian uint32.
 std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle);
 
 }  // namespace astrolith

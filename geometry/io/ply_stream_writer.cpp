@@ -23,7 +23,7 @@ std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std
   const std::string vertices = std::to_string(num_vertices);
   const std::string triangles = std::to_string(num_triangles);
   constexpr std::size_t kLongestCounts = 40;  // two 64-bit numbers
-  // With the other comments: OpenMesh loses its place over one behind the last property.
+  // The comment stands among the other comments, because OpenMesh cannot read one behind the last property.
   header += "comment " + std::string(kLongestCounts - vertices.size() - triangles.size(), '.') + "\n";
   header += "element vertex " + vertices + "\n";
   for (const char* name : {"x", "y", "z"}) header += std::string("property float ") + name + "\n";
@@ -48,7 +48,7 @@ PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFi
   const std::string spill_name = out_.temporary_name() + ".faces";
   spill_.reset(std::fopen(spill_name.c_str(), "w+b"));
   if (!spill_) fail_spill();
-  // Without a name it is gone when the process ends, however that happens.
+  // A file without a name is gone when the process ends, however it ends.
   std::remove(spill_name.c_str());
   const std::string text = header();
   out_.write(text.data(), text.size());

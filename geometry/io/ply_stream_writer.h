@@ -1,4 +1,4 @@
-// Writes a binary PLY while a mesher makes it, in memory that does not grow with the mesh.
+// Writes a binary PLY while a mesher makes the mesh, in memory that does not grow with the mesh.
 #pragma once
 
 #include <cstdint>
@@ -15,34 +15,35 @@
 
 namespace astrolith {
 
-// Where a vertex came from.
+// The origin of a vertex: the number of the layer that made the surface there, and its height above the bare
+// body.
 struct VertexLabel {
   std::int32_t label = 0;
   float elevation = 0.0f;  // length units
 };
 
-// Labels of as many vertices.
+// Fills in the labels of as many vertices.
 using VertexLabeller = std::function<void(std::span<const MeshVertex>, std::span<VertexLabel>)>;
 
 //   PlyStreamWriter writer("bennu.ply", {.length_unit = "km"});
 //   mesh_field(field, bounds, 512, writer);
-//   writer.finish();                    // without this no file appears
+//   writer.finish();                    // without this call no file appears
 //
-// Binary little endian; float32 x y z nx ny nz a vertex, one uchar and three uint32 a triangle. Vertices go
-// to the file as they come, triangles to a nameless file beside it that is appended at the end. The bytes
-// depend on the vertices and triangles alone, not on how the calls group them.
+// The file is binary little endian: float32 x y z nx ny nz for each vertex, one uchar and three uint32 for
+// each triangle. Vertices go to the file at once. Triangles go to a nameless temporary file beside it, which
+// is appended at the end. The bytes depend on the vertices and triangles alone, not on how calls group them.
 class PlyStreamWriter : public MeshSink {
  public:
-  // Throws InputError when the folder cannot be written.
-  // With a labeller, int32 label and float32 elevation stand behind the normal of each vertex.
+  // Throws InputError when the folder cannot be written. With a labeller, each vertex has an int32 label and
+  // a float32 elevation behind its normal.
   PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info, VertexLabeller labeller = {});
 
-  // Both throw WorkError when the disk is full; the one for more than 2^32 - 1 vertices, the other for a
-  // triangle that names a vertex not yet given.
+  // Both throw WorkError when the disk is full. add_vertices also throws it for more than 2^32 - 1 vertices,
+  // add_triangles for a triangle that names a vertex not yet given.
   void add_vertices(std::span<const MeshVertex> vertices) override;
   void add_triangles(std::span<const Triangle> triangles) override;
 
-  // Appends the triangles, states the counts and gives the file its name. Called once.
+  // Appends the triangles, states the counts in the header and gives the file its name. Must be called once.
   void finish();
 
   std::uint64_t num_vertices() const { return num_vertices_; }
@@ -59,7 +60,7 @@ class PlyStreamWriter : public MeshSink {
 
   std::filesystem::path target_;
   MeshFileInfo info_;
-  VertexLabeller labeller_;  // null: no labels
+  VertexLabeller labeller_;  // null where no labels are written
   OutputFile out_;
   std::unique_ptr<std::FILE, FileCloser> spill_;
   std::uint64_t num_vertices_ = 0;

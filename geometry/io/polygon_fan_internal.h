@@ -1,5 +1,5 @@
-// Polygons as fans of triangles around their first corner: exact for convex polygons, which shape models
-// have.
+// Splits polygons into fans of triangles around their first corner. This is exact for convex polygons, which
+// are what shape models have.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace astrolith {
 
-// Vertices are counted in 32 bits, here and in every binary format.
+// Vertex indices have 32 bits, in TriangleMesh and in every binary format.
 inline constexpr std::int64_t kMaxVertices = std::int64_t{0xffffffff};
 
 inline void append_fan(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {

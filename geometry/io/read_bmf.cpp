@@ -1,5 +1,6 @@
-// BMF, the bodies of OpenUniverse: parts of a flag, a texture's name, a material, vertices and faces, little
-// endian. Vertices are repeated along texture seams, and every triangle stands twice, once in each winding.
+// BMF, the format of OpenUniverse for bodies. A file holds parts, and a part holds a flag, the name of a
+// texture, a material, vertices and faces, all little endian. Vertices are repeated along texture seams, and
+// every triangle stands twice, once in each winding.
 #include <algorithm>
 
 #include "geometry/io/byte_reader_internal.h"
@@ -51,7 +52,7 @@ TriangleMesh read_bmf(const MeshFile& file) {
   for (int parts = bytes.read<std::uint16_t>("the number of parts"); parts > 0; --parts)
     read_part(bytes, mesh);
   if (bytes.bytes_left() != 0) bytes.fail("bytes follow after the last part", "give a BMF file");
-  // Which of a pair's windings comes first is arbitrary, hence the last step.
+  // Either winding of a triangle may come first in the file, hence orient_faces.
   return orient_faces(drop_degenerate_and_repeated_faces(weld_vertices(std::move(mesh), 0.0)));
 }
 

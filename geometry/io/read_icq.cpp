@@ -1,8 +1,9 @@
-// Gaskell's implicitly connected quadrilaterals: Q, then for each of a cube's six faces (Q+1)^2 vertices row
-// by row. Faces repeat the vertices of the edges they share, so that 6 Q^2 + 2 remain.
+// Gaskell's implicitly connected quadrilaterals. A file states Q and then, for each of the six faces of a
+// cube, (Q+1)^2 vertices row by row. Faces repeat the vertices of the edges they share, so that 6 Q^2 + 2
+// vertices remain.
 //
-// Which edges are shared is taken from the coordinates of whole edges, not of single vertices: neighbouring
-// vertices that fell together in a printed file stay two.
+// Shared edges are found by the coordinates of whole edges, not of single vertices: neighbouring vertices
+// that rounding in a printed file has made equal stay two vertices.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +28,7 @@ class CubeGrid {
   std::uint32_t index(std::uint32_t face, std::uint32_t i, std::uint32_t j) const {
     return (face * (q_ + 1) + j) * (q_ + 1) + i;
   }
-  // Vertex k of 0 .. Q on edge 4 face + side.
+  // Vertex k, 0 .. Q, on edge 4 face + side.
   std::uint32_t on_edge(std::uint32_t edge, std::uint32_t k) const {
     const std::uint32_t face = edge / 4;
     switch (edge % 4) {
@@ -51,7 +52,7 @@ constexpr std::uint32_t kEdges = 4 * kFaces;
 struct EdgeMatch {
   std::uint32_t edge = 0;
   bool reversed = false;
-  double distance = HUGE_VAL;  // the largest between partners
+  double distance = HUGE_VAL;  // the largest distance between two partner vertices
 };
 
 double edge_distance(const CubeGrid& grid, const std::vector<Vec3d>& points, std::uint32_t a,
@@ -64,7 +65,7 @@ double edge_distance(const CubeGrid& grid, const std::vector<Vec3d>& points, std
   return largest;
 }
 
-// The edge of another face that runs along the same points.
+// The edge of another face whose points lie nearest to the points of this edge.
 EdgeMatch match_edge(const CubeGrid& grid, const std::vector<Vec3d>& points, std::uint32_t edge) {
   EdgeMatch best;
   for (std::uint32_t other = 0; other < kEdges; ++other) {
@@ -79,7 +80,7 @@ EdgeMatch match_edge(const CubeGrid& grid, const std::vector<Vec3d>& points, std
 }
 
 DisjointSets join_edges(const MeshFile& file, const CubeGrid& grid, const TriangleMesh& stored) {
-  // Files print at least five digits; partners differ by their rounding at most.
+  // Files print at least five digits, and partners differ by their rounding at most.
   const double tolerance = 1e-4 * stored.bounds().diagonal();
   DisjointSets classes(stored.vertices.size());
   for (std::uint32_t edge = 0; edge < kEdges; ++edge) {
@@ -95,7 +96,7 @@ DisjointSets join_edges(const MeshFile& file, const CubeGrid& grid, const Triang
   return classes;
 }
 
-// Two triangles along the shorter diagonal.
+// Splits a quadrilateral into two triangles along its shorter diagonal.
 void append_quad(const std::vector<Vec3d>& points, const std::array<std::uint32_t, 4>& q,
                  std::vector<Triangle>& out) {
   if (squared_norm(points[q[2]] - points[q[0]]) <= squared_norm(points[q[3]] - points[q[1]])) {
@@ -130,7 +131,7 @@ TriangleMesh merged(const TriangleMesh& stored, DisjointSets& classes) {
       new_from_stored[i] = static_cast<std::uint32_t>(mesh.vertices.size());
       mesh.vertices.push_back(stored.vertices[i]);
     } else {
-      new_from_stored[i] = new_from_stored[root];  // roots come first
+      new_from_stored[i] = new_from_stored[root];  // a root has the lowest number of its class
     }
   }
   mesh.triangles = stored.triangles;

@@ -1,5 +1,5 @@
-// Wavefront OBJ, of which a body's shape needs "v" and "f" lines; everything else is passed over. The "v x y
-// z", "f a b c" style of PDS plate models is the same language.
+// Wavefront OBJ. The shape of a body needs the lines "v" and "f" only; all others are ignored. PDS plate
+// models in the style "v x y z", "f a b c" can be read as OBJ too.
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/polygon_fan_internal.h"
 #include "geometry/io/text_scanner_internal.h"
@@ -7,7 +7,8 @@
 namespace astrolith {
 namespace {
 
-// "7", "7/1", "7//3" or "7/1/3"; 1-based, or negative and counted from the last vertex so far.
+// The index of the vertex that a corner names: "7", "7/1", "7//3" or "7/1/3". Numbers count from 1, or are
+// negative and count back from the last vertex so far.
 std::uint32_t corner_index(const TextScanner& scan, std::string_view corner, std::size_t vertices_so_far) {
   const std::int64_t index = scan.to_integer(corner.substr(0, corner.find('/')), "vertex number");
   const std::int64_t count = static_cast<std::int64_t>(vertices_so_far);
@@ -35,7 +36,8 @@ TriangleMesh read_obj(const MeshFile& file) {
       while (!scan.line_done()) {
         const std::string_view corner = scan.word();
         if (corner.front() == '#') break;
-        if (corner == "\\" && scan.line_done() && scan.next_line()) continue;  // goes on in the next line
+        // A backslash at the end of a line continues the face on the next one.
+        if (corner == "\\" && scan.line_done() && scan.next_line()) continue;
         polygon.push_back(corner_index(scan, corner, mesh.vertices.size()));
       }
       if (polygon.size() < 3) scan.fail("the face has fewer than three vertices", "remove or complete it");

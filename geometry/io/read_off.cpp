@@ -1,5 +1,5 @@
-// OFF (Geomview): counts of vertices, faces and edges, then a line each. Normals, colours and texture
-// coordinates behind the numbers that matter are passed over.
+// OFF (Geomview): the numbers of vertices, faces and edges, then one line for each vertex and face. Normals,
+// colours and texture coordinates behind these numbers are ignored.
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/polygon_fan_internal.h"
 #include "geometry/io/text_scanner_internal.h"
@@ -7,7 +7,8 @@
 namespace astrolith {
 namespace {
 
-// Leaves scan at the counts: on the keyword's line, glued to it ("OFF8 6 12" occurs), or on the next.
+// Returns the first count and leaves `scan` behind it. The counts stand on the line of the keyword, directly
+// behind it ("OFF8 6 12" occurs), or on the next line.
 std::string_view first_count(TextScanner& scan) {
   if (!scan.next_filled_line()) scan.fail_truncated("'OFF'");
   std::string_view word = scan.word();

@@ -1,5 +1,5 @@
-// The plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", 1-based.
-// The first line may state both counts. (Models with rows "v x y z" and "f a b c" are read as OBJ.)
+// Plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", numbered from
+// 1. The first line may state both counts. (Models with rows "v x y z" and "f a b c" are read as OBJ.)
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/polygon_fan_internal.h"
 #include "geometry/io/text_scanner_internal.h"
@@ -17,7 +17,7 @@ std::size_t checked_count(const TextScanner& scan, std::int64_t count, const cha
   return static_cast<std::size_t>(count);
 }
 
-// Goes to row number i (1-based) of a table, past its own number.
+// Goes to row i (counted from 1) of a table and reads the number that stands at its start.
 void start_row(TextScanner& scan, std::size_t i, const char* what) {
   if (!scan.next_filled_line()) scan.fail_truncated(std::string(what) + " " + std::to_string(i));
   const std::int64_t stated = scan.integer("row number");

@@ -1,5 +1,5 @@
-// PLY, ascii and binary: properties in any order and of any type; unknown properties and elements are
-// skipped.
+// PLY, ascii and binary. Properties may come in any order and have any type; unknown properties and elements
+// are skipped.
 #include <cmath>
 
 #include "geometry/io/byte_reader_internal.h"
@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-// Numbers of a binary body.
+// Reads the numbers of a binary body.
 class BinarySource {
  public:
   BinarySource(const MeshFile& file, std::size_t offset, std::endian order) : bytes_(file, offset, order) {}
@@ -50,7 +50,7 @@ class BinarySource {
   ByteReader bytes_;
 };
 
-// Numbers of an ascii body.
+// Reads the numbers of an ascii body.
 class TextSource {
  public:
   explicit TextSource(TextScanner& scan) : scan_(scan) {}
@@ -70,7 +70,7 @@ class TextSource {
 
  private:
   void need(std::uint64_t count, std::size_t bytes, const std::string& rows) const {
-    // The current line may hold entries too: it is part of the file, so the file's size bounds them all.
+    // The current line may hold entries too, so that the size of the whole file is the bound.
     if (bytes != 0 && count > (scan_.bytes_in_file() + 1) / bytes) {
       scan_.fail(std::to_string(count) + " " + rows + " are declared, more than the file can hold",
                  "it may be truncated: fetch it again");
@@ -158,7 +158,7 @@ template <typename Source>
 TriangleMesh read_body(Source&& source, const PlyHeader& header) {
   TriangleMesh mesh;
   for (const PlyElement& element : header.elements) {
-    if (element.properties.empty()) continue;  // rows of nothing, however many
+    if (element.properties.empty()) continue;  // rows without properties take no bytes
     source.need_rows(element);
     if (element.name == "vertex" && mesh.vertices.empty()) {
       read_vertices(source, element, mesh);
@@ -173,7 +173,7 @@ TriangleMesh read_body(Source&& source, const PlyHeader& header) {
   return mesh;
 }
 
-// Some programs write zeros for normals they do not have.
+// False where a normal is not a unit vector: some programs write zeros for normals they do not have.
 bool all_unit(const std::vector<Vec3d>& normals) {
   for (const Vec3d& n : normals) {
     if (!(std::fabs(squared_norm(n) - 1.0) < 1e-3)) return false;

@@ -1,5 +1,5 @@
-// STL, ascii and binary. It has no shared vertices: corners at equal coordinates become one vertex, and
-// facets that collapse so are dropped.
+// STL, ascii and binary. The format has no shared vertices: corners at equal coordinates become one vertex,
+// and facets that name a vertex twice afterwards are dropped.
 #include "geometry/io/byte_reader_internal.h"
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/text_scanner_internal.h"

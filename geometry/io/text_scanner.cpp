@@ -6,14 +6,15 @@
 namespace astrolith {
 namespace {
 
-// Blanks inside a line; commas separate columns in some archived tables.
+// True for blanks inside a line. Commas count as blanks, because they separate columns in some archived
+// tables.
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == ',' || c == '\r' || c == '\v' || c == '\f'; }
 
 void drop_plus(std::string_view& word) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
 }
 
-// Fortran writes 1.5D+03 for 1.5e+03.
+// A number in Fortran's form, 1.5D+03 for 1.5e+03.
 std::optional<double> parse_fortran(std::string_view word) {
   char copy[64];
   if (word.size() > sizeof copy) return {};

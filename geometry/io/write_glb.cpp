@@ -1,4 +1,4 @@
-// glTF 2.0 in its binary container (Khronos, sections 3 and 4.4): one JSON chunk, one chunk of numbers.
+// glTF 2.0 in its binary container (Khronos, sections 3 and 4.4): one chunk of JSON and one chunk of numbers.
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kUnsignedInt = 5125;                 // component types
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;  // targets of buffer views
 
-// Metres in one unit of length; 1 for units that glTF's readers will have to be told about.
+// Metres in one unit of length; 1 for units whose length is unknown.
 double metres_per(const std::string& length_unit) {
   if (length_unit == "km") return 1000.0;
   if (length_unit == "cm") return 0.01;
@@ -22,7 +22,7 @@ double metres_per(const std::string& length_unit) {
 
 Json vector_json(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
 
-// The smallest and largest coordinates as stored, which the format asks for.
+// The smallest and largest coordinates as stored, which the format demands.
 std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh) {
   const Box box = mesh.bounds();
   return {to_float(box.min), to_float(box.max)};
@@ -50,7 +50,7 @@ class GlbDocument {
     return extras;
   }
 
-  // A quarter turn about x takes +z up into +y up: quaternion (x y z w).
+  // The node turns the body about x, so that +z up becomes +y up. Quaternions are (x y z w).
   static Json node(const MeshFileInfo& info) {
     constexpr double kHalf = 0.70710678118654757;
     const double scale = metres_per(info.length_unit);
@@ -59,7 +59,7 @@ class GlbDocument {
     return result;
   }
 
-  // The default would be a mirror of metal.
+  // A material without shine; the default of glTF is fully metallic.
   static Json material() {
     return {{"name", "regolith"},
             {"pbrMetallicRoughness",
@@ -80,7 +80,7 @@ class GlbDocument {
     document_["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
   }
 
-  // One buffer view with one accessor; returns the accessor's number.
+  // Adds one buffer view with one accessor and returns the number of the accessor.
   int add_array(std::uint64_t count, int target, int component, const char* type, std::uint64_t bytes_each) {
     const int number = static_cast<int>(document_["accessors"].size());
     document_["bufferViews"].push_back(

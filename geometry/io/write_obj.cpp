@@ -1,4 +1,4 @@
-// Wavefront OBJ. Coordinates are the shortest decimals that read back as the same doubles.
+// Writes Wavefront OBJ. Coordinates are the shortest decimals that read back as the same doubles.
 #include <charconv>
 
 #include "geometry/io/mesh_writers_internal.h"

@@ -1,4 +1,4 @@
-// Binary STL: 80 bytes of text, a count, and 50 bytes a triangle.
+// Writes binary STL: 80 bytes of text, a count, and 50 bytes for each triangle.
 #include <limits>
 
 #include "geometry/io/mesh_writers_internal.h"
@@ -9,7 +9,7 @@ void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw WorkError(file.string() + ": STL holds at most 2^32 - 1 triangles; write a .ply");
   }
-  // Readers take a header that starts with "solid" for the ascii form.
+  // The text must not start with "solid": readers would take the file for the ascii form.
   std::string header = "Binary STL";
   for (const std::string& line : info_lines(info)) header += "; " + line;
   header.resize(80, ' ');

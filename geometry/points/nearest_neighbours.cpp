@@ -32,7 +32,8 @@ std::vector<std::uint32_t> nearest_neighbours(std::span<const Vec3d> points, int
       0, static_cast<std::int64_t>(points.size()),
       [&](std::int64_t index) {
         const auto i = static_cast<std::uint32_t>(index);
-        // One more, since the point finds itself; where many lie in one place it may find only others.
+        // One more neighbour is sought, since the point finds itself. Where many points lie in one place, it
+        // may find others only.
         std::vector<std::uint32_t> found = tree.nearest(points[i], size + 1);
         std::erase(found, i);
         std::copy_n(found.begin(), size, neighbours.begin() + static_cast<std::ptrdiff_t>(i * size));

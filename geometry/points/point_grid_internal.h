@@ -1,4 +1,4 @@
-// Points sorted into the cells of a uniform grid, for all neighbours within one fixed radius.
+// Points sorted into the cells of a uniform grid, to find all neighbours within one fixed radius.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@ class PointGrid {
   // Keeps a reference to the points. radius > 0.
   PointGrid(const std::vector<Vec3d>& points, double radius) : points_(points), radius_(radius) {
     for (const Vec3d& p : points) box_.extend(p);
-    // Cells never smaller than what 21 bits an axis can number.
-    cell_ = std::max(radius, box_.diagonal() / ((1 << 20) - 2));
+    // The key of a cell has 21 bits for each axis, so that cells have a smallest size.
+    cell_ = std::max(radius, box_.diagonal() / (kMostCells - 2));
     sorted_.reserve(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i) sorted_.emplace_back(key(cell_of(points[i])), i);
     std::sort(sorted_.begin(), sorted_.end());
   }
 
-  // Calls visit(index, squared distance) for each other point at a distance below radius, always in the same
-  // order.
+  // Calls visit(index, squared distance) for each other point at a distance below the radius, in an order
+  // that depends on the points and the radius alone.
   template <typename Visit>
   void for_each_neighbour(std::uint32_t i, const Visit& visit) const {
     const Cell center = cell_of(points_[i]);
@@ -43,13 +43,14 @@ class PointGrid {
   }
 
  private:
+  static constexpr int kMostCells = 1 << 20;  // along an axis
   struct Cell {
     std::int64_t x, y, z;
   };
   Cell cell_of(const Vec3d& p) const {
     const auto along = [&](double value, double low) {
-      return static_cast<std::int64_t>(std::floor((value - low) / cell_)) +
-             1;  // >= 1, so neighbours are >= 0
+      // At least 1, so that lower neighbours have numbers of at least 0.
+      return static_cast<std::int64_t>(std::floor((value - low) / cell_)) + 1;
     };
     return {along(p.x, box_.min.x), along(p.y, box_.min.y), along(p.z, box_.min.z)};
   }

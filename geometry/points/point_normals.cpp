@@ -11,9 +11,9 @@
 namespace astrolith {
 namespace {
 
-// The direction in which the points around their mean are spread least.
+// The direction in which point i and the points around it are spread least about their mean.
 Vec3d plane_normal(std::span<const Vec3d> points, std::uint32_t i, std::span<const std::uint32_t> around) {
-  Vec3d mean{};  // from point i, which keeps small differences of large coordinates
+  Vec3d mean{};  // relative to point i: small differences of large coordinates keep their digits
   for (const std::uint32_t j : around) mean += points[j] - points[i];
   mean *= 1.0 / static_cast<double>(around.size() + 1);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

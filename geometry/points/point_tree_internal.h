@@ -1,4 +1,4 @@
-// Neighbours of any place among a set of points (nanoflann's k-d tree).
+// A k-d tree (nanoflann) that finds the neighbours of any place among a set of points.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,23 @@ namespace astrolith {
 
 class PointTree {
  public:
-  // Keeps the span; points must be finite.
+  // Keeps a reference to the points, which must be finite.
   explicit PointTree(std::span<const Vec3d> points)
       : cloud_{points}, tree_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
   PointTree(const PointTree&) = delete;
   PointTree& operator=(const PointTree&) = delete;
 
-  // (index, squared distance) of points at most so far away, always in the same order.
+  // (index, squared distance) of all points at most `radius` away, always in the same order.
   std::vector<std::pair<std::uint32_t, double>> within(const Vec3d& place, double radius) const {
     std::vector<std::pair<std::uint32_t, double>> found;
     nanoflann::SearchParams unsorted;
     unsorted.sorted = false;
-    // nanoflann takes the square and leaves its border out.
+    // nanoflann takes the squared radius and leaves out points at exactly that distance.
     tree_.radiusSearch(&place.x, radius * radius * (1 + 1e-12), found, unsorted);
     return found;
   }
 
-  // Indices of the count nearest points, the nearest first; all points when there are fewer.
+  // The indices of the `count` nearest points, the nearest first; of all points when there are fewer.
   std::vector<std::uint32_t> nearest(const Vec3d& place, std::size_t count) const {
     std::vector<std::uint32_t> indices(count);
     std::vector<double> squared(count);

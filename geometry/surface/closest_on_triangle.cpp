@@ -9,7 +9,8 @@ ClosestOnTriangle at(const Vec3d& p, const Vec3d& point, Feature feature) {
   return {point, squared_norm(p - point), feature};
 }
 
-// The segment from start to end, whose two ends and inside are the features given.
+// The point nearest to p on the segment from start to end. The last three arguments name the segment's two
+// ends and its inside.
 ClosestOnTriangle closest_on_segment(const Vec3d& p, const Vec3d& start, const Vec3d& end, Feature at_start,
                                      Feature at_end, Feature between) {
   const Vec3d along = end - start;
@@ -35,12 +36,14 @@ ClosestOnTriangle closest_on_boundary(const Vec3d& p, const Vec3d& a, const Vec3
 
 ClosestOnTriangle closest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d normal = cross(b - a, c - a);
-  // Unnormalised barycentric coordinates of p's projection: the inside test of each side.
+  // Barycentric coordinates of p's projection, not normalised. Each is positive on the inner side of one side
+  // of the triangle.
   const double over_a = dot(normal, cross(b - p, c - p));
   const double over_b = dot(normal, cross(c - p, a - p));
   const double over_c = dot(normal, cross(a - p, b - p));
   if (!(over_a > 0 && over_b > 0 && over_c > 0)) return closest_on_boundary(p, a, b, c);
-  // Weights sum to one, so differences from a corner keep the digits of triangles far from the origin.
+  // The weights sum to one. Differences from a corner therefore keep the digits of triangles far from the
+  // origin.
   const double total = over_a + over_b + over_c;
   return at(p, a + (over_b / total) * (b - a) + (over_c / total) * (c - a), Feature::face);
 }

@@ -1,4 +1,5 @@
-// The point of a triangle nearest to another point, and on which feature of the triangle it lies.
+// The point of a triangle nearest to another point, and the feature of the triangle (corner, side or face)
+// that it lies on.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ struct ClosestOnTriangle {
   TriangleFeature feature = TriangleFeature::face;
 };
 
-// Any triangle, also one that has shrunk to a segment or a point. Follows the Voronoi regions of the
-// triangle (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+// The point of triangle a b c nearest to p. The triangle may have shrunk to a segment or a point. The test
+// follows the Voronoi regions of the triangle (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
 ClosestOnTriangle closest_on_triangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 }  // namespace astrolith

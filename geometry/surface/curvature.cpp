@@ -32,7 +32,8 @@ struct Ring {
     angles += angle(pq, pr);
     laplacian += cot_r * -pq + cot_q * -pr;
     normal += doubled;
-    // Voronoi region where the triangle has it inside; else half or a quarter of the triangle.
+    // The mixed area: the Voronoi region where it lies inside the triangle, otherwise half of an obtuse
+    // triangle at its obtuse corner and a quarter at its other corners.
     if (dot(pq, pr) < 0) {
       area += norm(doubled) / 4;
     } else if (cot_q < 0 || cot_r < 0) {

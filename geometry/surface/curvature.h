@@ -11,16 +11,16 @@ namespace astrolith {
 struct VertexCurvature {
   std::vector<double> gaussian;  // (#V) 1 / length^2; 1 / r^2 on a sphere
   std::vector<double> mean;      // (#V) 1 / length; positive where convex: 1 / r on a sphere
-  std::vector<double> area;      // (#V) the mixed area that each vertex stands for; sums to the surface's
+  std::vector<double> area;      // (#V) mixed area of each vertex, length^2; sums to the area of the surface
   // Vertices without a full ring of consistently oriented triangles (boundary, non-manifold, misoriented,
-  // unused) or on a triangle without area, ascending; their three values are 0.
+  // unused) and vertices of a triangle without area, in ascending order. Their three values are 0.
   std::vector<std::uint32_t> left_out;
 };
 
-// Meyer, Desbrun, Schroeder and Barr, "Discrete differential-geometry operators for triangulated
-// 2-manifolds", VisMath 2003: eq. 9 (Gaussian), eq. 8 and 5 (mean), figure 4 (mixed area). On a closed
-// manifold the sum of gaussian * area is 2 pi times the Euler characteristic. Throws InputError for indices
-// out of range.
+// Curvatures by Meyer, Desbrun, Schroeder and Barr, "Discrete differential-geometry operators for
+// triangulated 2-manifolds", VisMath 2003: eq. 9 (Gaussian), eq. 8 and 5 (mean), figure 4 (mixed area). On a
+// closed manifold the sum of gaussian * area is 2 pi times the Euler characteristic. Throws InputError for
+// indices out of range.
 VertexCurvature vertex_curvature(const TriangleMesh& mesh);
 
 }  // namespace astrolith

@@ -5,7 +5,7 @@
 namespace astrolith {
 namespace {
 
-// Over the 3 #F corners: the fan each corner belongs to.
+// Joins those of the 3 #F corners that belong to one fan of triangles around a vertex.
 DisjointSets fans_of(const TriangleMesh& mesh) {
   DisjointSets fans(3 * mesh.triangles.size());
   for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
@@ -38,7 +38,7 @@ HalfEdgeMesh half_edge_mesh(const TriangleMesh& mesh) {
       }
       corners[k] = vertex;
     }
-    // Cannot fail on a mesh that has been cut; OpenMesh would have printed why.
+    // This cannot fail on a mesh that has been cut open; OpenMesh would print the reason.
     if (!result.half_edges.add_face(corners[0], corners[1], corners[2]).is_valid()) {
       throw WorkError("mesh: half-edges cannot hold triangle " + std::to_string(t));
     }

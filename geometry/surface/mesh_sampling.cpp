@@ -17,7 +17,7 @@ namespace astrolith {
 namespace {
 
 constexpr std::int64_t kCandidatesPerSample = 5;
-// Keeps indices in 32 bits.
+// The number of candidates must fit into 32 bits.
 constexpr std::int64_t kMaxSamples = std::numeric_limits<std::int32_t>::max() / kCandidatesPerSample;
 
 std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
@@ -38,7 +38,8 @@ void check_count(std::int64_t n) {
   }
 }
 
-// How crowded each candidate is, eq. 2 and 3 of Yuksel 2015.
+// The weight that a neighbour at some distance adds to the crowding of a candidate: eq. 2 and 3 of Yuksel
+// 2015.
 class Crowding {
  public:
   Crowding(double max_radius, double min_radius) : reach_(2 * max_radius), floor_(2 * min_radius) {}
@@ -66,8 +67,8 @@ std::vector<bool> eliminate(const std::vector<Vec3d>& points, std::int64_t n, co
         weights[static_cast<std::size_t>(i)] = sum;
       },
       256);
-  // Weights only fall, so an entry of the queue is never too low: one that is out of date goes back with its
-  // present weight. Among equals the highest index is removed.
+  // Weights only fall, so that no entry of the queue is too low. An entry that is out of date goes back with
+  // its present weight. Of equal weights the highest index is removed first.
   std::priority_queue<std::pair<double, std::uint32_t>> queue;
   for (std::uint32_t i = 0; i < points.size(); ++i) queue.emplace(weights[i], i);
   std::vector<bool> stays(points.size(), true);
@@ -116,12 +117,13 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, std::int64_t n, std::uin
         const auto i = static_cast<std::size_t>(index);
         CounterRandom random(seed, i);
         const auto found = std::upper_bound(areas.begin(), areas.end(), areas.back() * random.uniform());
-        // Rounding may push the drawn area onto the total; the last triangle with area then takes it.
+        // Rounding may push the drawn area onto the total. The last triangle with an area then takes the
+        // sample.
         const auto t = static_cast<std::size_t>(
             (found == areas.end() ? std::lower_bound(areas.begin(), areas.end(), areas.back()) : found) -
             areas.begin());
         const auto [a, b, c] = mesh.triangles[t];
-        // Uniform over a triangle: the square root undoes the corner's crowding.
+        // These weights are uniform over the triangle: the square root makes up for the crowding at corner a.
         const double root = std::sqrt(random.uniform()), split = random.uniform();
         const double wa = 1 - root, wb = root * (1 - split), wc = root * split;
         samples.points[i] = wa * mesh.vertices[a] + wb * mesh.vertices[b] + wc * mesh.vertices[c];

@@ -9,13 +9,14 @@
 #include "geometry/points/point_tree_internal.h"
 #include "geometry/surface/curvature.h"
 #include "numerics/parallel_for.h"
+#include "numerics/tangent_frame.h"
 
 namespace astrolith {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-// Fills gaussian with curvature_at(i) and counts what is undefined.
+// The curvatures curvature_at(i), i = 0 .. n - 1. Values that are not finite count as undefined and become 0.
 template <typename CurvatureAt>
 SampleCurvature at_all(std::size_t n, const CurvatureAt& curvature_at) {
   SampleCurvature result;
@@ -40,15 +41,8 @@ double farthest_corner(const TriangleMesh& mesh, const Triangle& triangle, const
   return farthest;
 }
 
-// Two directions at right angles to a unit vector and to each other.
-std::pair<Vec3d, Vec3d> tangents(const Vec3d& n) {
-  const Vec3d axis = std::fabs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d first = normalized(cross(n, axis));
-  return {first, cross(n, first)};
-}
-
-// K at the origin of z over (x, y), heights above a tangent plane; all lengths divided by their largest
-// before the fit, so that the rank does not depend on the unit.
+// K at (0, 0) of the quadric fitted to heights z over the tangent plane (x, y). All lengths are divided by
+// the largest before the fit, so that the rank does not depend on the unit.
 double quadric_curvature(const std::vector<Vec3d>& heights) {
   double size = 0;
   for (const Vec3d& h : heights) size = std::max(size, norm(h));
@@ -97,7 +91,7 @@ SampleCurvature point_curvature(std::span<const Vec3d> points, std::span<const V
                                 int neighbours) {
   const PointTree tree(points);
   return at_all(points.size(), [&](std::size_t i) {
-    const auto [x, y] = tangents(normals[i]);
+    const auto [x, y] = crossed_tangents(normals[i]);
     std::vector<Vec3d> heights;
     for (const std::uint32_t j : tree.nearest(points[i], static_cast<std::size_t>(neighbours))) {
       const Vec3d r = points[j] - points[i];

@@ -1,4 +1,4 @@
-// How far two surfaces lie apart, measured at random points of both.
+// The distance between two surfaces, measured at random points of both.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace astrolith {
 
-// Of the distances from points of one surface to the other surface, in the meshes' unit.
+// Statistics of the distances from points of one surface to the other surface, in the unit of the meshes.
 struct DistanceFigures {
   double mean = 0;
-  double p99 = 0;  // 99 of 100 samples are at most this far
+  double p99 = 0;  // 99 of 100 samples lie at most this far from the other surface
   double max = 0;
 };
 
@@ -20,11 +20,12 @@ struct SurfaceDistanceReport {
   DistanceFigures from_a_to_b, from_b_to_a;
 };
 
-// samples > 0 area-weighted points on each mesh. max is a lower bound of the Hausdorff distance.
+// Measures from `samples` > 0 area-weighted points on each mesh. `max` is a lower bound of the Hausdorff
+// distance. Throws InputError when samples <= 0 and where SurfaceTree and sample_surface do.
 SurfaceDistanceReport surface_distance(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples,
                                        std::uint64_t seed);
 
-// As above where the tree of a fixed mesh is at hand.
+// The distance between two meshes whose trees have been built before.
 SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_of_a,
                                        const TriangleMesh& b, const SurfaceTree& tree_of_b,
                                        std::int64_t samples, std::uint64_t seed);

@@ -14,34 +14,29 @@
 #include "geometry/mesh_normals.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/surface/closest_on_triangle.h"
+#include "geometry/surface/triangle_scene.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
 
-struct ReleaseEmbree {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, ReleaseEmbree>;
-using Scene = std::unique_ptr<RTCSceneTy, ReleaseEmbree>;
-
-void check(const TriangleMesh& mesh) {
+const TriangleMesh& checked(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw InputError("mesh: has no triangles; a surface needs at least one");
   for (const Vec3d& p : mesh.vertices) {
     if (!std::isfinite(squared_norm(p))) throw InputError("mesh: a vertex is not finite; repair the file");
   }
   check_indices(mesh);
+  return mesh;
 }
 
-void check_embree(RTCDevice device) {
-  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) {
-    throw WorkError("building the tree of the surface failed; is there enough memory?");
-  }
+// The mesh in the unit ball about the centre of its box.
+TriangleScene unit_scene(const TriangleMesh& mesh) {
+  const Box box = mesh.bounds();
+  return {mesh, box.center(), box.diagonal() > 0 ? 2 / box.diagonal() : 1};
 }
 
-// (3 #F) pseudo-normals of the sides that start at each corner: the sum of the unit normals of all triangles
-// at the edge.
+// (3 #F) pseudo-normals of the sides that start at each corner: the normalised sum of the unit normals of all
+// triangles at the edge.
 std::vector<Vec3d> side_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& faces) {
   std::vector<Vec3d> normals(3 * mesh.triangles.size());
   for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
@@ -61,15 +56,18 @@ struct SurfaceTree::Body {
 };
 
 struct SurfaceTree::State {
-  TriangleMesh mesh;
+  TriangleMesh mesh;                         // without normals
   std::vector<Vec3d> faces, sides, corners;  // unit pseudo-normals, (#F), (3 #F), (#V)
-  Vec3d center;                              // Embree sees (p - center) * scale, inside the unit ball
-  double scale = 1;
-  Device device;
-  Scene scene;
-  std::vector<Body> bodies;  // of the components whose boxes meet another's
+  TriangleScene scene;                       // inside the unit ball
+  std::vector<Body> bodies;                  // the components whose boxes meet another component's box
 
-  Vec3d scaled(const Vec3d& p) const { return scale * (p - center); }
+  explicit State(const TriangleMesh& m)
+      : mesh{m.vertices, m.triangles, {}},
+        faces(triangle_normals(m)),
+        sides(side_normals(m, faces)),
+        corners(vertex_normals(m)),
+        scene(unit_scene(m)) {}
+
   ClosestOnTriangle on_triangle(const Vec3d& p, std::uint32_t t) const {
     const Triangle& v = mesh.triangles[t];
     return closest_on_triangle(p, mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]);
@@ -79,16 +77,16 @@ struct SurfaceTree::State {
     if (feature == TriangleFeature::face) return faces[t];
     return index < 3 ? corners[mesh.triangles[t][index]] : sides[3 * std::size_t{t} + index - 3];
   }
-  void build_scene();
 };
 
 namespace {
 
-// Overlaps are looked for among at most so many components: each pair is compared, each gets a tree.
+// Overlaps are sought among at most this many components. All pairs are compared, and each component gets a
+// tree.
 constexpr std::size_t kMaxBodies = 64;
 
-// The components as meshes of their own when their number is 2 to kMaxBodies and all are wound outwards;
-// none otherwise.
+// The components as separate meshes, when there are 2 to kMaxBodies of them and all are wound outwards;
+// otherwise an empty list.
 std::vector<TriangleMesh> separate_bodies(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> component = triangle_components(mesh);
   const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
@@ -113,7 +111,7 @@ std::vector<TriangleMesh> separate_bodies(const TriangleMesh& mesh) {
   return outwards ? bodies : std::vector<TriangleMesh>();
 }
 
-// Beyond this many radii from the mesh single precision could not tell its boxes apart.
+// Beyond this many radii from the mesh, boxes cannot be told apart in single precision.
 constexpr double kFarInRadii = 1e5;
 
 // The best candidate of one query.
@@ -123,7 +121,7 @@ struct Search {
   std::uint32_t triangle = 0;
   ClosestOnTriangle best{{}, std::numeric_limits<double>::infinity(), TriangleFeature::face};
 
-  // True when the triangle is nearer, or as near and of a lower index.
+  // Takes the candidate and returns true when it is nearer than the best one, or as near with a lower index.
   bool offer(const ClosestOnTriangle& candidate, std::uint32_t t) {
     const double d2 = candidate.squared_distance;
     if (d2 > best.squared_distance || (d2 == best.squared_distance && t >= triangle)) return false;
@@ -131,8 +129,8 @@ struct Search {
     triangle = t;
     return true;
   }
-  // A radius in single precision that surely reaches the best candidate: positions and distances carry
-  // rounding errors of a few 2^-24 of the numbers involved; 16 times 2^-24 is left for them.
+  // A radius in single precision that surely reaches the best candidate. Positions and distances carry
+  // rounding errors of a few 2^-24 of the numbers involved; 16 times 2^-24 is allowed for them.
   float safe_radius(double scale) const {
     return static_cast<float>(std::sqrt(best.squared_distance) * scale * (1 + 1e-6) +
                               1e-6 * (1 + scaled_norm));
@@ -141,41 +139,7 @@ struct Search {
 
 }  // namespace
 
-void SurfaceTree::State::build_scene() {
-  device.reset(rtcNewDevice(nullptr));
-  if (!device) throw WorkError("the ray-tracing library Embree does not start on this machine");
-  scene.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
-  auto* indices = static_cast<std::uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
-                              mesh.triangles.size()));
-  check_embree(device.get());
-  for (const Vec3d& vertex : mesh.vertices) {
-    const Vec3d q = scaled(vertex);
-    for (const double x : {q.x, q.y, q.z}) *positions++ = static_cast<float>(x);
-  }
-  for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
-  rtcSetGeometryPointQueryFunction(geometry, nullptr);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene.get());
-  check_embree(device.get());
-}
-
-SurfaceTree::SurfaceTree(const TriangleMesh& mesh) : state_(std::make_unique<State>()) {
-  check(mesh);
-  state_->mesh = {mesh.vertices, mesh.triangles, {}};
-  state_->faces = triangle_normals(mesh);
-  state_->sides = side_normals(mesh, state_->faces);
-  state_->corners = vertex_normals(mesh);
-  const Box box = mesh.bounds();
-  state_->center = box.center();
-  state_->scale = box.diagonal() > 0 ? 2 / box.diagonal() : 1;
-  state_->build_scene();
+SurfaceTree::SurfaceTree(const TriangleMesh& mesh) : state_(std::make_unique<State>(checked(mesh))) {
   const std::vector<TriangleMesh> bodies = separate_bodies(mesh);
   for (const TriangleMesh& body : bodies) {
     const auto meets = [&](const TriangleMesh& other) {
@@ -192,7 +156,7 @@ SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
 SurfaceTree::~SurfaceTree() = default;
 
 ClosestPoint SurfaceTree::closest(const Vec3d& p) const {
-  const Vec3d q = state_->scaled(p);
+  const Vec3d q = state_->scene.to_scene(p);
   Search search{p, norm(q)};
   if (search.scaled_norm > kFarInRadii) {
     for (std::uint32_t t = 0; t < state_->mesh.triangles.size(); ++t)
@@ -206,14 +170,14 @@ ClosestPoint SurfaceTree::closest(const Vec3d& p) const {
       auto& [state, current] = *static_cast<Call*>(arguments->userPtr);
       const std::uint32_t t = arguments->primID;
       if (!current.offer(state.on_triangle(current.p, t), t)) return false;
-      arguments->query->radius = current.safe_radius(state.scale);
+      arguments->query->radius = current.safe_radius(state.scene.scale());
       return true;
     };
     RTCPointQuery query{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), 0,
                         std::numeric_limits<float>::infinity()};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    rtcPointQuery(state_->scene.get(), &query, &context, visit, &call);
+    rtcPointQuery(state_->scene.handle(), &query, &context, visit, &call);
   }
   const ClosestOnTriangle& best = search.best;
   return {best.point, search.triangle, std::sqrt(best.squared_distance),
@@ -223,7 +187,8 @@ ClosestPoint SurfaceTree::closest(const Vec3d& p) const {
 double SurfaceTree::signed_distance(const Vec3d& p) const {
   const ClosestPoint nearest = closest(p);
   double distance = dot(p - nearest.point, nearest.normal) > 0 ? -nearest.distance : nearest.distance;
-  // Inside the union is inside any of them; a body that p is outside of can only offer less.
+  // A point inside any of the bodies is inside their union. A body that p is outside of offers only smaller
+  // values.
   for (const Body& body : state_->bodies) {
     if (boxes_touch(body.box, {p, p})) distance = std::max(distance, body.tree.signed_distance(p));
   }

@@ -10,36 +10,38 @@ namespace astrolith {
 
 struct ClosestPoint {
   Vec3d point;                 // on the surface
-  std::uint32_t triangle = 0;  // the lowest index among those equally near
+  std::uint32_t triangle = 0;  // lowest index among equally near triangles
   double distance = 0;         // >= 0, in the mesh's unit
-  // Angle-weighted pseudo-normal of the face, edge or vertex that point lies on: unit length, outwards; zero
-  // where every triangle around has no area.
+  // The angle-weighted pseudo-normal of the face, edge or vertex that `point` lies on: unit length, outwards.
+  // It is zero where no triangle around `point` has an area.
   Vec3d normal;
 };
 
 //   const SurfaceTree tree(mesh);
-//   tree.signed_distance({0, 0, 0});   // from many threads at once, if you like
+//   tree.signed_distance({0, 0, 0});   // any number of threads may query one tree
 //
-// Copies what it needs of the mesh. Boxes are searched in single precision by Embree's tree, with a margin
-// that keeps every candidate; distances are computed in double precision, so results have full precision and
-// do not depend on the machine's vector width.
+// The tree copies what it needs of the mesh. Embree searches boxes in single precision, with a margin that
+// keeps every candidate. Distances to the candidates are computed in double precision. Results therefore have
+// full precision and do not depend on the vector width of the machine.
 class SurfaceTree {
  public:
-  // Throws InputError for a mesh without triangles, with non-finite vertices or with indices out of range.
+  // Throws InputError for a mesh without triangles, with vertices that are not finite or with indices out of
+  // range, and WorkError when Embree does not start or runs out of memory.
   explicit SurfaceTree(const TriangleMesh& mesh);
   SurfaceTree(SurfaceTree&&) noexcept;
   SurfaceTree& operator=(SurfaceTree&&) noexcept;
   ~SurfaceTree();
 
-  // p must be finite.
+  // The point of the surface nearest to p, which must be finite.
   ClosestPoint closest(const Vec3d& p) const;
 
-  // Positive inside, zero on the surface, negative outside, for closed, oriented and welded meshes; sign by
-  // the pseudo-normal, which is right at edges and vertices too (Baerentzen and Aanaes 2005). Components that
-  // overlap count as their union (a contact binary whose lobes reach into one another), up to 64 of them, all
-  // wound outwards; walls buried in another component then bound nothing, and the distance inside the overlap
-  // is the one to the farther component's wall, never too large. Where a cavity's wall is wound inwards,
-  // components must not overlap.
+  // The distance of p from the surface: positive inside, zero on the surface, negative outside. The mesh must
+  // be closed, oriented and welded. The pseudo-normal decides the sign, which is right at edges and vertices
+  // too (Baerentzen and Aanaes 2005).
+  // Up to 64 components that overlap, all wound outwards, count as their union: a contact binary whose lobes
+  // reach into one another. A wall inside another component then bounds nothing. Inside the overlap the
+  // result is the distance to the wall of the farther component, which is never too large. Where the wall of
+  // a cavity is wound inwards, components must not overlap.
   double signed_distance(const Vec3d& p) const;
 
  private:

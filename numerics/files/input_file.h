@@ -1,4 +1,4 @@
-// What every reader asks of a file before it opens it.
+// Checks of an input file that every reader makes before it opens the file.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace astrolith {
 
-// Throws InputError when the file is missing, a folder, empty, or no plain file: opening a pipe could wait
-// for ever.
+// Throws InputError when the file is missing, empty, a folder, or not a plain file. Opening a pipe could wait
+// for ever, so pipes are refused.
 inline void require_plain_file(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);

@@ -1,4 +1,4 @@
-// Arrays for NumPy.
+// Writes arrays that numpy.load reads.
 #pragma once
 
 #include <bit>
@@ -11,14 +11,14 @@
 
 namespace astrolith {
 
-// Writes doubles, the last index of `shape` running fastest, as a .npy file of format 1.0 (little-endian
-// float64), whole or not at all. Throws InputError where the target cannot be written, WorkError when the
-// shape has another number of values.
+// Writes `values` as an array of the given shape, its last index running fastest, into a .npy file of format
+// 1.0 (little-endian float64). The file appears whole or not at all. Throws InputError where the target
+// cannot be written, and WorkError when the number of values is not the product of the shape.
 inline void write_npy(std::span<const double> values, std::span<const int> shape,
                       const std::filesystem::path& file) {
   static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
   std::size_t size = 1;
-  std::string lengths;  // "5, 5, ": NumPy takes a comma behind the last, and needs it behind a single one
+  std::string lengths;  // "5, 5, "; a shape of one length keeps its last comma, as Python's tuples do
   for (const int length : shape) {
     size *= static_cast<std::size_t>(length);
     lengths += std::to_string(length) + ", ";

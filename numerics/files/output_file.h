@@ -1,4 +1,4 @@
-// Files that are either whole or absent: written under a temporary name beside the target, then renamed.
+// Files that are whole or absent: each is written under a temporary name beside its target and then renamed.
 #pragma once
 
 #include <unistd.h>
@@ -16,14 +16,14 @@
 
 namespace astrolith {
 
-// The temporary files that there are, for a signal that ends the program at once; those beyond the first 64
-// are not known here.
+// Names of the temporary files that exist now, so that a signal handler can remove them. At most 64 are
+// recorded; further ones are not removed by the handler.
 inline std::array<std::atomic<const char*>, 64>& temporary_files() {
   static std::array<std::atomic<const char*>, 64> names{};
   return names;
 }
 
-// Safe in a signal's handler, which the program does not return from.
+// Removes the recorded temporary files. It may be called in a signal handler that ends the program.
 inline void remove_temporary_files() {
   for (const std::atomic<const char*>& name : temporary_files()) {
     if (const char* file = name.load()) ::unlink(file);
@@ -39,12 +39,12 @@ class OutputFile {
   // no regular file.
   explicit OutputFile(const std::filesystem::path& target)
       : target_(target), temporary_(target.string() + ".tmp" + std::to_string(::getpid())) {
-    std::error_code unused;  // what cannot be looked at cannot be opened either
+    std::error_code unused;  // a file without a status cannot be opened either, which is reported below
     const std::filesystem::file_status status = std::filesystem::status(target_, unused);
     if (std::filesystem::is_directory(status)) {
       throw InputError(target_.string() + ": is a folder; give the name of a file");
     }
-    // A rename would put a file in the place of the device.
+    // Renaming would replace the device itself by a file.
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
       throw InputError(target_.string() + ": is a device or pipe; give the name of a file");
     }
@@ -69,16 +69,19 @@ class OutputFile {
     forget();
   }
 
+  // Appends bytes. Throws WorkError when the disk is full.
   void write(const void* data, std::size_t bytes) {
     if (bytes != 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail();
   }
-  // For formats whose header states counts that are known only at the end.
+  // Moves to `offset` bytes from the start, for formats whose header states counts that are known only at the
+  // end.
   void seek(std::int64_t offset) {
     if (fseeko(file_, offset, SEEK_SET) != 0) fail();
   }
-  // For libraries that open the file themselves: write to this name, then commit.
+  // The name that a library which opens the file itself writes to; commit() then renames it.
   const std::string& temporary_name() const { return temporary_; }
 
+  // Gives the file its name. Throws WorkError when the disk is full.
   void commit() {
     const bool flushed = std::fflush(file_) == 0;
     const bool closed = std::fclose(file_) == 0;
@@ -104,8 +107,7 @@ class OutputFile {
   std::atomic<const char*>* known_as_ = nullptr;
 };
 
-// Throws InputError when the file could not be written: to be called before long work rather than found
-// after.
+// Throws InputError when the file cannot be written. Programs call it before long work.
 inline void require_writable(const std::filesystem::path& target) { const OutputFile probe(target); }
 
 // Throws InputError when writing the output would destroy the input.
@@ -127,7 +129,8 @@ inline void require_two_files(const std::filesystem::path& output, const std::fi
   require_other_file(output, other);
 }
 
-// For outputs of several files. Throws InputError when the folder is not there and cannot be made.
+// Makes the folder for an output of several files. Throws InputError when it does not exist and cannot be
+// made.
 inline void make_output_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -1,4 +1,4 @@
-// Folders for outputs of several files that are made only once there is something to write.
+// Output folders that are made only when there is something to write into them.
 #pragma once
 
 #include <unistd.h>
@@ -10,7 +10,7 @@
 
 namespace astrolith {
 
-// To be called before long work. Throws InputError when the folder is not there and could not be made now.
+// Throws InputError when the folder neither exists nor could be made now. Programs call it before long work.
 inline void require_folder_can_be_made(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::path there = std::filesystem::absolute(folder, error).lexically_normal();

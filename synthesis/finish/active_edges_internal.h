@@ -1,5 +1,5 @@
-// Which edges of a mesh have a turn in a sweep: those around vertices that moved in the last sweep or have
-// moved in this one. Sweeps then cost what moves, not what lies still.
+// Chooses the edges of a mesh that have a turn in a sweep: those at vertices that moved in the last sweep or
+// have moved in this one. A sweep then costs as much as moves, and vertices at rest cost nothing.
 #pragma once
 
 #include <bit>
@@ -13,7 +13,7 @@ namespace astrolith {
 
 class ActiveEdges {
  public:
-  // Edges by their two vertices; all have a turn in the first sweep.
+  // Each edge is given by its two vertices. All edges have a turn in the first sweep.
   ActiveEdges(std::size_t num_vertices, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
       : first_(num_vertices + 1, 0),
         incident_(2 * edges.size()),
@@ -30,8 +30,8 @@ class ActiveEdges {
     }
   }
 
-  // The edges around a vertex get a turn in the next sweep, those whose turn in this one is yet to come also
-  // there.
+  // Gives the edges around a vertex a turn in the next sweep. Edges whose place in the present sweep is still
+  // to come have a turn in it too.
   void wake(std::uint32_t vertex) {
     for (std::size_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
       const std::uint64_t bit = std::uint64_t{1} << (incident_[i] % 64);
@@ -40,7 +40,7 @@ class ActiveEdges {
     }
   }
 
-  // One sweep, in the order of the edges or against it: visit(edge) may wake vertices.
+  // Makes one sweep, in the order of the edges or in the reverse order. visit(edge) may wake vertices.
   template <typename Visit>
   void sweep(bool forwards, const Visit& visit) {
     for (std::size_t i = 0; i < now_.size(); ++i) {
@@ -58,9 +58,9 @@ class ActiveEdges {
   }
 
  private:
-  std::vector<std::size_t> first_;  // of a vertex in incident_
+  std::vector<std::size_t> first_;  // where the edges of a vertex start in incident_
   std::vector<std::uint32_t> incident_;
-  std::vector<std::uint64_t> now_, next_;  // a bit an edge
+  std::vector<std::uint64_t> now_, next_;  // one bit for each edge
 };
 
 }  // namespace astrolith

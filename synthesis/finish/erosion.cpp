@@ -16,28 +16,29 @@
 namespace astrolith {
 namespace {
 
-constexpr double kLeastUpward = 0.0872;  // cosine of 85 degrees: a steeper face makes rock of its vertices
-// Slides aim at a slope a little below the talus angle and begin a little above that, so that they end.
+constexpr double kLeastUpward = 0.0872;  // cosine of 85 degrees: vertices of steeper faces are rock
+// Slides aim at a slope a little below the talus angle and begin a little above their aim, so that they end.
 constexpr double kAim = 1.0 - 2e-3;
-constexpr double kSettled = 1e-3;  // of the aim
-// More than one: slides that go beyond their aim settle in fewer sweeps (successive over-relaxation).
+constexpr double kSettled = 1e-3;  // relative excess over the aim that starts no slide
+// Above 1: slides go beyond their aim and settle in fewer sweeps (successive over-relaxation).
 constexpr double kRelaxation = 1.6;
-// Of the mean a_v. Next to vertices of smaller areas a slide would move next to nothing.
+// The smallest a_v, as a fraction of the mean. Next to a vertex of smaller area a slide would move almost
+// nothing.
 constexpr double kLeastArea = 0.1;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// Between two vertices that can move; in heights along verticals the edge's drop is drop + h_a - h_b.
+// An edge between two vertices that can move. With heights along the verticals its drop is drop + h_a - h_b.
 struct Edge {
   std::uint32_t a, b;
-  double drop;   // of a above b before anything moved
-  double limit;  // of the drop's magnitude, at the aimed slope
+  double drop;   // height of a above b before anything moved
+  double limit;  // magnitude of the drop at the slope that slides aim at
 };
 
 struct Vertices {
-  std::vector<double> area;    // a_v; 0: rock
-  std::vector<double> height;  // gone up since the edges were measured
-  std::vector<char> changed;   // whether it ever moved
+  std::vector<double> area;    // a_v; 0 for rock
+  std::vector<double> height;  // rise along the vertical since the edges were measured
+  std::vector<char> changed;   // 1 where the vertex has ever moved
 };
 
 Vec3d area_vector(const TriangleMesh& mesh, const Triangle& t) {
@@ -45,7 +46,7 @@ Vec3d area_vector(const TriangleMesh& mesh, const Triangle& t) {
   return 0.5 * cross(mesh.vertices[t[1]] - p, mesh.vertices[t[2]] - p);
 }
 
-// a_v of all vertices, rock or not.
+// a_v of all vertices, rock included.
 std::vector<double> seen_areas(const TriangleMesh& mesh, std::span<const Vec3d> up) {
   std::vector<double> areas(up.size(), 0.0);
   for (const Triangle& t : mesh.triangles) {
@@ -66,7 +67,7 @@ std::vector<char> find_rock(const TriangleMesh& mesh, std::span<const Vec3d> up)
   return rock;
 }
 
-// The areas of the mesh as it is; nothing has moved since.
+// Measures the areas of the mesh as it is now, and sets the heights to 0.
 void measure_areas(const TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock,
                    Vertices& vertices) {
   vertices.area = seen_areas(mesh, up);
@@ -82,7 +83,7 @@ void measure_areas(const TriangleMesh& mesh, std::span<const Vec3d> up, const st
   vertices.height.assign(rock.size(), 0.0);
 }
 
-// Drop and horizontal length of an edge.
+// The drop and the horizontal length of an edge.
 struct Incline {
   double drop, length;
 };
@@ -130,7 +131,7 @@ ActiveEdges all_active(const std::vector<Edge>& edges, std::size_t num_vertices)
   return {num_vertices, ends};
 }
 
-// Lets material slide down one edge; returns its volume, 0 where the edge is not too high.
+// Lets material slide down one edge. Returns its volume, 0 where the edge is not too high.
 double slide(const Edge& edge, Vertices& vertices) {
   const double drop = edge.drop + (vertices.height[edge.a] - vertices.height[edge.b]);
   const double excess = std::fabs(drop) - edge.limit;
@@ -144,8 +145,8 @@ double slide(const Edge& edge, Vertices& vertices) {
   return volume;
 }
 
-// One turn of every active edge, forwards and backwards by turns, so that no direction is preferred. Returns
-// the volume that slid.
+// Gives every active edge one turn, forwards in odd sweeps and backwards in even ones, so that no direction
+// is preferred. Returns the volume that slid.
 double sweep_edges(const std::vector<Edge>& edges, int sweep, ActiveEdges& active, Vertices& vertices) {
   double moved = 0.0;
   active.sweep(sweep % 2 == 1, [&](std::size_t e) {
@@ -158,8 +159,8 @@ double sweep_edges(const std::vector<Edge>& edges, int sweep, ActiveEdges& activ
   return moved;
 }
 
-// Verticals converge and small areas count as larger ones, so that the volume is not quite what the areas
-// promise (a few thousandths of what slid): all heights make up for it.
+// Verticals converge, and small areas count as larger ones. The volume therefore differs from what the areas
+// promise, by a few thousandths of what slid. All heights change a little to make up for it.
 void restore_volume(TriangleMesh& mesh, std::span<const Vec3d> up, double wanted) {
   for (int pass = 0; pass < 3; ++pass) {
     const std::vector<double> areas = seen_areas(mesh, up);
@@ -170,7 +171,7 @@ void restore_volume(TriangleMesh& mesh, std::span<const Vec3d> up, double wanted
   }
 }
 
-// Normals around vertices that moved become those of the mesh; the others keep the field's.
+// Normals around vertices that moved become those of the mesh; the others stay those of the field.
 void renew_normals(TriangleMesh& mesh, const Vertices& vertices) {
   if (mesh.normals.empty()) return;
   std::vector<char> stale(mesh.vertices.size(), 0);
@@ -199,7 +200,8 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
   statistics.rock_vertices = std::count(vertices.area.begin(), vertices.area.end(), 0.0);
   statistics.steepest_before = steepest(mesh, up, vertices);
   const double slope = kAim * std::tan(talus_degrees / kDegrees), volume_before = volume(mesh);
-  // Verticals converge downwards: what has slid far is measured anew, until all is at rest as it lies.
+  // Verticals converge downwards. After far slides everything is therefore measured anew, until nothing moves
+  // in the first sweep.
   while (statistics.sweeps < most_sweeps && !statistics.settled) {
     measure_areas(mesh, up, rock, vertices);
     const std::vector<Edge> edges = make_edges(mesh, up, vertices, slope);

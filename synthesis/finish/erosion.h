@@ -1,15 +1,17 @@
 // Thermal erosion of a mesh (Musgrave et al. 1989; thesis eq. 5.12): where a neighbour lies lower than the
-// talus angle allows, material slides down to it.
+// talus angle T allows, material slides down to it.
 //
-// Vertices move along their own vertical, the direction against local gravity. Along it a vertex v changes
-// the volume by a_v per unit of height, where a_v is a third of its faces' area as the vertical sees it, and
-// stays what it is while neighbours move along theirs. An edge from v down to u that is too high by e, at its
-// horizontal length l,
-//   e = (h_v - h_u) - l tan T > 0,
-// lets the volume c e / (1/a_v + 1/a_u) pass from v to u (with c = 1 the edge would then be at the talus
-// angle). Edges take their turns in the mesh's order until none is too high. The surface stays a graph over
-// the horizontal wherever it was one, so that it cannot run into itself; vertices under overhangs and on
-// walls, of which a face leans over or stands within 5 degrees of the vertical, are rock and stay.
+// Each vertex moves along its own vertical, the direction against local gravity. A vertex v that moves by a
+// unit of height changes the volume by a_v, a third of the area of its faces as seen along the vertical. a_v
+// stays the same while neighbours move along their verticals. An edge from v down to u of horizontal length l
+// is too high by
+//   e = (h_v - h_u) - l tan T > 0.
+// It lets the volume c e / (1/a_v + 1/a_u) pass from v to u; with c = 1 the edge would then be at the talus
+// angle. Edges take their turns in the order of the mesh until none is too high.
+//
+// The surface stays a graph over the horizontal wherever it was one, and so it cannot run into itself.
+// Vertices under overhangs and on walls are rock and stay where they are: one of their faces leans over or
+// stands within 5 degrees of the vertical.
 #pragma once
 
 #include <cstdint>
@@ -22,18 +24,19 @@ namespace astrolith {
 
 struct ErosionStatistics {
   std::int64_t moved_vertices = 0;
-  std::int64_t rock_vertices = 0;  // that could not move
+  std::int64_t rock_vertices = 0;  // vertices that could not move
   int sweeps = 0;
-  bool settled = false;          // no slope above the talus angle was left, before the sweeps were used up
-  double steepest_before = 0.0;  // slope of an edge between vertices that can move, degrees
+  bool settled = false;          // no slope above the talus angle is left
+  double steepest_before = 0.0;  // steepest edge between vertices that can move, degrees
   double steepest_after = 0.0;
   double volume_moved = 0.0;  // cubic length units
 };
 
-// Erodes a closed mesh in place; `up` holds a unit vector or zero (rock) for each vertex. The volume stays
-// the same; normals, where the mesh has them, become those of the new surface around what moved. Talus angle
-// in degrees, (0, 89]; serial and in the mesh's order, so that the result depends on nothing else. Throws
-// InputError for other angles, WorkError when progress asks to stop.
+// Erodes a closed mesh in place. `up` holds a unit vector for each vertex, or zero for rock. The volume stays
+// the same. Normals, where the mesh has them, become those of the new surface around vertices that moved. The
+// talus angle is in degrees, in (0, 89]. The work is serial and follows the order of the mesh, so that the
+// result depends on nothing else. Throws InputError for other angles, and WorkError when progress asks to
+// stop.
 ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double talus_degrees, int most_sweeps,
                         const Progress& progress = {});
 

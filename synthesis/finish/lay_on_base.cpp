@@ -5,7 +5,7 @@
 namespace astrolith {
 namespace {
 
-// Base units per unit of the details.
+// The length of one unit of the details in units of the base.
 double unit_ratio(const Recipe& details, const std::string& details_name, const Recipe& base,
                   const std::string& base_name) {
   const std::string &from = details.length_unit, &to = base.length_unit;

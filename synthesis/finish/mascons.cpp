@@ -17,7 +17,7 @@ constexpr int kLatticeCells = 64;           // along the longest side: the volum
 constexpr double kGravitation = 6.674e-11;  // m^3 / (kg s^2)
 constexpr int kBatch = 128;
 
-// Points of one plane of the lattice that are inside, with the sphere that each belongs to.
+// The points of one plane of the lattice that lie inside, and the sphere that each belongs to.
 struct InnerPoints {
   std::vector<Vec3d> points;
   std::vector<std::size_t> owners;
@@ -56,7 +56,7 @@ InnerPoints inner_points(const ImplicitField& field, std::span<const Sphere> sph
   return inner;
 }
 
-// Towards the mascons, over G times the density, at a batch of points.
+// Adds the attraction of one mascon at a batch of points, divided by G times the density.
 ASTROLITH_SIMD_CLONES void add_attraction(const Vec3d& center, double radius, int n,
                                           const double* __restrict x, const double* __restrict y,
                                           const double* __restrict z, double* __restrict gx,
@@ -68,7 +68,7 @@ ASTROLITH_SIMD_CLONES void add_attraction(const Vec3d& center, double radius, in
   for (int i = 0; i < n; ++i) {
     const double dx = cx - x[i], dy = cy - y[i], dz = cz - z[i];
     const double d2 = dx * dx + (dy * dy + dz * dz);
-    // Within the ball its pull grows in proportion to the distance.
+    // Inside the ball its pull grows in proportion to the distance from the centre.
     const double r2 = d2 > radius_squared ? d2 : radius_squared;
     const double pull = volume / (r2 * __builtin_sqrt(r2));
     gx[i] += pull * dx;
@@ -118,7 +118,7 @@ std::vector<Mascon> mascons_of(const ImplicitField& field, std::span<const Spher
 
 std::vector<Vec3d> vertical_directions(std::span<const Mascon> mascons, const BodyMotion& motion,
                                        std::span<const Vec3d> points) {
-  // Centrifugal acceleration over G times the density, per length unit from the axis.
+  // The centrifugal acceleration at unit distance from the axis, divided by G times the density.
   const double turn =
       motion.rotation_hours > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * motion.rotation_hours) : 0.0;
   const double spin = turn * turn / (kGravitation * motion.density);

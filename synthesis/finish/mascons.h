@@ -1,5 +1,5 @@
-// The gravity of a body of uniform density: its spheres as mass concentrations, each with its share of the
-// body's volume, so that what several spheres overlap is counted once.
+// The gravity of a body of uniform density. Each of its spheres is a mass concentration (mascon) with its
+// share of the volume of the body, so that volume in which spheres overlap is counted once.
 #pragma once
 
 #include <span>
@@ -9,25 +9,25 @@
 
 namespace astrolith {
 
-// A homogeneous ball.
+// A homogeneous ball, in length units of the recipe.
 struct Mascon {
   Vec3d center;
   double radius = 0.0;
 };
 
-// How a body turns and how dense it is.
+// The density and the rotation of a body.
 struct BodyMotion {
   double density = 2000.0;      // kg / m^3, > 0
-  double rotation_hours = 0.0;  // about +z through the centre of mass; 0 = at rest
+  double rotation_hours = 0.0;  // period about +z through the centre of mass; 0 = at rest
 };
 
-// The points of a lattice that lie inside `field` are shared out among the spheres: to the one whose centre
-// is nearest in its own radii. A sphere's mascon has the volume and the centroid of its points; spheres
-// without a point have none. Throws InputError when no point is inside.
+// The mascons of a body. Points of a lattice that lie inside `field` are assigned to the sphere whose centre
+// is nearest, measured in radii of that sphere. The mascon of a sphere has the volume and the centroid of its
+// points. Spheres without points have no mascon. Throws InputError when no point is inside.
 std::vector<Mascon> mascons_of(const ImplicitField& field, std::span<const Sphere> spheres);
 
-// up[i]: the unit vector against gravity and centrifugal force at a point; the zero vector where they cancel.
-// The same bits for any thread count and vector width.
+// up[i] is the unit vector against gravity and centrifugal force at points[i], or the zero vector where the
+// two cancel. The bits are the same for any number of threads and any vector width.
 std::vector<Vec3d> vertical_directions(std::span<const Mascon> mascons, const BodyMotion& motion,
                                        std::span<const Vec3d> points);
 

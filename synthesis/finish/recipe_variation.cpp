@@ -14,13 +14,13 @@
 namespace astrolith {
 namespace {
 
-// At strength 1: standard deviation of the axes' log stretch, and the bend's largest displacement as a
-// fraction of the body's half diagonal.
+// Sizes of the deformation at strength 1: the standard deviation of the logarithms of the axes' stretch, and
+// the largest displacement of the bend as a fraction of half the diagonal of the body.
 constexpr double kAxisStretch = 0.3;
 constexpr double kBend = 0.35;
-constexpr double kBendCycles = 0.5;  // a half diagonal
+constexpr double kBendCycles = 0.5;  // cycles in half a diagonal
 
-// At strength 1: standard deviations of the logarithms.
+// Standard deviations of the logarithms of amplitudes and frequencies at strength 1.
 constexpr double kAmplitudeChange = 0.5;
 constexpr double kFrequencyChange = 0.25;
 
@@ -36,7 +36,7 @@ Box sphere_bounds(const MetaballBody& body) {
   return box;
 }
 
-// A smooth map of space: stretched along the axes, then bent.
+// A smooth map of space: a bend, followed by a stretch along the axes.
 class Deformation {
  public:
   Deformation(const Box& body, double strength, std::uint64_t seed)
@@ -59,7 +59,8 @@ class Deformation {
     return center_ + Vec3d{stretch_.x * d.x, stretch_.y * d.y, stretch_.z * d.z};
   }
 
-  // The cube root of how much a small volume at p grows.
+  // The factor by which lengths grow near p: the cube root of the growth of a small volume, limited to 0.2 ..
+  // 5 before the root.
   double growth(const Vec3d& p) const {
     const auto slope = [&](const Vec3d& d) { return (0.5 / step_) * ((*this)(p + d) - (*this)(p - d)); };
     const Vec3d a = slope({step_, 0, 0}), b = slope({0, step_, 0}), c = slope({0, 0, step_});
@@ -84,7 +85,7 @@ class Deformation {
   Vec3d stretch_{1, 1, 1};
 };
 
-// Returns by what the layer's heights have grown.
+// Varies amplitude and frequency. Returns the factor by which the heights of the layer have grown.
 double vary(FractalLayer& layer, double strength, CounterRandom random) {
   const double growth = std::exp(kAmplitudeChange * strength * random.normal());
   layer.amplitude = round_to_seven_digits(layer.amplitude * growth);
@@ -103,8 +104,9 @@ const std::string& name_of(const Layer& layer) {
   return std::visit([](const auto& l) -> const std::string& { return l.name; }, layer);
 }
 
-// A mask follows the heights that it asks for, those of the last layer of its name before, and a blend's
-// joint those that it joins: what was covered stays covered. `growth` of each layer's heights.
+// Masks follow the heights of the layer that they refer to, the last layer of that name before them. The
+// width of a blend follows the heights of its own layer. What was covered therefore stays covered. `growth`
+// holds the factor of each layer's heights.
 void follow_heights(const std::vector<double>& growth, std::vector<Layer>& layers) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
     LayerUse* use = use_of(layers[i]);

@@ -8,6 +8,8 @@
 #include "synthesis/gabor/gabor_bands.h"
 #include "synthesis/noise/points_in_domain.h"
 
+#include "numerics/interval.h"
+
 namespace astrolith {
 namespace {
 

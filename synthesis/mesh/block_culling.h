@@ -1,5 +1,5 @@
-// Finds the blocks of one layer that the surface may cross, by a quadtree over the layer: whatever a bound of
-// the field proves to lie outside or inside is left out whole.
+// Finds the blocks of one layer that the surface may cross, by a quadtree over the layer. A square of blocks
+// that a bound of the field proves to lie outside or inside the body is left out whole.
 #pragma once
 
 #include <algorithm>
@@ -18,26 +18,26 @@ namespace astrolith {
 // A square of blocks of one layer and the field narrowed to it.
 template <FieldBlockLike Block>
 struct BlockNode {
-  int x = 0, y = 0;  // first block
+  int x = 0, y = 0;  // the block with the lowest x and y
   int size = 1;      // blocks along each side
   Block field;
 };
 
-// What a block sees of a window, in its local coordinates: bits of rows along x.
+// The part of a window that a block sees, in the block's local coordinates, as bits of rows along x.
 template <int B>
 struct BlockWindow {
   std::array<int, 3> first, last;
 
-  // Bit x set where the cell with upper corner x, y, z is meshed.
+  // Bit x is set where the cell with upper corner x, y, z is meshed.
   ASTROLITH_HD SignRow cells(int y, int z) const {
     return within(y, first[1], last[1]) && within(z, first[2], last[2]) ? bits(first[0], last[0]) : 0;
   }
-  // Bit x set where the edge along axis that ends at x, y, z belongs to such a cell.
+  // Bit x is set where the edge along axis that ends at x, y, z belongs to a meshed cell.
   ASTROLITH_HD SignRow edges(int y, int z, int axis) const {
     const auto start = [&](int a) { return first[static_cast<unsigned>(a)] - (a == axis ? 0 : 1); };
     return within(y, start(1), last[1]) && within(z, start(2), last[2]) ? bits(start(0), last[0]) : 0;
   }
-  // Of those, the edges that lie in the window's sides: the mesh is open there.
+  // Bit x is set for those of these edges that lie in a side of the window, where the mesh is open.
   ASTROLITH_HD SignRow cut_edges(int y, int z, int axis) const {
     const auto in_side = [&](int a, int c) {
       const auto i = static_cast<unsigned>(a);
@@ -63,9 +63,10 @@ template <int B>
 struct BlockGrid {
   SampleGrid samples;
   CellWindow window;
-  bool closed;  // the surface keeps off the grid's border
+  bool closed;  // the surface must not touch the border of the grid
 
   ASTROLITH_HD int blocks(unsigned axis) const { return (samples.cells[axis] + B - 1) / B; }
+  // The window in the local coordinates of block x, y, z.
   ASTROLITH_HD BlockWindow<B> window_of(int x, int y, int z) const {
     BlockWindow<B> local;
     const std::array<int, 3> block{x, y, z};
@@ -75,7 +76,8 @@ struct BlockGrid {
     }
     return local;
   }
-  // Half a step wider than its samples, so that normals can be taken at its border.
+  // The box of `size` x `size` blocks of layer z from block x, y on. It is half a step wider than their
+  // samples, so that normals can be taken at its border.
   ASTROLITH_HD Box box(int x, int y, int z, int size) const {
     const auto last = [&](unsigned axis, int block) { return std::min(block * B, samples.cells[axis]); };
     return samples.box({x * B, y * B, z * B}, {last(0, x + size), last(1, y + size), last(2, z + 1)},
@@ -94,7 +96,7 @@ void check_inside_node(const BlockGrid<B>& grid, int z, const BlockNode<Block>& 
   if (at_border) fail_at_border();
 }
 
-// The quarters of a node that are not proved empty or full.
+// The quarters of a node that are not proved to lie outside or inside the body.
 template <int B, FieldBlockLike Block>
 std::vector<BlockNode<Block>> mixed_quarters(const BlockGrid<B>& grid, int z, const BlockNode<Block>& node) {
   std::vector<BlockNode<Block>> quarters;
@@ -110,7 +112,8 @@ std::vector<BlockNode<Block>> mixed_quarters(const BlockGrid<B>& grid, int z, co
   return quarters;
 }
 
-// Blocks of layer z in rows of y, then x. Throws WorkError when the body fills the border.
+// The blocks of layer z that the surface may cross, sorted by y and then x. Throws WorkError when the body
+// fills a block at the border of the grid.
 template <int B, FieldBlockLike Block>
 std::vector<BlockNode<Block>> mixed_blocks(const BlockGrid<B>& grid, const Block& whole, int z) {
   const unsigned longest = static_cast<unsigned>(std::max(grid.blocks(0), grid.blocks(1)));

@@ -1,8 +1,8 @@
-// One layer of sparse blocks along z: the samples, and the mesh vertices on their edges.
+// One layer of sparse blocks along z: its samples, and the mesh vertices on their edges.
 //
-// A block of B^3 cells sees (B+1)^3 samples at local coordinates 0 .. B and owns those at 1 .. B; the others
-// belong to its seven lower neighbours. An edge belongs to the owner of its upper end. A layer therefore
-// needs the layer below it and no other.
+// A block of B^3 cells sees (B+1)^3 samples at local coordinates 0 .. B and owns the samples at 1 .. B. The
+// other samples are its halo: they belong to its seven lower neighbours. An edge belongs to the owner of its
+// upper end. A layer therefore needs the layer below it and no other.
 #pragma once
 
 #include <array>
@@ -22,26 +22,27 @@ struct LayerBlock {
   static constexpr std::size_t kSamples = std::size_t{kSide} * kSide * kSide;
   static constexpr SignRow kWholeRow = (SignRow{2} << B) - 1;
 
-  // Local coordinates 0 .. B.
+  // The index of the sample at local coordinates 0 .. B.
   static constexpr std::size_t sample(int x, int y, int z) {
     return static_cast<std::size_t>((z * kSide + y) * kSide + x);
   }
   static constexpr std::size_t sign_row(int y, int z) { return static_cast<std::size_t>(z * kSide + y); }
-  // Of owned samples: local coordinates 1 .. B.
+  // The index of a row of owned samples: y and z are 1 .. B.
   static constexpr std::size_t row(int y, int z) { return static_cast<std::size_t>((z - 1) * B + y - 1); }
 
-  // Both leave the arrays as they are.
+  // Both constructors leave the arrays uninitialised.
   LayerBlock() = default;
   LayerBlock(int block_x, int block_y) : x(block_x), y(block_y) {}
 
   int x = 0, y = 0;  // position in the layer, in blocks
-  // Filled in by the phases of the mesher, in this order.
+  // The phases of the mesher fill in the arrays, in this order.
   std::array<float, kSamples> values;        // at every sample the block sees
-  std::array<SignRow, kSide * kSide> signs;  // of the values
-  // By row of owned samples: how many vertices and triangles it holds, then where in the layer they start.
+  std::array<SignRow, kSide * kSide> signs;  // signs of the values
+  // For each row of owned samples: first how many vertices and triangles it holds, later where they start in
+  // the layer.
   std::array<std::uint32_t, B * B> vertex_rows;
   std::array<std::uint32_t, B * B> triangle_rows;
-  // Numbers by (sample, axis) of the edge that ends there, where it is crossed.
+  // The number of the vertex on a crossed edge, indexed by (sample at the edge's upper end, axis).
   std::array<std::uint32_t, 3 * kSamples> vertices;
 };
 
@@ -60,14 +61,14 @@ class BlockLayer {
   }
 
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-  // Null where the layer has no active block, or no block at all.
+  // The active block at x, y; null where there is none.
   const LayerBlock<B>* find(int x, int y) const {
     if (!contains(x, y)) return nullptr;
     const std::int32_t i = index_[slot(x, y)];
     return i == kAbsent ? nullptr : &blocks[static_cast<std::size_t>(i)];
   }
 
-  std::vector<LayerBlock<B>> blocks;  // active ones in rows of y, then x
+  std::vector<LayerBlock<B>> blocks;  // the active blocks, sorted by y and then x
 
  private:
   static constexpr std::int32_t kAbsent = -1;
@@ -79,8 +80,8 @@ class BlockLayer {
   std::vector<std::int32_t> index_;  // (height x width) into blocks
 };
 
-// The owners of what a block sees: bit 0 set = one block lower in x, bit 1 in y, bit 2 in z. Entry 0 is the
-// block itself; null where there is no active block.
+// The blocks that own the samples a block sees. In the index, bit 0 stands for one block lower in x, bit 1 in
+// y, bit 2 in z. Entry 0 is the block itself; an entry is null where there is no active block.
 template <int B>
 using Owners = std::array<const LayerBlock<B>*, 8>;
 
@@ -95,7 +96,7 @@ Owners<B> find_owners(const BlockLayer<B>& layer, const BlockLayer<B>& below, co
   return owners;
 }
 
-// Which owner a local sample has.
+// The index in Owners of the block that owns a local sample.
 constexpr unsigned owner_of(int x, int y, int z) {
   return (x == 0 ? 1u : 0u) | (y == 0 ? 2u : 0u) | (z == 0 ? 4u : 0u);
 }

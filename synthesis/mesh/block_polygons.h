@@ -1,5 +1,5 @@
 // Counts, numbers and makes the vertices and triangles of a layer of blocks. Both are numbered by rows of the
-// whole grid (z, then y, then x), so their order depends neither on threads nor on the size of blocks.
+// whole grid (z, then y, then x). Their order therefore depends neither on threads nor on the size of blocks.
 #pragma once
 
 #include <array>
@@ -26,17 +26,17 @@ struct CellRow {
              block.signs[LayerBlock<B>::sign_row(y, z - 1)], block.signs[LayerBlock<B>::sign_row(y - 1, z)],
              block.signs[LayerBlock<B>::sign_row(y, z)]} {}
 
-  // Bit x set where the cell with upper corner x is crossed by the surface.
+  // Bit x is set where the surface crosses the cell with upper corner x.
   ASTROLITH_HD SignRow crossed_cells() const {
     const SignRow any = rows[0] | rows[1] | rows[2] | rows[3];
     const SignRow all = rows[0] & rows[1] & rows[2] & rows[3];
     return (any | any << 1) & ~(all & all << 1) & kOwned;
   }
-  // Bit x set where the edge along axis that ends at sample x, y, z is crossed.
+  // Bit x is set where the surface crosses the edge along axis that ends at sample x, y, z.
   ASTROLITH_HD SignRow crossed_edges(int axis) const {
     return (rows[3] ^ (axis == 0 ? rows[3] << 1 : axis == 1 ? rows[2] : rows[1])) & kOwned;
   }
-  // Of one cell: bit c set where corner c is inside.
+  // The signs of the cell with upper corner x: bit c is set where corner c is inside.
   ASTROLITH_HD unsigned cell_signs(int x) const {
     const auto pair = [&](unsigned r) { return (rows[r] >> (x - 1)) & 3u; };
     return pair(0) | pair(1) << 2 | pair(2) << 4 | pair(3) << 6;
@@ -52,19 +52,19 @@ ASTROLITH_HD void for_each_bit(SignRow bits, const Visit& visit) {
   for (; bits != 0; bits &= bits - 1) visit(lowest_bit(bits));
 }
 
-// The edges along axis of row y, z that hold vertices of the mesh.
+// Bit x is set where the edge along axis that ends at sample x, y, z holds a vertex of the mesh.
 template <int B>
 ASTROLITH_HD SignRow meshed_edges(const CellRow<B>& cells, const BlockWindow<B>& window, int y, int z,
                                   int axis) {
   return cells.crossed_edges(axis) & window.edges(y, z, axis);
 }
 
-// Of a row of owned samples; `cut_vertices` are those in the window's sides.
+// Counts of a row of owned samples. `cut_vertices` are the vertices in the sides of the window.
 struct RowCounts {
   std::uint32_t vertices = 0, triangles = 0, cut_vertices = 0;
 };
 
-// `table` is marching_cubes_table().
+// Counts what row y, z of a block will hold. `table` is marching_cubes_table().
 template <int B>
 ASTROLITH_HD RowCounts count_row(const CellTriangles* table, const BlockWindow<B>& window,
                                  const LayerBlock<B>& block, int y, int z) {
@@ -80,7 +80,8 @@ ASTROLITH_HD RowCounts count_row(const CellTriangles* table, const BlockWindow<B
   return counts;
 }
 
-// Returns how many of the block's vertices lie in the window's sides.
+// Counts the vertices and triangles of every row of a block. Returns how many of the vertices lie in the
+// sides of the window.
 template <int B>
 std::int64_t count_rows(const BlockWindow<B>& window, LayerBlock<B>& block) {
   std::int64_t cut_vertices = 0;
@@ -100,7 +101,7 @@ struct LayerCounts {
   std::uint32_t triangles = 0;
 };
 
-// Turns the counts of rows into where each row starts in the layer.
+// Replaces the counts of every row by the place in the layer where the row starts. Returns the sums.
 template <int B>
 LayerCounts number_rows(BlockLayer<B>& layer) {
   LayerCounts counts;
@@ -124,19 +125,20 @@ LayerCounts number_rows(BlockLayer<B>& layer) {
   return counts;
 }
 
-// Keeps vertices off the ends of their edges: three edges that meet in a sample of value 0 would otherwise
-// give three coincident vertices.
+// Vertices stay at least this fraction of an edge away from its ends. Three edges that meet in a sample of
+// value 0 would otherwise give three vertices at one place.
 inline constexpr float kEndMargin = 0x1.0p-10f;
 
-// Where F vanishes between two samples, as a fraction of the way from the first; F linear in between.
+// The place between two samples where F vanishes, as a fraction of the way from the first sample. F is taken
+// as linear between them.
 ASTROLITH_HD inline float crossing_fraction(float from, float to) {
   const float t = from / (from - to);
-  // Written so that the NaN of infinite values also ends inside the margins.
+  // The comparisons are written so that NaN, which infinite values give, also ends inside the margins.
   return t >= kEndMargin ? (t <= 1.0f - kEndMargin ? t : 1.0f - kEndMargin) : kEndMargin;
 }
 
-// The vertex on the edge that ends at sample x, y, z of the grid along axis, at this fraction of it; its
-// normal is the axis's direction out of the body until a better one is known.
+// The vertex at fraction t of the edge along axis that ends at sample x, y, z of the grid. Its normal is the
+// direction of the axis out of the body until take_normal finds a better one.
 ASTROLITH_HD inline MeshVertex vertex_on_edge(const SampleGrid& grid, int x, int y, int z, int axis, float t,
                                               bool upper_inside) {
   const float out = upper_inside ? -1.0f : 1.0f;
@@ -154,7 +156,7 @@ ASTROLITH_HD inline MeshVertex vertex_on_edge(const SampleGrid& grid, int x, int
   return vertex;
 }
 
-// At local sample x, y, z of a block.
+// The vertex on the edge along axis that ends at local sample x, y, z of a block.
 template <int B>
 ASTROLITH_HD MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block, int x,
                                      int y, int z, int axis) {
@@ -164,30 +166,33 @@ ASTROLITH_HD MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, cons
                         crossing_fraction(from, to), to > 0.0f);
 }
 
-// Finished together: enough to keep a field's vector loops busy, few enough for the stack.
+// The number of vertices that get their normals together: enough to keep the vector loops of a field busy,
+// few enough for the stack.
 inline constexpr std::size_t kVerticesPerBatch = 256;
 
-// Vertices on their way into a layer's array.
+// Vertices that wait for their normals before they go into the array of their layer.
 struct VertexBatch {
   std::size_t size = 0;
   std::array<MeshVertex, kVerticesPerBatch> vertices;
-  std::array<std::uint32_t, kVerticesPerBatch> slots;  // in the layer's array
+  std::array<std::uint32_t, kVerticesPerBatch> slots;  // places in the array of the layer
   PointBatch<4 * kVerticesPerBatch> points;
 };
 
-// The normal is the direction in which F falls, from its values at the corners of a small tetrahedron (k_i,
-// the alternate corners of a cube of half-side h): grad F = (1/4h) sum_i k_i F(p + h k_i) + O(h^2).
+// A normal is the direction in which F falls. It follows from the values of F at the corners of a small
+// tetrahedron (k_i, alternate corners of a cube of half-side h): grad F = (1/4h) sum_i k_i F(p + h k_i) +
+// O(h^2). This function gives k_i.
 ASTROLITH_HD inline Vec3f tetrahedron_corner(int k) {
   return {k < 2 ? 1.0f : -1.0f, k == 0 || k == 2 ? 1.0f : -1.0f, k == 0 || k == 3 ? 1.0f : -1.0f};
 }
 
-// Where F is evaluated for corner k.
+// The point p + h k_i at which F is evaluated for corner k.
 ASTROLITH_HD inline Vec3f normal_probe(const Vec3f& p, float h, int k) {
   const Vec3f corner = tetrahedron_corner(k);
   return {p.x + h * corner.x, p.y + h * corner.y, p.z + h * corner.z};
 }
 
-// `values` are F at the four probes. Where their sum vanishes the normal stays as it was.
+// Sets the normal from the values of F at the four probes. Where the gradient vanishes or overflows the
+// normal stays as it was.
 ASTROLITH_HD inline void take_normal(const float* values, MeshVertex& vertex) {
   Vec3f gradient{};
   for (int k = 0; k < 4; ++k) gradient += tetrahedron_corner(k) * values[k];
@@ -197,6 +202,7 @@ ASTROLITH_HD inline void take_normal(const float* values, MeshVertex& vertex) {
   }
 }
 
+// Sets the normals of all vertices of a batch.
 template <FieldBlockLike Block>
 void take_normals(const Block& field, float h, VertexBatch& batch) {
   batch.points.clear();
@@ -214,7 +220,8 @@ void take_normals(const Block& field, float h, VertexBatch& batch) {
   }
 }
 
-// Calls visit(x, y, z, axis) for the meshed edges of a row that a block owns, in the order of their vertices.
+// Calls visit(x, y, z, axis) for the meshed edges of row y, z that a block owns, in the order of their
+// vertices.
 template <int B, typename Visit>
 ASTROLITH_HD void for_each_meshed_edge_of_row(const LayerBlock<B>& block, const BlockWindow<B>& window, int y,
                                               int z, const Visit& visit) {
@@ -228,7 +235,7 @@ ASTROLITH_HD void for_each_meshed_edge_of_row(const LayerBlock<B>& block, const 
   });
 }
 
-// Of all rows.
+// Calls visit(x, y, z, axis) for the meshed edges of all rows of a block.
 template <int B, typename Visit>
 void for_each_meshed_edge(const LayerBlock<B>& block, const BlockWindow<B>& window, const Visit& visit) {
   for (int z = 1; z <= B; ++z) {
@@ -236,13 +243,14 @@ void for_each_meshed_edge(const LayerBlock<B>& block, const BlockWindow<B>& wind
   }
 }
 
-// Makes a block's vertices, numbers them from layer_first + row start, and puts them into the layer's array.
-// Returns the number of evaluations.
+// Makes the vertices of a block, numbers them from layer_first + start of their row, and puts them into the
+// array of the layer. Returns the number of evaluations of the field.
 template <int B, FieldBlockLike Block>
 std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& field,
                            std::uint32_t layer_first, LayerBlock<B>& block,
                            std::span<MeshVertex> layer_vertices) {
-  // A quarter of a step: near enough for O(h^2), far enough for differences of floats.
+  // Probes lie a quarter of a step from the vertex: near enough for O(h^2), far enough apart for differences
+  // of floats.
   const auto h = static_cast<float>(0.25 * grid.samples.step);
   std::int64_t evaluations = 0;
   VertexBatch batch;
@@ -265,8 +273,8 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
   return evaluations;
 }
 
-// Copies the numbers of the vertices on edges that end at a halo samples. False where the owner of one was
-// left out.
+// Copies the numbers of the vertices on edges that end at a halo sample from the owner of the sample. Returns
+// false where the surface crosses such an edge and the owner was left out.
 template <int B>
 ASTROLITH_HD bool fill_halo_vertices(const Owners<B>& owners, const BlockWindow<B>& window, int x, int y,
                                      int z, LayerBlock<B>& block) {
@@ -289,7 +297,7 @@ ASTROLITH_HD bool fill_halo_vertices(const Owners<B>& owners, const BlockWindow<
   throw WorkError("mesher: an edge of the surface lies in a block that was left out");
 }
 
-// Of all halo samples.
+// Fills the vertex numbers of all halo samples. Throws WorkError where an owner was left out.
 template <int B>
 void fill_vertex_halo(const Owners<B>& owners, const BlockWindow<B>& window, LayerBlock<B>& block) {
   for_each_halo_sample<B>([&](int x, int y, int z, unsigned) {
@@ -297,7 +305,8 @@ void fill_vertex_halo(const Owners<B>& owners, const BlockWindow<B>& window, Lay
   });
 }
 
-// Where a cell's edges have their vertex numbers, counted from those of its upper corner.
+// For each of a cell's edges, where its vertex number stands relative to the numbers of the cell's upper
+// corner.
 template <int B>
 constexpr std::array<std::ptrdiff_t, 12> edge_offsets() {
   std::array<std::ptrdiff_t, 12> offsets{};
@@ -311,8 +320,8 @@ constexpr std::array<std::ptrdiff_t, 12> edge_offsets() {
   return offsets;
 }
 
-// Of a row of cells, into an array from its first triangle on; `table` is marching_cubes_table(), `offsets`
-// edge_offsets().
+// Makes the triangles of row y, z of cells and writes them from `triangles` on. `table` is
+// marching_cubes_table() and `offsets` is edge_offsets().
 template <int B>
 ASTROLITH_HD void make_row_triangles(const CellTriangles* table,
                                      const std::array<std::ptrdiff_t, 12>& offsets,

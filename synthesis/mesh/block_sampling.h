@@ -1,5 +1,5 @@
-// Fills the samples of a layer's blocks: first each block what it owns, and what nobody else will; then what
-// its lower neighbours own.
+// Fills the samples of the blocks of a layer. Each block first evaluates the samples that it owns and those
+// without an active owner. It then copies the other samples of its halo from their owners.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace astrolith {
 
-// Points gathered for one call of a field block.
+// A batch of points that one call evaluates.
 template <std::size_t Capacity>
 class PointBatch {
  public:
@@ -31,7 +31,7 @@ class PointBatch {
     const auto points = [this](const auto& v) { return std::span(v).first(size_); };
     if (size_ > 0) field.evaluate(points(x_), points(y_), points(z_), std::span(value_).first(size_), band);
   }
-  // Of points that are the corners of tetrahedra, four after four.
+  // Evaluates points that are the corners of tetrahedra, four after four.
   template <FieldBlockLike Block>
   void evaluate_tetrahedra(const Block& field) {
     if constexpr (HasTetrahedra<Block>) {
@@ -47,12 +47,13 @@ class PointBatch {
   std::array<float, Capacity> x_, y_, z_, value_;
 };
 
-// Samples beyond the grid, in blocks that stick out of it, and all samples before they are known.
+// The value of samples beyond the grid, in blocks that stick out of it, and of samples that are not known
+// yet.
 inline constexpr float kOutsideGrid = -1.0f;
 
-// In steps of the grid. Along an edge a distance changes by about a step, so both ends of an edge that the
-// surface crosses lie within the band. Where a field is steeper an end may lie beyond: its sign still is
-// right, and the vertex stays on its edge.
+// The accuracy band of samples, in steps of the grid. Along an edge a distance changes by about a step, so
+// that both ends of an edge that the surface crosses lie within the band. Where a field is steeper an end may
+// lie beyond the band. Its sign is still right, and the vertex stays on its edge.
 inline constexpr double kSampleBand = 2.0;
 
 // Local samples first .. last along x of a row that a block has to evaluate itself.
@@ -60,7 +61,7 @@ struct SampleRow {
   int first, last;
 };
 
-// The row's samples within the grid that belong to the block or, since their owner is not active, to nobody.
+// The samples of row y, z that lie in the grid and are owned by the block itself or by no active block.
 template <int B>
 ASTROLITH_HD SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, const Owners<B>& owners,
                                        const LayerBlock<B>& block, int y, int z) {
@@ -70,6 +71,7 @@ ASTROLITH_HD SampleRow row_to_evaluate(const BlockGrid<B>& grid, int layer_z, co
   return {mine(owner_of(0, y, z)) ? 0 : 1, mine(owner_of(1, y, z)) ? std::min(B, nx - block.x * B) : 0};
 }
 
+// True when the block holds samples on the border of the grid.
 template <int B>
 bool is_at_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& block) {
   const auto touches = [](int first, int cells) { return first == 0 || first + B >= cells; };
@@ -96,8 +98,8 @@ void check_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& bl
   }
 }
 
-// Evaluates the samples whose owner is the block itself or no active block; returns how many. Throws
-// WorkError when a sample on the grid's border is inside.
+// Evaluates the samples whose owner is the block itself or no active block. Returns how many there were.
+// Throws WorkError when a sample on the border of a closed grid is inside the body.
 template <int B, FieldBlockLike Block>
 std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block& field,
                               const Owners<B>& owners, LayerBlock<B>& block) {
@@ -123,7 +125,7 @@ std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block
   return static_cast<std::int64_t>(batch.size());
 }
 
-// Calls visit(x, y, z, owner) for every sample that a lower neighbour owns.
+// Calls visit(x, y, z, owner) for every halo sample, which a lower neighbour owns.
 template <int B, typename Visit>
 void for_each_halo_sample(const Visit& visit) {
   for (int z = 0; z <= B; ++z) {
@@ -134,13 +136,13 @@ void for_each_halo_sample(const Visit& visit) {
   }
 }
 
-// Where the owner of a halo samples keeps it.
+// The index at which the owner of a halo sample keeps it.
 template <int B>
 ASTROLITH_HD std::size_t owned_sample(int x, int y, int z) {
   return LayerBlock<B>::sample(x == 0 ? B : x, y == 0 ? B : y, z == 0 ? B : z);
 }
 
-// Copies a sample from the lower neighbour that owns it, where that is active.
+// Copies a halo sample from its owner, where the owner is active.
 template <int B>
 ASTROLITH_HD void fill_halo_sample(const Owners<B>& owners, int x, int y, int z, LayerBlock<B>& block) {
   const LayerBlock<B>* owner = owners[owner_of(x, y, z)];
@@ -153,7 +155,7 @@ void fill_sample_halo(const Owners<B>& owners, LayerBlock<B>& block) {
   for_each_halo_sample<B>([&](int x, int y, int z, unsigned) { fill_halo_sample(owners, x, y, z, block); });
 }
 
-// Of row number sign_row(y, z).
+// The signs of row sign_row(y, z).
 template <int B>
 ASTROLITH_HD SignRow signs_of_row(const LayerBlock<B>& block, std::size_t row) {
   const float* value = block.values.data() + row * LayerBlock<B>::kSide;
@@ -167,8 +169,8 @@ void take_signs(LayerBlock<B>& block) {
   for (std::size_t row = 0; row < block.signs.size(); ++row) block.signs[row] = signs_of_row(block, row);
 }
 
-// Whether the surface crosses side 0 .. 5 (axis, then low or high) of a block. `last` holds the last local
-// samples that lie in the grid.
+// True when the surface crosses a side of a block. Sides are numbered 2 axis + (0 low, 1 high). `last` holds
+// the last local samples that lie in the grid.
 template <int B>
 ASTROLITH_HD bool is_side_crossed(const LayerBlock<B>& block, int side, const std::array<int, 3>& last) {
   const auto axis = static_cast<std::size_t>(side / 2);
@@ -205,7 +207,7 @@ ASTROLITH_HD std::array<int, 3> last_samples(const BlockGrid<B>& grid, const Lay
 }
 
 // Throws WorkError when the surface crosses a side of a block whose neighbour there was proved free of
-// surface: the mesh would have a hole. The layers below and above are null where they are not made.
+// surface, since the mesh would have a hole. `below` and `above` are null where these layers are not made.
 template <int B>
 void check_open_sides(const BlockGrid<B>& grid, int layer_z, const BlockLayer<B>& layer,
                       const BlockLayer<B>* below, const BlockLayer<B>* above) {

@@ -11,7 +11,7 @@ namespace {
 
 enum class Link : std::uint8_t { kCycle, kOpen, kNonManifold };
 
-// What the directed edges (from, to) opposite a vertex form; sorts them by from.
+// Finds out whether the directed edges (from, to) opposite a vertex form one cycle. Sorts them by `from`.
 template <typename Corner>
 Link classify_link(std::span<Corner> corners) {
   if (corners.empty()) return Link::kNonManifold;
@@ -47,10 +47,10 @@ void ManifoldCheck::add_vertices(std::span<const MeshVertex> vertices) {
   report_.vertices += static_cast<std::int64_t>(vertices.size());
 }
 
-// Counts the components that end below vertex `first`, and lets the others hang from their lowest vertex that
-// stays.
+// Counts the components that end below vertex `first`. Each other component gets its lowest remaining vertex
+// as its root.
 void ManifoldCheck::forget_components_below(std::uint32_t first) {
-  std::vector<std::uint32_t> lowest(parent_.size(), end_);  // by root
+  std::vector<std::uint32_t> lowest(parent_.size(), end_);  // lowest remaining vertex, by root
   std::vector<std::uint32_t> kept;
   for (std::uint32_t v = first; v < end_; ++v) {
     std::uint32_t& low = lowest[root(v) - window_first_];
@@ -82,7 +82,7 @@ void ManifoldCheck::add_triangles(std::span<const Triangle> triangles) {
   report_.triangles += static_cast<std::int64_t>(triangles.size());
 }
 
-// Groups corners by vertex (a counting sort) and looks at each group.
+// Groups corners by vertex (a counting sort) and classifies each group.
 void ManifoldCheck::settle(std::vector<Corner>& corners, std::uint32_t first, std::uint32_t end) {
   std::vector<std::size_t> starts(end - first + 1, 0);
   std::erase_if(corners, [first](const Corner& c) { return c.vertex < first; });
@@ -125,7 +125,7 @@ std::uint32_t ManifoldCheck::root(std::uint32_t vertex) {
 
 void ManifoldCheck::unite(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t root_a = root(a), root_b = root(b);
-  // Towards the lower number: later batches then hang below earlier ones, and paths stay short.
+  // The lower number becomes the root. Later batches then hang below earlier ones, and paths stay short.
   if (root_a != root_b) parent_[std::max(root_a, root_b) - window_first_] = std::min(root_a, root_b);
 }
 

@@ -1,5 +1,5 @@
-// Verifies, while a mesh streams past, that it is a closed oriented 2-manifold: the triangles around every
-// vertex must form one directed cycle. Memory is a window of two batches, however large the mesh.
+// Verifies that a mesh is a closed oriented 2-manifold while the mesh is streamed: the triangles around every
+// vertex must form one directed cycle. Memory holds a window of two batches, however large the mesh is.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace astrolith {
 struct ManifoldReport {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
-  std::int64_t open_vertices = 0;          // on a boundary, or where orientations disagree
-  std::int64_t non_manifold_vertices = 0;  // several cycles round them, an edge of three or more, or nothing
-  std::int64_t late_triangles = 0;         // named a vertex that had left the window: not verified
-  std::int64_t components = 0;             // pieces that share no vertex
-  std::int64_t genus = -1;                 // summed over components; -1 where it has no meaning
+  std::int64_t open_vertices = 0;          // vertices on a boundary or where orientations disagree
+  std::int64_t non_manifold_vertices = 0;  // several cycles, an edge of three or more triangles, no triangle
+  std::int64_t late_triangles = 0;         // not verified: they name a vertex that had left the window
+  std::int64_t components = 0;             // connected through shared vertices
+  std::int64_t genus = -1;                 // sum over components; -1 unless closed and manifold
 
   bool closed() const { return triangles > 0 && open_vertices == 0 && late_triangles == 0; }
   bool manifold() const { return triangles > 0 && non_manifold_vertices == 0 && late_triangles == 0; }
 };
 
-// Expects what mesh_field promises: triangles that follow a call of add_vertices name vertices of that call
-// and the one before. Any mesh in one call of each is such a stream.
+// Checks a stream as mesh_field makes it: triangles that follow a call of add_vertices name vertices of that
+// call and of the call before. Any mesh passed in one call of each is such a stream.
 class ManifoldCheck : public MeshSink {
  public:
   void add_vertices(std::span<const MeshVertex> vertices) override;
   void add_triangles(std::span<const Triangle> triangles) override;
 
-  // Settles what is still in the window; call once, at the end.
+  // Checks the vertices that are still in the window. Must be called once, at the end.
   ManifoldReport finish();
 
  private:
@@ -46,8 +46,8 @@ class ManifoldCheck : public MeshSink {
 
   std::uint32_t window_first_ = 0;      // first vertex of the batch before the last
   std::uint32_t batch_first_ = 0;       // first vertex of the last batch
-  std::uint32_t end_ = 0;               // vertices so far
-  std::vector<Corner> window_, batch_;  // corners at vertices of these two
+  std::uint32_t end_ = 0;               // number of vertices so far
+  std::vector<Corner> window_, batch_;  // corners at the vertices of the batch before and of the last batch
   std::vector<std::uint32_t> parent_;   // union-find over the vertices from window_first_ on
   ManifoldReport report_;
 };

@@ -12,8 +12,8 @@ constexpr int kNoEdge = -1;
 
 bool is_inside(int signs, int corner) { return ((signs >> corner) & 1) != 0; }
 
-// The four corners of face 0 .. 5 (axis, then low or high side), counter-clockwise seen from outside the
-// cell.
+// The four corners of a face, counter-clockwise seen from outside the cell. Faces are numbered 2 axis + (0
+// low, 1 high).
 std::array<int, 4> face_corners(int face) {
   const int axis = face / 2;
   const bool high = face % 2 != 0;
@@ -34,8 +34,8 @@ int edge_between(int corner_a, int corner_b) {
   throw std::logic_error("corners do not share an edge");
 }
 
-// next[e] = the edge that follows e on its loop, the inside on the left seen from outside the body. Each run
-// of inside corners round a face is cut off by its own segment: that is the face rule.
+// next[e] is the edge that follows e on its loop, with the inside on the left seen from outside the body. The
+// face rule: each run of inside corners round a face is cut off by a segment of its own.
 std::array<int, 12> link_segments(int signs) {
   std::array<int, 12> next;
   next.fill(kNoEdge);
@@ -67,7 +67,7 @@ bool share_a_face(int edge_a, int edge_b) {
   return false;
 }
 
-// Squared distance of two edges' midpoints in half cells: what a triangulation keeps short.
+// The squared distance between the midpoints of two edges, in half cells. The triangulation keeps it small.
 int squared_distance(int edge_a, int edge_b) {
   int sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,7 +81,7 @@ int squared_distance(int edge_a, int edge_b) {
 }
 
 // The triangulation of a loop with the least sum of squared diagonals among those without a diagonal in a
-// face of the cell; dynamic programming over sub-polygons (Klincsek 1980).
+// face of the cell, by dynamic programming over sub-polygons (Klincsek 1980).
 class LoopTriangulation {
  public:
   explicit LoopTriangulation(const std::vector<int>& loop)
@@ -129,7 +129,7 @@ class LoopTriangulation {
   }
 
   const std::vector<int>& loop_;
-  std::vector<int> cost_;          // (n x n) of the sub-polygon i .. j
+  std::vector<int> cost_;          // (n x n) least cost of the sub-polygon i .. j
   std::vector<std::size_t> apex_;  // (n x n) third corner of the triangle on the diagonal i, j
 };
 

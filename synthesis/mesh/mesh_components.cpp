@@ -12,7 +12,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 Vec3d in_double(const Vec3f& p) { return {p.x, p.y, p.z}; }
 
-// Union-find with path halving over the vertices of one batch.
+// Union-find with path halving over the vertices of one batch, with a label for each root.
 class BatchSets {
  public:
   explicit BatchSets(std::size_t size) : parent_(size), label_(size, kNone) {
@@ -36,14 +36,14 @@ std::uint32_t ComponentLabels::new_label() {
   return parent_.back();
 }
 
-std::uint32_t ComponentLabels::piece_of(std::uint32_t label) const {
+std::uint32_t ComponentLabels::component_of(std::uint32_t label) const {
   while (parent_[label] != label) label = parent_[label];
   return label;
 }
 
 void ComponentLabels::unite(std::uint32_t a, std::uint32_t b) {
-  a = piece_of(a);
-  b = piece_of(b);
+  a = component_of(a);
+  b = component_of(b);
   if (a != b) parent_[std::max(a, b)] = std::min(a, b);
 }
 
@@ -113,18 +113,18 @@ void ComponentSizes::settle() {
 
 ComponentChoice ComponentSizes::larger_than(double least_share) {
   settle();
-  std::vector<double> pieces(volumes_.size(), 0.0);
-  for (std::uint32_t label = 0; label < pieces.size(); ++label) {
-    pieces[labels_.piece_of(label)] += volumes_[label];
+  std::vector<double> volumes(volumes_.size(), 0.0);
+  for (std::uint32_t label = 0; label < volumes.size(); ++label) {
+    volumes[labels_.component_of(label)] += volumes_[label];
   }
   double largest = 0.0;
-  for (const double volume : pieces) largest = std::max(largest, std::fabs(volume));
+  for (const double volume : volumes) largest = std::max(largest, std::fabs(volume));
   ComponentChoice choice;
-  for (std::uint32_t label = 0; label < pieces.size(); ++label) {
-    const std::uint32_t piece = labels_.piece_of(label);
-    const bool keep = std::fabs(pieces[piece]) >= least_share * largest;
+  for (std::uint32_t label = 0; label < volumes.size(); ++label) {
+    const std::uint32_t component = labels_.component_of(label);
+    const bool keep = std::fabs(volumes[component]) >= least_share * largest;
     choice.keep.push_back(keep ? 1 : 0);
-    if (!keep && piece == label) ++choice.dropped_pieces;
+    if (!keep && component == label) ++choice.dropped_components;
   }
   return choice;
 }

@@ -11,15 +11,16 @@ namespace {
 
 constexpr int kCoarseCells = 48;
 constexpr int kFineCells = 96;
-// Cells along the longest side that are not border, as a whole mesh has them.
+// Cells along the longest side without the border, as a whole mesh has them.
 double body_cells(int resolution) { return resolution - 2; }
 
 MeshPrediction measured(const MeshStatistics& s, int resolution) {
   return {resolution, double(s.triangles), double(s.evaluations), double(s.working_bytes)};
 }
 
-// b continued from a and b as a power of the resolution, whose exponent stays between those of a curve and a
-// volume.
+// Extrapolates from the counts a and b at resolutions of ratio `step` to the count at `ratio` times the
+// resolution of b. The count is a power of the resolution, and its exponent stays between 1 (a curve) and 3
+// (a volume).
 double continued(double a, double b, double step, double ratio) {
   if (a <= 0.0 || b <= 0.0) return b * ratio * ratio;
   const double exponent = std::clamp(std::log(b / a) / std::log(step), 1.0, 3.0);

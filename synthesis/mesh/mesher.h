@@ -1,9 +1,9 @@
 // Turns a field into a closed 2-manifold triangle mesh: marching cubes over sparse blocks, layer by layer.
 //
-// One layer of blocks at a time is culled by bounds of the field, sampled, numbered and polygonised, in
-// parallel over blocks; the layer below is kept for the samples and vertices they share, so memory is bounded
-// by two layers. Vertices and triangles come in rows of the whole grid: the bytes depend on the field, the
-// bounds and the resolution alone.
+// Each layer of blocks is culled by bounds of the field, sampled, numbered and polygonised, in parallel over
+// blocks. The layer below is kept for the samples and vertices that the two layers share. Two layers
+// therefore bound the memory. Vertices and triangles come in rows of the whole grid: the bytes depend on the
+// field, the bounds and the resolution alone.
 #pragma once
 
 #include <cstdint>
@@ -24,25 +24,25 @@ namespace astrolith {
 struct MeshStatistics {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
-  std::int64_t evaluations = 0;    // of the field, at samples and for normals
-  std::int64_t active_blocks = 0;  // that the surface may cross; the others were never sampled
+  std::int64_t evaluations = 0;    // evaluations of the field, at samples and for normals
+  std::int64_t active_blocks = 0;  // blocks that the surface may cross; the others are never sampled
   std::int64_t total_blocks = 0;
-  std::int64_t working_bytes = 0;  // of two layers of blocks and one of vertices and triangles, at their most
-  std::int64_t cut_vertices = 0;   // in the planes where a tile or a patch was cut: its open ones
+  std::int64_t working_bytes = 0;  // most memory of two layers of blocks and one of vertices and triangles
+  std::int64_t cut_vertices = 0;   // vertices in the planes where a tile or a patch is cut open
   double step = 0.0;               // edge of a cell, length units
 
-  // V - E + F with E = 3F/2, as in every closed mesh of triangles.
+  // V - E + F, where E = 3F/2 as in every closed triangle mesh.
   std::int64_t euler_characteristic() const { return vertices - triangles / 2; }
 };
 
-// One of `count` slabs along z, each of whole layers of blocks. Its mesh is open where it was cut; the
-// vertices there have the same bits in both tiles that share them, so tiles fit without cracks.
+// One of `count` slabs along z, each of whole layers of blocks. The mesh of a tile is open where it is cut.
+// Vertices there have the same bits in both tiles that share them, so that tiles fit without cracks.
 struct MeshTile {
   int index = 0;  // 0 .. count - 1
   int count = 1;
 };
 
-// The cells of a tile: whole layers of blocks. Throws InputError for a tile that there is not.
+// The cells of a tile. Throws InputError for a tile that does not exist.
 template <int B>
 CellWindow window_of_tile(const SampleGrid& grid, MeshTile tile) {
   const std::int64_t layers = (grid.cells[2] + B - 1) / B;
@@ -56,11 +56,11 @@ CellWindow window_of_tile(const SampleGrid& grid, MeshTile tile) {
           {grid.cells[0], grid.cells[1], std::min(B * layer(tile.index + 1), grid.cells[2])}};
 }
 
-// The layers of blocks that a window needs.
+// The layers of blocks that a window needs, first .. end - 1.
 struct LayerRange {
   int first, end;
 };
-// From the layer that owns the samples in the window's lower side.
+// The first layer is the one that owns the samples in the lower side of the window.
 template <int B>
 LayerRange layers_of_window(const BlockGrid<B>& grid) {
   return {std::max(grid.window.first[2] - 2, 0) / B, (grid.window.last[2] - 1) / B + 1};
@@ -173,18 +173,18 @@ class LayeredMesher {
   decltype(std::declval<const Field&>().gather(Box{})) whole_;
   MeshSink& sink_;
   MeshStatistics statistics_;
-  // Of the layer in hand; kept for their memory.
+  // Vertices and triangles of the current layer; the vectors are kept for their memory.
   std::vector<MeshVertex> vertices_;
   std::vector<Triangle> triangles_;
 };
 
-// Cells along a block's side: 8 keeps a block's samples in the first-level cache.
+// Cells along the side of a block. The samples of a block of 8^3 cells fit into the first-level cache.
 inline constexpr int kBlockCells = 8;
 
-// Meshes the surface F = 0, or a tile of it, with `resolution` cells along the longest side of bounds, which
-// must hold the surface. A sample is inside when F > 0 strictly. Vertices carry unit normals out of the body.
-// Throws InputError for bad bounds, resolution or tile, WorkError when a promise of the field is broken (the
-// bounds cut the body, a bound culled the surface) or progress asks to stop.
+// Meshes the surface F = 0, or a tile of it, with `resolution` cells along the longest side of `bounds`,
+// which must hold the surface. A sample is inside when F > 0. Vertices carry unit normals out of the body.
+// Throws InputError for bad bounds, a bad resolution or a bad tile. Throws WorkError when progress asks to
+// stop, and when the field breaks a promise: the bounds cut the body, or a bound culled the surface.
 template <int B = kBlockCells, BlockField Field>
 MeshStatistics mesh_field(const Field& field, const Box& bounds, int resolution, MeshSink& sink,
                           const Progress& progress = {}, MeshTile tile = {}) {
@@ -192,8 +192,9 @@ MeshStatistics mesh_field(const Field& field, const Box& bounds, int resolution,
   return LayeredMesher<B, Field>(field, {grid, window_of_tile<B>(grid, tile), true}, sink).run(progress);
 }
 
-// Meshes what lies of the surface F = 0 in a cube of `size` around the field's origin, `resolution` cells
-// along its sides: open where the cube cuts the surface. Throws as mesh_field does.
+// Meshes the part of the surface F = 0 that lies in a cube of side `size` around the origin of the field,
+// with `resolution` cells along the sides of the cube. The mesh is open where the cube cuts the surface.
+// Throws as mesh_field does.
 template <int B = kBlockCells, BlockField Field>
 MeshStatistics mesh_patch(const Field& field, double size, int resolution, MeshSink& sink,
                           const Progress& progress = {}) {

@@ -10,7 +10,8 @@
 namespace astrolith {
 namespace {
 
-// Vertices keep 2^-10 of a cell's edge from its ends; that must be more than a rounding error of a position.
+// Vertices stay 2^-10 of the edge of a cell away from its ends. This margin must exceed the rounding error of
+// a position.
 void check_positions_are_distinct(const Box& bounds, double step) {
   const double rounding = 0x1.0p-23 * largest_coordinate(bounds);
   if (step * 0x1.0p-10 <= rounding) {

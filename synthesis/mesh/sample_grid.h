@@ -1,5 +1,5 @@
-// The cubic lattice a field is sampled on. A sample's position depends on its index alone, never on the block
-// it is computed in, so that any decomposition gives the same bits.
+// The cubic lattice on which a field is sampled. The position of a sample depends on its index alone and
+// never on the block it is computed in. Any division into blocks therefore gives the same bits.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace astrolith {
 struct SampleGrid {
   Vec3d origin;              // position of sample (0, 0, 0)
   double step = 1.0;         // edge of a cell, length units
-  std::array<int, 3> cells;  // along x, y, z; there is one sample more
+  std::array<int, 3> cells;  // number along x, y, z; there is one more sample than cells
 
   ASTROLITH_HD float x(int index) const { return static_cast<float>(origin.x + step * index); }
   ASTROLITH_HD float y(int index) const { return static_cast<float>(origin.y + step * index); }
@@ -27,8 +27,8 @@ struct SampleGrid {
   }
 };
 
-// The cells that are meshed, by the samples of their upper corners: first .. last along each axis. Around a
-// window that does not fill its grid the mesh is open.
+// The cells that are meshed, first .. last along each axis, named by the samples at their upper corners. A
+// window that does not fill its grid has an open mesh.
 struct CellWindow {
   std::array<int, 3> first, last;
 };
@@ -36,15 +36,15 @@ struct CellWindow {
 inline constexpr int kMinResolution = 4;
 inline constexpr int kMaxResolution = 8192;
 
-// A grid of `resolution` cells along the longest side of bounds, one cell of it as padding on each end, so
-// that a surface within bounds never touches the border. Throws InputError when bounds are empty or not
-// finite, the resolution is outside [kMinResolution, kMaxResolution], or neighbouring positions could not be
-// told apart in 32-bit floats.
+// A grid of `resolution` cells along the longest side of `bounds`. One cell at each end lies outside
+// `bounds`, so that a surface within `bounds` never touches the border. Throws InputError when `bounds` are
+// empty or not finite, when the resolution is outside [kMinResolution, kMaxResolution], and when neighbouring
+// positions could not be told apart in 32-bit floats.
 SampleGrid make_sample_grid(const Box& bounds, int resolution);
 
-// A cube of `size` around the origin, `resolution` cells along its sides, with one more cell below each,
-// which owns the samples in the cube's lower sides; window_of_patch leaves it out. Throws InputError when the
-// size is not positive and finite or the resolution is out of range.
+// A grid over a cube of side `size` around the origin, with `resolution` cells along its sides. One more
+// layer of cells below each lower side owns the samples in that side; window_of_patch leaves this layer out.
+// Throws InputError when the size is not positive and finite or the resolution is out of range.
 SampleGrid make_patch_grid(double size, int resolution);
 CellWindow window_of_patch(const SampleGrid& grid);
 

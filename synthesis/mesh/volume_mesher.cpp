@@ -12,8 +12,8 @@
 namespace astrolith {
 namespace {
 
-constexpr int kSlabSlices = 4;  // whose samples stay in the second cache from their signs to their vertices
-constexpr int kGroupRows = 32;  // made together by one thread
+constexpr int kSlabSlices = 4;  // their samples stay in the second-level cache through all steps
+constexpr int kGroupRows = 32;  // rows that one thread makes together
 
 void check_volume(const SampleGrid& grid, std::size_t values) {
   const auto& c = grid.cells;
@@ -25,7 +25,7 @@ void check_volume(const SampleGrid& grid, std::size_t values) {
   }
 }
 
-// Room for n items in a vector that is kept for its memory.
+// Makes room for n items in a vector that keeps its memory, and returns its start.
 template <typename T>
 T* room_for(std::int64_t n, std::vector<T>& items) {
   if (items.size() < static_cast<std::size_t>(n)) items.resize(static_cast<std::size_t>(n));
@@ -38,8 +38,8 @@ struct MadeTriangles {
   std::size_t count = 0;
 };
 
-// Slab by slab along z: signs, edges, vertices and triangles, each in parallel over rows. The last slice of a
-// slab stays as what lies below the next.
+// Works slab by slab along z: signs, edges, vertices and triangles, each in parallel over rows. The last
+// slice of a slab is kept as the slice below the next slab.
 class VolumeMesher {
  public:
   VolumeMesher(const SampleGrid& grid, std::span<const float> values, MeshSink& sink)
@@ -89,7 +89,7 @@ class VolumeMesher {
     }
   }
 
-  // Slices z .. z + slices - 1, in the places 1 .. slices; place 0 holds what lies below.
+  // Makes slices z .. z + slices - 1, which stand in places 1 .. slices. Place 0 holds the slice below them.
   void make_slab(int z, int slices) {
     for_each_row(slices, [&](int y, int slice) { take_row_signs(y, z + slice - 1, slice); });
     for_each_row(slices, [&](int y, int slice) {
@@ -110,7 +110,7 @@ class VolumeMesher {
     keep_last(slices, edges_);
   }
 
-  // Calls body(y, slice) in parallel.
+  // Calls body(y, slice) for every row of the slab, in parallel.
   template <typename Body>
   void for_each_row(int slices, const Body& body) {
     parallel_for(
@@ -138,7 +138,7 @@ class VolumeMesher {
 
   std::size_t row_index(int y, int slice) const { return static_cast<std::size_t>((slice - 1) * rows_ + y); }
 
-  // Turns the counts of rows into the number of their first vertex.
+  // Replaces the number of vertices of each row by the number of its first vertex.
   void number_rows(int slices) {
     slab_first_ = size_.vertices;
     std::int64_t next = slab_first_;
@@ -153,7 +153,7 @@ class VolumeMesher {
     size_.vertices = next;
   }
 
-  // Calls body(group, first row, end of rows) in parallel.
+  // Calls body(group, first row, end of rows) for every group of rows, in parallel.
   template <typename Body>
   void for_each_group(int slices, const Body& body) {
     parallel_for(0, static_cast<std::int64_t>(groups(slices)), [&](std::int64_t g) {
@@ -162,7 +162,8 @@ class VolumeMesher {
     });
   }
 
-  // All of a slab in one call: triangles then name vertices of that call and the one before.
+  // Passes on all vertices of a slab in one call. Triangles then name vertices of that call and of the call
+  // before.
   void emit_vertices(int z, int slices) {
     const std::int64_t before = slab_first_, count = size_.vertices - before;
     MeshVertex* vertices = room_for(count, vertices_);
@@ -196,7 +197,8 @@ class VolumeMesher {
     }
   }
 
-  // Around the cells whose upper corners are those of a row, which is not the first of its slice.
+  // The four rows of samples around the cells whose upper corners are those of `row`, which must not be the
+  // first row of its slice.
   std::array<VolumeRow, 4> rows_around(int row) const {
     const int y = row % rows_, slice = row / rows_ + 1;
     const auto at = [&](int b, int c) {
@@ -208,13 +210,14 @@ class VolumeMesher {
   SampleGrid grid_;
   const float* values_;
   MeshSink& sink_;
-  int samples_, rows_, words_;  // along x, along y; of a row
+  int samples_, rows_, words_;  // samples along x, rows along y, sign words of a row
   VolumeMeshSize size_;
-  std::int64_t slab_first_ = 0;              // number of the slab's first vertex
-  std::vector<SignWord> signs_;              // (kSlabSlices + 1 x rows x words)
-  std::vector<EdgeWord> edges_;              // the same
-  std::vector<std::uint32_t> row_vertices_;  // (kSlabSlices x rows): how many, then the first one's number
-  std::vector<MeshVertex> vertices_;         // of the slab in hand
+  std::int64_t slab_first_ = 0;  // number of the slab's first vertex
+  std::vector<SignWord> signs_;  // (kSlabSlices + 1 x rows x words)
+  std::vector<EdgeWord> edges_;  // (kSlabSlices + 1 x rows x words)
+  // (kSlabSlices x rows) the number of vertices of a row, later the number of its first vertex.
+  std::vector<std::uint32_t> row_vertices_;
+  std::vector<MeshVertex> vertices_;  // vertices of the current slab
   std::vector<MadeTriangles> made_triangles_;
 };
 

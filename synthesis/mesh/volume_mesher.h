@@ -1,10 +1,17 @@
-// The isosurface of samples that are at hand, instead of a field that can be asked anywhere.
+// Meshes a field that is given as samples on a grid, such as a tomogram or the output of another program. No
+// program of Astrolith calls mesh_volume; it is a function of the library, and isosurface_benchmark in
+// tests/benchmarks/ compares it with other packages. A field that can be evaluated anywhere is meshed by
+// mesh_field (mesher.h).
 //
-//   const VolumeMeshSize size = mesh_volume(grid, values, sink);
+//   const SampleGrid grid{{-1, -1, -1}, 2.0 / 64, {64, 64, 64}};     // 65^3 samples of the cube [-1, 1]^3
+//   std::vector<float> values(65 * 65 * 65);                         // F > 0 inside, x fastest
+//   MeshCollector collector;
+//   const VolumeMeshSize size = mesh_volume(grid, values, collector);
+//   write_mesh(collector.mesh, "tomogram.ply", {});
 //
-// Signs are bits: the edges of 64 samples are compared at once, and where a vertex stands in the mesh is
-// counted from those bits wherever a triangle needs it, so that no numbers are stored. Vertices, but for
-// their normals, and triangles are those that mesh_field makes of a field with these values.
+// Signs of samples are bits, so that the edges of 64 samples are compared at once. The number of a vertex is
+// counted from these bits wherever a triangle needs it and is not stored. Triangles and positions of vertices
+// are those that mesh_field makes of a field with these values; normals differ.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +27,11 @@ struct VolumeMeshSize {
   std::int64_t vertices = 0, triangles = 0;
 };
 
-// Meshes F = 0 of values  (cells[2] + 1 x cells[1] + 1 x cells[0] + 1), x fastest; a sample is inside when F
-// > 0 strictly. The mesh is closed and 2-manifold; normals come from central differences. Throws InputError
-// when there are not as many values, fewer than two cells along an axis, or a sample on the border is inside;
-// WorkError when there are more than 2^32 vertices or progress asks to stop.
+// Meshes F = 0. values (cells[2] + 1 x cells[1] + 1 x cells[0] + 1) holds F at the samples of the grid, x
+// fastest. A sample is inside when F > 0. The mesh is closed and 2-manifold; normals come from central
+// differences. Throws InputError when there is another number of values, when an axis has fewer than two
+// cells, or when a sample on the border is inside. Throws WorkError when there are more than 2^32 vertices or
+// progress asks to stop.
 VolumeMeshSize mesh_volume(const SampleGrid& grid, std::span<const float> values, MeshSink& sink,
                            const Progress& progress = {});
 

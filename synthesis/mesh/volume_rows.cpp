@@ -14,14 +14,14 @@ namespace {
 
 inline std::uint32_t count(SignWord bits) { return static_cast<std::uint32_t>(std::popcount(bits)); }
 
-// Bit i: what bit i - 1 was, across words.
+// The word shifted by one sample: bit i holds what bit i - 1 was. The carry passes a bit from word to word.
 inline SignWord lower_neighbours(SignWord word, SignWord& carry) {
   const SignWord shifted = word << 1 | carry;
   carry = word >> 63;
   return shifted;
 }
 
-// Four rows' signs at the lower and upper corners of 64 cells.
+// The signs of four rows at the lower and at the upper corners of 64 cells.
 struct CellWord {
   std::array<SignWord, 4> lower, upper;
 
@@ -42,7 +42,7 @@ struct CellWord {
   }
 };
 
-// Reads the words of four rows one after the other.
+// Reads the words of four rows in ascending order.
 class CellWords {
  public:
   explicit CellWords(const std::array<VolumeRow, 4>& rows) : rows_(rows) {}
@@ -60,7 +60,7 @@ class CellWords {
   std::array<SignWord, 4> carry_{};
 };
 
-// The table with the place of an edge in CellNumbers instead of the edge.
+// The marching cubes table, in which each edge is replaced by its place in CellNumbers.
 std::array<CellTriangles, 256> table_by_place() {
   std::array<CellTriangles, 256> table = marching_cubes_table();
   for (CellTriangles& cell : table) {
@@ -72,12 +72,12 @@ std::array<CellTriangles, 256> table_by_place() {
   return table;
 }
 
-// Numbers of vertices on a cell's edges, by 3 * (corner where an edge ends) + axis; of an edge without a
-// vertex, anything.
+// The numbers of the vertices on the edges of a cell, by 3 * (corner where the edge ends) + axis. An edge
+// without a vertex has any number.
 struct CellNumbers {
   std::array<std::uint32_t, 24> at;
 
-  // x: the cell's upper corner in word w. The vertices at x - 1 come just before those at x.
+  // x is the upper corner of the cell in word w. The vertices at x - 1 are numbered just before those at x.
   CellNumbers(const std::array<VolumeRow, 4>& rows, int w, int x) {
     const SignWord below = (SignWord{1} << x) - 1;
     std::array<std::uint32_t, 4> here, along_x, along_y;
@@ -100,7 +100,7 @@ struct CellNumbers {
   }
 
  private:
-  // Whether the edge along z that ends at x - 1 is crossed.
+  // 1 where the edge along z that ends at x - 1 is crossed.
   static std::uint32_t along_z_before(const EdgeWord* edges, int w, int x) {
     const SignWord bit = x > 0 ? edges[w].crossed[2] >> (x - 1) : w > 0 ? edges[w - 1].crossed[2] >> 63 : 0;
     return static_cast<std::uint32_t>(bit & 1);
@@ -120,7 +120,7 @@ ASTROLITH_SIMD_CLONES void take_signs(const float* __restrict values, int sample
     for (std::size_t k = 0; k < 8; ++k) {
       std::uint64_t eight;
       std::memcpy(&eight, inside.data() + 8 * k, 8);
-      word |= (eight * 0x0102040810204080u >> 56) << (8 * k);  // the lowest bits of eight bytes
+      word |= (eight * 0x0102040810204080u >> 56) << (8 * k);  // packs the lowest bits of eight bytes
     }
     *signs++ = word;
   }
@@ -167,14 +167,14 @@ ASTROLITH_SIMD_CLONES std::int64_t make_triangles(const std::array<VolumeRow, 4>
 
 namespace {
 
-// Differences of the samples around one, twice the slope per step.
+// Differences of the samples on both sides of a sample: twice the slope per step.
 class VolumeSlopes {
  public:
   VolumeSlopes(const SampleGrid& grid, const float* values)
       : values_(values), last_(grid.cells), row_(last_[0] + 1), slice_(row_ * (last_[1] + 1)) {}
 
   const float* sample(int x, int y, int z) const { return values_ + z * slice_ + y * row_ + x; }
-  // One-sided on the border.
+  // The differences at sample x, y, z; on the border they are one-sided.
   Vec3f at(int x, int y, int z) const {
     const float* here = sample(x, y, z);
     const auto along = [&](int c, int last, std::ptrdiff_t step) {

@@ -1,4 +1,5 @@
-// Rows of a volume along x: their signs, the edges that the surface crosses, vertices and triangles.
+// Rows of samples along x: their signs, the edges that the surface crosses, and the vertices and triangles
+// there.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace astrolith {
 
-// Bit i of word w: sample 64 w + i.
+// Bit i of word w is set where sample 64 w + i is inside.
 using SignWord = std::uint64_t;
 
 // The edges that end at 64 samples of a row.
@@ -23,22 +24,24 @@ struct VolumeRow {
   const EdgeWord* edges;
 };
 
-// Samples in whole words; those beyond the row are outside.
+// The number of words that hold the signs of a row. Bits beyond the row are 0, which means outside.
 inline int words_of(int samples) { return (samples + 63) / 64; }
 
+// Sets the signs of a row of samples.
 void take_signs(const float* values, int samples, SignWord* signs);
 
-// From the signs of a row and of those one step lower along y and z. `first` of each word counts from 0;
-// returns how many vertices the row has.
+// Finds the crossed edges of a row from its signs and from the signs of the rows one step lower along y and
+// z. `first` of each word counts from the start of the row. Returns how many vertices the row has.
 std::uint32_t take_edges(const SignWord* signs, const SignWord* lower_y, const SignWord* lower_z, int words,
                          EdgeWord* edges);
 
-// At most so many triangles have the cells between four rows: (y - 1, z - 1), (y, z - 1), (y - 1, z), (y, z).
+// A bound on the number of triangles in the cells between four rows: (y - 1, z - 1), (y, z - 1), (y - 1, z),
+// (y, z).
 std::int64_t count_triangles_at_most(const std::array<VolumeRow, 4>& rows, int words);
-// Makes them; returns how many.
+// Makes the triangles in these cells and returns how many there are.
 std::int64_t make_triangles(const std::array<VolumeRow, 4>& rows, int words, Triangle* triangles);
 
-// The vertices of row y, z, in the order of their numbers.
+// Makes the vertices of row y, z, in the order of their numbers.
 void make_vertices(const SampleGrid& grid, const float* values, const EdgeWord* edges, int y, int z,
                    MeshVertex* vertices);
 

@@ -4,13 +4,9 @@
 
 #include <vector>
 
-#include "numerics/scalar_math.h"
-#include "numerics/vec3.h"
+#include "numerics/interval.h"
 
 namespace astrolith {
-
-// Cells from the origin at which float coordinates still hold three bits within a cell: 2^20.
-inline constexpr double kLargestCell = 1048576.0;
 
 // Points moved into the box low .. high, as three arrays of n floats.
 class PointsInDomain {

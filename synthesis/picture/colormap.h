@@ -8,15 +8,15 @@
 
 namespace astrolith {
 
-// Linear-light sRGB components in [0, 1] for t in [0, 1] (clamped): from dark violet over teal to pale
-// yellow. Lightness in OKLab (Ottosson 2020) rises linearly with t, hue falls linearly, chroma stays in
-// gamut.
+// The colour for t in [0, 1] (clamped), in linear-light sRGB components in [0, 1]: from dark violet over teal
+// to pale yellow. Lightness in OKLab (Ottosson 2020) rises linearly with t, hue falls linearly, and chroma
+// stays in gamut.
 Vec3<float> sequential_color(double t);
 
-// sequential_color of (value - low) / (high - low), a colour a value; low < high. NaN gives grey.
+// One colour for each value: sequential_color((value - low) / (high - low)), low < high. NaN gives grey.
 std::vector<Vec3<float>> sequential_colors(std::span<const double> values, double low, double high);
 
-// One component from linear light in [0, 1] (clamped) to sRGB in [0, 255].
+// Converts one component from linear light in [0, 1] (clamped) to sRGB in [0, 255].
 unsigned char srgb_byte(float linear);
 
 }  // namespace astrolith

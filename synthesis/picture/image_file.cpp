@@ -14,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-// 2^31 - 1 pixels a side is what PNG allows; this also keeps rows within memory.
+// The longest side of an image, in pixels. PNG allows 2^31 - 1; this limit also keeps rows within memory.
 constexpr int kMaxSide = 1 << 20;
 
 void check_size(std::size_t values, std::size_t channels, int width, int height,
@@ -41,7 +41,7 @@ void no_flush(png_structp) {}
 void no_warning(png_structp, png_const_charp) {}
 [[noreturn]] void jump_back(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 
-// libpng reports errors by longjmp: nothing here may need a destructor.
+// libpng reports errors by longjmp, so that no object in this function may need a destructor.
 bool encode(png_structp png, png_infop info, const PngLayout& layout, const std::uint8_t* data,
             std::vector<std::uint8_t>* bytes) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
@@ -123,7 +123,7 @@ void write_tiff_float(std::span<const float> values, int width, int height, cons
                       int channels) {
   check_size(values.size(), static_cast<std::size_t>(channels), width, height, file);
   OutputFile target(file);
-  TIFFSetErrorHandler(nullptr);  // libraries never print: failures come back as statuses
+  TIFFSetErrorHandler(nullptr);  // libraries never print; failures are returned as statuses
   TIFFSetWarningHandler(nullptr);
   std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(target.temporary_name().c_str(), "w"));
   if (tiff == nullptr || !write_tiff_rows(tiff.get(), values, width, height, channels)) {

@@ -1,6 +1,7 @@
-// Pictures and height maps as files, whole or absent (numerics/files/output_file.h). All arrays are
-// row-major, the top row first. Throws InputError when the target cannot be written or width * height does
-// not match the array, WorkError when writing fails half-way.
+// Writes pictures and height maps into files, which are whole or absent (numerics/files/output_file.h). All
+// arrays are row-major, the top row first. Sides are 1 .. 2^20 pixels. Every function throws InputError when
+// the target cannot be written or when width * height does not match the array, and WorkError when writing
+// fails half-way.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +19,18 @@ struct RgbImage {
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file);
 
-// grey  (height x width)
+// grey: (height x width)
 void write_png8_grey(std::span<const std::uint8_t> grey, int width, int height,
                      const std::filesystem::path& file);
 void write_png16_grey(std::span<const std::uint16_t> grey, int width, int height,
                       const std::filesystem::path& file);
 
-// rgb  (height x width x 3)
+// rgb: (height x width x 3)
 void write_png16_rgb(std::span<const std::uint16_t> rgb, int width, int height,
                      const std::filesystem::path& file);
 
-// 32-bit floats, uncompressed; for heights whose unit matters (1 channel) and colours (3, RGB).
-// values  (height x width x channels)
+// Writes 32-bit floats, uncompressed: heights whose unit matters (1 channel) and colours (3 channels, RGB).
+// values: (height x width x channels)
 void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
                       int channels = 1);
 

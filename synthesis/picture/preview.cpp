@@ -9,6 +9,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "numerics/scalar_math.h"
+#include "numerics/tangent_frame.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/ray_scene_internal.h"
 
@@ -18,36 +19,33 @@ namespace {
 constexpr double kFilled = 0.92;  // share of a tile that the largest view spans
 constexpr Vec3f kBackground{0.0030f, 0.0034f, 0.0048f};
 constexpr Vec3f kNeutralAlbedo{0.58f, 0.56f, 0.535f};
-// Start of secondary rays above the surface, in radii of the body: above the rounding errors of a hit.
+// The height above the surface at which secondary rays start, in radii of the body. It exceeds the rounding
+// errors of a hit.
 constexpr float kLift = 2e-5f;
-// Share of Lommel and Seeliger's law in the reflectance (McEwen 1991): full moons look flat, rocks less so.
+// The share of the law of Lommel and Seeliger in the reflectance (McEwen 1991), which makes full moons look
+// flat. Rocks look less flat: the rest of the reflectance follows Lambert.
 constexpr float kLunarShare = 0.35f;
 
-// Two directions at right angles to a unit vector and to each other (Duff et al. 2017).
-struct Tangents {
-  explicit Tangents(const Vec3f& n) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    first = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
-    second = {b, sign + n.y * n.y * a, -n.y};
-  }
-  Vec3f first, second;
-};
+// A frame across the unit vector n. Sums are rounded twice and the sign bit of n.z decides the frame, because
+// pictures have always had these bits.
+Tangents<float> tangents_about(const Vec3f& n) {
+  return duff_tangents<SumRounding::kTwice>(n, std::copysign(1.0f, n.z));
+}
 
-// Orthographic, in the unit ball of the scene.
+// An orthographic camera in the unit ball of the scene.
 struct Camera {
   Vec3f to_viewer, sun;         // unit vectors
-  Vec3f sun_first, sun_second;  // across the sun's disk, as long as its radius seen from the body
+  Vec3f sun_first, sun_second;  // across the sun's disk, as long as its apparent radius
   Vec3d right, up, from;        // orthonormal
-  double center_x = 0, center_y = 0, half_width = 0, half_height = 0;  // of the body in the picture plane
+  // The centre and the half sides of the body's box in the picture plane.
+  double center_x = 0, center_y = 0, half_width = 0, half_height = 0;
 };
 
 void light(Camera& camera, const PreviewOptions& options) {
   const Vec3d sun = normalized(options.sun);
   camera.sun = to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from);
   const auto radius = static_cast<float>(std::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
-  const Tangents tangents(camera.sun);
+  const Tangents<float> tangents = tangents_about(camera.sun);
   camera.sun_first = radius * tangents.first;
   camera.sun_second = radius * tangents.second;
 }
@@ -75,7 +73,7 @@ Camera make_camera(const PreviewView& view, const PreviewOptions& options, const
   return camera;
 }
 
-// Uniform numbers of one ray, by what they are for.
+// Uniform random numbers of one ray, as hashes of the pixel and the ray.
 class RayRandom {
  public:
   RayRandom(std::uint64_t seed, int x, int y, int ray) : hash_(hash_cell(hash_seed(seed, 0), x, y, ray)) {}
@@ -115,7 +113,7 @@ class Painter {
     Vec3f sum;
     bool is_hit = false;
     for (int k = 0; k < rays; ++k) {
-      // Two opposite corners first: where both miss, so does the pixel.
+      // The rays at two opposite corners come first. Where both miss the body, the whole pixel is background.
       const int ray = k == 1 ? rays - 1 : k > 1 ? k - 1 : 0;
       RayRandom random(options_.seed, x, y, ray);
       const double px = x + (ray % n + double(random.next())) / n;
@@ -147,7 +145,7 @@ class Painter {
     return shade(camera, origin - hit.distance * camera.to_viewer, hit, random);
   }
 
-  // A value at the corners of the hit triangle, interpolated.
+  // Interpolates a value at the corners of the triangle that was hit.
   template <typename T>
   Vec3f interpolate(const std::vector<Vec3<T>>& corners, const RayHit& hit) const {
     const Triangle& t = mesh_.triangles[hit.triangle];
@@ -161,7 +159,7 @@ class Painter {
     Vec3f face = hit.normal;
     Vec3f normal = normalized(interpolate(normals_, hit));
     if (squared_norm(normal) < 0.5f) normal = face;
-    // Surfaces seen from behind, in open or inverted meshes, are lit like the others.
+    // In open or inverted meshes a surface may be seen from behind. It is lit like the others.
     if (dot(face, to_viewer) < 0.0f) face = -face;
     if (dot(normal, face) < 0.0f) normal = -normal;
     const Vec3f start = point + kLift * face;
@@ -181,13 +179,13 @@ class Painter {
     return kLunarShare * 2.0f * incidence / (incidence + emission) + (1.0f - kLunarShare) * incidence;
   }
 
-  // Light of a sky brightest behind the viewer, which one cosine-weighted ray finds open or not: in the
-  // shadows, slopes stay legible and hollows look hollow.
+  // Light from a sky that is brightest behind the viewer. One cosine-weighted ray tests whether the sky is
+  // open. In shadows this keeps slopes legible and makes hollows look hollow.
   float sky_light(const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer, RayRandom& random) const {
     if (options_.fill_light <= 0.0) return 0.0f;
     const auto [dx, dy] = disk_point(random);
     const float dz = math::sqrt(std::max(0.0f, 1.0f - dx * dx - dy * dy));
-    const Tangents tangents(normal);
+    const Tangents<float> tangents = tangents_about(normal);
     const Vec3f towards = normalized(dx * tangents.first + dy * tangents.second + dz * normal);
     if (scene_.occluded(start, towards)) return 0.0f;
     const float facing = std::max(0.0f, dot(normal, to_viewer));

@@ -22,6 +22,15 @@ void check(const TriangleMesh& mesh) {
   }
 }
 
+// The mesh in the unit ball about the centre of its box; the farthest vertex lies on the ball.
+TriangleScene unit_scene(const TriangleMesh& mesh) {
+  check(mesh);
+  const Vec3d center = mesh.bounds().center();
+  double radius = 0.0;
+  for (const Vec3d& p : mesh.vertices) radius = std::max(radius, norm(p - center));
+  return {mesh, center, radius > 0.0 ? 1.0 / radius : 1.0};
+}
+
 RTCRay make_ray(const Vec3f& origin, const Vec3f& direction) {
   RTCRay ray{};
   ray.org_x = origin.x;
@@ -37,44 +46,7 @@ RTCRay make_ray(const Vec3f& origin, const Vec3f& direction) {
 
 }  // namespace
 
-void RayScene::Release::operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
-void RayScene::Release::operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
-
-RayScene::RayScene(const TriangleMesh& mesh) {
-  check(mesh);
-  const Box box = mesh.bounds();
-  center_ = box.center();
-  double radius = 0.0;
-  for (const Vec3d& p : mesh.vertices) radius = std::max(radius, norm(p - center_));
-  scale_ = radius > 0.0 ? 1.0 / radius : 1.0;
-  build(mesh);
-}
-
-void RayScene::build(const TriangleMesh& mesh) {
-  device_.reset(rtcNewDevice(nullptr));
-  if (!device_) throw WorkError("preview: the ray-tracing library cannot start on this machine");
-  scene_.reset(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Triangle), mesh.triangles.size()));
-  if (positions != nullptr && indices != nullptr) {
-    for (const Vec3d& vertex : mesh.vertices) {
-      const Vec3d p = to_unit(vertex);
-      for (const double coordinate : {p.x, p.y, p.z}) *positions++ = static_cast<float>(coordinate);
-    }
-    for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_.get(), geometry);
-  }
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_.get());
-  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
-    throw WorkError("preview: building the tree of the surface failed; is there enough memory?");
-  }
-}
+RayScene::RayScene(const TriangleMesh& mesh) : scene_(unit_scene(mesh)) {}
 
 RayHit RayScene::first_hit(const Vec3f& origin, const Vec3f& direction) const {
   RTCIntersectContext context;
@@ -82,7 +54,7 @@ RayHit RayScene::first_hit(const Vec3f& origin, const Vec3f& direction) const {
   RTCRayHit query{};
   query.ray = make_ray(origin, direction);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene_.get(), &context, &query);
+  rtcIntersect1(scene_.handle(), &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const Vec3f normal = normalized(Vec3f{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
   return {true, query.ray.tfar, query.hit.primID, query.hit.u, query.hit.v, normal};
@@ -92,7 +64,7 @@ bool RayScene::occluded(const Vec3f& origin, const Vec3f& direction) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray = make_ray(origin, direction);
-  rtcOccluded1(scene_.get(), &context, &ray);
+  rtcOccluded1(scene_.handle(), &context, &ray);
   return ray.tfar < 0.0f;
 }
 

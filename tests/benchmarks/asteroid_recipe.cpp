@@ -1,5 +1,5 @@
-// Writes the recipe of the asteroid that the speed of synthesis is stated for: 500 metaballs, a unit long,
-// with hills, plates, craters and, unless `bare` is asked for, the gravel's three main bands.
+// Writes the recipe of the asteroid for which the speed of synthesis is stated: 500 metaballs, length 1,
+// hills, plates, craters and, unless `bare` is given, the three main bands of gravel.
 //
 //   asteroid_recipe RECIPE.json [bare]      bare: metaballs and hills alone
 #include <cstdio>
@@ -30,8 +30,8 @@ SpotLayer craters() {
   return layer;
 }
 
-// A pixel is about as wide as a cell of the mesh of a million triangles. The lobes are the strongest of each
-// band that a fit of gravel found.
+// A pixel is about as wide as a cell of the mesh of a million triangles. The lobes are the strongest ones
+// that a fit of gravel found in each band.
 GaborLayer gravel() {
   GaborLayer layer;
   layer.pixel_size = 0.003;

@@ -1,5 +1,5 @@
-// The base fit of bodies: distances of the synthesised mesh from fresh samples of both surfaces, in percent
-// of the bounding-box diagonal, and what they cost.
+// Measures the base fit of bodies: distances between the synthesised mesh and the target at fresh samples of
+// both, in percent of the bounding-box diagonal, and the cost.
 //
 //   base_fit_benchmark --spheres 200 --seeds 3 MESH...
 #include <fmt/format.h>

@@ -1,11 +1,11 @@
-// Seconds to a certified gap: the working set beside FISTA, on the power spectra of photos.
+// Measures the seconds to a certified gap: the working set beside FISTA, on the power spectra of photos.
 //
 //   basis_pursuit_benchmark gravel.png grass.png sand.png
 //   basis_pursuit_benchmark gravel.png --side 32 --export FOLDER && pursuit_peers.py FOLDER
 //
-// Each photo's upper left square, bandwidths 2 up to the narrowest; on its periodogram (the problem of
-// Galerne et al. 2012) and on the estimated spectrum with the weights that fit_gabor gives it. FISTA stops
-// after a while.
+// The upper left square of each photo is used, with bandwidths from 2 to the narrowest. One problem is its
+// periodogram (the problem of Galerne et al. 2012), another its estimated spectrum with the weights that
+// fit_gabor gives it. FISTA stops after a time limit.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -31,7 +31,7 @@ struct Options {
   int side = 256;
   double penalty = 0.01;
   double fista_seconds = 60.0;
-  std::string export_folder;  // of problems for other solvers; empty = none
+  std::string export_folder;  // folder for problems for other solvers; empty = none
 };
 
 double now() {
@@ -48,7 +48,7 @@ GreyImage corner(const GreyImage& image, int side) {
 
 struct Run {
   BasisPursuitResult result;
-  std::vector<double> seconds;  // of each check of the certificate
+  std::vector<double> seconds;  // time of each check of the certificate
 };
 
 template <typename Solver>
@@ -65,7 +65,8 @@ Run timed(const Solver& solve, const BasisPursuitProblem& problem, double limit)
   return run;
 }
 
-// The certified gap keeps the best bound, but an iterate's own gap may rise: the first to reach counts.
+// The certified gap keeps the best bound, but the gap of an iterate may rise. The first iterate that reaches
+// the goal counts.
 std::string row(const Run& run) {
   std::string text;
   for (const double gap : kGaps) {
@@ -83,8 +84,8 @@ void write_doubles(const std::filesystem::path& file, std::span<const double> va
       .write(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
-// For solvers that want a matrix: FOLDER/NAME.json, and float64 beside it: .matrix (a column after the other)
-// and .target.
+// Exports the problem for solvers that want a matrix: FOLDER/NAME.json, and float64 arrays in .matrix (column
+// by column) and .target beside it.
 void write_problem(const std::string& folder, const std::string& name, const BasisPursuitProblem& problem,
                    const Run& ours) {
   const GaborDictionary& dictionary = problem.dictionary;

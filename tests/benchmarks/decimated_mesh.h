@@ -1,4 +1,4 @@
-// Meshes with fewer vertices by quadric error metrics (Garland and Heckbert 1997), as OpenMesh has it.
+// Decimates meshes by quadric error metrics (Garland and Heckbert 1997) with OpenMesh.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace astrolith {
 
-// Collapses edges until at most `vertices` are left, or none can be collapsed.
+// Collapses edges until at most `vertices` are left or none can be collapsed.
 TriangleMesh decimated(const TriangleMesh& mesh, std::size_t vertices);
 
 }  // namespace astrolith

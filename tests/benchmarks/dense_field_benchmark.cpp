@@ -1,5 +1,6 @@
-// A recipe's field and mesh together on one thread: sparse blocks, as synth makes them, beside the field at
-// all N^3 samples, which are written for isosurface_peers.py to mesh. Seconds of the processor, as JSON.
+// Measures the field and the mesh of a recipe together on one thread: sparse blocks, as synth makes them,
+// beside the field at all N^3 samples, which are written for isosurface_peers.py to mesh. Prints seconds of
+// the processor as JSON.
 //
 //   dense_field_benchmark RECIPE.json N FIELD.raw
 #include <cstdio>
@@ -23,7 +24,7 @@ class Discard : public MeshSink {
   void add_triangles(std::span<const Triangle>) override {}
 };
 
-// Samples in cubes, each with what reaches it alone: x fastest in `values`.
+// Evaluates the samples cube by cube, each with only what reaches it; x is fastest in `values`.
 class DenseField {
  public:
   DenseField(const SampleGrid& grid, int n)

@@ -1,7 +1,7 @@
-// The optimisers on the real problem of 34 dimensions, at equal evaluations: fitness of the best details
-// found for one mesh, over several seeds of the optimiser.
+// Compares the optimisers on the real problem of 34 dimensions, at equal evaluations: the fitness of the best
+// details found for one mesh, over several seeds of the optimiser.
 //
-//   details_optimizer_benchmark MESH BASE.json [EVALUATIONS] [SEEDS]      (BASE.json: of fit_shape
+//   details_optimizer_benchmark MESH BASE.json [EVALUATIONS] [SEEDS]      (BASE.json: from fit_shape
 //   --base-only)
 #include <fmt/core.h>
 

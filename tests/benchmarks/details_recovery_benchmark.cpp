@@ -1,5 +1,5 @@
-// Known details, synthesised and fitted again: what the recovered layers' height and frequency are over the
-// true ones, for noises, frequencies, octaves and seeds of the truth.
+// Synthesises known details and fits them again. Prints the ratios of the recovered height and frequency to
+// the true ones, for several noises, frequencies, octaves and seeds of the truth.
 //
 //   details_recovery_benchmark [RESOLUTION of the target's mesh] [GENERATIONS] [SEEDS]
 #include <fmt/core.h>
@@ -31,7 +31,7 @@ FractalLayer layer_of(const Truth& truth) {
   return layer;
 }
 
-// The largest error of a height or a frequency.
+// The largest error of a height or of a frequency.
 double recover(const Truth& truth, int resolution, int generations, std::uint64_t seed) {
   const TargetBody target = testing::with_details({layer_of(truth)}, resolution, 1000 + seed);
   DetailsFitOptions options;

@@ -1,4 +1,5 @@
-// How near fit_gabor comes to known spectra, and how well it continues photos: the tables of the README.
+// Measures how near fit_gabor comes to known spectra, and how well it continues photos: the tables of the
+// README.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +42,7 @@ struct Distances {
   }
 };
 
-// The periodogram convolved with a Gaussian, frequency 0 left out: the baseline, one width everywhere.
+// The baseline: the periodogram convolved with a Gaussian of one width everywhere, with frequency 0 left out.
 PowerSpectrum smoothed(const PowerSpectrum& periodogram, double deviation) {
   const int n = periodogram.width;
   const FourierTransform fourier(n, n);
@@ -68,7 +69,7 @@ PowerSpectrum smoothed(const PowerSpectrum& periodogram, double deviation) {
   return result;
 }
 
-// The one width best on average over the realisations, chosen with the truth in hand.
+// The width that is best on average over the realisations, chosen with knowledge of the truth.
 std::pair<double, Distances> best_smoothing(const std::vector<PowerSpectrum>& periodograms,
                                             const PowerSpectrum& truth) {
   std::pair<double, Distances> best{0.0, {}};

@@ -1,6 +1,6 @@
-// Gabor noise of one band with 32 impulses under a kernel on one thread, beside Lagae et al. 2009's way of
-// evaluating it (lagae_gabor_noise.h): pixels a second of a texture, and points a second on the surface of a
-// sphere in blocks as a mesh asks for them. A row a bandwidth, as JSON.
+// Measures Gabor noise of one band with 32 impulses under a kernel on one thread, beside the evaluation of
+// Lagae et al. 2009 (lagae_gabor_noise.h). Prints one row of JSON for each bandwidth: pixels a second of a
+// texture, and points a second on the surface of a sphere, in blocks as a mesher asks for them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -50,7 +50,7 @@ double peer_texture_rate(int bandwidth) {
          });
 }
 
-// Blocks of points on a sphere, whose neighbours are a pixel apart.
+// Blocks of points on a sphere; neighbouring points are a pixel apart.
 struct SurfaceBlocks {
   static constexpr int kSide = 16, kBlocks = 24;
   double pixel = 5e-4;

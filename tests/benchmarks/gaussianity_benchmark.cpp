@@ -1,5 +1,6 @@
-// How often the test of Gaussianity cries wolf: its p-values on simulated Gaussian textures, which should be
-// uniform, for several spectra and sizes; whole periods and squares cut out of larger ones, as photos are.
+// Measures how often the test of Gaussianity raises a false alarm: its p-values on simulated Gaussian
+// textures, which should be uniform. Spectra and sizes vary, and textures are whole periods or, as in photos,
+// squares cut out of larger ones.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -13,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-// Power at (fx, fy) in cycles per pixel.
+// The power at (fx, fy), in cycles per pixel.
 using Shape = std::function<double(double, double)>;
 
 PowerSpectrum spectrum_of(const Shape& shape, int n) {

@@ -1,5 +1,6 @@
-// The optimisers on the real problem of 4 dimensions (number of spheres, two tensions, blend exponent), at
-// equal evaluations: 1 - similarity of the best base found for one mesh, over several seeds of the optimiser.
+// Compares the optimisers on the real problem of 4 dimensions (number of spheres, two tensions, blend
+// exponent), at equal evaluations: 1 - similarity of the best base found for one mesh, over several seeds of
+// the optimiser.
 //
 //   global_parameter_benchmark MESH [EVALUATIONS] [SEEDS]
 #include <fmt/core.h>

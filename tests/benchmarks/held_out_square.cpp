@@ -84,8 +84,8 @@ PowerSpectrum welch_spectrum(const GreyImage& image) {
   return sum;
 }
 
-// E |DFT of window * texture|^2 is the transform of autocovariance * autocorrelation of the window; its lags
-// reach 64, so that every 256/64-th frequency of it is a Welch frequency.
+// E |DFT of window * texture|^2 is the Fourier transform of the autocovariance times the autocorrelation of
+// the window. Its lags reach 64, so that every 256/64-th frequency of it is a Welch frequency.
 PowerSpectrum expected_welch_spectrum(const PowerSpectrum& spectrum) {
   const int w = spectrum.width;
   const int h = spectrum.height;
@@ -102,7 +102,7 @@ PowerSpectrum expected_welch_spectrum(const PowerSpectrum& spectrum) {
     fourier.inverse(half, grid);
   };
   squared_modulus_back(window);
-  // A spectrum is real and even: its transform back is its transform.
+  // A spectrum is real and even, so that its inverse transform is its transform.
   fourier.forward(spectrum.power, half);
   std::vector<std::complex<double>> lags = half;
   for (int y = 0; y < h; ++y) {

@@ -1,8 +1,9 @@
-// Isosurface of a precomputed field of N^3 floats on one thread: a sphere of radius 0.35 N roughened by a
-// gyroid. isosurface_peers.py runs other packages on the same numbers. Seconds of the processor, as JSON.
+// Measures the isosurface of a precomputed field of N^3 floats on one thread: a sphere of radius 0.35 N
+// roughened by a gyroid. isosurface_peers.py runs other packages on the same numbers. Prints seconds of the
+// processor as JSON.
 //
-//   isosurface_benchmark N [field.raw]      writes the field, x fastest, as 32-bit floats, where a file is
-//   given
+//   isosurface_benchmark N [field.raw]      field.raw: where the field is written, x fastest, as 32-bit
+//   floats
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +19,7 @@
 namespace astrolith {
 namespace {
 
-// At integer positions 0 .. n - 1.
+// The field at the integer positions 0 .. n - 1.
 std::vector<float> samples_of(int n) {
   std::vector<float> values(static_cast<std::size_t>(n) * static_cast<std::size_t>(n * n));
   const float k = 2.0f * 3.14159265f * 14.0f / static_cast<float>(n);

@@ -1,6 +1,6 @@
-// The peer that Gabor noise is measured against: sparse convolution evaluated point by point as Lagae et al.
-// 2009 describe it (procedural noise using sparse Gabor convolution): a grid of cells as wide as a kernel's
-// radius, a linear congruential generator for each cell, a Poisson number of impulses in it, exp and cos of
+// The peer of Gabor noise: sparse convolution evaluated point by point as Lagae et al. 2009 describe it
+// ("Procedural noise using sparse Gabor convolution"). It has a grid of cells as wide as the radius of a
+// kernel, a linear congruential generator and a Poisson number of impulses for each cell, and exp and cos of
 // the standard library.
 #pragma once
 
@@ -27,14 +27,14 @@ class CellRandom {
   std::uint32_t state_;
 };
 
-// One band of kernels exp(-pi a^2 r^2) cos(2 pi (f.p) + phase), cut at 5 % of their peak, with `impulses`
-// under one kernel on average: under its disc on the plane, within its ball on a surface.
+// One band of kernels exp(-pi a^2 r^2) cos(2 pi (f.p) + phase), cut off at 5 % of their peak. On average
+// `impulses` lie under one kernel: under its disc in the plane, within its ball on a surface.
 class LagaeGaborNoise {
  public:
   LagaeGaborNoise(float a, float frequency_x, float frequency_y, float impulses)
       : a_(a), fx_(frequency_x), fy_(frequency_y), radius_(std::sqrt(2.99573227f / 3.14159265f) / a) {
-    plane_density_ = impulses / 3.14159265f;                  // per cell
-    space_density_ = impulses / (4.0f / 3.0f * 3.14159265f);  // per cell
+    plane_density_ = impulses / 3.14159265f;                  // impulses per cell
+    space_density_ = impulses / (4.0f / 3.0f * 3.14159265f);  // impulses per cell
   }
 
   float on_plane(float x, float y) const {
@@ -56,7 +56,8 @@ class LagaeGaborNoise {
     return sum;
   }
 
-  // At a point with tangent axes u and v: impulses within the ball are projected on the tangent plane.
+  // The noise at a point with tangent axes u and v. Impulses within the ball are projected onto the tangent
+  // plane.
   float on_surface(const float p[3], const float u[3], const float v[3]) const {
     float cell[3], fraction[3];
     for (int axis = 0; axis < 3; ++axis) {

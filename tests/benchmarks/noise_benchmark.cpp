@@ -1,5 +1,6 @@
-// Noise on a grid of 256^3 points on one thread, in rows and in the blocks of 9^3 samples that a mesh asks
-// for: Mpoints a second, as JSON. noise_peers.py runs FastNoiseSIMD on a grid of the same size.
+// Measures noise on a grid of 256^3 points on one thread, in rows and in the blocks of 9^3 samples that a
+// mesher asks for. Prints Mpoints a second as JSON. noise_peers.py runs FastNoiseSIMD on a grid of the same
+// size.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,7 +23,7 @@ LoneNoise<FractalNoise> noise_of(Noise noise, int octaves) {
   return {layer, 1, 0, {{-10, -10, -10}, {10, 10, 10}}};
 }
 
-// Boxes of nx x ny x nz points one after another; their coordinates are written each time.
+// Evaluates boxes of nx x ny x nz points one after another; their coordinates are written each time.
 double rate(const LoneNoise<FractalNoise>& noise, int nx, int ny, int nz, int boxes) {
   const auto n = static_cast<std::size_t>(nx * ny * nz);
   std::vector<float> x(n), y(n), z(n), height(n);

@@ -1,6 +1,6 @@
-// The optimisers at equal evaluations on eight shifted test functions, in 4 and in 34 dimensions (a body's
-// global parameters, and its details): mean over functions and seeds of log10(gap / gap of the box's centre),
-// and the evaluations cmaes needs for the median value of pso.
+// Compares the optimisers at equal evaluations on eight shifted test functions, in 4 and in 34 dimensions
+// (like the global parameters of a body, and its details). Prints the mean over functions and seeds of
+// log10(gap / gap of the box's centre), and the evaluations that cmaes needs for the median value of pso.
 //
 //   optimizer_benchmark [EVALUATIONS = 2000] [SEEDS = 15]
 #include <fmt/format.h>
@@ -115,7 +115,7 @@ double mean_log_gap(OptimizerAlgorithm algorithm, std::size_t n, std::int64_t ev
   return sum / double(std::size(kFunctions) * std::size_t(seeds));
 }
 
-// Median over functions and seeds of the evaluations in which cmaes reaches what pso reached.
+// The median over functions and seeds of the evaluations that cmaes needs to reach the value of pso.
 std::int64_t evaluations_to_match(std::size_t n, std::int64_t evaluations, int seeds) {
   std::vector<std::int64_t> needed;
   for (const Function function : kFunctions) {

@@ -1,4 +1,4 @@
-// A table of all optimisers on one problem: the least, median and largest value found over seeds.
+// Prints a table of all optimisers on one problem: the least, median and largest value found over the seeds.
 #pragma once
 
 #include <fmt/core.h>
@@ -12,7 +12,8 @@
 
 namespace astrolith {
 
-// found: value that an optimiser reaches from a seed, in as many evaluations as all others get.
+// `found` gives the value that an optimiser reaches from a seed. All optimisers get the same number of
+// evaluations.
 inline void print_optimizer_table(
     int evaluations, int seeds, const std::function<double(OptimizerAlgorithm, std::uint64_t seed)>& found) {
   fmt::print("fitness after {} evaluations, {} seeds\n{:8} {:>8} {:>8} {:>8}\n", evaluations, seeds, "",

@@ -1,4 +1,5 @@
-// Sphere packing of bodies: share of the volume filled, and seconds, against the number of spheres.
+// Measures the sphere packing of bodies: the share of the volume that is filled, and seconds, against the
+// number of spheres.
 //
 //   packing_benchmark MESH...
 #include <fmt/format.h>

@@ -1,12 +1,13 @@
-// The base fit beside spherical harmonics and beside a decimated mesh of as many bytes: distances from fresh
-// samples of both surfaces, in percent of the bounding-box diagonal, as a table in Markdown
+// Compares the base fit with spherical harmonics and with a decimated mesh of as many bytes: distances at
+// fresh samples of both surfaces, in percent of the bounding-box diagonal, as a table in Markdown
 // (docs/accuracy.md).
 //
 //   shape_peers_benchmark --spheres 200 --degree 27 MESH...
 //
-// A fit of n metaballs holds 4 n + 1 numbers: 200 stand against degree 27 (784), 1000 against degree 62
-// (3969). Bytes are those of the recipe as written (JSON text, provenance left out) and of a binary PLY file
-// (12 a vertex, 13 a triangle, its header left out). Parts and genus are the fit's over the target's.
+// A fit of n metaballs holds 4 n + 1 numbers: 200 metaballs stand against degree 27 (784 numbers), 1000
+// against degree 62 (3969). Bytes are those of the recipe as written (JSON text without provenance) and of a
+// binary PLY file (12 for each vertex, 13 for each triangle, without its header). The table gives components
+// and genus of the fit over those of the target.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

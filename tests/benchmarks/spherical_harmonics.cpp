@@ -21,9 +21,9 @@ Eigen::Index count_of(int degree) { return Eigen::Index{degree + 1} * (degree + 
 void harmonics_at(const Vec3d& direction, int degree, std::vector<float>& values) {
   values.clear();
   const double z = direction.z;
-  // sin^m cos(m phi) and sin^m sin(m phi); the Legendre functions then lack their factor sin^m.
+  // sin^m cos(m phi) and sin^m sin(m phi); the Legendre functions here therefore lack their factor sin^m.
   double cosine = 1.0, sine = 0.0;
-  double diagonal = std::sqrt(1.0 / (4.0 * std::numbers::pi));  // of l = m
+  double diagonal = std::sqrt(1.0 / (4.0 * std::numbers::pi));  // the function of l = m
   for (int m = 0; m <= degree; ++m) {
     double before = 0.0, here = diagonal;
     for (int l = m; l <= degree; ++l) {

@@ -1,5 +1,5 @@
-// Bodies as spherical harmonics of their radius, fitted by least squares: what shape models of asteroids are
-// commonly stored as, for comparison.
+// Bodies as spherical harmonics of their radius, fitted by least squares: the usual form of shape models of
+// asteroids, for comparison.
 #pragma once
 
 #include <vector>
@@ -15,15 +15,16 @@ struct SphericalHarmonics {
   std::vector<float> coefficients;
 };
 
-// Real harmonics, orthonormal on the sphere, of a unit vector: m = 0 first, then cos and sin of every m.
-// ((degree + 1)^2)
+// (degree + 1)^2 real harmonics of a unit vector, orthonormal on the sphere: m = 0 first, then cos and sin of
+// every m.
 void harmonics_at(const Vec3d& direction, int degree, std::vector<float>& values);
 
-// Least squares on points spread evenly over the surface, by conjugate gradients on the normal equations
-// (CGLS, Bjoerck 1996). A body that is not star-shaped about the centre gets the mean of its radii.
+// Fits by least squares to points spread evenly over the surface, by conjugate gradients on the normal
+// equations (CGLS, Bjoerck 1996). Where a body is not star-shaped about the centre, it gets the mean of its
+// radii.
 SphericalHarmonics fit_harmonics(const std::vector<Vec3d>& points, const Vec3d& center, int degree);
 
-// Closed mesh of rows x 2 rows directions, and the poles.
+// A closed mesh of rows x 2 rows directions and the poles.
 TriangleMesh harmonics_mesh(const SphericalHarmonics& body, int rows = 240);
 
 }  // namespace astrolith

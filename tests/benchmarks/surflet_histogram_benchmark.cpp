@@ -1,4 +1,4 @@
-// Pairs a second of one core, and how many the machine could make bins of if none had to be counted:
+// Measures the pairs a second of one core, and how many codes the core could make if none had to be counted:
 //   surflet_histogram_benchmark --benchmark_repetitions=5
 #include "descriptor/surflet_histogram.h"
 
@@ -32,7 +32,7 @@ void count_pairs_of(benchmark::State& state) {
       0.5 * n * (n - 1), benchmark::Counter::kIsIterationInvariantRate, benchmark::Counter::kIs1000);
 }
 
-// Arguments: points, bins an axis.
+// Arguments: points, bins along each axis.
 void wahl(benchmark::State& state) {
   const ThreadLimit one_core(1);
   const Input input(state.range(0));

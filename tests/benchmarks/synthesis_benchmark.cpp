@@ -1,5 +1,5 @@
-// Rates of the field's parts on one thread: items per second are points (simplex, fBm, surface noise), points
-// times spheres (metaballs) or pixels (texture).
+// Measures the rates of the parts of the field on one thread. Items per second are points (simplex, fBm,
+// surface noise), points times spheres (metaballs) or pixels (texture).
 #include <benchmark/benchmark.h>
 
 #include "numerics/parallel_for.h"
@@ -42,13 +42,13 @@ void fractal(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * kPoints);
 }
-// Noise: 0 simplex, 1 Perlin, 2 to 4 Worley F1, F2 and F2-F1.
+// The argument chooses the noise: 0 simplex, 1 Perlin, 2 to 4 Worley F1, F2 and F2-F1.
 BENCHMARK(fractal)
     ->ArgNames({"noise", "octaves", "modulated"})
     ->ArgsProduct({{0, 1, 2, 3, 4}, {1, 5}, {0}})
     ->ArgsProduct({{0, 1}, {5}, {1}});
 
-// The block of a mesh at a tenth of a cell a step, craters of three sizes with rims.
+// A block of samples a tenth of a cell apart, with craters of three sizes with rims.
 void spots(benchmark::State& state) {
   SpotLayer layer;
   layer.amplitude = 1.0;
@@ -85,7 +85,7 @@ void metaballs(benchmark::State& state) {
 }
 BENCHMARK(metaballs)->ArgName("spheres")->Arg(200);
 
-// One band at 32 impulses a kernel, to be compared with 0.38 Mpixel/s of Lagae et al. 2009.
+// One band with 32 impulses under a kernel, to be compared with 0.38 Mpixel/s of Lagae et al. 2009.
 void gabor_texture(benchmark::State& state) {
   const ThreadLimit one_thread(1);
   GaborLayer layer;
@@ -96,7 +96,8 @@ void gabor_texture(benchmark::State& state) {
 }
 BENCHMARK(gabor_texture)->ArgName("bandwidth")->DenseRange(1, 7)->Unit(benchmark::kMillisecond);
 
-// A block of 9^3 samples at the surface of a body of 200 spheres, 1/256 of its length apart.
+// A block of 9^3 samples at the surface of a body of 200 spheres; the step is 1/256 of the length of the
+// body.
 void gabor_surface_block(benchmark::State& state) {
   Recipe recipe = testing::potato_recipe(200, 3);
   GaborLayer layer;

@@ -75,7 +75,7 @@ TEST(HistogramDistance, AroundACircleTheShorterWay) {
   g[9] = 0;
   g[5] = 1;
   EXPECT_DOUBLE_EQ(circular_earth_movers_distance(f, g), 0.5);
-  // Turning both changes nothing.
+  // Turning both histograms by the same angle changes nothing.
   CounterRandom random(2);
   const Histogram a = random_histogram(random, 10), b = random_histogram(random, 10);
   Histogram c = a, d = b;

@@ -25,7 +25,7 @@ DescriptionOptions options_of(PairFeatures features, std::int64_t points, std::u
   return options;
 }
 
-// The features of all six axes from their definitions, one pair at a time in double precision.
+// The features of all six axes computed from their definitions, one pair at a time, in double precision.
 TEST(AhdHistogram, EqualsTheDefinition) {
   const int n = 400;
   const SurfaceSamples s = random_surflets(n, 4);
@@ -56,7 +56,7 @@ TEST(AhdHistogram, EqualsTheDefinition) {
   for (std::size_t b = 0; b < expected.size(); ++b) {
     moved += std::fabs(expected[b] - static_cast<double>(h.counts[b])) / 2;
   }
-  EXPECT_LE(moved, 3);  // of 79,800 pairs: those that lie on a border up to float32
+  EXPECT_LE(moved, 3);  // pairs of 79,800 that lie on a border within float32 rounding
 }
 
 TEST(AhdHistogram, SumsToWahlsHistogram) {
@@ -71,7 +71,7 @@ TEST(AhdHistogram, SumsToWahlsHistogram) {
                         ahd.counts.begin() + static_cast<std::ptrdiff_t>(25 * b + 25), std::uint64_t{0});
     moved += std::fabs(static_cast<double>(sum) - static_cast<double>(wahl.counts[b])) / 2;
   }
-  EXPECT_LE(moved, 10);  // pairs stand in another order, which rounding on a border may notice
+  EXPECT_LE(moved, 10);  // pairs come in another order, which may change rounding on a border
 }
 
 TEST(AhdHistogram, ThreadsAndOrderChangeNothing) {
@@ -95,7 +95,8 @@ TEST(AhdHistogram, WrongInput) {
   EXPECT_THROW(ahd_histogram(two, two, std::vector<double>{0, std::nan("")}), InputError);
 }
 
-// Up to another sampling: the mesh is moved, turned, scaled, and its vertices and triangles are renumbered.
+// The descriptions agree up to sampling: the mesh is moved, turned and scaled, and its vertices and triangles
+// are renumbered.
 TEST(ShapeDescription, InvariantUpToResampling) {
   const TriangleMesh mesh = torus(1, 0.4, 60, 30);
   TriangleMesh other = mesh;
@@ -115,7 +116,7 @@ TEST(ShapeDescription, InvariantUpToResampling) {
   }
 }
 
-// A sphere has eta = 0 and kappa = 1/2: all pairs in one of the 25 local bins.
+// A sphere has eta = 0 and kappa = 1/2, so that all pairs are in one of the 25 local bins.
 TEST(ShapeDescription, LocalFeaturesOfASphere) {
   const ShapeHistogram h = describe_shape(icosphere(4, 3.0), options_of(PairFeatures::ahd, 800)).histogram;
   std::vector<double> f = h.frequencies();

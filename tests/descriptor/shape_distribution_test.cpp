@@ -14,8 +14,8 @@
 namespace astrolith {
 namespace {
 
-// Chords of a sphere have the density l / (2 R^2) on (0, 2 R) and the mean 4 R / 3, so in means x = l / mean
-// the share up to x is 4 x^2 / 9.
+// Chords of a sphere have the density l / (2 R^2) on (0, 2 R) and the mean 4 R / 3. With x = l / mean, the
+// share of chords up to x is 4 x^2 / 9.
 TEST(ShapeDistribution, OfASphereIsTheClosedForm) {
   const SurfaceSamples s = sample_poisson_disk(testing::icosphere(5, 2.0), 4000, 1);
   const ShapeDistribution d = shape_distribution(s.points, 30);
@@ -55,7 +55,7 @@ TEST(ShapeDistribution, KnowsNoPlaceDirectionOrScale) {
   for (Vec3d& p : s.points) p = Vec3d{10, -3, 2} + 7.0 * Vec3d{p.y, p.z, p.x};
   const ShapeDistribution after = shape_distribution(s.points, 64);
   EXPECT_NEAR(after.mean_distance, 7 * before.mean_distance, 1e-12);
-  std::uint64_t moved = 0;  // over a border by rounding
+  std::uint64_t moved = 0;  // pairs that rounding moved over a border
   for (std::size_t b = 0; b < 64; ++b) {
     moved += std::max(after.counts[b], before.counts[b]) - std::min(after.counts[b], before.counts[b]);
   }
@@ -71,7 +71,7 @@ TEST(ShapeDistribution, RefusesWhatHasNoDistances) {
   EXPECT_THROW(shape_distribution(two, 1 << 20), InputError);
   const std::vector<Vec3d> endless{{0, 0, 0}, {std::numeric_limits<double>::infinity(), 0, 0}};
   EXPECT_THROW(shape_distribution(endless, 10), InputError);
-  EXPECT_EQ(shape_distribution(two, 9).counts[3], 1u);  // one pair: it is its own mean
+  EXPECT_EQ(shape_distribution(two, 9).counts[3], 1u);  // the only distance is the mean
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::uint64_t total(const ShapeHistogram& h) {
   return std::accumulate(h.counts.begin(), h.counts.end(), std::uint64_t{0});
 }
 
-// Half the sum of |differences|: pairs that changed their bin.
+// The number of pairs that changed their bin: half the sum of |differences|.
 double moved(const ShapeHistogram& a, const ShapeHistogram& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.counts.size(); ++i) {
@@ -30,7 +30,7 @@ double moved(const ShapeHistogram& a, const ShapeHistogram& b) {
   return sum / 2;
 }
 
-// As the histogram makes them of points and normals.
+// Surflets as surflet_histogram makes them of points and normals.
 std::vector<Surflet> surflets_of(const SurfaceSamples& s, double max_distance) {
   Box box;
   for (const Vec3d& p : s.points) box.extend(p);
@@ -45,7 +45,7 @@ std::vector<Surflet> surflets_of(const SurfaceSamples& s, double max_distance) {
   return surflets;
 }
 
-// Every vector width, vector end and task edge against one pair at a time.
+// Counts with every vector width, vector end and task edge agree with counting one pair at a time.
 template <int kBins>
 void expect_one_pair_at_a_time(int n) {
   const SurfaceSamples s = random_surflets(n, 3);
@@ -62,7 +62,7 @@ void expect_one_pair_at_a_time(int n) {
       ++expected.counts[code % expected.counts.size()];
     }
   }
-  // Of a pair on a border it may matter which of the two points comes first.
+  // For a pair on the border of a bin it may matter which of the two points comes first.
   ASSERT_LE(moved(h, expected), 1 + 1e-5 * static_cast<double>(h.pairs)) << n;
 }
 
@@ -80,7 +80,7 @@ TEST(SurfletHistogram, EqualsOnePairAtATime) {
   expect_one_pair_at_a_time<10>(300);
 }
 
-// Up to rounding, which moves the few pairs that lie on a bin's border.
+// Histograms agree up to rounding, which moves the few pairs that lie on the border of a bin.
 TEST(SurfletHistogram, MovingTurningAndScalingChangeNothing) {
   const SurfaceSamples s = random_surflets(800, 1);
   const ShapeHistogram before = histogram_of(s);
@@ -120,7 +120,7 @@ TEST(SurfletHistogram, OrderAndThreadsChangeNothing) {
 TEST(SurfletHistogram, SphereAgainstQuadrature) {
   SurfaceSamples s;
   const int half = 1500;
-  for (int k = 0; k < half; ++k) {  // a golden spiral, and each point's antipode, so that the diameter is 2
+  for (int k = 0; k < half; ++k) {  // a golden spiral with all antipodes, so that the diameter is 2
     const double z = 1 - (k + 0.5) / half, phi = k * std::numbers::pi * (3 - std::sqrt(5.0)),
                  r = std::sqrt(1 - z * z);
     s.points.push_back({r * std::cos(phi), r * std::sin(phi), z});

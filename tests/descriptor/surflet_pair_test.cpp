@@ -15,15 +15,10 @@ struct Oriented {
   Vec3d point, normal;
 };
 
-Surflet single(const Oriented& s) {
-  const auto f = [](const Vec3d& v) {
-    return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  };
-  return surflet(f(s.point), f(s.normal));
-}
+Surflet single(const Oriented& s) { return surflet(to_float(s.point), to_float(s.normal)); }
 
-// 0 .. bins - 1 of a value in [-1, 1], or nothing when it is within margin of a border.
-std::optional<int> part(double value, int bins, double margin) {
+// The bin 0 .. bins - 1 of a value in [-1, 1], or nothing when the value is within margin of a border.
+std::optional<int> bin_unless_at_border(double value, int bins, double margin) {
   const double position = (value + 1) / 2 * bins;
   const double to_border = std::fabs(position - std::round(position));
   const bool at_end = position < 0.5 || position > bins - 0.5;
@@ -36,7 +31,7 @@ struct Expected {
   bool origin_is_j;
 };
 
-// The features word by word in double precision; nothing where rounding may decide.
+// The bin computed from the definitions in double precision, or nothing where rounding may decide.
 std::optional<Expected> bin_by_definition(const Oriented& i, const Oriented& j, int bins) {
   const double margin = 1e-5;
   const Vec3d r = j.point - i.point;
@@ -48,8 +43,10 @@ std::optional<Expected> bin_by_definition(const Oriented& i, const Oriented& j, 
   const double alpha = std::atan2(dot(w, two.normal), dot(u, two.normal));
   const double wide = margin / norm(r) / norm(d_u);
   if (std::fabs(std::fabs(alpha) - std::numbers::pi) < wide) return {};
-  const auto a = part(alpha / std::numbers::pi, bins, wide), b = part(dot(v, two.normal), bins, wide),
-             c = part(dot(u, d), bins, wide), e = part(2 * norm(r) - 1, bins, margin);
+  const auto a = bin_unless_at_border(alpha / std::numbers::pi, bins, wide),
+             b = bin_unless_at_border(dot(v, two.normal), bins, wide),
+             c = bin_unless_at_border(dot(u, d), bins, wide),
+             e = bin_unless_at_border(2 * norm(r) - 1, bins, margin);
   if (!a || !b || !c || !e) return {};
   return Expected{((*a * bins + *b) * bins + *c) * bins + *e, a_i > a_j};
 }
@@ -74,7 +71,7 @@ void expect_definition() {
     ASSERT_EQ(code / kAll, expected->origin_is_j ? 1 : 0);
   }
   EXPECT_GT(compared, 0.97 * n);
-  // |gamma| > 0.6 leaves no room for some values of beta; all other bins of five occur.
+  // With |gamma| > 0.6 some values of beta are impossible; all other bins of five occur.
   const auto occurring = std::count_if(seen.begin(), seen.end(), [](int c) { return c > 0; });
   EXPECT_GT(occurring, kBins == 5 ? 480 : 0);
 }
@@ -95,7 +92,7 @@ TEST(SurfletPair, OrderOfTheTwoDoesNotMatter) {
   CounterRandom random(18);
   int other_bins = 0;
   for (int k = 0; k < 20000; ++k) {
-    // Parallel normals in every fourth pair: both points then qualify as origin.
+    // Every fourth pair has parallel normals, and both points then qualify as origin.
     const Oriented i{0.5 * random_direction(random), random_direction(random)};
     const Oriented j{0.5 * random_direction(random), k % 4 == 0 ? i.normal : random_direction(random)};
     const int one = surflet_code<5>(single(i), single(j)), two = surflet_code<5>(single(j), single(i));
@@ -105,7 +102,7 @@ TEST(SurfletPair, OrderOfTheTwoDoesNotMatter) {
   EXPECT_LE(other_bins, 1);  // rounding may decide on a border
 }
 
-// alpha, beta, gamma, delta and the origin of a code.
+// Splits a code into alpha, beta, gamma, delta and the origin.
 int code_of(int alpha, int beta, int gamma, int delta) {
   return ((alpha * 5 + beta) * 5 + gamma) * 5 + delta;
 }
@@ -115,11 +112,11 @@ TEST(SurfletPair, DegeneratePairs) {
   const Oriented up{{0, 0, 0}, {0, 0, 1}}, down{{0, 0, 0}, {0, 0, -1}};
   EXPECT_EQ(bin(up, up), code_of(2, 2, 2, 0));
   EXPECT_EQ(bin(up, down), code_of(4, 2, 2, 0));
-  // Both normals along the line: one behind the other, face to face, back to back.
+  // Both normals lie along the line: one behind the other, face to face, back to back.
   EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, 1}}), code_of(2, 2, 4, 4));
   EXPECT_EQ(bin(up, {{0, 0, 1}, {0, 0, -1}}), code_of(4, 2, 4, 4));
   EXPECT_EQ(bin(down, {{0, 0, 1}, {0, 0, 1}}), code_of(4, 2, 0, 4));
-  // In one plane.
+  // Both points lie in one plane.
   EXPECT_EQ(bin(up, {{0.5, 0, 0}, {0, 0, 1}}), code_of(2, 2, 2, 2));
 }
 

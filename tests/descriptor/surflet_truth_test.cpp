@@ -1,5 +1,5 @@
-// Bins of independent pairs against closed forms: then the counts are multinomial, and Pearson's chi-square
-// says how large their deviations may be.
+// Compares the bins of independent pairs with closed forms. The counts are then multinomial, and Pearson's
+// chi-square says how large their deviations may be.
 #include <array>
 #include <functional>
 #include <numbers>
@@ -32,7 +32,8 @@ int code_of(int alpha, int beta, int gamma, int delta) {
   return ((alpha * 5 + beta) * 5 + gamma) * 5 + delta;
 }
 
-// Bin by bin; more than four standard deviations of the statistic would be no chance.
+// Compares counts with expectations bin by bin. A statistic more than four standard deviations above its mean
+// would be no chance.
 void expect_frequencies(const std::vector<double>& expected,
                         const std::function<Oriented(CounterRandom&)>& point) {
   CounterRandom random(11);
@@ -56,8 +57,8 @@ void expect_frequencies(const std::vector<double>& expected,
   EXPECT_LT(statistic, bins + 4 * std::sqrt(2.0 * bins)) << bins << " bins";
 }
 
-// Adds to each bin the share that `distribution`, a cumulative one over lengths, has between the lengths
-// where the bin changes.
+// Adds to each bin its share of a distribution of lengths. `distribution` is cumulative, and the bin changes
+// at given lengths.
 void add_shares(double share, std::vector<double> borders, const std::function<double(double)>& distribution,
                 const std::function<int(double)>& bin_at, std::vector<double>& expected) {
   std::sort(borders.begin(), borders.end());
@@ -70,7 +71,7 @@ void add_shares(double share, std::vector<double> borders, const std::function<d
 
 int fifth(double unit) { return std::clamp(static_cast<int>(std::floor((unit + 1) / 2 * 5)), 0, 4); }
 
-// alpha = theta, beta = 0, gamma = -delta, delta = sin(theta / 2), whose square is uniform.
+// On a sphere alpha = theta, beta = 0, gamma = -delta and delta = sin(theta / 2), whose square is uniform.
 TEST(SurfletTruth, Sphere) {
   std::vector<double> expected(625, 0.0);
   add_shares(
@@ -86,7 +87,7 @@ TEST(SurfletTruth, Sphere) {
   });
 }
 
-// Of the distance of two random points of the unit square.
+// The cumulative distribution of the distance between two random points of the unit square.
 double square_distribution(double d) {
   const double d2 = d * d;
   if (d <= 1) return d2 * (std::numbers::pi + d2 / 2) - 8 * d * d2 / 3;
@@ -95,7 +96,7 @@ double square_distribution(double d) {
          2 * d2 * (std::asin(1 / d) - std::acos(1 / d));
 }
 
-// All angles are 0; only the distances differ.
+// In a plane all angles are 0; only the distances differ.
 TEST(SurfletTruth, PlanePatch) {
   const double side = 1 / std::sqrt(2.0);
   std::vector<double> expected(625, 0.0);
@@ -107,8 +108,8 @@ TEST(SurfletTruth, PlanePatch) {
   });
 }
 
-// Two squares at distance h that look away from each other. Half of the pairs lie in one square; of the
-// others, at distance t along the squares, alpha = pi, beta = 0, gamma = -h / sqrt(h^2 + t^2).
+// Two squares at distance h look away from each other. Half of the pairs lie within one square. The other
+// pairs, at distance t along the squares, have alpha = pi, beta = 0, gamma = -h / sqrt(h^2 + t^2).
 TEST(SurfletTruth, TwoParallelPlanes) {
   const double h = 0.3, side = std::sqrt((1 - h * h) / 2);
   const auto along = [&](double length) { return std::sqrt(std::max(length * length - h * h, 0.0)); };

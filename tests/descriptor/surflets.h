@@ -15,7 +15,7 @@ inline Vec3d random_direction(CounterRandom& random) {
   return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
 }
 
-// Positions in a unit cube, normals in all directions: fills all bins.
+// Random surflets: positions in a unit cube and normals in all directions, which fill all bins.
 inline SurfaceSamples random_surflets(int n, std::uint64_t seed) {
   CounterRandom random(seed);
   SurfaceSamples s;
@@ -26,7 +26,7 @@ inline SurfaceSamples random_surflets(int n, std::uint64_t seed) {
   return s;
 }
 
-// Rotation by the quaternion (w, v) of unit length.
+// Rotates p by the quaternion (w, v) of unit length.
 inline Vec3d rotated(double w, const Vec3d& v, const Vec3d& p) {
   const Vec3d t = 2.0 * cross(v, p);
   return p + w * t + cross(v, t);

@@ -18,7 +18,7 @@ TEST(MeshMeasure, CubeFarFromTheOrigin) {
   EXPECT_NEAR(norm(surface_centroid(mesh) - corner - Vec3d{1, 1, 1}), 0, 1e-8);
 }
 
-// Inscribed polyhedra: the error falls fourfold with each subdivision.
+// The polyhedra are inscribed, so that the error falls fourfold with each subdivision.
 TEST(MeshMeasure, SphereConvergesToSecondOrder) {
   const double r = 3, v = 4.0 / 3 * std::numbers::pi * r * r * r, a = 4 * std::numbers::pi * r * r;
   const TriangleMesh coarse = icosphere(3, r), fine = icosphere(4, r);
@@ -47,7 +47,7 @@ TEST(MeshNormals, PointOutwards) {
   }
 }
 
-// How a cube's faces are split must not show: that is what the angle weights are for.
+// The normals must not depend on how the faces of a cube are split; the angles as weights ensure this.
 TEST(MeshNormals, CubeCornersAreDiagonal) {
   const TriangleMesh mesh = cube(2.0, {-1, -1, -1});
   const auto normals = vertex_normals(mesh);

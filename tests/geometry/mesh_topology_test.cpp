@@ -49,7 +49,7 @@ TEST(MeshTopology, OneFaceTurnedOver) {
 TEST(MeshTopology, TwoBodiesThatTouchInAPoint) {
   TriangleMesh mesh = joined(octahedron(), octahedron());
   for (Triangle& t : mesh.triangles) {
-    for (std::uint32_t& v : t) v = v == 6 ? 0 : v;  // the second body uses the first one's tip
+    for (std::uint32_t& v : t) v = v == 6 ? 0 : v;  // the second body shares a tip with the first
   }
   const MeshTopology t = analyze_topology(mesh);
   EXPECT_EQ(t.non_manifold_vertices, 1);

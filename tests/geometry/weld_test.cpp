@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-// Every triangle with corners of its own, moved by up to noise.
+// Gives every triangle corners of its own, each moved by up to `noise`.
 TriangleMesh soup(const TriangleMesh& mesh, double noise = 0.0) {
   TriangleMesh result;
   CounterRandom random(1);
@@ -47,7 +47,7 @@ TEST(Weld, ToleranceIsAFractionOfTheDiagonal) {
   EXPECT_TRUE(analyze_topology(weld_vertices(noisy, 2.1e-5)).closed);
 }
 
-// Pairs straddle cell borders wherever they fall; the brute-force answer is the same rule without a grid.
+// Pairs lie across cell borders wherever they fall. The expected answer follows the same rule without a grid.
 TEST(Weld, AgreesWithBruteForce) {
   CounterRandom random(7);
   TriangleMesh mesh;
@@ -56,9 +56,9 @@ TEST(Weld, AgreesWithBruteForce) {
   const double tolerance = 0.04, reach = tolerance * mesh.bounds().diagonal();
   std::vector<Vec3d> kept;
   for (const Vec3d& p : mesh.vertices) {
-    bool near = false;
-    for (const Vec3d& q : kept) near = near || norm(p - q) <= reach;
-    if (!near) kept.push_back(p);
+    bool has_kept_neighbour = false;
+    for (const Vec3d& q : kept) has_kept_neighbour = has_kept_neighbour || norm(p - q) <= reach;
+    if (!has_kept_neighbour) kept.push_back(p);
   }
   EXPECT_LT(kept.size(), 500u);
   EXPECT_TRUE(weld_vertices(mesh, tolerance).vertices == kept);

@@ -15,7 +15,7 @@ TEST(BoxTree, FindsWhatASearchOfAllFinds) {
   for (const int n : {0, 1, 4, 5, 37, 1000}) {
     std::vector<Box> boxes;
     for (int i = 0; i < n; ++i) boxes.push_back(random_box(random, i % 10 == 0 ? 0.5 : 0.05));
-    if (n == 37) boxes.assign(37, boxes.front());  // all in one place
+    if (n == 37) boxes.assign(37, boxes.front());  // all boxes in one place
     const BoxTree tree(boxes);
     for (int k = 0; k < 50; ++k) {
       const Box query = random_box(random, 0.3);

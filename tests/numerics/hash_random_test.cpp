@@ -6,7 +6,7 @@ namespace astrolith {
 namespace {
 
 TEST(HashRandom, PinnedValues) {
-  // A recipe's meaning depends on these: changing them changes every synthesised mesh.
+  // These values define the meaning of recipes: changing them changes every synthesised mesh.
   EXPECT_EQ(mix_bits(1u), 1753845952u);
   EXPECT_EQ(hash_cell(hash_seed(42, 3), -1, 2, 5), hash_cell(hash_seed(42, 3), -1, 2, 5));
   EXPECT_NE(hash_cell(hash_seed(42, 3), -1, 2, 5), hash_cell(hash_seed(42, 3), 2, -1, 5));
@@ -18,7 +18,7 @@ TEST(HashRandom, UnitFloatStaysBelowOne) {
   EXPECT_LT(unit_float(0xffffffffu), 1.0f);
 }
 
-// Chi-square over the 4096 buckets of neighbouring cells' hashes: mean 4095, standard deviation 90.
+// Chi-square over 4096 buckets of the hashes of neighbouring cells: mean 4095, standard deviation 90.
 TEST(HashRandom, NeighbouringCellsAreUniform) {
   std::array<int, 4096> counts{};
   const int side = 128;

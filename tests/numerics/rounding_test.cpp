@@ -5,8 +5,8 @@
 namespace astrolith {
 namespace {
 
-// Rounding a double to float must happen, whatever the optimiser makes of neighbouring statements: g++ 12.2
-// drops it without -fno-tree-slp-vectorize.
+// A double must be rounded to float whatever the optimiser makes of neighbouring statements. g++ 12.2 drops
+// the rounding without -fno-tree-slp-vectorize.
 __attribute__((noinline)) void round_to_float(std::vector<Vec3d>& points) {
   for (Vec3d& p : points) p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }

@@ -65,7 +65,8 @@ TEST(ScalarMath, RoundAndFloor) {
   EXPECT_EQ(math::floor(2.999f), 2.0f);
 }
 
-// The promise behind "same bits": whichever vector width the machine runs, a loop gives what one call gives.
+// The promise behind "same bits": a loop gives what single calls give, whichever vector width the machine
+// uses.
 ASTROLITH_SIMD_CLONES void evaluate_all(const float* x, float* y, int n) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) y[i] = math::exp(x[i]) + math::log(math::abs(x[i])) * math::cos_turns(x[i]);

@@ -1,5 +1,5 @@
-// Where tests find real data: the folder beside the checkout and what scripts/fetch_data.sh unpacked. A test
-// that needs a file which is absent skips with a word.
+// Paths of the real data for tests: the folder beside the checkout, and what scripts/fetch_data.sh unpacked.
+// A test that needs a file which is absent skips with a word.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Analytic meshes whose measures are known: closed and counter-clockwise from outside unless the name says
-// otherwise.
+// Analytic meshes with known measures. They are closed and counter-clockwise from outside unless their names
+// say otherwise.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ inline TriangleMesh octahedron(double radius = 1.0) {
           {}};
 }
 
-// [0, side]^3 shifted by corner; two triangles a face.
+// The cube [0, side]^3 shifted by `corner`, with two triangles for each face.
 inline TriangleMesh cube(double side = 1.0, const Vec3d& corner = {}) {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {
@@ -37,7 +37,7 @@ inline TriangleMesh cube(double side = 1.0, const Vec3d& corner = {}) {
   return mesh;
 }
 
-// Splits each triangle into four at its edges' midpoints.
+// Splits each triangle into four at the midpoints of its edges.
 inline TriangleMesh subdivided(const TriangleMesh& coarse) {
   TriangleMesh fine;
   fine.vertices = coarse.vertices;
@@ -55,8 +55,8 @@ inline TriangleMesh subdivided(const TriangleMesh& coarse) {
   return fine;
 }
 
-// An icosahedron subdivided and pushed onto the sphere: 20 * 4^subdivisions triangles, vertices exactly at
-// radius.
+// An icosahedron, subdivided and pushed onto the sphere: 20 * 4^subdivisions triangles, with vertices exactly
+// at `radius`.
 inline TriangleMesh icosphere(int subdivisions, double radius = 1.0, const Vec3d& center = {}) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   TriangleMesh mesh{{{-1, g, 0},
@@ -80,7 +80,7 @@ inline TriangleMesh icosphere(int subdivisions, double radius = 1.0, const Vec3d
   return mesh;
 }
 
-// Around the z axis; columns quads along the big circle, rows along the small one.
+// A torus around the z axis: `columns` quads along the big circle, `rows` along the small one.
 inline TriangleMesh torus(double big_radius, double small_radius, int columns = 48, int rows = 24) {
   TriangleMesh mesh;
   for (int i = 0; i < columns; ++i) {
@@ -100,7 +100,7 @@ inline TriangleMesh torus(double big_radius, double small_radius, int columns = 
   return mesh;
 }
 
-// Both meshes side by side in one, sharing nothing.
+// Two meshes in one, which share nothing.
 inline TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
   const auto offset = static_cast<std::uint32_t>(a.vertices.size());
   a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
@@ -108,13 +108,13 @@ inline TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
   return a;
 }
 
-// Spheres of the given radius at x = -distance/2 and +distance/2.
+// Two spheres of the given radius at x = -distance/2 and x = +distance/2.
 inline TriangleMesh two_spheres(int subdivisions, double radius, double distance) {
   return joined(icosphere(subdivisions, radius, {-distance / 2, 0, 0}),
                 icosphere(subdivisions, radius, {distance / 2, 0, 0}));
 }
 
-// The faces of an icosphere whose three vertices have z >= 0: open, one boundary loop.
+// A half sphere, open with one boundary loop: the faces of an icosphere whose three vertices have z >= 0.
 inline TriangleMesh open_cap(int subdivisions, double radius = 1.0) {
   TriangleMesh mesh = icosphere(subdivisions, radius);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -123,7 +123,7 @@ inline TriangleMesh open_cap(int subdivisions, double radius = 1.0) {
   return mesh;
 }
 
-// Every face turned inside out.
+// The mesh with every face turned inside out.
 inline TriangleMesh reversed(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;

@@ -1,4 +1,4 @@
-// A folder of a test's own, gone when the test ends.
+// A folder for one test, which is removed when the test ends.
 #pragma once
 
 #include <unistd.h>
@@ -27,7 +27,8 @@ class ScratchFolder {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path write(const std::string& name, std::string_view content) const {
-    // Some file systems flush a file to the disk when it is overwritten in place, but not a fresh one.
+    // Some file systems flush a file to the disk when it is overwritten in place; a fresh file is not
+    // flushed.
     std::filesystem::remove(path_ / name);
     std::ofstream(path_ / name, std::ios::binary) << content;
     return path_ / name;

@@ -1,4 +1,5 @@
-// Tests that can be small or large: scripts/test.sh --full asks for large ones, minutes instead of seconds.
+// Sizes of tests that can be small or large. scripts/test.sh --full asks for large ones, which take minutes
+// instead of seconds.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Fields given by a formula, with a Lipschitz constant as their bound: what tests mesh.
+// Fields given by a formula, with a Lipschitz constant as their bound: the fields that tests mesh.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace astrolith::testing {
 
-// F(p) must change by at most lipschitz per unit of length; infinity switches culling off.
+// F(p) must change by at most `lipschitz` per unit of length. Infinity switches culling off.
 template <class Function>
 class AnalyticField {
  public:

@@ -15,8 +15,8 @@ inline Recipe sphere_recipe(double radius, const Vec3d& center = {}) {
   return recipe;
 }
 
-// A potato of overlapping spheres about 1 long, as a fit makes it: a few large ones and many small near the
-// rim.
+// A potato of overlapping spheres, about 1 long, as fits make it: a few large spheres, and many small ones
+// near the surface.
 inline Recipe potato_recipe(int num_spheres, std::uint64_t seed, double sharpness = 3.0) {
   CounterRandom random(seed);
   Recipe recipe;
@@ -37,7 +37,7 @@ inline Recipe potato_recipe(int num_spheres, std::uint64_t seed, double sharpnes
   return recipe;
 }
 
-// Spheres that take away, about a potato's surface and within it.
+// Subtractive spheres about the surface of a potato and within it.
 inline void add_dents(MetaballBody& body, int count, CounterRandom& random) {
   for (int i = 0; i < count; ++i) {
     const double x = random.uniform(-0.6, 0.6), y = random.uniform(-0.4, 0.4), z = random.uniform(-0.4, 0.4);

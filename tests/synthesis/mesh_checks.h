@@ -1,4 +1,4 @@
-// What every layer must keep, whatever it does to a surface.
+// The properties that the mesh of every layer must have.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@
 
 namespace astrolith::testing {
 
-// At three resolutions: closed, manifold, and the same mesh for one thread and for three.
+// Checks at three resolutions that the mesh is closed and manifold, and the same for one thread and for
+// three.
 inline void expect_closed_manifold_for_any_threads(const Recipe& recipe) {
   for (const int resolution : {20, 33, 50}) {
     std::vector<TriangleMesh> meshes;

@@ -1,4 +1,4 @@
-// Random places for tests of noises.
+// Random places at which tests sample noises.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct NoiseStatistics {
   double mean = 0.0, deviation = 0.0, least = 1e300, greatest = -1e300;
 };
 
-// Of n values at independent places within 300 cells of the origin.
+// The mean, standard deviation and extremes of n values at independent places within 300 cells of the origin.
 template <typename Noise>
 NoiseStatistics statistics_of(const Noise& noise, int n) {
   CounterRandom random(1);
@@ -36,7 +36,7 @@ NoiseStatistics statistics_of(const Noise& noise, int n) {
   return s;
 }
 
-// The largest difference between a noise's stated gradient and that of its values.
+// The largest difference between the gradient that a noise states and the gradient of its values.
 template <typename Sampler>
 double gradient_error(const Sampler& sampler, int n) {
   CounterRandom random(5);

@@ -1,4 +1,4 @@
-// Metaballs at a single point.
+// The value of metaballs at a single point.
 #pragma once
 
 #include "synthesis/body/metaball_body.h"

@@ -1,5 +1,4 @@
-// Recipes drawn from seeds, so that together they hold every kind of body and layer and every way of joining
-// them.
+// Random recipes. Together they hold every kind of body and layer and every way of joining them.
 #pragma once
 
 #include "tests/synthesis/bodies.h"
@@ -105,7 +104,7 @@ inline Layer random_layer(CounterRandom& random) {
   }
 }
 
-// A body that operations make of others, one of which has a warp and one operations of its own.
+// A body made by operations on others: one of these has a warp, and one has operations of its own.
 inline void add_operations(MetaballBody& body, CounterRandom& random) {
   const auto operand = [&](double x) {
     MetaballBody ball;
@@ -130,7 +129,7 @@ inline void add_operations(MetaballBody& body, CounterRandom& random) {
   }
 }
 
-// Local or not, masked by a layer before or not, combined in any way.
+// Makes a layer local or not, masks it by an earlier layer or not, and combines it in any way.
 inline void use_somehow(LayerUse& use, int number, bool first_has_height, CounterRandom& random) {
   if (random.below(3) == 0) use.locality = Locality{.group = "some", .width = 0.1};
   if (number == 0) return;

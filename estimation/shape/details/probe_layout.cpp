@@ -6,6 +6,7 @@
 
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/hash_random.h"
+#include "numerics/tangent_frame.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesher.h"
 
@@ -22,9 +23,8 @@ constexpr double kLongestLag = 0.08;  // fraction of the diagonal; longer tangen
 double edge_of_area(double triangle_area) { return std::sqrt(4.0 / std::sqrt(3.0) * triangle_area); }
 
 Vec3d tangent(const Vec3d& n, double angle) {
-  const Vec3d aside = std::fabs(n.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d u = normalized(cross(n, aside));
-  return std::cos(angle) * u + std::sin(angle) * cross(n, u);
+  const auto [u, v] = crossed_tangents(n);
+  return std::cos(angle) * u + std::sin(angle) * v;
 }
 
 std::vector<double> choose_lags(double edge, double sphere_distance) {

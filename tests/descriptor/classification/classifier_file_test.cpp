@@ -76,7 +76,7 @@ TEST(ClassifierFile, RefusesWhatIsWrongByItsPlace) {
       {with("[[[0,1.5,2],[0],[7,0.5,4],[1],[0]]]", "[]"), "forest"},
       {with("[[[0,1.5,2],[0],[7,0.5,4],[1],[0]]]", "[[]]"), "forest[0]"},
       {with("[0,1.5,2]", "[8,1.5,2]"), "forest[0][0][0]"},  // no such feature
-      {with("[0,1.5,2]", "[0,1.5,1]"), "forest[0][2]"},     // the right side is elsewhere
+      {with("[0,1.5,2]", "[0,1.5,1]"), "forest[0][2]"},     // the right side of the root is at 2, not 1
       {with("[0,1.5,2]", "[0,1.5,0]"), "forest[0][2]"},     // a circle
       {with("[0,1.5,2]", "[0,1e99,2]"), "forest[0][0][1]"},
       {with("[0,1.5,2]", "[0,1.5]"), "forest[0][0]"},
@@ -99,7 +99,7 @@ TEST(ClassifierFile, RefusesWhatIsWrongByItsPlace) {
   }
 }
 
-// Whatever a damaged file says, it is refused or can be used.
+// A damaged file is either refused or read as a classifier that can be used.
 TEST(ClassifierFile, SurvivesDamage) {
   const testing::ScratchFolder folder;
   write_classifier(small_classifier(2), "test 1", folder / "model.yml");

@@ -42,7 +42,7 @@ TEST(CrossValidation, TellsClustersApart) {
   }
 }
 
-// Were a shape among those that its classifier learned from, labels without meaning would be found again.
+// If a classifier had learned from a shape, it would find that shape's meaningless label again.
 TEST(CrossValidation, DoesNotKnowWhatItIsAskedFor) {
   LabelledFeatures data = clusters(1, 120, 10, 1, 1);
   data.classes = {"heads", "tails"};

@@ -6,7 +6,7 @@ namespace astrolith {
 namespace {
 
 TEST(PrecisionRecall, OfAKnownRanking) {
-  // Relevant are the first, third and fourth: precision 1, 2/3, 3/4 at recall 1/3, 2/3, 1.
+  // The first, third and fourth entries are relevant: precision is 1, 2/3, 3/4 at recall 1/3, 2/3, 1.
   const std::vector<double> scores{0.9, 0.8, 0.7, 0.6, 0.5};
   const PrecisionRecall r = precision_recall(scores, {true, false, true, true, false});
   EXPECT_NEAR(r.average_precision, (1 + 2.0 / 3 + 3.0 / 4) / 3, 1e-12);

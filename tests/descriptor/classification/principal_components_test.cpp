@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-// Points along (3, 4, 0) / 5 with less along (0, 0, 1) and nothing else.
+// Points vary along (3, 4, 0) / 5, less along (0, 0, 1), and along no other direction.
 TEST(PrincipalComponents, FindTheDirectionsOfMostVariance) {
   CounterRandom random(1);
   FeatureRows rows;
@@ -23,7 +23,7 @@ TEST(PrincipalComponents, FindTheDirectionsOfMostVariance) {
   ASSERT_EQ(pca.axes.size(), 2u);
   EXPECT_NEAR(std::fabs(0.6f * pca.axes[0][0] + 0.8f * pca.axes[0][1]), 1, 1e-3);
   EXPECT_NEAR(std::fabs(pca.axes[1][2]), 1, 1e-3);
-  // Two components hold all there is: a point comes back from them.
+  // Two components hold all variation, so that they give a point back.
   const std::vector<float> c = pca.apply(rows[7]);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(pca.mean[i] + c[0] * pca.axes[0][i] + c[1] * pca.axes[1][i], rows[7][i], 1e-3);

@@ -41,7 +41,7 @@ TEST(RandomForest, VotesAsOpenCvDoes) {
   const RandomForest forest = converted(*trees, columns, 4);
   ASSERT_EQ(forest.trees.size(), 40u);
   for (const LabelledFeatures* set : {&data, &others}) {
-    cv::Mat counts;  // a first row of labels, then one of votes a sample
+    cv::Mat counts;  // a row of labels, then a row of votes for each sample
     trees->getVotes(row_matrix(set->rows), counts, 0);
     for (int i = 0; i < 100; ++i) {
       const std::vector<double> votes = forest.votes(set->rows[static_cast<std::size_t>(i)]);
@@ -65,7 +65,7 @@ TEST(RandomForest, TellsClustersApart) {
 
 TEST(RandomForest, LabelsMayBeMissing) {
   LabelledFeatures data = clusters(3, 20, 5, 0.1, 1);
-  for (int& label : data.labels) label = label == 0 ? 1 : label == 1 ? 3 : 4;  // none of 0 and 2
+  for (int& label : data.labels) label = label == 0 ? 1 : label == 1 ? 3 : 4;  // no label is 0 or 2
   const RandomForest forest = train_forest(data.rows, data.labels, 6, {20, 25, 1});
   for (std::size_t i = 0; i < data.rows.size(); ++i)
     EXPECT_EQ(winner(forest.votes(data.rows[i])), data.labels[i]);
@@ -90,7 +90,8 @@ TEST(RandomForest, DepthIsABound) {
   }
 }
 
-// A draw of sqrt(#features) would nearly always miss the one that says something.
+// Only one feature tells the classes apart. A draw of sqrt(#features) of all features would nearly always
+// miss it.
 TEST(RandomForest, FeaturesThatNeverVaryAreNotDrawn) {
   LabelledFeatures data = clusters(2, 20, 1, 0.05, 1);
   for (auto& row : data.rows) row.insert(row.begin(), 5000, 3.0f);

@@ -13,11 +13,12 @@ namespace {
 double distance(std::span<const float> f, std::span<const float> g) { return std::fabs(f[0] - g[0]); }
 
 TEST(Retrieval, OfShapesOnALine) {
-  // 0 and 1 of class 0, 10 and 2 of class 1: 0 asks and finds 1, 2, 10; 10 asks and finds 2, 1, 0; ...
+  // Shapes 0 and 1 have class 0, shapes 10 and 2 have class 1. Shape 0 asks and finds 1, 2, 10; shape 10 asks
+  // and finds 2, 1, 0; and so on.
   const FeatureRows rows{{0}, {1}, {10}, {2.5}};
   const std::vector<int> labels{0, 0, 1, 1};
   const Retrieval r = retrieve(rows, labels, 2, distance);
-  // Precision at the one relevant: 1, 1, 1, 1/3 (2.5 finds 1, 0, 10).
+  // The precision at the one relevant shape is 1, 1, 1, 1/3 (2.5 finds 1, 0, 10).
   EXPECT_NEAR(r.mean_average_precision, (3 + 1.0 / 3) / 4, 1e-12);
   EXPECT_NEAR(r.nearest_accuracy, 0.75, 1e-12);
   EXPECT_NEAR(r.average_precisions[0], 1, 1e-12);

@@ -25,13 +25,14 @@ TEST_P(EveryKind, HasItsNameAndSize) {
   EXPECT_EQ(feature_kind_from_name(name_of(GetParam())), GetParam());
   const std::vector<float> features = shape_features(testing::torus(1, 0.4), options());
   EXPECT_EQ(features.size(), feature_count(options()));
-  // The mean is 1 exactly for histograms, about 1 for spectra.
+  // The mean feature is exactly 1 for histograms and about 1 for spectra.
   const double mean =
       std::accumulate(features.begin(), features.end(), 0.0) / static_cast<double>(features.size());
   EXPECT_NEAR(mean, 1, GetParam() == FeatureKind::shapedna ? 0.5 : 1e-5);
 }
 
-// Another size, place and sampling changes little beside another shape; so do points in place of the mesh.
+// Size, place and sampling change a vector little compared with another shape. The same holds for points
+// instead of the mesh.
 TEST_P(EveryKind, IsNearerToItselfThanToAnother) {
   const TriangleMesh torus = testing::torus(1, 0.4, 96, 48);
   TriangleMesh moved = torus;

@@ -16,9 +16,9 @@
 namespace astrolith {
 namespace {
 
-using testing::std::numbers::pi;
+using std::numbers::pi;
 
-// l (l + 1) / R^2, 2 l + 1 times each, times the area 4 pi R^2.
+// The eigenvalues of a sphere: l (l + 1) / R^2, each 2 l + 1 times, times the area 4 pi R^2.
 void expect_sphere(const std::vector<double>& eigenvalues, double tolerance) {
   std::size_t i = 0;
   for (int l = 1; i < eigenvalues.size(); ++l) {
@@ -46,7 +46,7 @@ TEST(LaplacianSpectrum, ConvergesWithTheSquaredEdgeLength) {
   EXPECT_NEAR(error(3) / error(4), 4, 0.5);
 }
 
-// A rectangle a x b with free edges: pi^2 ((m / a)^2 + (n / b)^2).
+// The eigenvalues of a rectangle a x b with free edges: pi^2 ((m / a)^2 + (n / b)^2).
 TEST(LaplacianSpectrum, OfARectangleHasFreeEdges) {
   TriangleMesh mesh;
   const int columns = 60, rows = 30;

@@ -20,11 +20,11 @@ std::vector<Vec3d> plane_points(int n) {
   return points;
 }
 
-// Of Delaunay triangles no circumscribed circle holds another point.
+// No circumscribed circle of a Delaunay triangle holds another point.
 TEST(PointCloudTriangles, AreDelaunayInAPlane) {
   const std::vector<Vec3d> points = plane_points(60);
   const std::vector<Vec3d> normals(points.size(), Vec3d{0, 0, 1});
-  // Every other point is a neighbour: then the stars are those of the whole triangulation.
+  // Every other point is a neighbour, so that the stars are those of the whole triangulation.
   const std::vector<Triangle> triangles = point_cloud_triangles(points, normals, 59);
   std::map<std::set<std::uint32_t>, int> found;
   for (const auto& [a, b, c] : triangles) {
@@ -37,7 +37,7 @@ TEST(PointCloudTriangles, AreDelaunayInAPlane) {
       EXPECT_GE(norm(p - center), norm(points[a] - center) * (1 - 1e-9));
     }
   }
-  for (const auto& [corners, times] : found) EXPECT_EQ(times, 3);  // from each of its corners
+  for (const auto& [corners, times] : found) EXPECT_EQ(times, 3);  // once from each of its corners
 }
 
 TEST(PointCloudTriangles, OfASphereTurnWithTheNormal) {

@@ -1,5 +1,5 @@
-// What readers say about files that they cannot take: one line with the file, the place, what is wrong and
-// what to do.
+// Error messages about files that readers refuse: one line with the file, the place, what is wrong and what
+// to do.
 #include <limits>
 
 #include "geometry/io/mesh_io.h"
@@ -23,7 +23,7 @@ class MeshErrors : public ::testing::Test {
     }
     return "";
   }
-  // Expects a message about a file of this content that names the file and holds the fragment.
+  // Expects that a file of this content gives a message with the file's name and the fragment.
   void expect(const std::string& name, const std::string& content, const std::string& fragment) {
     const std::filesystem::path file = folder.write(name, content);
     const std::string message = complaint(file);

@@ -1,4 +1,4 @@
-// What each format's reader makes of small files written by hand.
+// Small files written by hand, and the meshes that the reader of each format makes of them.
 #include <algorithm>
 #include <bit>
 #include <cstdio>
@@ -54,7 +54,7 @@ TEST_F(MeshFormats, ObjFaceGoesOnBehindABackslash) {
   EXPECT_THROW(read("b.obj", vertices + "f 1 2 \\"), InputError);
 }
 
-// Editors put a byte order mark before the first vertex; losing that line would shift every index.
+// Some editors put a byte order mark before the first vertex. Losing that line would shift every index.
 TEST_F(MeshFormats, ByteOrderMarkIsPassedOver) {
   const std::string obj = "v 5 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_TRUE(read("a.obj", "\xef\xbb\xbf" + obj).vertices == read("b.obj", obj).vertices);
@@ -75,7 +75,7 @@ TEST_F(MeshFormats, PlyAsciiWithUnknownPropertiesAndElements) {
   EXPECT_TRUE(mesh.normals.empty());
 }
 
-// Appends the bytes of value in the given order.
+// Appends the bytes of `value` in the given byte order.
 template <typename T>
 void append(std::string& bytes, T value, std::endian order = std::endian::little) {
   char raw[sizeof(T)];
@@ -134,7 +134,7 @@ TEST_F(MeshFormats, StlAsciiIsWelded) {
   EXPECT_TRUE(analyze_topology(mesh).closed);
 }
 
-// Some programs start the 80 bytes of the binary form with the word of the ascii form.
+// Some programs start the 80 bytes of the binary form with "solid", the first word of the ascii form.
 TEST_F(MeshFormats, StlBinaryThatCallsItselfSolid) {
   write_mesh(icosphere(1), folder / "a.stl", {});
   std::string bytes = file_content(folder / "a.stl");
@@ -193,7 +193,8 @@ TEST_F(MeshFormats, PlateModelWithLetters) {
   EXPECT_TRUE((mesh.triangles == Triangles{{0, 1, 2}}));
 }
 
-// A sphere on a cube's six faces; face number flipped, if any, is stored with rows for columns.
+// A sphere on the six faces of a cube. Face number `flipped`, if any, is stored with rows and columns
+// exchanged.
 std::string icq_sphere(int q, double radius, int flipped = -1) {
   static constexpr double kU[6][3] = {{0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {0, -1, 0}, {-1, 0, 0}, {0, 1, 0}};
   static constexpr double kV[6][3] = {{1, 0, 0}, {0, 0, -1}, {0, 0, -1}, {0, 0, -1}, {0, 0, -1}, {-1, 0, 0}};
@@ -226,7 +227,7 @@ TEST_F(MeshFormats, IcqMergesTheEdgesOfItsFaces) {
   EXPECT_TRUE(analyze_topology(read("flipped.icq", icq_sphere(8, 10, 3))).oriented);
 }
 
-// Neighbouring vertices that a coarse print has made equal stay two.
+// Neighbouring vertices that a coarse print has made equal stay two vertices.
 TEST_F(MeshFormats, IcqKeepsVerticesThatFellTogether) {
   std::string text = icq_sphere(4, 10);
   std::vector<std::string> lines;
@@ -235,7 +236,7 @@ TEST_F(MeshFormats, IcqKeepsVerticesThatFellTogether) {
     lines.push_back(text.substr(at, end + 1 - at));
     at = end + 1;
   }
-  lines[1 + 6] = lines[1 + 7];  // inside face 1
+  lines[1 + 6] = lines[1 + 7];  // two vertices inside face 1
   std::string squeezed;
   for (const std::string& line : lines) squeezed += line;
   EXPECT_EQ(read("a.icq", squeezed).vertices.size(), 98u);

@@ -1,4 +1,4 @@
-// Damaged files of every format give a valid mesh or an InputError, nothing else.
+// A damaged file of any format gives a valid mesh or an InputError, and nothing else.
 #include <algorithm>
 
 #include "geometry/io/mesh_io.h"
@@ -23,7 +23,7 @@ const char* const kPlate = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n4\n1 1 3 2\n2
 const char* const kStl =
     "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
     "0\nendloop\nendfacet\nendsolid a\n";
-// A cube: Q = 1, faces in Gaskell's order.
+// A cube as an ICQ: Q = 1, faces in Gaskell's order.
 const char* const kIcq =
     "1\n-1 -1 1\n-1 1 1\n1 -1 1\n1 1 1\n1 -1 1\n1 1 1\n1 -1 -1\n1 1 -1\n-1 -1 1\n1 -1 1\n-1 -1 -1\n1 -1 -1\n"
     "-1 1 1\n-1 -1 1\n-1 1 -1\n-1 -1 -1\n1 1 1\n-1 1 1\n1 1 -1\n-1 1 -1\n1 -1 -1\n1 1 -1\n-1 -1 -1\n-1 1 "
@@ -95,7 +95,7 @@ TEST_P(MeshFuzz, BytesReplaced) {
     std::string damaged = valid;
     for (std::uint64_t n = 1 + random.below(4); n > 0; --n) {
       char& byte = damaged[random.below(damaged.size())];
-      // Digits and signs reach deeper into text readers than any byte would.
+      // Digits and signs reach deeper into text readers than random bytes do.
       byte = random.uniform() < 0.5 ? static_cast<char>(random.below(256))
                                     : "0123456789-+.eEn/ \n#"[random.below(20)];
     }

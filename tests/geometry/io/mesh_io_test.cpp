@@ -15,7 +15,8 @@ using namespace testing;
 
 const MeshFileInfo kInfo{"km", "body-fixed, +z spin pole", "a test\nof two lines"};
 
-// Multiples of 2^-18 below 32 have 23 bits: float32 holds them exactly, so that round trips can be exact too.
+// The coordinates are multiples of 2^-18 below 32. They have 23 bits, and float32 holds them exactly. Round
+// trips can therefore be exact.
 double on_float_grid(double x) { return std::round(x * 262144) / 262144; }
 
 TriangleMesh float_body(bool with_normals) {
@@ -50,7 +51,7 @@ TEST(MeshIo, ObjRoundTripIsExactInDouble) {
   EXPECT_TRUE(back.triangles == mesh.triangles);
 }
 
-// STL keeps no numbering: the shape must come back, welded and closed.
+// STL keeps no vertex numbers. The shape must come back, welded and closed.
 TEST(MeshIo, StlRoundTripKeepsTheShape) {
   const ScratchFolder folder;
   const TriangleMesh mesh = float_body(false);
@@ -116,7 +117,8 @@ TEST(MeshIo, BodiesOfOpenUniverseAreClosed) {
     ++bodies;
   }
   EXPECT_EQ(bodies, 16);
-  // Vesta's mean radius is 262 km (Russell et al. 2012); kilometres, then, and about the right size.
+  // The mean radius of Vesta is 262 km (Russell et al. 2012). The file is therefore in kilometres and of
+  // about the right size.
   EXPECT_NEAR(std::cbrt(volume(read_mesh(package_file("vesta.bmf"))) * 3 / (4 * std::numbers::pi)), 262, 10);
 }
 

@@ -1,4 +1,4 @@
-// Another library reads what we write.
+// OpenMesh reads what Astrolith writes.
 #define _USE_MATH_DEFINES
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -26,7 +26,7 @@ TEST_P(MeshPeer, OpenMeshReadsTheSameMesh) {
   ASSERT_TRUE(OpenMesh::IO::read_mesh(peer, file.string()));
   ASSERT_EQ(peer.n_faces(), mesh.triangles.size());
   ASSERT_EQ(peer.n_vertices(), mesh.vertices.size());
-  // The peer may number vertices anew (STL): faces are compared by their corners' places.
+  // The peer may renumber vertices (STL), so that faces are compared by the places of their corners.
   for (const auto face : peer.faces()) {
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(face.idx())];
     Vec3d ours{}, theirs{};

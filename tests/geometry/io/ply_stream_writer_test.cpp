@@ -29,7 +29,7 @@ TriangleMesh body() {
   return mesh;
 }
 
-// Vertices and triangles in portions that grow with the index, the triangles behind their vertices.
+// Writes vertices and triangles in portions that grow with the index, triangles after their vertices.
 void stream(const TriangleMesh& mesh, std::size_t portion, PlyStreamWriter& writer) {
   const std::vector<MeshVertex> vertices = as_floats(mesh);
   const std::span<const MeshVertex> all(vertices);

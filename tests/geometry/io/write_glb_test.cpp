@@ -1,4 +1,4 @@
-// The GLB that we write, read back by a glTF library.
+// A glTF library reads the GLB that Astrolith writes.
 #define TINYGLTF_IMPLEMENTATION
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE

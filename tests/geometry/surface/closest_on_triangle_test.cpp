@@ -21,7 +21,7 @@ TEST(ClosestOnTriangle, EachFeature) {
   EXPECT_EQ(closest_on_triangle({-1, 1, 0}, a, b, c).feature, F::side_ca);
 }
 
-// An obtuse corner, where tests by the corner's own sides alone go wrong.
+// At an obtuse corner, a test by the two sides of the corner alone goes wrong.
 TEST(ClosestOnTriangle, BeatsADenseSearch) {
   CounterRandom random(1);
   const auto vector = [&] { return Vec3d{random.normal(), random.normal(), random.normal()}; };

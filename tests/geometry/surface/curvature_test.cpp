@@ -24,7 +24,7 @@ double total_gaussian(const VertexCurvature& c) {
 }
 double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
-// Unit cubes in a row of five by three by one, two of them missing: a double torus.
+// A double torus: unit cubes in a block of five by three by one, two of which are missing.
 TriangleMesh double_torus() {
   const auto solid = [](int x, int y, int z) {
     return x >= 0 && x < 5 && y >= 0 && y < 3 && z == 0 && !(y == 1 && (x == 1 || x == 3));
@@ -93,8 +93,8 @@ TEST(Curvature, SphereOfAnySize) {
   }
 }
 
-// K = cos v / (r (R + r cos v)), H = (R + 2 r cos v) / (2 r (R + r cos v)): both signs of K, and H falls to
-// (R - 2 r) / (2 r (R - r)) inside.
+// On a torus K = cos v / (r (R + r cos v)) and H = (R + 2 r cos v) / (2 r (R + r cos v)). K has both signs,
+// and H falls to (R - 2 r) / (2 r (R - r)) on the inner side.
 TEST(Curvature, Torus) {
   const double big = 2, small = 0.7;
   const int rows = 120;
@@ -128,7 +128,7 @@ TEST(Curvature, BoundaryAndUnusedVerticesAreLeftOut) {
 }
 
 TEST(Curvature, NonManifoldPartsAreCutOut) {
-  // Two octahedra that share a tip, one that shares an edge with a third, and a face turned over.
+  // Two octahedra share a tip, one of them shares an edge with a third, and one face is turned over.
   TriangleMesh mesh = joined(octahedron(), octahedron());
   for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), 6u, 0u);
   EXPECT_EQ(vertex_curvature(mesh).left_out, (std::vector<std::uint32_t>{0, 6}));
@@ -142,7 +142,7 @@ TEST(Curvature, NonManifoldPartsAreCutOut) {
 
 TEST(Curvature, RepeatedAndDegenerateTriangles) {
   TriangleMesh mesh = octahedron();
-  mesh.triangles.push_back({0, 2, 4});  // a copy: three triangles at its edges
+  mesh.triangles.push_back({0, 2, 4});  // a copied triangle, so that its edges have three
   mesh.triangles.push_back({5, 5, 1});
   EXPECT_EQ(vertex_curvature(mesh).left_out, (std::vector<std::uint32_t>{0, 2, 4}));
   mesh.vertices.push_back({0, 0, 0});

@@ -34,7 +34,7 @@ TEST(MeshSampling, PointsLieInTheirTriangles) {
   }
 }
 
-// Large and small triangles in one mesh: counts follow area, chi-square with #F - 1 degrees of freedom.
+// The mesh has large and small triangles. Counts follow the area: chi-square with #F - 1 degrees of freedom.
 TEST(MeshSampling, CountsFollowArea) {
   const TriangleMesh mesh = torus(1, 0.8, 10, 10);
   const int n = 400000;
@@ -50,7 +50,7 @@ TEST(MeshSampling, CountsFollowArea) {
   EXPECT_NEAR(chi2, 199, 5 * std::sqrt(2 * 199.0));
 }
 
-// Within one triangle: the mean is the centroid and the second moments are those of a uniform density.
+// Within one triangle the mean is the centroid, and the second moments are those of a uniform density.
 TEST(MeshSampling, UniformInsideATriangle) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
   const int n = 200000;

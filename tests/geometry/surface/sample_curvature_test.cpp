@@ -28,8 +28,8 @@ TEST(SampleCurvature, SphereOfAnySizeAndTriangulation) {
   }
 }
 
-// Bumps of the size of the triangles: K at the vertices is noise a thousand times the sphere's, its mean in a
-// ball is not.
+// The sphere has bumps as large as its triangles. K at the vertices is noise a thousand times the curvature
+// of the sphere; the mean of K in a ball is not.
 TEST(SampleCurvature, FineBumpsAverageOut) {
   TriangleMesh mesh = icosphere(5);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] *= i % 2 == 0 ? 1.004 : 0.996;
@@ -42,8 +42,8 @@ TEST(SampleCurvature, FineBumpsAverageOut) {
 }
 
 TEST(SampleCurvature, TwoSidesOfAThinPartStayApart) {
-  // A flat lens: without a look at the normals the ball would hold both sides' vertices and be right all the
-  // same, so one side is made coarse: its vertices would be missing from the count.
+  // A flat lens. Without a test of the normals the ball would hold vertices of both sides, and the mean would
+  // still be right. One side is therefore coarse: its vertices would be missing from the count.
   const TriangleMesh ball = icosphere(4);
   TriangleMesh shell = joined(ball, reversed(icosphere(4, 0.97)));
   const SurfaceSamples s = sample_poisson_disk(shell, 400, 2);
@@ -66,7 +66,7 @@ TEST(SampleCurvature, OpenMeshesSayWhatIsLeftOut) {
   EXPECT_EQ(none.gaussian, std::vector<double>(10, 0.0));
 }
 
-// From points and normals alone, against K = cos v / (r (R + r cos v)).
+// The curvature from points and normals alone, against K = cos v / (r (R + r cos v)).
 TEST(PointCurvature, Torus) {
   const double big = 2, small = 0.7;
   const TriangleMesh mesh = torus(big, small, 200, 100);
@@ -78,7 +78,7 @@ TEST(PointCurvature, Torus) {
     const double rho = std::hypot(s.points[i].x, s.points[i].y), cosine = (rho - big) / small;
     squares += std::pow(c.gaussian[i] - cosine / (small * rho), 2) / 4000;
   }
-  EXPECT_LT(std::sqrt(squares), 0.04);  // of values between -1.1 and 0.53
+  EXPECT_LT(std::sqrt(squares), 0.04);  // the values lie between -1.1 and 0.53
 }
 
 TEST(PointCurvature, WhatDoesNotDetermineAQuadric) {

@@ -15,7 +15,7 @@ TEST(SurfaceDistance, ConcentricSpheres) {
   EXPECT_NEAR(r.max, 0.1, 1e-3);
 }
 
-// From every point of the small body the other is near; not the other way round.
+// The small body a is part of b, so that every point of a lies on b. The other sphere of b is far from a.
 TEST(SurfaceDistance, LooksInBothDirections) {
   const TriangleMesh a = icosphere(4), b = joined(a, icosphere(4, 1, {5, 0, 0}));
   const auto r = surface_distance(a, b, 4000, 1);
@@ -25,7 +25,7 @@ TEST(SurfaceDistance, LooksInBothDirections) {
   EXPECT_EQ(r.max, r.from_b_to_a.max);
 }
 
-// An upright strip of height 1 on a floor: distances to the floor are uniform in [0, 1].
+// A strip of height 1 stands upright on a floor: its distances to the floor are uniform in [0, 1].
 TEST(SurfaceDistance, FiguresOfAKnownDistribution) {
   const TriangleMesh strip{{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}};
   const TriangleMesh floor{{{-1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};

@@ -18,7 +18,7 @@ Vec3d random_in_cube(CounterRandom& random, double half) {
   return {random.uniform(-half, half), random.uniform(-half, half), random.uniform(-half, half)};
 }
 
-// The first triangle of the least squared distance.
+// The first triangle with the least squared distance, found by trying all triangles.
 ClosestPoint closest_by_force(const TriangleMesh& mesh, const Vec3d& p) {
   ClosestPoint best;
   double least = std::numeric_limits<double>::infinity();
@@ -47,7 +47,7 @@ TEST(SurfaceTree, EqualsBruteForceToTheLastBit) {
   }
 }
 
-// At the mesh's vertices and edge midpoints many triangles are equally near.
+// At vertices and midpoints of edges of the mesh many triangles are equally near.
 TEST(SurfaceTree, TiesGoToTheLowestTriangle) {
   const TriangleMesh mesh = icosphere(2);
   const SurfaceTree tree(mesh);
@@ -81,7 +81,7 @@ TEST(SurfaceTree, SignOfACubeAtItsFacesEdgesAndCorners) {
   EXPECT_EQ(tree.signed_distance({1, 1, 1}), 0);
 }
 
-// Sharp blades: the normal of one face alone gives wrong signs near their edges.
+// On sharp blades the normal of one face alone gives wrong signs near the edges.
 TEST(SurfaceTree, SignAtSharpEdges) {
   // A wedge around the z axis between angles 0 and 0.05, cut off at radius 1.
   const double x = std::cos(0.05), y = std::sin(0.05);
@@ -123,7 +123,7 @@ TEST(SurfaceTree, OverlappingComponentsCountAsTheirUnion) {
   }
 }
 
-// A cavity: its wall is wound the other way, and inside it is outside.
+// The wall of a cavity is wound the other way, and its inside is outside the body.
 TEST(SurfaceTree, HollowBody) {
   const SurfaceTree tree(joined(icosphere(4), reversed(icosphere(4, 0.5))));
   EXPECT_NEAR(tree.signed_distance({0, 0, 0}), -0.5, 5e-3);

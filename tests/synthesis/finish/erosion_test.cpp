@@ -41,7 +41,7 @@ Eroded eroded(const Recipe& recipe, int resolution, double talus_angle, int most
   return result;
 }
 
-// Of all edges, in degrees.
+// The steepest slope of all edges, in degrees.
 double steepest_edge(const TriangleMesh& mesh, const std::vector<Vec3d>& up) {
   double steepest = 0.0;
   for (const Triangle& t : mesh.triangles) {
@@ -73,7 +73,7 @@ TEST(Mascons, VerticalsOfASphereAreItsNormalsAndTiltWithRotation) {
   const Vec3d normal = normalized(Vec3d{1.0, 0.5, 1.0});
   const std::vector<Vec3d> points{Vec3d{10, -20, 30} + 100.0 * normal};
   EXPECT_LT(norm(vertical_directions(mascons, {}, points)[0] - normal), 1e-3);
-  // g = 4/3 pi G rho r against w^2 times the distance from the axis.
+  // Compares g = 4/3 pi G rho r with w^2 times the distance from the axis.
   const double period = 3.0, turn = 2 * std::numbers::pi / (3600 * period);
   const double gravity = 4.0 / 3.0 * std::numbers::pi * 6.674e-11 * 2500.0 * 100.0;
   const Vec3d force = gravity * normal - turn * turn * 100.0 * Vec3d{normal.x, normal.y, 0.0};
@@ -109,7 +109,7 @@ TEST(Erosion, ConservesMass) {
   EXPECT_NEAR(volume(e.after) / volume(e.before), 1.0, 1e-12);
 }
 
-// Faces that look up still do: what was a graph over the horizontal is one still.
+// Faces that looked up still do: a surface that was a graph over the horizontal still is one.
 TEST(Erosion, StaysClosedAndDoesNotRunIntoItself) {
   const Eroded e = eroded(hilly_ball(), 64, 25.0);
   const MeshTopology topology = analyze_topology(e.after);

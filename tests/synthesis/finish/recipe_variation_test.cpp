@@ -37,7 +37,7 @@ TEST(RecipeVariation, IsValidAndDeterministic) {
   }
 }
 
-// A body made of two by an operation is deformed as a whole: the same as when one body holds all spheres.
+// A body made of two bodies by an operation is deformed as a whole, as if one body held all spheres.
 TEST(RecipeVariation, OperandsMoveWithTheBody) {
   Recipe whole = worm(), combined = worm();
   whole.body->subtract = {whole.body->spheres[5]};
@@ -76,8 +76,8 @@ TEST(RecipeVariation, KeptNoiseIsThatOfTheOriginalOnAnotherBody) {
   EXPECT_EQ(recipe_to_json(renewed), recipe_to_json(varied));
 }
 
-// Dust where the hills are low, joined to them: after a variation it lies where their heights are as low a
-// share.
+// Dust lies where the hills are low and is joined to them. After a variation it still covers the lowest parts
+// of the hills, up to the same share of their height.
 TEST(RecipeVariation, MasksAndJointsFollowTheHeights) {
   Recipe recipe = worm();
   std::get<FractalLayer>(recipe.layers[0]).name = "hills";

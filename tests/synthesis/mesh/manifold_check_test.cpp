@@ -25,7 +25,7 @@ std::vector<Triangle> tetrahedron(std::uint32_t a, std::uint32_t b, std::uint32_
 }
 
 TEST(ManifoldCheck, AgreesWithTheTopologyOfTheWholeMeshWhileItStreams) {
-  // Tubes along the edges of a lattice, inside a sphere: many handles and some loose pieces.
+  // Tubes along the edges of a lattice, inside a sphere: many handles and some loose components.
   const auto tubes = [](const Vec3d& p) {
     const auto wave = [](double v) { return std::cos(9.0 * v); };
     return std::min(0.9 - norm(p), 0.1 * (wave(p.x) + wave(p.y) + wave(p.z) - 0.7));

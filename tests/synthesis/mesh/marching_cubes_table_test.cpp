@@ -24,7 +24,7 @@ Vec3d midpoint(int edge) {
 
 double component(const Vec3d& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-// The faces both vertices lie on, as a mask.
+// The faces on which both vertices lie, as a mask.
 int common_faces(int edge_a, int edge_b) {
   int faces = 0;
   for (int face = 0; face < 6; ++face) {
@@ -45,7 +45,7 @@ std::multiset<DirectedEdge> directed_edges(int signs) {
   return edges;
 }
 
-// Mesh edges of a cell that no other triangle of the cell uses: its border.
+// The border of the triangles of a cell: mesh edges that only one of the triangles uses.
 std::vector<DirectedEdge> border(int signs) {
   std::vector<DirectedEdge> edges;
   const std::multiset<DirectedEdge> all = directed_edges(signs);
@@ -90,7 +90,7 @@ TEST(MarchingCubesTable, BorderIsLoopsThroughEachVertexOnce) {
   }
 }
 
-// The segments of one face, moved to the low face of the same axis so that both sides can be compared.
+// The segments on one face, moved to the low face of the same axis, so that both sides can be compared.
 std::set<DirectedEdge> face_segments(int signs, int face) {
   const int axis = face / 2;
   const auto on_low_face = [axis](int edge) {
@@ -112,7 +112,8 @@ std::set<DirectedEdge> face_segments(int signs, int face) {
 
 TEST(MarchingCubesTable, NeighboursAgreeOnEveryFace) {
   for (int axis = 0; axis < 3; ++axis) {
-    // By the four signs on the shared face: what the cell below sees, and what the cell above sees.
+    // Indexed by the four signs on the shared face: the segments of the cell below, and those of the cell
+    // above.
     std::map<int, std::set<DirectedEdge>> seen_below, seen_above;
     for (int signs = 0; signs < 256; ++signs) {
       int low_signs = 0, high_signs = 0;

@@ -15,8 +15,8 @@ namespace {
 using testing::AnalyticField;
 using testing::cube;
 
-// A hollow ball, a torus and crumbs.
-double pieces(const Vec3d& p) {
+// A hollow ball, a torus and two crumbs: with the wall of the cavity, five components.
+double five_components(const Vec3d& p) {
   const double ball = 0.45 - norm(p - Vec3d{-0.4, 0, 0}), hollow = 0.15 - norm(p - Vec3d{-0.45, 0, 0});
   const Vec3d q = p - Vec3d{0.55, 0, 0};
   const double torus = 0.1 - std::hypot(std::hypot(q.x, q.y) - 0.25, q.z);
@@ -25,22 +25,22 @@ double pieces(const Vec3d& p) {
   return std::max({std::min(ball, -hollow), torus, crumb, crumb2});
 }
 
-const AnalyticField kPieces(pieces, 1.0);
+const AnalyticField kFiveComponents(five_components, 1.0);
 
 TriangleMesh kept(double least_share, std::int64_t* dropped = nullptr, int resolution = 60) {
   ComponentSizes sizes;
-  mesh_field(kPieces, cube(1.0), resolution, sizes);
+  mesh_field(kFiveComponents, cube(1.0), resolution, sizes);
   const ComponentChoice choice = sizes.larger_than(least_share);
-  if (dropped != nullptr) *dropped = choice.dropped_pieces;
+  if (dropped != nullptr) *dropped = choice.dropped_components;
   MeshCollector collector;
   ComponentFilter filter(choice, collector);
-  mesh_field(kPieces, cube(1.0), resolution, filter);
+  mesh_field(kFiveComponents, cube(1.0), resolution, filter);
   filter.finish();
   return std::move(collector.mesh);
 }
 
-TEST(MeshComponents, SmallPiecesAreDroppedAndTheOthersStayTheSame) {
-  // Volumes over the ball's .382: cavity .037, torus .13, crumbs .0024 and .0014.
+TEST(MeshComponents, SmallComponentsAreDroppedAndTheOthersStayTheSame) {
+  // Volumes relative to the ball, .382: cavity .037, torus .13, crumbs .0024 and .0014.
   struct Expected {
     double least_share;
     std::int64_t components, dropped;
@@ -55,7 +55,7 @@ TEST(MeshComponents, SmallPiecesAreDroppedAndTheOthersStayTheSame) {
     EXPECT_EQ(topology.unused_vertices, 0);
   }
   MeshCollector whole;
-  mesh_field(kPieces, cube(1.0), 60, whole);
+  mesh_field(kFiveComponents, cube(1.0), 60, whole);
   const TriangleMesh all = kept(0.0);
   EXPECT_EQ(all.vertices, whole.mesh.vertices);
   EXPECT_EQ(all.triangles, whole.mesh.triangles);
@@ -63,10 +63,10 @@ TEST(MeshComponents, SmallPiecesAreDroppedAndTheOthersStayTheSame) {
 
 TEST(MeshComponents, TheKeptMeshIsAStreamAgain) {
   ComponentSizes sizes;
-  mesh_field(kPieces, cube(1.0), 120, sizes);
+  mesh_field(kFiveComponents, cube(1.0), 120, sizes);
   ManifoldCheck check;
   ComponentFilter filter(sizes.larger_than(0.01), check);
-  mesh_field(kPieces, cube(1.0), 120, filter);
+  mesh_field(kFiveComponents, cube(1.0), 120, filter);
   filter.finish();
   const ManifoldReport report = check.finish();
   EXPECT_TRUE(report.closed() && report.manifold());
@@ -74,7 +74,7 @@ TEST(MeshComponents, TheKeptMeshIsAStreamAgain) {
   EXPECT_EQ(report.genus, 1);
 }
 
-// Horseshoes: arms that join only at the last layers have one label each until then.
+// Horseshoes: arms that join only in the last layers have a label each until then.
 TEST(MeshComponents, ArmsThatJoinLateAreOnePiece) {
   const AnalyticField comb(
       [](const Vec3d& p) {
@@ -89,7 +89,7 @@ TEST(MeshComponents, ArmsThatJoinLateAreOnePiece) {
   ComponentSizes sizes;
   mesh_field(comb, cube(1.0), 64, sizes);
   const ComponentChoice choice = sizes.larger_than(1.0);
-  EXPECT_EQ(choice.dropped_pieces, 0);
+  EXPECT_EQ(choice.dropped_components, 0);
   EXPECT_GE(choice.keep.size(), 3u);
 }
 

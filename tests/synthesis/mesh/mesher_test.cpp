@@ -69,7 +69,7 @@ double two_spheres(const Vec3d& p) {
 
 double shell(const Vec3d& p) { return 0.2 - std::abs(norm(p) - 0.75); }
 
-// A sphere that a gyroid has been carved into: caves, arches, many handles.
+// A sphere with a gyroid carved into it: caves, arches, many handles.
 double gyroid_sphere(const Vec3d& p) {
   const double f = 12.0;
   const double gyroid = std::sin(f * p.x) * std::cos(f * p.y) + std::sin(f * p.y) * std::cos(f * p.z) +
@@ -143,7 +143,7 @@ TEST(Mesher, SameBytesForAnyThreadsBlocksAndBounds) {
   EXPECT_TRUE(same_bytes(reference, mesh_of(never_culled, cube(1.0), 77)));
 }
 
-// All tiles one after the other; vertices of a cut, which two tiles share, become one.
+// All tiles in one mesh. Vertices of a cut, which two tiles share, become one vertex.
 template <class Field>
 TriangleMesh joined_tiles(const Field& field, int resolution, int count) {
   TriangleMesh all;
@@ -179,7 +179,7 @@ TEST(Mesher, TilesThatThereAreNotAreInputErrors) {
   }
 }
 
-// Where local coordinates have their origin: on a surface with caves, and a sample of the grids below.
+// The origin of the local coordinates: on a surface with caves, and on a sample of the grids below.
 const Vec3d kPatchCenter{0.5, -0.25, 0.75};
 constexpr double kPatchSize = 0.625;  // 20 cells of 1/32
 constexpr int kPatchCells = 20;
@@ -217,7 +217,7 @@ TEST(Mesher, PatchesHaveTheVerticesOfTheWholeMeshOnItsGrid) {
     if (farthest <= 0.5 * kPatchSize) inside.push_back(local);
   }
   ASSERT_EQ(inside.size(), patch.vertices.size());
-  // Both are in rows of the grid.
+  // Vertices and triangles of both meshes come in rows of the grid.
   for (std::size_t i = 0; i < inside.size(); ++i) ASSERT_LT(norm(inside[i] - patch.vertices[i]), 1e-6);
 }
 
@@ -230,7 +230,8 @@ TEST(Mesher, FlatBoxesUseFewerCellsAlongShortSides) {
   EXPECT_EQ(expect_closed_manifold(collector.mesh).genus, 0);
 }
 
-// Bounds whose grid has samples at the integers: cells of 1 and a border sample at -(half_side + 1).
+// Bounds whose grid has its samples at the integers: cells of side 1, and a border sample at -(half_side +
+// 1).
 constexpr int kTieHalfSide = 8;
 constexpr int kTieResolution = 2 * kTieHalfSide + 2;
 
@@ -285,10 +286,10 @@ TEST(Mesher, AnEmptyFieldIsAnEmptyMesh) {
 
 TEST(Mesher, BrokenPromisesAreErrorsAndNeverHoles) {
   MeshCollector sink;
-  // The bounds cut the body; culling would even prove whole border blocks full.
+  // The bounds cut the body; in the second case culling even proves whole blocks at the border full.
   EXPECT_THROW(mesh_field(AnalyticField(unit_sphere), cube(0.5), 32, sink), WorkError);
   EXPECT_THROW(mesh_field(field_of(unit_sphere, 1.0), cube(0.3), 64, sink), WorkError);
-  // A bound that is too tight throws away blocks that the surface crosses.
+  // A bound that is too tight discards blocks that the surface crosses.
   EXPECT_THROW(mesh_field(field_of(unit_sphere, 0.2), cube(1.0), 64, sink), WorkError);
 }
 

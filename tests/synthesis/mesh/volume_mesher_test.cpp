@@ -41,7 +41,7 @@ TriangleMesh mesh_of(const SampleGrid& grid, const std::vector<float>& values) {
   return std::move(collector.mesh);
 }
 
-// Rows of less than a word, of one, of several; the last slab and group of rows whole or not.
+// Rows shorter than a word, as long as one, and longer; last slabs and groups of rows that are whole or not.
 TEST(VolumeMesher, MakesTheMeshOfTheSameField) {
   for (const int resolution : {9, 31, 63, 64, 130}) {
     const Box bounds{{-1.4, -1.4, -1.4}, {1.4, 1.4, 1.4}};
@@ -58,7 +58,7 @@ TEST(VolumeMesher, MakesTheMeshOfTheSameField) {
   }
 }
 
-// Boxes of any sides; noise in which every sign pattern occurs, with ties at the level.
+// Boxes of unequal sides, filled with noise in which every sign pattern and ties at the level occur.
 TEST(VolumeMesher, NoiseBecomesAClosedManifoldForAnyThreads) {
   CounterRandom random(3);
   for (const std::array<int, 3> cells : {std::array{40, 7, 9}, {5, 40, 6}, {66, 5, 33}, {2, 2, 2}}) {
