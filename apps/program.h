@@ -1,28 +1,34 @@
-// What all programs do the same way: the common options, progress bars on a terminal, one-line errors,
+// The frame of every program: the common options, progress bars on a terminal, one-line errors,
 // Ctrl-C, exit status 0 (done), 1 (the work failed) or 2 (the command line or an input is wrong), and
 // --summary.
 //
 //   int main(int argc, char** argv) {
 //     Program program("synth", "Turns a recipe into a mesh.");
-//     program.app.add_option("recipe", options.recipe, "the recipe")->required();
+//     program.app.add_option("recipe", options.recipe, "the recipe").required();
 //     return program.run(argc, argv, [&] { ...; program.summary["triangles"] = n; });
 //   }
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
 
 class Program {
+  // Declared first, since `app` refers to it.
+  std::unique_ptr<CLI::App> parser_;
+
  public:
   Program(std::string name, std::string description);
+  ~Program();
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
   // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. The summary is
@@ -36,23 +42,23 @@ class Program {
   // True once Ctrl-C has been pressed.
   static bool interrupted();
 
-  // One line to stderr, unless --quiet.
+  // Prints one line to stderr, unless --quiet was given.
   void say(const std::string& line) const;
 
-  // The same once the work is done; nothing where it fails.
+  // Prints the line like say(), but once the work is done. Work that fails prints no notes.
   void note(const std::string& line) { notes_.push_back(line); }
 
-  // For a part of the work that failed while the rest goes on: one line to stderr, also with --quiet, and
-  // exit status 1 in the end.
+  // Reports a part of the work that failed while the rest goes on. Prints one line to stderr, also with
+  // --quiet; the exit status will be 1.
   void report_failure(const std::string& line);
 
-  // "fit_shape 0.1.0", for provenance.
+  // "fit_shape 0.2.0 (1a2b3c4)", for provenance.
   std::string tool() const;
   // The options that were given on the command line, sorted by name, for provenance; output names, threads,
   // quiet and summary left out, since they do not change the result.
   std::vector<std::pair<std::string, std::string>> given_options() const;
 
-  CLI::App app;
+  CommandLine app;
   nlohmann::ordered_json summary;
 
   std::uint64_t seed = 1;

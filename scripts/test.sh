@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs every test: test.sh [--full] [PRESET]
 #   PRESET   one of release (default), ci, debug, asan, tsan
-#   --full   the tests that have two sizes in the large one: some minutes more
+#   --full   runs the large size of the tests that have two sizes, which takes some minutes more
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,5 +12,5 @@ fi
 preset=${1:-release}
 scripts/setup.sh
 scripts/fetch_data.sh
-scripts/build.sh "$preset"
+scripts/build.sh "$preset" -DASTROLITH_CUDA=ON
 ctest --preset "$preset"

@@ -11,6 +11,7 @@
 #include "apps/fit_shape/fit_time_limit.h"
 #include "apps/fit_shape/known_bodies.h"
 #include "apps/program.h"
+#include "apps/version.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_io.h"
@@ -34,7 +35,7 @@ std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) 
           {"volume_ratio", fit.check.volume_ratio}};
 }
 
-// Without layers, and without what it achieved.
+// The recipe of a fitted body, without layers and without the figures that the fit achieved.
 Recipe recipe_of(const Program& program, const FitArguments& arguments, const ShapeFitResult& fit) {
   Recipe recipe;
   recipe.length_unit = arguments.unit;
@@ -135,7 +136,7 @@ void say_wrong_unit(const Program& program, const FitArguments& arguments, const
 }
 
 void run(Program& program, FitArguments& arguments) {
-  // Before minutes of work: can the results be written at all?
+  // A result that cannot be written should be refused before minutes of work.
   require_writable(arguments.output);
   if (!arguments.checkpoint.empty()) {
     require_writable(arguments.checkpoint);
@@ -152,8 +153,8 @@ void run(Program& program, FitArguments& arguments) {
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
 
-  FitCheckpoint checkpoint(arguments.checkpoint,
-                           {program.tool(), sha256_of_file(arguments.mesh), program.given_options()});
+  FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes,
+                                                  sha256_of_file(arguments.mesh), program.given_options()});
   if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
   ShapeFitResult fit = fit_base(program, arguments, target, limit, checkpoint);
   Recipe recipe = recipe_of(program, arguments, fit);
@@ -170,7 +171,7 @@ void run(Program& program, FitArguments& arguments) {
                      arguments.report);
   }
   summarize(program, fit, Program::interrupted() || limit.reached());
-  program.summary["diagonal"] = target.diagonal;  // what the distances are fractions of
+  program.summary["diagonal"] = target.diagonal;  // distances are fractions of it
   program.summary["length_unit"] = arguments.unit;
   if (!variations.empty() && !Program::interrupted()) {
     program.summary["variations"] = write_variations(program, target, recipe, arguments.details, variations);

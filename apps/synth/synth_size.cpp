@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "apps/memory_use.h"
-#include "apps/option_checks.h"
 #include "numerics/errors.h"
 #include "synthesis/mesh/mesh_prediction.h"
 #include "synthesis/mesh/sample_grid.h"
@@ -17,10 +16,11 @@ namespace {
 // Below this resolution a mesh is small and quick: predicting would cost more than it tells.
 constexpr int kWorthPredicting = 256;
 
-// Program, libraries and threads.
+// Memory of the program, its libraries and its threads.
 constexpr double kBytesAnyway = 50e6;
 
-// A format's bytes a triangle, half a vertex included: in the file, and in memory until it is written.
+// Bytes that a format takes for each triangle and half a vertex: in the file, and in memory until it is
+// written.
 struct OutputCost {
   double file;
   double memory;
@@ -37,7 +37,7 @@ OutputCost output_cost(const std::filesystem::path& output, MeshUse use) {
   return {75.0, collected + rendered};
 }
 
-// "1.2 M", "340 k"
+// A count in three characters or so: "1.2 M", "340 k".
 std::string rounded(double count) {
   return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
 }
@@ -45,23 +45,23 @@ std::string rounded(double count) {
 }  // namespace
 
 void declare_size_options(Program& program, MeshSizeRequest& request) {
-  CLI::Option* resolution = program.app
-                                .add_option("--resolution", request.resolution,
-                                            "cells along the body's longest side, border included")
-                                ->check(CLI::Range(kMinResolution, kMaxResolution));
+  Option resolution = program.app
+                          .add_option("--resolution", request.resolution,
+                                      "cells along the body's longest side, border included")
+                          .check(in_range(kMinResolution, kMaxResolution));
   program.app
       .add_option("--triangles", request.triangles,
                   "choose the resolution that gives about this many triangles, such as 1e6")
-      ->check(CLI::Range(100.0, 1e10))
-      ->excludes(resolution)
-      ->default_str("");
+      .check(in_range(100.0, 1e10))
+      .excludes(resolution)
+      .default_text("");
   program.app
       .add_option(
           "--max-memory", request.max_memory_gb,
           "refuse meshes that are predicted to need more gigabytes of memory; without it three quarters of "
           "the machine's")
-      ->check(above_zero())
-      ->default_str("");
+      .check(above_zero())
+      .default_text("");
   program.app.add_flag(
       "--predict", request.only_predict,
       "only say how many triangles, bytes and seconds the mesh would take; nothing is written but "

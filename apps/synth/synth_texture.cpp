@@ -45,7 +45,7 @@ GaborLayer first_gabor_layer(const Recipe& recipe, const fs::path& file) {
                    ": layers: hold no Gabor layer, which --texture draws; fit one with fit_gabor");
 }
 
-// Values in [0, 1], others cut, as whole numbers from 0 to `top`.
+// Turns values into whole numbers from 0 to `top`: offset + scale * value, clamped to [0, 1], times `top`.
 template <typename Integer>
 std::vector<Integer> quantised(std::span<const float> values, double offset, double scale, double top) {
   std::vector<Integer> whole;
@@ -61,7 +61,7 @@ struct Picture {
   TextureSize size;
   int channels;  // 1 or 3
   const std::vector<float>& values;
-  double offset, scale;  // what turns a value into [0, 1] for a PNG
+  double offset, scale;  // offset + scale * value lies in [0, 1] for a PNG
 };
 
 void write_picture(const Picture& p, int bits, const fs::path& output) {
@@ -89,7 +89,7 @@ TextureOptions texture_options(const Recipe& recipe, const TextureRequest& reque
 void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe, GaborLayer layer,
                    const fs::path& output) {
   const TextureSize size = parse_size(request.size);
-  // A recipe that does not say how high its rock is still has a texture: in units of its own deviation.
+  // A layer without a height is drawn in units of its own standard deviation.
   const bool has_height = layer.height_rms > 0.0;
   if (!has_height) layer.height_rms = 1.0;
   const std::vector<float> heights = synthesize_texture(
@@ -126,20 +126,20 @@ void write_colors(Program& program, const TextureRequest& request, const Recipe&
 }  // namespace
 
 void declare_texture_options(Program& program, TextureRequest& request) {
-  CLI::App& app = program.app;
+  CommandLine& app = program.app;
   app.add_option("--texture", request.size,
                  "a plane of WxH pixels instead of a mesh: the colours of the recipe's layers where they "
                  "have some (0 to 1 in a .tif of 32-bit floats, full scale in a .png; see fit_gabor "
                  "--channels), otherwise the height of its first Gabor layer (a .tif holds heights, a .png "
                  "maps -4 to +4 standard deviations to its full scale)")
-      ->option_text("WxH");
+      .placeholder("WxH");
   app.add_option("--texture-of", request.content, "what --texture draws: height or color")
-      ->check(CLI::IsMember({"height", "color"}))
-      ->default_str("");
+      .check(one_of({"height", "color"}))
+      .default_text("");
   app.add_flag("--tileable", request.tileable, "the texture repeats without a seam in both directions");
-  app.add_option("--bits", request.bits, "of a texture's .png, a channel")
-      ->check(CLI::IsMember({8, 16}))
-      ->needs(app.get_option("--texture"));
+  app.add_option("--bits", request.bits, "bits for each channel of a texture's .png")
+      .check(one_of({8, 16}))
+      .needs(app.option("--texture"));
 }
 
 void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,

@@ -9,6 +9,7 @@
 #include "cuda/mesher/gpu_obstacle.h"
 #include "cuda/mesher/mesh_field.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 
