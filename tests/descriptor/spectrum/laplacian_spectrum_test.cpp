@@ -16,7 +16,7 @@
 namespace astrolith {
 namespace {
 
-using testing::std::numbers::pi;
+using std::numbers::pi;
 
 // The eigenvalues of a sphere: l (l + 1) / R^2, each 2 l + 1 times, times the area 4 pi R^2.
 void expect_sphere(const std::vector<double>& eigenvalues, double tolerance) {

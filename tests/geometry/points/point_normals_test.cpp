@@ -51,8 +51,7 @@ TEST(PointNormals, OfASphereAreItsRadii) {
   const std::vector<Vec3d> normals = point_normals(s.points, s.normals, 8);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     EXPECT_NEAR(norm(normals[i]), 1, 1e-12);
-    EXPECT_GT(dot(normals[i], normalized(s.points[i] - center)),
-              std::cos(4 * testing::std::numbers::pi / 180));
+    EXPECT_GT(dot(normals[i], normalized(s.points[i] - center)), std::cos(4 * std::numbers::pi / 180));
   }
 }
 
