@@ -30,58 +30,58 @@ struct Arguments {
   std::string model;
   std::vector<fs::path> meshes;
   // The options that only some features have, to tell whether they were given.
-  CLI::Option *bins = nullptr, *points = nullptr, *eigenvalues = nullptr;
+  Option bins, points, eigenvalues;
 };
 
-CLI::App* add_train(Program& program, Arguments& a) {
-  CLI::App* train = program.app.add_subcommand(
+CommandLine add_train(Program& program, Arguments& a) {
+  CommandLine train = program.app.add_command(
       "train",
       "Learns classes from folders: each folder of meshes is a class of its name. Give the folders, or "
       "one that holds them.");
-  train->fallthrough();
-  train->add_option("folders", a.folders, "folders of meshes, or folders of such folders")
-      ->required()
-      ->option_text("DIR...")
-      ->default_str("");
-  train->add_option("-o,--output", a.output, "the classifier to write (JSON, which YAML readers read too)")
-      ->required()
-      ->option_text("MODEL.yml");
-  train->add_option("--features", a.kind, "what the classes are told apart by")
-      ->check(CLI::IsMember({"wahl", "ahd", "d2", "shapedna"}));
-  a.bins = train->add_option("--bins", a.features.bins, "of the histogram, an axis; of d2 64 unless given")
-               ->check(CLI::Range(2, 1024));
+  train.add_option("folders", a.folders, "folders of meshes, or folders of such folders")
+      .required()
+      .placeholder("DIR...")
+      .default_text("");
+  train.add_option("-o,--output", a.output, "the classifier to write (JSON, which YAML readers read too)")
+      .required()
+      .placeholder("MODEL.yml");
+  train.add_option("--features", a.kind, "what the classes are told apart by")
+      .check(one_of({"wahl", "ahd", "d2", "shapedna"}));
+  a.bins = train.add_option("--bins", a.features.bins, "histogram bins for each axis; 64 for d2 unless given")
+               .check(in_range(2, 1024));
   a.points =
-      train->add_option("--points", a.features.points, "samples of each mesh that the histogram is made of")
-          ->check(CLI::Range(16, 100000));
+      train.add_option("--points", a.features.points, "samples of each mesh that the histogram is made of")
+          .check(in_range(16, 100000));
   a.eigenvalues =
-      train->add_option("--eigenvalues", a.features.eigenvalues, "of shapedna")->check(CLI::Range(1, 500));
-  train->add_option("--trees", a.training.forest.trees, "of the random forest")->check(CLI::Range(1, 10000));
-  train->add_option("--depth", a.training.forest.depth, "of the trees at most")->check(CLI::Range(1, 60));
+      train.add_option("--eigenvalues", a.features.eigenvalues, "number of eigenvalues of shapedna")
+          .check(in_range(1, 500));
+  train.add_option("--trees", a.training.forest.trees, "number of trees of the random forest")
+      .check(in_range(1, 10000));
+  train.add_option("--depth", a.training.forest.depth, "largest depth of the trees").check(in_range(1, 60));
   train
-      ->add_option("--pca", a.training.components,
-                   "principal components that the forest sees in place of the features; 0 = the features")
-      ->check(CLI::Range(0, 100000));
-  train->add_option("--folds", a.folds, "of the cross-validation; 0 = none")->check(CLI::Range(0, 1000));
+      .add_option("--pca", a.training.components,
+                  "principal components that the forest sees in place of the features; 0 = the features")
+      .check(in_range(0, 100000));
+  train.add_option("--folds", a.folds, "folds of the cross-validation; 0 = none").check(in_range(0, 1000));
   return train;
 }
 
-CLI::App* add_predict(Program& program, Arguments& a) {
-  CLI::App* predict = program.app.add_subcommand(
+CommandLine add_predict(Program& program, Arguments& a) {
+  CommandLine predict = program.app.add_command(
       "predict",
       "Prints the class of each mesh and the share of votes for every class, a line of JSON each.");
-  predict->fallthrough();
-  predict->add_option("model", a.model, "what train wrote")->required()->option_text("MODEL.yml");
-  predict->add_option("meshes", a.meshes, "meshes, or folders of meshes")
-      ->required()
-      ->option_text("MESH...")
-      ->default_str("");
+  predict.add_option("model", a.model, "what train wrote").required().placeholder("MODEL.yml");
+  predict.add_option("meshes", a.meshes, "meshes, or folders of meshes")
+      .required()
+      .placeholder("MESH...")
+      .default_text("");
   return predict;
 }
 
 // An option that the features do not have would be passed over in silence.
-void require_belongs(const Arguments& a, const CLI::Option* option, bool belongs) {
-  if (option->count() == 0 || belongs) return;
-  throw InputError("--" + option->get_lnames().front() + ": " + a.kind + " has none; leave it out");
+void require_belongs(const Arguments& a, const Option& option, bool belongs) {
+  if (option.count() == 0 || belongs) return;
+  throw InputError("--" + option.name() + ": " + a.kind + " has none; leave it out");
 }
 
 FeatureOptions chosen_features(const Arguments& a, std::uint64_t seed) {
@@ -92,7 +92,7 @@ FeatureOptions chosen_features(const Arguments& a, std::uint64_t seed) {
   require_belongs(a, a.eigenvalues, spectrum);
   FeatureOptions options = a.features;
   options.kind = kind;
-  if (a.bins->count() == 0) options.bins = default_features(kind).bins;
+  if (a.bins.count() == 0) options.bins = default_features(kind).bins;
   options.seed = seed;
   check(options);
   return options;
@@ -200,11 +200,11 @@ int main(int argc, char** argv) {
                              "Learns classes of shapes from folders of meshes, and names the class of "
                              "others. \"classify train --help\" states the options of training.");
   astrolith::Arguments arguments;
-  const CLI::App* training = astrolith::add_train(program, arguments);
+  const astrolith::CommandLine training = astrolith::add_train(program, arguments);
   astrolith::add_predict(program, arguments);
-  program.app.require_subcommand(1);
+  program.app.require_command();
   return program.run(argc, argv, [&] {
-    if (training->parsed()) {
+    if (training.was_given()) {
       astrolith::train(program, arguments);
     } else {
       astrolith::predict(program, arguments);

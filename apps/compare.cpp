@@ -20,15 +20,15 @@ struct Arguments {
 };
 
 void add_options(Program& program, Arguments& arguments) {
-  CLI::App& app = program.app;
+  CommandLine& app = program.app;
   const std::string formats = "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf";
-  app.add_option("a", arguments.a, formats)->required()->option_text("A");
-  app.add_option("b", arguments.b, formats)->required()->option_text("B");
+  app.add_option("a", arguments.a, formats).required().placeholder("A");
+  app.add_option("b", arguments.b, formats).required().placeholder("B");
   app.add_option("-o,--output", arguments.output, "write the JSON here rather than to stdout")
-      ->option_text("FILE.json");
+      .placeholder("FILE.json");
   arguments.options.add_to(app);
   app.add_option("--samples", arguments.samples, "of each surface, for the distances between them")
-      ->check(CLI::Range(std::int64_t{100}, std::int64_t{10000000}));
+      .check(in_range(std::int64_t{100}, std::int64_t{10000000}));
   app.add_flag("--floor", arguments.floor,
                "also say how alike two samplings of A are, and of B: more cannot be expected");
 }

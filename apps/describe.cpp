@@ -18,15 +18,15 @@ struct Arguments {
 };
 
 void add_options(Program& program, Arguments& arguments) {
-  CLI::App& app = program.app;
+  CommandLine& app = program.app;
   app.add_option("shape", arguments.shape,
                  "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; or ply of points with normals")
-      ->required()
-      ->option_text("MESH");
+      .required()
+      .placeholder("MESH");
   app.add_option("-o,--output", arguments.output,
                  "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]")
-      ->required()
-      ->option_text("H.npy");
+      .required()
+      .placeholder("H.npy");
   arguments.options.add_to(app);
   arguments.device.add_to(app);
 }

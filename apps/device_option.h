@@ -1,7 +1,6 @@
 // --device: whether a program computes on the GPU.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "apps/program.h"
@@ -21,11 +20,11 @@ struct ChosenDevice {
 struct DeviceOption {
   std::string device = "auto";
 
-  void add_to(CLI::App& app) {
+  void add_to(CommandLine& app) {
     app.add_option("--device", device,
                    "what computes: cuda, the first GPU; cpu; auto, the GPU where there is one. The result is "
                    "the same, byte for byte")
-        ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+        .check(one_of({"auto", "cpu", "cuda"}));
   }
 
   // Looks at the GPU unless told not to. Where there is none, the CPU computes and the words say why; one

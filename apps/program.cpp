@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -119,28 +120,32 @@ void require_distinct_files(const CLI::App& app) {
 }  // namespace
 
 Program::Program(std::string name, std::string description)
-    : app(std::move(description), name), name_(std::move(name)) {
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.option_defaults()->always_capture_default();
-  app.set_version_flag("--version", tool());
+    : parser_(std::make_unique<CLI::App>(std::move(description), name)),
+      app(*parser_),
+      name_(std::move(name)) {
+  parser_->formatter(std::make_shared<HelpFormatter>());
+  parser_->option_defaults()->always_capture_default();
+  parser_->set_version_flag("--version", tool());
   app.add_option("--seed", seed,
                  "seed of everything random; same input, options and seed give the same bytes")
-      ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));
-  app.add_option("--threads", threads, "threads to use; 0 = all")->check(CLI::Range(0, 1024));
+      .check(in_range(std::int64_t{0}, (std::int64_t{1} << 53) - 1));
+  app.add_option("--threads", threads, "threads to use; 0 = all").check(in_range(0, 1024));
   app.add_flag("--quiet", quiet, "no progress and no messages, errors only");
   app.add_option("--summary", summary_file, "write the figures of the run to this JSON file")
-      ->option_text("FILE");
+      .placeholder("FILE");
 }
+
+Program::~Program() = default;
 
 int Program::run(int argc, char** argv, const std::function<void()>& work) {
   try {
-    app.parse(argc, argv);
+    parser_->parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    if (e.get_exit_code() == 0) return parser_->exit(e);  // --help, --version
     print_line(fmt::format("{}: {}; see {} --help", name_, one_line(e.what()), name_));
     return 2;
   }
-  if (const std::string wrong = option_not_finite(app); !wrong.empty()) {
+  if (const std::string wrong = option_not_finite(*parser_); !wrong.empty()) {
     print_line(fmt::format("{}: --{}: must be a finite number; see {} --help", name_, wrong, name_));
     return 2;
   }
@@ -165,7 +170,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
 }
 
 void Program::timed(const std::function<void()>& work) {
-  require_distinct_files(app);
+  require_distinct_files(*parser_);
   // A summary that cannot be written should not be found out after an hour's work.
   if (!summary_file.empty()) require_writable(summary_file);
   const auto start = std::chrono::steady_clock::now();
@@ -218,7 +223,7 @@ std::vector<std::pair<std::string, std::string>> Program::given_options() const 
   static const std::vector<std::string> kNoEffect{"output",   "threads",    "quiet", "summary", "report",
                                                   "spectrum", "checkpoint", "help",  "version"};
   std::vector<std::pair<std::string, std::string>> given;
-  for (const CLI::Option* option : app.get_options()) {
+  for (const CLI::Option* option : parser_->get_options()) {
     if (option->count() == 0 || option->get_positional()) continue;
     std::string key = option->get_lnames().empty() ? option->get_name() : option->get_lnames().front();
     if (std::find(kNoEffect.begin(), kNoEffect.end(), key) != kNoEffect.end()) continue;

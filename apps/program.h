@@ -4,25 +4,31 @@
 //
 //   int main(int argc, char** argv) {
 //     Program program("synth", "Turns a recipe into a mesh.");
-//     program.app.add_option("recipe", options.recipe, "the recipe")->required();
+//     program.app.add_option("recipe", options.recipe, "the recipe").required();
 //     return program.run(argc, argv, [&] { ...; program.summary["triangles"] = n; });
 //   }
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "apps/command_line.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
 
 class Program {
+  // Declared first, since `app` refers to it.
+  std::unique_ptr<CLI::App> parser_;
+
  public:
   Program(std::string name, std::string description);
+  ~Program();
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
   // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. The summary is
@@ -52,7 +58,7 @@ class Program {
   // quiet and summary left out, since they do not change the result.
   std::vector<std::pair<std::string, std::string>> given_options() const;
 
-  CLI::App app;
+  CommandLine app;
   nlohmann::ordered_json summary;
 
   std::uint64_t seed = 1;

@@ -1,9 +1,9 @@
 // The options of programs that describe shapes.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/command_line.h"
 #include "descriptor/shape_description.h"
 #include "numerics/errors.h"
 
@@ -13,13 +13,13 @@ struct ShapeOptions {
   std::string features = "ahd";
   DescriptionOptions description;
 
-  void add_to(CLI::App& app) {
+  void add_to(CommandLine& app) {
     app.add_option("--features", features,
                    "wahl: the four of a pair of points; ahd: also curvature and normal perturbation")
-        ->check(CLI::IsMember({"wahl", "ahd"}));
-    app.add_option("--bins", description.bins, "of each feature")->check(CLI::Range(kMinBins, kMaxBins));
+        .check(one_of({"wahl", "ahd"}));
+    app.add_option("--bins", description.bins, "of each feature").check(in_range(kMinBins, kMaxBins));
     app.add_option("--points", description.points, "samples of the surface; the time grows with their square")
-        ->check(CLI::Range(std::int64_t{2}, std::int64_t{1} << 24));
+        .check(in_range(std::int64_t{2}, std::int64_t{1} << 24));
   }
   DescriptionOptions with_seed(std::uint64_t seed) const {
     DescriptionOptions options = description;

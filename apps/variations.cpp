@@ -9,9 +9,9 @@
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/recipe_variation.h"
-#include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 namespace {

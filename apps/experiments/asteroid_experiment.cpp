@@ -34,10 +34,10 @@ struct Arguments {
   ForestOptions forest;
 };
 
-// Which resamplings, by their index, take part.
+// Tells by its index whether a resampling takes part.
 using Rule = std::function<bool(std::size_t)>;
 
-// Of one kind of feature.
+// The features of one kind, of the resamplings that the rule names.
 LabelledFeatures taken(const Level& level, std::size_t kind, const Bodies& bodies, const Rule& rule) {
   LabelledFeatures data{bodies.names, {}, {}};
   for (std::size_t i = 0; i < level.labels.size(); ++i) {
@@ -60,8 +60,8 @@ class Experiment {
              const std::vector<Level>& others)
       : a_(a), bodies_(bodies), levels_(levels), others_(others) {}
 
-  // One entry a level: by distances, by forests trained and tested on separate resamplings, and harder
-  // splits.
+  // The results at one level of noise: retrieval by distances, forests trained and tested on separate
+  // resamplings, and forests on harder splits.
   Json describe(std::size_t kind, std::size_t at, const std::vector<ShapeClassifier>& forests) const {
     const Level& level = levels_[at];
     const auto dense = [&](std::size_t i) { return level.fractions[i] >= 0.15; };
@@ -93,7 +93,8 @@ class Experiment {
     return json;
   }
 
-  // One entry a level: what was learned on one model of a body, asked about another model of it.
+  // The results at every level of noise when forests trained on one model of a body see another model of the
+  // body.
   Json other_models(std::size_t kind, const std::vector<ShapeClassifier>& forests) const {
     Json json = Json::array();
     for (std::size_t at = 0; at < others_.size(); ++at) {
@@ -219,6 +220,27 @@ void run(Program& program, Arguments& a) {
   write_results(result, a.output);
 }
 
+void declare_options(Program& program, Arguments& a) {
+  CommandLine& app = program.app;
+  app.add_option("meshes", a.meshes, "a model of each body, named after it up to the first _")
+      .required()
+      .placeholder("MESH...")
+      .default_text("");
+  app.add_option("-o,--output", a.output, "the figures to write").required().placeholder("RESULTS.json");
+  app.add_option("--others", a.others,
+                 "other models of some of the bodies, to be known again by what was learned")
+      .placeholder("MESH...")
+      .default_text("");
+  app.add_option("--resamplings", a.resamplings,
+                 "resamplings of each body; 50 is the thesis's number, 8 a first look")
+      .check(in_range(4, 1000));
+  app.add_option("--noise", a.noise, "standard deviations, as fractions of the bounding-box diagonal")
+      .check(in_range(0.0, 1.0))
+      .placeholder("N...");
+  app.add_option("--trees", a.forest.trees, "number of trees of each random forest")
+      .check(in_range(1, 10000));
+}
+
 }  // namespace
 }  // namespace astrolith
 
@@ -228,21 +250,6 @@ int main(int argc, char** argv) {
       "Knows asteroids again from sparse, noisy samples of their models by four descriptors: "
       "retrieval, and random forests on easy and hard splits.");
   astrolith::Arguments a;
-  CLI::App& app = program.app;
-  app.add_option("meshes", a.meshes, "a model of each body, named after it up to the first _")
-      ->required()
-      ->option_text("MESH...")
-      ->default_str("");
-  app.add_option("-o,--output", a.output, "the figures to write")->required()->option_text("RESULTS.json");
-  app.add_option("--others", a.others,
-                 "other models of some of the bodies, to be known again by what was learned")
-      ->option_text("MESH...")
-      ->default_str("");
-  app.add_option("--resamplings", a.resamplings, "of each body; 50 is the thesis's number, 8 a first look")
-      ->check(CLI::Range(4, 1000));
-  app.add_option("--noise", a.noise, "standard deviations, as fractions of the bounding-box diagonal")
-      ->check(CLI::Range(0.0, 1.0))
-      ->option_text("N...");
-  app.add_option("--trees", a.forest.trees, "of the random forests")->check(CLI::Range(1, 10000));
+  astrolith::declare_options(program, a);
   return program.run(argc, argv, [&] { astrolith::run(program, a); });
 }

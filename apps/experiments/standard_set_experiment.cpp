@@ -40,7 +40,7 @@ struct Arguments {
 };
 
 struct MeanAndSpread {
-  double mean = 0, spread = 0;  // of repeats: their mean and standard deviation
+  double mean = 0, spread = 0;  // mean and standard deviation of the repeats
 };
 
 MeanAndSpread mean_and_spread(const std::vector<double>& values) {
@@ -53,8 +53,8 @@ MeanAndSpread mean_and_spread(const std::vector<double>& values) {
 
 Json to_json(const MeanAndSpread& m) { return {{"mean", m.mean}, {"standard_deviation", m.spread}}; }
 
-// Mesh spectra need surfaces; where a mesh is none, the points that the other descriptors see stand in for
-// it.
+// The features of the files. Spectra need a surface; where a mesh has none, they are computed from the points
+// that the other descriptors see.
 FeatureTable features_of(const LabelledFiles& files, const FeatureOptions& options, int& by_points,
                          const Progress& progress) {
   FeatureTable table = features_of_files(files.files, options, progress);
@@ -104,7 +104,7 @@ MeanAndSpread trained_on_few(const LabelledFeatures& data, int few, const Argume
   return mean_and_spread(accuracies);
 }
 
-// Cross-validations that differ in what lies in which fold; the first in detail.
+// Cross-validations that differ in the shapes of each fold. The first one is stated in detail.
 Json cross_validations(const LabelledFeatures& data, const Arguments& a, std::uint64_t seed,
                        const Progress& progress) {
   std::vector<double> accuracies, precisions;
@@ -184,6 +184,20 @@ void run(Program& program, Arguments& a) {
   write_results(result, a.output);
 }
 
+void declare_options(Program& program, Arguments& a) {
+  CommandLine& app = program.app;
+  app.add_option("folders", a.folders, "a folder of class folders, or a folder for each class")
+      .required()
+      .placeholder("DIR...")
+      .default_text("");
+  app.add_option("-o,--output", a.output, "the figures to write").required().placeholder("RESULTS.json");
+  app.add_option("--points", a.points, "samples of each mesh").check(in_range(16, 100000));
+  app.add_option("--folds", a.folds, "folds of the cross-validation").check(in_range(2, 1000));
+  app.add_option("--repeats", a.repeats, "repeats of every random split").check(in_range(1, 100));
+  app.add_option("--trees", a.forest.trees, "number of trees of each random forest")
+      .check(in_range(1, 10000));
+}
+
 }  // namespace
 }  // namespace astrolith
 
@@ -193,15 +207,6 @@ int main(int argc, char** argv) {
       "Tells classes of models apart by four descriptors: cross-validated random forests, forests "
       "trained on few models, and retrieval.");
   astrolith::Arguments a;
-  CLI::App& app = program.app;
-  app.add_option("folders", a.folders, "a folder of class folders, or a folder for each class")
-      ->required()
-      ->option_text("DIR...")
-      ->default_str("");
-  app.add_option("-o,--output", a.output, "the figures to write")->required()->option_text("RESULTS.json");
-  app.add_option("--points", a.points, "samples of each mesh")->check(CLI::Range(16, 100000));
-  app.add_option("--folds", a.folds, "of the cross-validation")->check(CLI::Range(2, 1000));
-  app.add_option("--repeats", a.repeats, "of every random split")->check(CLI::Range(1, 100));
-  app.add_option("--trees", a.forest.trees, "of the random forests")->check(CLI::Range(1, 10000));
+  astrolith::declare_options(program, a);
   return program.run(argc, argv, [&] { astrolith::run(program, a); });
 }

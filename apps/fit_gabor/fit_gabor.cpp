@@ -5,7 +5,6 @@
 
 #include "apps/fit_gabor/fit_gabor_outputs.h"
 #include "apps/memory_use.h"
-#include "apps/option_checks.h"
 #include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/photo_fit.h"
@@ -38,76 +37,76 @@ struct Options {
 };
 
 void add_options(Program& program, Options& o) {
-  CLI::App& app = program.app;
+  CommandLine& app = program.app;
   app.add_option(
          "image", o.image,
          "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
          "alpha is ignored, of several pages or frames the first is taken")
-      ->required();
+      .required();
   app.add_option("-o,--output", o.output,
                  "recipe to write, with one Gabor layer (up to three with --channels pca)")
-      ->required();
+      .required();
   app.add_option(
          "--channels", o.channels,
          "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
          "the values as stored, gamma-encoded) or pca (a layer for each principal axis of the "
          "colours; synth --texture then paints in colour)")
-      ->check(CLI::IsMember({"luminance", "pca"}));
-  CLI::Option* detrend =
+      .check(one_of({"luminance", "pca"}));
+  Option detrend =
       app.add_option(
              "--detrend", o.photo.detrend_degree,
              "first take out slow changes of brightness, such as light from one side: a polynomial of "
              "this degree in x and y, fitted to all pixels; 0 = none")
-          ->check(CLI::Range(0, kLargestTrendDegree));
+          .check(in_range(0, kLargestTrendDegree));
   app.add_option("--detrend-by", o.detrend_by,
                  "how: subtraction (v - t + mean, for height maps) or division (v mean / t, for photos whose "
                  "contrast falls off with the light)")
-      ->check(CLI::IsMember({"subtraction", "division"}))
-      ->needs(detrend);
+      .check(one_of({"subtraction", "division"}))
+      .needs(detrend);
   app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
-      ->check(CLI::Range(1, 1000));
+      .check(in_range(1, 1000));
   app.add_option(
          "--mm-per-px", o.mm_per_px,
          "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
-      ->check(above_zero())
-      ->default_str("");
+      .check(above_zero())
+      .default_text("");
   app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
-      ->check(CLI::IsMember({"m", "km"}));
+      .check(one_of({"m", "km"}));
   app.add_option(
          "--height-rms", o.height_rms,
          "standard deviation of the layer's height in the recipe's length unit. Brightness is not height: "
          "without this the layer has the image's own contrast (full scale = 1), which is a height only if "
          "the image is a height map in that unit")
-      ->check(zero_or_more())
-      ->default_str("");
+      .check(zero_or_more())
+      .default_text("");
   app.add_option("--spectrum-estimate", o.target,
                  "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
                  "nearest to the true one) or periodogram (raw, of the periodic component, as in Galerne et "
                  "al. 2012)")
-      ->check(CLI::IsMember({"smoothed", "periodogram"}));
+      .check(one_of({"smoothed", "periodogram"}));
   app.add_option("--solver", o.solver, "of the basis pursuit; both end with the same certified optimum")
-      ->check(CLI::IsMember({"working-set", "fista"}));
+      .check(one_of({"working-set", "fista"}));
   app.add_option("--penalty", o.photo.fit.penalty_ratio,
                  "sparsity penalty over the largest useful one; smaller finds more lobes")
-      ->check(CLI::Range(1e-4, 0.99));
+      .check(in_range(1e-4, 0.99));
   app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
-      ->check(CLI::Range(1e-8, 0.5));
+      .check(in_range(1e-8, 0.5));
   app.add_option("--max-memory", o.max_memory_gb,
                  "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
                  "of the machine's")
-      ->check(above_zero())
-      ->default_str("");
+      .check(above_zero())
+      .default_text("");
   app.add_option("--report", o.report_folder,
                  "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "
                  "spectra, lobes, "
                  "gap; and its pictures pixel by pixel")
-      ->option_text("DIR");
+      .placeholder("DIR");
   app.add_option(
          "--spectrum", o.spectrum_file,
          "write the fitted power spectrum on the image's DFT grid (.npy, float64, frequency 0 first, "
          "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024; with several "
          "layers an array (layers, height, width)")
-      ->option_text("FILE.npy");
+      .placeholder("FILE.npy");
 }
 
 // Said, and refused if need be, before the image is decoded.

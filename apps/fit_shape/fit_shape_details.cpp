@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/option_checks.h"
 #include "apps/variations.h"
 #include "cuda/candidate_evaluator.h"
 #include "cuda/candidates_on_gpu.h"
@@ -44,58 +43,57 @@ nlohmann::ordered_json score_json(const DetailScore& score) {
 }
 
 void declare_micro_options(Program& program, DetailArguments& arguments) {
-  CLI::Option* micro =
+  Option micro =
       program.app
           .add_option(
               "--micro", arguments.micro,
               "the finest detail: the Gabor layers of this recipe of fit_gabor; or auto: instead of the "
               "search, a Gabor layer learnt from what the metaballs leave of the mesh")
-          ->option_text("ROCK.json|auto");
+          .placeholder("ROCK.json|auto");
   program.app
       .add_option("--mm-per-px", arguments.mm_per_px,
                   "size of a pixel of the photo on the rock, with --micro")
-      ->check(above_zero())
-      ->default_str("")
-      ->needs(micro);
+      .check(above_zero())
+      .default_text("")
+      .needs(micro);
   program.app
       .add_option("--micro-height", arguments.micro_height_mm,
                   "root mean square height of the first layer of --micro in mm, the others in proportion: a "
                   "photo does not say it")
-      ->check(above_zero())
-      ->default_str("")
-      ->needs(micro);
+      .check(above_zero())
+      .default_text("")
+      .needs(micro);
 }
 
 }  // namespace
 
 void declare_detail_options(Program& program, DetailArguments& arguments) {
   arguments.device.add_to(program.app);
-  CLI::Option* base_only = program.app.add_flag("--base-only", arguments.base_only,
-                                                "metaballs alone, without a search for details");
-  CLI::Option* generations =
-      program.app
-          .add_option("--generations", arguments.generations,
-                      "of the search for details: population x generations evaluations")
-          ->check(CLI::Range(1, 100000));
+  Option base_only = program.app.add_flag("--base-only", arguments.base_only,
+                                          "metaballs alone, without a search for details");
+  Option generations = program.app
+                           .add_option("--generations", arguments.generations,
+                                       "of the search for details: population x generations evaluations")
+                           .check(in_range(1, 100000));
   program.app
       .add_option("--details", arguments.transfer,
                   "no search: the layers of this recipe, scaled by the ratio of the two bodies' sizes")
-      ->option_text("OTHER.json")
-      ->excludes(base_only)
-      ->excludes(generations);
+      .placeholder("OTHER.json")
+      .excludes(base_only)
+      .excludes(generations);
   declare_micro_options(program, arguments);
-  CLI::Option* variations =
+  Option variations =
       program.app
           .add_option("--variations", arguments.variations,
                       "also write this many other bodies of the same kind beside the recipe, as "
                       "RECIPE_variation_1.json ...")
-          ->check(CLI::Range(0, 1000));
+          .check(in_range(0, 1000));
   program.app
       .add_option(
           "--delta", arguments.delta,
           "variations have a similarity with the mesh of at least 1 less this, as `compare` measures it")
-      ->check(CLI::Range(1e-3, 1.0))
-      ->needs(variations);
+      .check(in_range(1e-3, 1.0))
+      .needs(variations);
 }
 
 void check_detail_inputs(const DetailArguments& arguments) {

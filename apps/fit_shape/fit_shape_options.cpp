@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "apps/option_checks.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -17,70 +16,70 @@ Kernel kernel_named(const std::string& word) {
 }  // namespace
 
 void declare_fit_options(Program& program, FitArguments& arguments) {
-  CLI::App& app = program.app;
+  CommandLine& app = program.app;
   app.add_option("mesh", arguments.mesh,
                  "closed mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
                  "memory a facet")
-      ->required()
-      ->option_text("MESH");
+      .required()
+      .placeholder("MESH");
   app.add_option("-o,--output", arguments.output, "the recipe to write; with --packing-only a .csv")
-      ->required()
-      ->option_text("RECIPE.json");
-  app.add_option("--spheres", arguments.fit.spheres, "metaballs at most")->check(CLI::Range(1, 10000));
+      .required()
+      .placeholder("RECIPE.json");
+  app.add_option("--spheres", arguments.fit.spheres, "metaballs at most").check(in_range(1, 10000));
   app.add_option("--kernel", arguments.kernel, "of the metaballs")
-      ->check(CLI::IsMember({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
+      .check(one_of({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
   app.add_option("--subtract", arguments.fit.subtract,
                  "share of the metaballs that may take away instead of adding; Gaussians alone. 0: none, for "
                  "mascons or other programs")
-      ->check(CLI::Range(0.0, 0.9));
+      .check(in_range(0.0, 0.9));
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{10000000}));
+      .check(in_range(std::int64_t{0}, std::int64_t{10000000}));
   app.add_option("--optimizer", arguments.optimizer,
                  "of the global parameters of the base, and of the details")
-      ->check(CLI::IsMember({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
-  app.add_option("--population", arguments.fit.population, "of the optimizer")->check(CLI::Range(1, 10000));
+      .check(one_of({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
+  app.add_option("--population", arguments.fit.population, "of the optimizer").check(in_range(1, 10000));
   declare_detail_options(program, arguments.details);
   app.add_option(
          "--tolerance", arguments.fit.tolerance,
          "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
-      ->check(zero_or_more());
+      .check(zero_or_more());
   app.add_option("--time-limit", arguments.time_limit,
                  "seconds after which the best so far is written, measured figures included; 0 = none. The "
                  "result then "
                  "depends on the machine")
-      ->check(zero_or_more());
+      .check(zero_or_more());
   app.add_option("--checkpoint", arguments.checkpoint,
                  "keep here what a run that is stopped need not do again; where the file exists, go on from "
                  "there. The result is that of a run without a stop")
-      ->option_text("FILE.json");
+      .placeholder("FILE.json");
   app.add_option("--unit", arguments.unit,
                  "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
-      ->check(CLI::IsMember({"km", "m"}));
-  CLI::Option* packing_only = app.add_flag(
+      .check(one_of({"km", "m"}));
+  Option packing_only = app.add_flag(
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
   for (const char* option :
        {"--kernel", "--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only",
         "--details", "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
-    packing_only->excludes(app.get_option(option));
+    packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,
                  "of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
-      ->check(above_zero())
-      ->needs(packing_only)
-      ->default_str("");
+      .check(above_zero())
+      .needs(packing_only)
+      .default_text("");
   app.add_option("--report", arguments.report,
                  "write a page, index.html, with pictures of target, fit, distances and convergence here")
-      ->excludes(packing_only)
-      ->option_text("DIR");
+      .excludes(packing_only)
+      .placeholder("DIR");
 }
 
 void settle_fit_options(const Program& program, FitArguments& arguments) {
   arguments.fit.seed = program.seed;
   arguments.fit.kernel = kernel_named(arguments.kernel);
-  if (arguments.fit.kernel != Kernel::kGaussian && program.app.get_option("--subtract")->count() > 0 &&
+  if (arguments.fit.kernel != Kernel::kGaussian && program.app.option("--subtract").count() > 0 &&
       arguments.fit.subtract > 0.0) {
     throw InputError("--subtract: Gaussians alone may take away; leave it out, or --kernel");
   }

@@ -29,35 +29,35 @@ struct Options {
 };
 
 void declare_options(Program& program, Options& options) {
-  program.app.add_option("recipe", options.recipe, "the recipe, a JSON file")->required();
+  program.app.add_option("recipe", options.recipe, "the recipe, a JSON file").required();
   program.app
       .add_option("-o,--output", options.output,
                   "the mesh: .ply (binary, streamed), .obj, .stl or .glb, in the recipe's length unit; with "
                   "--texture .png or .tif")
-      ->required();
+      .required();
   declare_mesh_options(program, options.mesh);
   program.app
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
                   "convert")
-      ->option_text("BODY.json");
+      .placeholder("BODY.json");
   program.app
       .add_option(
           "--vary", options.vary,
           "another body of the same kind: the strongest variation that --seed draws whose similarity "
           "with the recipe's own body, as `compare` measures it, is at least 1 less this; with new noise, "
           "unless that alone is too different")
-      ->check(CLI::Range(1e-3, 1.0))
-      ->default_str("");
+      .check(in_range(1e-3, 1.0))
+      .default_text("");
   declare_texture_options(program, options.texture);
   for (const char* of_mesh :
        {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
         "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view", "--sun"}) {
-    program.app.get_option("--texture")->excludes(program.app.get_option(of_mesh));
+    program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
-  program.app.get_option("--seed")
-      ->description("replaces the recipe's seed when given; with --vary the number of the variation")
-      ->default_str("");
+  program.app.option("--seed")
+      .description("replaces the recipe's seed when given; with --vary the number of the variation")
+      .default_text("");
 }
 
 void make_texture(Program& program, const Options& options, const Recipe& recipe) {
@@ -72,7 +72,7 @@ Recipe read_input(const Program& program, const Options& options) {
   if (!options.base.empty()) {
     recipe = lay_on_base(recipe, options.recipe.string(), read_recipe(options.base), options.base.string());
   }
-  if (program.app.get_option("--seed")->count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
+  if (program.app.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
 }
 

@@ -141,29 +141,29 @@ std::optional<SurfaceLabels> labels_of(const MeshRequest& request, const Recipe&
 
 void declare_mesh_options(Program& program, MeshRequest& request) {
   declare_size_options(program, request.size);
-  CLI::Option* tile =
+  Option tile =
       program.app
           .add_option(
               "--tile", request.tile,
               "only tile I of N, slabs along z that many machines can make: open where cut, with the same "
               "vertices there as the next tile, so that all join without cracks")
-          ->option_text("I/N");
+          .placeholder("I/N");
   program.app
       .add_option(
           "--patch", request.patch,
           "only what a cube holds of the surface, given by its centre and its side; --resolution then "
           "counts cells along that side. Its vertices are relative to the centre, which the file states "
           "as its origin")
-      ->expected(4)
-      ->excludes(tile)
-      ->option_text("X Y Z SIDE");
+      .expected(4)
+      .excludes(tile)
+      .placeholder("X Y Z SIDE");
   program.app
       .add_option(
           "--min-component", request.least_component,
           "leave out pieces and cavities of less volume than this share of the largest piece's; the mesh is "
           "then made twice")
-      ->check(CLI::Range(0.0, 1.0))
-      ->default_str("0, all stay");
+      .check(in_range(0.0, 1.0))
+      .default_text("0, all stay");
   program.app.add_flag("--points", request.points,
                        "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
                        "(.ply without faces)");
@@ -178,7 +178,7 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .add_option("--feature-list", request.landforms,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
                   "sizes, ages and angles (degrees), in the recipe's unit")
-      ->option_text("FILE.csv|FILE.json");
+      .placeholder("FILE.csv|FILE.json");
 }
 
 void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,

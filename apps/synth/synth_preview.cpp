@@ -26,22 +26,22 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
   program.app
       .add_option("--preview", request.file,
                   "also a picture of the mesh under sunlight, with shadows, from +x, +y, +z and obliquely")
-      ->option_text("FILE.png");
+      .placeholder("FILE.png");
   program.app
       .add_option("--view", request.views,
                   "look from this direction in the picture instead; may be given several times")
-      ->option_text("X Y Z")
-      ->default_str("");
+      .placeholder("X Y Z")
+      .default_text("");
   program.app
       .add_option("--sun", request.sun, "towards the sun, in the axes of each view: right, up, to the viewer")
-      ->option_text("X Y Z (default -0.75 0.45 0.55)")
-      ->default_str("");
+      .placeholder("X Y Z (default -0.75 0.45 0.55)")
+      .default_text("");
 }
 
 void check_preview(const Program& program, const PreviewRequest& request) {
   if (request.file.empty()) {
     for (const char* name : {"--view", "--sun"}) {
-      if (program.app.get_option(name)->count() > 0) {
+      if (program.app.option(name).count() > 0) {
         throw InputError(std::string(name) + ": is about a picture; add --preview FILE.png");
       }
     }

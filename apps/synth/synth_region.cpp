@@ -10,8 +10,8 @@
 #include "numerics/errors.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/flat_field_data.h"
-#include "synthesis/field/patch_field.h"
 
 namespace astrolith {
 namespace {

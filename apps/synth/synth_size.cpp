@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "apps/memory_use.h"
-#include "apps/option_checks.h"
 #include "numerics/errors.h"
 #include "synthesis/mesh/mesh_prediction.h"
 #include "synthesis/mesh/sample_grid.h"
@@ -45,23 +44,23 @@ std::string rounded(double count) {
 }  // namespace
 
 void declare_size_options(Program& program, MeshSizeRequest& request) {
-  CLI::Option* resolution = program.app
-                                .add_option("--resolution", request.resolution,
-                                            "cells along the body's longest side, border included")
-                                ->check(CLI::Range(kMinResolution, kMaxResolution));
+  Option resolution = program.app
+                          .add_option("--resolution", request.resolution,
+                                      "cells along the body's longest side, border included")
+                          .check(in_range(kMinResolution, kMaxResolution));
   program.app
       .add_option("--triangles", request.triangles,
                   "choose the resolution that gives about this many triangles, such as 1e6")
-      ->check(CLI::Range(100.0, 1e10))
-      ->excludes(resolution)
-      ->default_str("");
+      .check(in_range(100.0, 1e10))
+      .excludes(resolution)
+      .default_text("");
   program.app
       .add_option(
           "--max-memory", request.max_memory_gb,
           "refuse meshes that are predicted to need more gigabytes of memory; without it three quarters of "
           "the machine's")
-      ->check(above_zero())
-      ->default_str("");
+      .check(above_zero())
+      .default_text("");
   program.app.add_flag(
       "--predict", request.only_predict,
       "only say how many triangles, bytes and seconds the mesh would take; nothing is written but "

@@ -126,20 +126,20 @@ void write_colors(Program& program, const TextureRequest& request, const Recipe&
 }  // namespace
 
 void declare_texture_options(Program& program, TextureRequest& request) {
-  CLI::App& app = program.app;
+  CommandLine& app = program.app;
   app.add_option("--texture", request.size,
                  "a plane of WxH pixels instead of a mesh: the colours of the recipe's layers where they "
                  "have some (0 to 1 in a .tif of 32-bit floats, full scale in a .png; see fit_gabor "
                  "--channels), otherwise the height of its first Gabor layer (a .tif holds heights, a .png "
                  "maps -4 to +4 standard deviations to its full scale)")
-      ->option_text("WxH");
+      .placeholder("WxH");
   app.add_option("--texture-of", request.content, "what --texture draws: height or color")
-      ->check(CLI::IsMember({"height", "color"}))
-      ->default_str("");
+      .check(one_of({"height", "color"}))
+      .default_text("");
   app.add_flag("--tileable", request.tileable, "the texture repeats without a seam in both directions");
   app.add_option("--bits", request.bits, "of a texture's .png, a channel")
-      ->check(CLI::IsMember({8, 16}))
-      ->needs(app.get_option("--texture"));
+      .check(one_of({8, 16}))
+      .needs(app.option("--texture"));
 }
 
 void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,

@@ -1,4 +1,4 @@
-// What all programs share, with small pieces of work in place of a program's own.
+// The frame of all programs (apps/program.h), around small pieces of work.
 #include "apps/program.h"
 
 #include <sys/resource.h>
@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/option_checks.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 
@@ -71,7 +70,7 @@ TEST(Program, RangesAreStatedInWords) {
   double number = 1.0;
   for (const char* wrong : {"0", "-1", "nan", "much"}) {
     Program program("tool", "A program for tests.");
-    program.app.add_option("--size", number)->check(above_zero());
+    program.app.add_option("--size", number, "a size").check(above_zero());
     std::vector<std::string> arguments{"tool", "--size", wrong};
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -117,7 +116,7 @@ TEST(Program, GivenOptionsAreThoseThatChangeTheResult) {
   });
 }
 
-// In a child process, since a signal marks the process for good.
+// The work runs in a child process, since a signal marks the process for good.
 TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
   const auto file = temporary("astrolith_interrupted_");
   const auto work = [](Program& p) {
