@@ -10,8 +10,8 @@
 
 #include "numerics/parallel_for.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/benchmarks/processor_seconds.h"
 
 namespace astrolith {

@@ -7,8 +7,8 @@
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 

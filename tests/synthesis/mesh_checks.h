@@ -10,8 +10,8 @@
 #include "geometry/mesh_topology.h"
 #include "numerics/parallel_for.h"
 #include "recipe/recipe.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 
 namespace astrolith::testing {
 

@@ -3,8 +3,8 @@
 #include "descriptor/histogram_distance.h"
 #include "descriptor/shape_description.h"
 #include "geometry/mesh_measure.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 namespace {

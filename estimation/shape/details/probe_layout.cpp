@@ -5,8 +5,8 @@
 
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/hash_random.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 namespace {

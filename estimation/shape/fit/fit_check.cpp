@@ -2,8 +2,8 @@
 
 #include "geometry/mesh_measure.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 

@@ -8,6 +8,7 @@
 #include "cuda/host_backend.h"
 #include "cuda/mesher/mesh_field.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 

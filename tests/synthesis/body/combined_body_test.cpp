@@ -2,8 +2,8 @@
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

@@ -5,8 +5,8 @@
 
 #include "geometry/mesh_sink.h"
 #include "geometry/surface/surface_tree.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/mesh/manifold_check.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

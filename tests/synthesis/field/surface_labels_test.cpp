@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "synthesis/mesh/mesher.h"
+#include "synthesis/field/field_mesh.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

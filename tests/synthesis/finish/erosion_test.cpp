@@ -9,8 +9,8 @@
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/finish/mascons.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

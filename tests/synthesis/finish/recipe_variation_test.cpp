@@ -4,8 +4,8 @@
 
 #include "geometry/mesh_topology.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
 namespace {

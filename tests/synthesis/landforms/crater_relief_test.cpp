@@ -7,7 +7,7 @@
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/mesh/mesher.h"
+#include "synthesis/field/field_mesh.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/mesh_checks.h"
 

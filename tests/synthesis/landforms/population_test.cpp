@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "numerics/errors.h"
-#include "synthesis/mesh/mesher.h"
+#include "synthesis/field/field_mesh.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

@@ -1,7 +1,7 @@
 #include "synthesis/mesh/mesh_prediction.h"
 
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

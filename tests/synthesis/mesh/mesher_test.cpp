@@ -18,13 +18,24 @@ namespace {
 using testing::AnalyticField;
 using testing::cube;
 
-template <int B = kBlockCells, class Field>
-TriangleMesh mesh_of(const Field& field, const Box& bounds, int resolution) {
-  MeshCollector collector;
-  const MeshStatistics statistics = mesh_field<B>(field, bounds, resolution, collector);
+TriangleMesh checked_mesh(const MeshStatistics& statistics, MeshCollector& collector) {
   EXPECT_EQ(statistics.vertices, static_cast<std::int64_t>(collector.mesh.vertices.size()));
   EXPECT_EQ(statistics.triangles, static_cast<std::int64_t>(collector.mesh.triangles.size()));
   return std::move(collector.mesh);
+}
+
+TriangleMesh mesh_of(const AnalyticField& field, const Box& bounds, int resolution) {
+  MeshCollector collector;
+  const MeshStatistics statistics = mesh_field(field, bounds, resolution, collector);
+  return checked_mesh(statistics, collector);
+}
+
+// The mesh by blocks of B cells a side.
+template <int B>
+TriangleMesh mesh_by_blocks(const AnalyticField& field, const Box& bounds, int resolution) {
+  MeshCollector collector;
+  const MeshStatistics statistics = mesh_field<B>(field, bounds, resolution, collector);
+  return checked_mesh(statistics, collector);
 }
 
 MeshTopology expect_closed_manifold(const TriangleMesh& mesh) {
@@ -52,7 +63,7 @@ bool same_bytes(const TriangleMesh& a, const TriangleMesh& b) {
   return same(a.vertices, b.vertices) && same(a.normals, b.normals) && same(a.triangles, b.triangles);
 }
 
-AnalyticField<double (*)(const Vec3d&)> field_of(double (*function)(const Vec3d&), double lipschitz) {
+AnalyticField field_of(double (*function)(const Vec3d&), double lipschitz) {
   return AnalyticField(function, lipschitz);
 }
 
@@ -136,16 +147,15 @@ TEST(Mesher, SameBytesForAnyThreadsBlocksAndBounds) {
     const ThreadLimit limit(threads);
     EXPECT_TRUE(same_bytes(reference, mesh_of(field, cube(1.0), 77))) << threads << " threads";
   }
-  EXPECT_TRUE(same_bytes(reference, mesh_of<4>(field, cube(1.0), 77)));
-  EXPECT_TRUE(same_bytes(reference, mesh_of<5>(field, cube(1.0), 77)));
-  EXPECT_TRUE(same_bytes(reference, mesh_of<16>(field, cube(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<4>(field, cube(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<5>(field, cube(1.0), 77)));
+  EXPECT_TRUE(same_bytes(reference, mesh_by_blocks<16>(field, cube(1.0), 77)));
   const AnalyticField never_culled(gyroid_sphere);
   EXPECT_TRUE(same_bytes(reference, mesh_of(never_culled, cube(1.0), 77)));
 }
 
 // All tiles one after the other; vertices of a cut, which two tiles share, become one.
-template <class Field>
-TriangleMesh joined_tiles(const Field& field, int resolution, int count) {
+TriangleMesh joined_tiles(const AnalyticField& field, int resolution, int count) {
   TriangleMesh all;
   for (int i = 0; i < count; ++i) {
     MeshCollector tile;
@@ -184,13 +194,14 @@ const Vec3d kPatchCenter{0.5, -0.25, 0.75};
 constexpr double kPatchSize = 0.625;  // 20 cells of 1/32
 constexpr int kPatchCells = 20;
 
-template <int B = kBlockCells>
-TriangleMesh gyroid_patch() {
+// `mesh` makes the patch of a field into a sink.
+template <class Mesh>
+TriangleMesh gyroid_patch(const Mesh& mesh) {
   const AnalyticField local([](const Vec3d& p) { return gyroid_sphere(p + kPatchCenter); }, kGyroidLipschitz);
   MeshCollector collector;
   ManifoldCheck check;
-  const MeshStatistics statistics = mesh_patch<B>(local, kPatchSize, kPatchCells, collector);
-  mesh_patch<B>(local, kPatchSize, kPatchCells, check);
+  const MeshStatistics statistics = mesh(local, collector);
+  mesh(local, check);
   const ManifoldReport report = check.finish();
   EXPECT_GT(statistics.cut_vertices, 0);
   EXPECT_EQ(report.open_vertices, statistics.cut_vertices);
@@ -198,10 +209,23 @@ TriangleMesh gyroid_patch() {
   return std::move(collector.mesh);
 }
 
+TriangleMesh gyroid_patch() {
+  return gyroid_patch([](const AnalyticField& field, MeshSink& sink) {
+    return mesh_patch(field, kPatchSize, kPatchCells, sink);
+  });
+}
+
+template <int B>
+TriangleMesh gyroid_patch_by_blocks() {
+  return gyroid_patch([](const AnalyticField& field, MeshSink& sink) {
+    return mesh_patch<B>(field, kPatchSize, kPatchCells, sink);
+  });
+}
+
 TEST(Mesher, PatchesAreOpenOnlyWhereCutWhateverTheBlocks) {
   const TriangleMesh reference = gyroid_patch();
-  EXPECT_TRUE(same_bytes(reference, gyroid_patch<4>()));
-  EXPECT_TRUE(same_bytes(reference, gyroid_patch<16>()));
+  EXPECT_TRUE(same_bytes(reference, gyroid_patch_by_blocks<4>()));
+  EXPECT_TRUE(same_bytes(reference, gyroid_patch_by_blocks<16>()));
   const Box box = reference.bounds();
   EXPECT_GE(box.min.x, -0.5 * kPatchSize);
   EXPECT_LE(box.max.z, 0.5 * kPatchSize);
@@ -234,8 +258,7 @@ TEST(Mesher, FlatBoxesUseFewerCellsAlongShortSides) {
 constexpr int kTieHalfSide = 8;
 constexpr int kTieResolution = 2 * kTieHalfSide + 2;
 
-template <class Function>
-void expect_ties_handled(const Function& function) {
+void expect_ties_handled(const AnalyticField::Function& function) {
   const auto inside_box = [&](const Vec3d& p) {
     const double reach = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     return reach > kTieHalfSide ? -1.0 : function(p);

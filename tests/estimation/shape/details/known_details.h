@@ -6,8 +6,8 @@
 
 #include "estimation/shape/target/target_body.h"
 #include "numerics/hash_random.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 #include "synthesis/noise/fractal_noise.h"
 
 namespace astrolith::testing {

@@ -2,8 +2,8 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesher.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {

@@ -1,0 +1,18 @@
+// Meshes of the two fields that recipes make. These functions are the templates of synthesis/mesh/mesher.h,
+// compiled once here: a file that includes this header does not compile the mesher, which takes some six
+// seconds.
+#pragma once
+
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/field/patch_field.h"
+#include "synthesis/mesh/mesher.h"
+
+namespace astrolith {
+
+MeshStatistics mesh_field(const ImplicitField& field, const Box& bounds, int resolution, MeshSink& sink,
+                          const Progress& progress = {}, MeshTile tile = {});
+
+MeshStatistics mesh_patch(const PatchField& field, double size, int resolution, MeshSink& sink,
+                          const Progress& progress = {});
+
+}  // namespace astrolith
