@@ -9,7 +9,11 @@ export LC_ALL=C
 
 scripts/setup.sh
 scripts/fetch_data.sh
-scripts/build.sh release fit_gabor fit_shape synth
+# Without a GPU the demo's programs are built without the GPU code. All other objects serve scripts/test.sh, which builds the
+# GPU code wherever there is a compiler for it.
+cuda=OFF
+nvidia-smi -L >/dev/null 2>&1 && cuda=ON
+scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape synth
 
 # The finest model at hand: a measured Itokawa where the data folder stands beside the checkout, else Debian's Gaspra.
 shape=${mesh:-../shared/data/shapes/itokawa_gaskell_49k.ply}

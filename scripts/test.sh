@@ -12,5 +12,5 @@ fi
 preset=${1:-release}
 scripts/setup.sh
 scripts/fetch_data.sh
-scripts/build.sh "$preset"
+scripts/build.sh "$preset" -DASTROLITH_CUDA=ON
 ctest --preset "$preset"
