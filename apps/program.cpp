@@ -217,7 +217,7 @@ void Program::report_failure(const std::string& line) {
   print_line(fmt::format("{}: {}", name_, one_line(line)));
 }
 
-std::string Program::tool() const { return name_ + " " + ASTROLITH_VERSION; }
+std::string Program::tool() const { return name_ + " " + kCodeVersion.text(); }
 
 std::vector<std::pair<std::string, std::string>> Program::given_options() const {
   static const std::vector<std::string> kNoEffect{"output",   "threads",    "quiet", "summary", "report",

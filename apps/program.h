@@ -52,7 +52,7 @@ class Program {
   // exit status 1 in the end.
   void report_failure(const std::string& line);
 
-  // "fit_shape 0.1.0", for provenance.
+  // "fit_shape 0.2.0 (1a2b3c4)", for provenance.
   std::string tool() const;
   // The options that were given on the command line, sorted by name, for provenance; output names, threads,
   // quiet and summary left out, since they do not change the result.

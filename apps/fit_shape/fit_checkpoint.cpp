@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
 constexpr std::size_t kNewEvaluations = 40;  // worth a file
 
@@ -24,7 +24,8 @@ ordered_json key_json(const CheckpointKey& key) {
   for (const auto& [name, value] : key.options) {
     if (name != "time-limit") options[name] = value;
   }
-  const ordered_json of{{"tool", key.tool}, {"input_sha256", key.input_sha256}, {"options", options}};
+  const ordered_json of{
+      {"tool", key.tool}, {"changes", key.changes}, {"input_sha256", key.input_sha256}, {"options", options}};
   // Names of files need not be UTF-8.
   return ordered_json::parse(of.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
@@ -91,6 +92,16 @@ std::string read_text(const std::filesystem::path& file) {
   return text.str();
 }
 
+// Throws InputError for a checkpoint that other code wrote: its values need not be those of this code.
+void require_same_code(const ordered_json& of, const CheckpointKey& key, const std::string& name) {
+  const std::string tool = of.at("tool").get<std::string>();
+  if (tool == key.tool && of.value("changes", "") == key.changes) return;
+  const std::string other =
+      tool == key.tool ? ", whose source has been modified since" : ", and this is " + key.tool;
+  throw InputError(name + ": was written by " + tool + other +
+                   "; go on with the program that wrote it, or delete it to begin anew");
+}
+
 }  // namespace
 
 FitCheckpoint::FitCheckpoint(std::filesystem::path file, CheckpointKey key)
@@ -102,10 +113,13 @@ void FitCheckpoint::read() {
   const std::string name = file_.string();
   try {
     const ordered_json json = ordered_json::parse(read_text(file_));
-    if (json.at("astrolith_checkpoint").get<int>() != kFormat || json.at("of") != key_json(key_)) {
-      throw InputError(name +
-                       ": is the checkpoint of another mesh, other options or another version; repeat "
-                       "those, or delete it to begin anew");
+    const int format = json.at("astrolith_checkpoint").get<int>();
+    require_same_code(json.at("of"), key_, name);
+    if (format != kFormat || json.at("of") != key_json(key_)) {
+      throw InputError(
+          name +
+          ": is the checkpoint of another mesh or of other options; repeat those, or delete it to "
+          "begin anew");
     }
     if (json.contains("base")) {
       base_ = base_of(json.at("base"), name);

@@ -13,9 +13,11 @@
 
 namespace astrolith {
 
-// What a checkpoint belongs to: another input or other options are refused.
+// What a checkpoint belongs to. A checkpoint of another input, of other options or of other code is refused.
 struct CheckpointKey {
-  std::string tool, input_sha256;
+  std::string tool;     // with its version and commit
+  std::string changes;  // CodeVersion::changes
+  std::string input_sha256;
   std::vector<std::pair<std::string, std::string>> options;
 };
 

@@ -11,6 +11,7 @@
 #include "apps/fit_shape/fit_time_limit.h"
 #include "apps/fit_shape/known_bodies.h"
 #include "apps/program.h"
+#include "apps/version.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_io.h"
@@ -152,8 +153,8 @@ void run(Program& program, FitArguments& arguments) {
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
 
-  FitCheckpoint checkpoint(arguments.checkpoint,
-                           {program.tool(), sha256_of_file(arguments.mesh), program.given_options()});
+  FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes,
+                                                  sha256_of_file(arguments.mesh), program.given_options()});
   if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
   ShapeFitResult fit = fit_base(program, arguments, target, limit, checkpoint);
   Recipe recipe = recipe_of(program, arguments, fit);

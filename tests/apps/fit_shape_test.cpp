@@ -141,6 +141,27 @@ TEST_F(FitShape, CheckpointsOfSomethingElseAndDamagedOnesAreRefused) {
   refuse(std::string(100000, '['));
 }
 
+TEST_F(FitShape, CheckpointsThatOtherCodeWroteAreRefused) {
+  const std::string file = (folder_ / "stop.checkpoint").string();
+  fit("egg.json", {"--base-only", "--checkpoint", file});
+  const auto written = nlohmann::ordered_json::parse(text_of(file));
+  const auto refuse = [&](const std::string& key, const std::string& value, const std::string& culprit) {
+    auto checkpoint = written;
+    checkpoint["of"][key] = value;
+    folder_.write("stop.checkpoint", checkpoint.dump());
+    expect_refusal(
+        folder_, kFitShape,
+        {(folder_ / "egg.obj").string(), "-o", (folder_ / "no.json").string(), "--checkpoint", file},
+        culprit);
+  };
+  const std::string own = written["of"]["tool"];
+  refuse("tool", "fit_shape 0.2.0 (0000000)",
+         "written by fit_shape 0.2.0 (0000000), and this is " + own + "; go on");
+  refuse("tool", own + ", modified", "written by " + own + ", modified, and this is " + own + "; go on");
+  refuse("changes", "0123456789abcdef",
+         "written by " + own + ", whose source has been modified since; go on");
+}
+
 TEST_F(FitShape, DetailsOfAnotherBodyAreScaledToThisOne) {
   fit("egg.json", {"--base-only"});
   Recipe other;
