@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/variations.h"
+#include "apps/variation_reference.h"
 #include "cuda/candidate_evaluator.h"
 #include "cuda/candidates_on_gpu.h"
 #include "estimation/shape/details/residual_texture.h"

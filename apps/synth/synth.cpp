@@ -8,7 +8,7 @@
 #include "apps/program.h"
 #include "apps/synth/synth_mesh.h"
 #include "apps/synth/synth_texture.h"
-#include "apps/variations.h"
+#include "apps/variation_reference.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"

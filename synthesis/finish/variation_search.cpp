@@ -1,66 +1,54 @@
-#include "apps/variations.h"
+#include "synthesis/finish/variation_search.h"
 
-#include <fmt/format.h>
-
+#include <cstdio>
 #include <optional>
+#include <string>
+#include <utility>
 
-#include "descriptor/histogram_distance.h"
-#include "descriptor/shape_description.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
-#include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/recipe_variation.h"
 
 namespace astrolith {
 namespace {
 
 constexpr int kResolution = 128;  // cells along the longest side of the meshes that are measured
-constexpr std::int64_t kPoints = 5000;
 constexpr int kHalvings = 5;
 
-TriangleMesh mesh_of(const Recipe& recipe) {
-  const ImplicitField field(recipe);
-  MeshCollector collector;
-  if (!field.bounds().empty()) mesh_field(field, field.bounds(), kResolution, collector);
-  return std::move(collector.mesh);
+std::string printed(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
 }
 
-// Each with a sampling of its own: two of one shape are not the same.
-ShapeHistogram histogram_of(const TriangleMesh& mesh, std::uint64_t seed) {
-  DescriptionOptions options;
-  options.points = kPoints;
-  options.seed = seed;
-  return describe_shape(mesh, options).histogram;
-}
-
-// What is asked for, and variations of one seed on the way to it.
+// The search for the strongest variation of one seed.
 struct Search {
   const Recipe& recipe;
   const VariationReference& reference;
-  double least;  // similarity
+  double least_similarity;
   std::uint64_t seed;
 
-  // Nothing where the variation may not be given out.
+  // The variation of a strength, or nothing where it is too different.
   std::optional<Variation> attempt(VariedNoise noise, double strength) const {
     Variation variation{vary_recipe(recipe, strength, seed, noise), strength, 0.0};
-    const TriangleMesh mesh = mesh_of(variation.recipe);
+    const TriangleMesh mesh = mesh_for_comparison(variation.recipe);
     if (mesh.triangles.empty()) return {};
-    variation.similarity = similarity(reference.histogram, histogram_of(mesh, 2 + seed));
-    if (variation.similarity < least) return {};
+    variation.similarity = reference.similarity(mesh, seed);
+    if (variation.similarity < least_similarity) return {};
     if (analyze_topology(mesh).components != reference.components) return {};
     return variation;
   }
 
-  // Nothing where even strength 0 is too much.
+  // The strongest variation, or nothing where even strength 0 is too much.
   std::optional<Variation> strongest(VariedNoise noise, const Progress& progress) const {
     std::optional<Variation> best = attempt(noise, 0.0);
     if (!best) return {};
     double low = 0.0, high = 1.0;
     if (auto strong = attempt(noise, high)) return strong;
     for (int i = 0; i < kHalvings; ++i) {
-      if (!report(progress, (i + 1.0) / kHalvings, fmt::format("similarity {:.3f}", best->similarity))) break;
+      if (!report(progress, (i + 1.0) / kHalvings, printed("similarity %.3f", best->similarity))) break;
       const double middle = 0.5 * (low + high);
       if (auto better = attempt(noise, middle)) {
         best = std::move(better);
@@ -75,14 +63,11 @@ struct Search {
 
 }  // namespace
 
-VariationReference reference_of(const Recipe& recipe) {
-  const TriangleMesh mesh = mesh_of(recipe);
-  if (mesh.triangles.empty()) throw InputError("the recipe's surface is empty; there is nothing to vary");
-  return reference_of(mesh, analyze_topology(mesh).components);
-}
-
-VariationReference reference_of(const TriangleMesh& mesh, std::int64_t components) {
-  return {histogram_of(mesh, 1), components};
+TriangleMesh mesh_for_comparison(const Recipe& recipe) {
+  const ImplicitField field(recipe);
+  MeshCollector collector;
+  if (!field.bounds().empty()) mesh_field(field, field.bounds(), kResolution, collector);
+  return std::move(collector.mesh);
 }
 
 Variation find_variation(const Recipe& recipe, const VariationReference& reference, double delta,
@@ -92,9 +77,8 @@ Variation find_variation(const Recipe& recipe, const VariationReference& referen
   if (!found) found = search.strongest(VariedNoise::kKept, progress);
   if (!found) {
     throw InputError(
-        fmt::format("a similarity of {:.3g} is out of reach: two samplings of the same body differ by more; "
-                    "allow for more difference",
-                    1.0 - delta));
+        "a similarity of " + printed("%.3g", 1.0 - delta) +
+        " is out of reach: two samplings of the same body differ by more; allow for more difference");
   }
   found->recipe.provenance.achieved = {{"similarity", round_to_seven_digits(found->similarity)}};
   return *std::move(found);
