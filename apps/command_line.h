@@ -1,5 +1,5 @@
-// The options of a program, declared with this thin interface to CLI11. CLI11 is a header that takes 7 to 15
-// seconds to compile in every file that includes it; only command_line.cpp and program.cpp do.
+// The options of a program, declared with this thin interface to CLI11. CLI11 takes some
+// 7 seconds to compile in every file that includes it. Only command_line.cpp and program.cpp include it.
 #pragma once
 
 #include <cstddef>

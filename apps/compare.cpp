@@ -27,7 +27,8 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option("-o,--output", arguments.output, "write the JSON here rather than to stdout")
       .placeholder("FILE.json");
   arguments.options.add_to(app);
-  app.add_option("--samples", arguments.samples, "of each surface, for the distances between them")
+  app.add_option("--samples", arguments.samples,
+                 "samples of each surface, for the distances between the surfaces")
       .check(in_range(std::int64_t{100}, std::int64_t{10000000}));
   app.add_flag("--floor", arguments.floor,
                "also say how alike two samplings of A are, and of B: more cannot be expected");
@@ -68,7 +69,7 @@ void compare_histograms(const Shape& a, const Shape& b, bool with_floor, nlohman
   result["earth_movers"] = d.earth_movers;
 }
 
-// As they stand: neither moved, turned nor scaled.
+// Compares the surfaces as they stand: neither is moved, turned or scaled.
 void compare_surfaces(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples, std::uint64_t seed,
                       nlohmann::ordered_json& result) {
   const SurfaceDistanceReport d = surface_distance(a, b, samples, seed);

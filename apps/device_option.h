@@ -9,10 +9,10 @@
 
 namespace astrolith {
 
-// What computes, once it is known.
+// The device that computes.
 struct ChosenDevice {
   bool gpu = false;
-  std::string words;  // "computed on the CPU: no CUDA device": for the line that closes the work
+  std::string words;  // for the last line of the program: "computed on the CPU: no CUDA device"
 
   explicit operator bool() const { return gpu; }
 };
@@ -27,9 +27,9 @@ struct DeviceOption {
         .check(one_of({"auto", "cpu", "cuda"}));
   }
 
-  // Looks at the GPU unless told not to. Where there is none, the CPU computes and the words say why; one
-  // that cannot be trusted is worth a line of its own, and with "cuda" either is an InputError. States in
-  // the summary what computes.
+  // Chooses the GPU where there is one, unless --device says cpu. Otherwise the CPU computes, and the words
+  // say why. A GPU that cannot be trusted is named in a line of its own. With "cuda", a GPU that is missing
+  // or cannot be trusted is an InputError. The summary states the device.
   ChosenDevice choose(Program& program) const {
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
@@ -42,7 +42,8 @@ struct DeviceOption {
     return on_cpu(status.reason);
   }
 
-  // The same for work of which the GPU lacks a part, in a few words; nothing where `lacking` is empty.
+  // Chooses the CPU for work that the GPU cannot do. `lacking` names the part that the GPU lacks in a few
+  // words; it is empty where the GPU can do all.
   ChosenDevice choose(Program& program, const std::string& lacking) const {
     if (lacking.empty() || device == "cpu") return choose(program);
     const std::string words = "the GPU does not compute " + lacking;

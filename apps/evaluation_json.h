@@ -1,4 +1,4 @@
-// How classifiers and descriptors did, as summaries and experiments state it.
+// The results of classifiers and descriptors as JSON, for summaries and experiments.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -18,7 +18,8 @@ class HelpFormatter : public CLI::Formatter {
   }
 
  private:
-  // From CLI11's "TYPE:VALIDATOR", where the validator's words may begin with the type again.
+  // The words for an option's value, made from CLI11's "TYPE:VALIDATOR". The validator's words may begin with
+  // the type again.
   static std::string argument(const CLI::Option& option) {
     if (!option.get_option_text().empty()) return option.get_option_text();
     const std::string full = option.get_type_name();

@@ -15,7 +15,7 @@ inline std::uint64_t peak_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kilobytes
 }
 
-// What --max-memory allows, bytes: so many gigabytes, or without it (0) three quarters of the machine's.
+// The memory that --max-memory allows, bytes. 0 gigabytes stands for three quarters of the machine's memory.
 inline double memory_limit(double gigabytes) {
   if (gigabytes > 0.0) return 1e9 * gigabytes;
   return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));

@@ -1,4 +1,4 @@
-// What the name of an output must look like.
+// Checks of the names of output files.
 #pragma once
 
 #include <filesystem>

@@ -46,7 +46,7 @@ void end_bar() {
   if (g_bar_open.exchange(false)) std::fputc('\n', stderr);
 }
 
-// Below an unfinished bar, if there is one. A closed stderr is no reason to fail.
+// Prints a line below the unfinished progress bar, if there is one. A closed stderr is no reason to fail.
 void print_line(const std::string& text) {
   end_bar();
   std::fputs((text + "\n").c_str(), stderr);
@@ -89,7 +89,7 @@ bool is_named(const CLI::Option& option, const std::vector<std::string>& names) 
                      [&](const std::string& name) { return option.check_lname(name); });
 }
 
-// All options given to the program and to its subcommand.
+// All options that were given to the program and to its command.
 std::vector<const CLI::Option*> given(const CLI::App& app) {
   std::vector<const CLI::Option*> options;
   for (const CLI::Option* option : app.get_options()) {

@@ -1,4 +1,4 @@
-// What all programs do the same way: the common options, progress bars on a terminal, one-line errors,
+// The frame of every program: the common options, progress bars on a terminal, one-line errors,
 // Ctrl-C, exit status 0 (done), 1 (the work failed) or 2 (the command line or an input is wrong), and
 // --summary.
 //
@@ -42,14 +42,14 @@ class Program {
   // True once Ctrl-C has been pressed.
   static bool interrupted();
 
-  // One line to stderr, unless --quiet.
+  // Prints one line to stderr, unless --quiet was given.
   void say(const std::string& line) const;
 
-  // The same once the work is done; nothing where it fails.
+  // Prints the line like say(), but once the work is done. Work that fails prints no notes.
   void note(const std::string& line) { notes_.push_back(line); }
 
-  // For a part of the work that failed while the rest goes on: one line to stderr, also with --quiet, and
-  // exit status 1 in the end.
+  // Reports a part of the work that failed while the rest goes on. Prints one line to stderr, also with
+  // --quiet; the exit status will be 1.
   void report_failure(const std::string& line);
 
   // "fit_shape 0.2.0 (1a2b3c4)", for provenance.

@@ -17,7 +17,8 @@ struct ShapeOptions {
     app.add_option("--features", features,
                    "wahl: the four of a pair of points; ahd: also curvature and normal perturbation")
         .check(one_of({"wahl", "ahd"}));
-    app.add_option("--bins", description.bins, "of each feature").check(in_range(kMinBins, kMaxBins));
+    app.add_option("--bins", description.bins, "histogram bins for each feature")
+        .check(in_range(kMinBins, kMaxBins));
     app.add_option("--points", description.points, "samples of the surface; the time grows with their square")
         .check(in_range(std::int64_t{2}, std::int64_t{1} << 24));
   }
@@ -29,7 +30,7 @@ struct ShapeOptions {
   }
 };
 
-// describe_shape, with the file's name before what is wrong with its shape.
+// Calls describe_shape() and puts the file's name before an error message.
 template <typename... Arguments>
 ShapeDescription describe_file(const std::string& file, const Arguments&... arguments) {
   try {

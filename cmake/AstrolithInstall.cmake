@@ -10,7 +10,7 @@ set(core_libraries astrolith_compile_rules)
 set(estimation_libraries)
 foreach(library IN LISTS libraries)
   get_target_property(folder ${library} SOURCE_DIR)
-  # Of the descriptors, those that need more packages lie in folders of their own. A GPU serves programs and fits.
+  # Evaluating a recipe needs neither the fits nor the descriptors nor a GPU.
   if(folder MATCHES "^${PROJECT_SOURCE_DIR}/(estimation|cuda|descriptor/)")
     list(APPEND estimation_libraries ${library})
   else()

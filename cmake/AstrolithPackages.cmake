@@ -1,4 +1,4 @@
-# Everything outside our purpose comes from a well-kept package; scripts/setup.sh installs them on Debian 12.
+# The packages that Astrolith is built on. scripts/setup.sh installs them on Debian 12.
 find_package(TBB REQUIRED)                 # threads
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # dense linear algebra
 find_package(nlohmann_json 3.11 REQUIRED)  # recipes and summaries
@@ -39,7 +39,8 @@ function(astrolith_cuda_architectures result)
   set(${result} "${capabilities}" PARENT_SCOPE)
 endfunction()
 
-# CUDA is used where it is found, and never needed. Sanitizers do not see GPU code, so they build without.
+# The GPU code is built where a CUDA compiler is found. No program needs it. Sanitizers do not see GPU code, so their
+# builds leave it out.
 option(ASTROLITH_CUDA "Build the GPU code where a CUDA compiler is found" ON)
 if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE)
   include(CheckLanguage)
@@ -52,7 +53,7 @@ if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE AND CMAKE_CUDA_COMPILER)
     astrolith_cuda_architectures(CMAKE_CUDA_ARCHITECTURES)
   endif()
   enable_language(CUDA)
-  # CMake 3.25 does not know that nvcc has C++20.
+  # CMake 3.25 does not know that nvcc can compile C++20.
   set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
   set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
   find_package(CUDAToolkit REQUIRED)

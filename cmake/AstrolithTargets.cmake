@@ -1,5 +1,5 @@
-# One function each for a library, a program and a test, so that warnings, floating-point rules and
-# installation are stated once.
+# The functions that make a library, a program and a test. Warnings, floating-point rules and installation are stated here
+# only.
 
 # The floating-point rules behind "same input, same bytes": no contraction of a*b+c unless the code says
 # fma, and no errno or trap bookkeeping, which would keep loops from vectorising without changing a value.
@@ -14,8 +14,8 @@ if(ASTROLITH_SANITIZE)
   target_link_options(astrolith_compile_rules INTERFACE -fsanitize=${ASTROLITH_SANITIZE})
   target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_SANITIZED)
 endif()
-# One instruction set alone, to compare the bits of one with another (scripts/check_simd.sh); "scalar" vectorises
-# nothing.
+# scripts/check_simd.sh builds with one instruction set at a time and compares the bits of their results. "scalar"
+# vectorises nothing.
 set(ASTROLITH_SIMD "" CACHE STRING "scalar or a -march value; empty: the machine chooses among three at start")
 set(vectorised -fopenmp-simd)
 if(ASTROLITH_SIMD)

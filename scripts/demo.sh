@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The main job on real input: a real asteroid becomes a recipe, a photo of gravel becomes a Gabor layer, and the two
-# become a watertight mesh with pictures. Installs what is missing, builds, runs, says where the results lie.
-#   scripts/demo.sh [MESH]      MESH: any closed shape model in place of the demo's own
+# Shows Astrolith's main work on real input. A measured asteroid becomes a recipe, a photo of gravel becomes a Gabor layer,
+# and both together become a watertight mesh with pictures. Installs missing packages, builds the programs and runs them.
+#   scripts/demo.sh [MESH]      MESH: any closed shape model, in place of the demo's own
 set -euo pipefail
 mesh=${1:+$(realpath "$1")}
 cd "$(dirname "$0")/.."
@@ -15,7 +15,7 @@ cuda=OFF
 nvidia-smi -L >/dev/null 2>&1 && cuda=ON
 scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape synth
 
-# The finest model at hand: a measured Itokawa where the data folder stands beside the checkout, else Debian's Gaspra.
+# The shape model is a measured Itokawa where the data folder lies beside the checkout, else Debian's Gaspra.
 shape=${mesh:-../shared/data/shapes/itokawa_gaskell_49k.ply}
 [[ -e $shape ]] || shape=data-cache/gaspra.bmf
 photo=data-cache/gravel.png
@@ -28,7 +28,7 @@ echo "1/3  A shape model becomes a recipe: fit_shape $shape"
 "$bin/fit_shape" "$shape" -o "$out/body.json" --spheres 200 \
   --report "$out/body_report" --summary "$out/body_summary.json"
 
-# Gravel the size of boulders: a pixel is a thousandth of the body, the relief three quarters of that.
+# The gravel becomes as large as boulders: a pixel is a thousandth of the body, and the relief is three quarters of a pixel.
 diagonal_km=$(awk -F '[:,]' '/"diagonal"/ {print $2}' "$out/body_summary.json")
 mm_per_px=$(awk "BEGIN {print $diagonal_km * 1e6 / 1000}")
 height_km=$(awk "BEGIN {print $diagonal_km * 0.00075}")
@@ -46,7 +46,7 @@ echo "3/3  Recipes become meshes, pictures and a height map: synth"
 cat <<EOF
 
 Done. Look at
-  $out/body_report/       the shape model, the fit, where they differ
+  $out/body_report/       the shape model, the fit and their differences
   $out/gravel_report/     the photo, the noise made from it, their spectra
   $out/asteroid.png       the synthesised asteroid
   $out/asteroid.ply       its watertight mesh, for Blender, MeshLab, CloudCompare or ParaView

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing to build and test Astrolith on Debian 12. Does nothing, and needs no rights, when all is there.
+# Installs the packages that are missing to build and test Astrolith on Debian 12. Where none is missing, it needs no rights.
 set -euo pipefail
 
 packages=(
@@ -9,7 +9,8 @@ packages=(
   libgtest-dev libbenchmark-dev
 )
 fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev)
-# With --synth what synth alone needs, with --format also the formatter that CI checks with, with --notebooks what the notebooks run on.
+# --synth leaves out the packages of the fits. --format adds the formatter that CI checks with, and --notebooks the packages
+# of the notebooks.
 for option in "$@"; do
   case $option in
     --synth) fitting=() ;;

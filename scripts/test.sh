@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs every test: test.sh [--full] [PRESET]
 #   PRESET   one of release (default), ci, debug, asan, tsan
-#   --full   the tests that have two sizes in the large one: some minutes more
+#   --full   runs the large size of the tests that have two sizes, which takes some minutes more
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

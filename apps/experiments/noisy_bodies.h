@@ -33,7 +33,7 @@ struct Level {
   std::vector<FeatureRows> rows;  // (#kinds) x (#resamplings x #features)
 };
 
-// "itokawa" of data/itokawa_gaskell_49k.ply.
+// The body that a file is named after: "itokawa" for data/itokawa_gaskell_49k.ply.
 inline std::string body_name(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   return stem.substr(0, stem.find('_'));
@@ -92,7 +92,7 @@ inline Level resample_others(const Bodies& others, const Bodies& bodies, int res
   return level;
 }
 
-// Throws InputError for a model of none of the bodies.
+// Reads other models of the bodies. Throws InputError for a model of a body that is not among them.
 inline Bodies read_others(const std::vector<std::filesystem::path>& files, const Bodies& bodies) {
   Bodies others = read_bodies(files);
   for (std::size_t i = 0; i < others.names.size(); ++i) {

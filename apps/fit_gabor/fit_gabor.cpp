@@ -36,8 +36,8 @@ struct Options {
   PhotoFitOptions photo;
 };
 
-void add_options(Program& program, Options& o) {
-  CommandLine& app = program.app;
+// The photo, and the preparation of its colours and its brightness.
+void add_photo_options(CommandLine& app, Options& o) {
   app.add_option(
          "image", o.image,
          "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
@@ -59,10 +59,15 @@ void add_options(Program& program, Options& o) {
              "this degree in x and y, fitted to all pixels; 0 = none")
           .check(in_range(0, kLargestTrendDegree));
   app.add_option("--detrend-by", o.detrend_by,
-                 "how: subtraction (v - t + mean, for height maps) or division (v mean / t, for photos whose "
+                 "how slow changes are taken out: subtraction (v - t + mean, for height maps) or division (v "
+                 "mean / t, for photos whose "
                  "contrast falls off with the light)")
       .check(one_of({"subtraction", "division"}))
       .needs(detrend);
+}
+
+// The size of the layer and of its recipe.
+void add_layer_options(CommandLine& app, Options& o) {
   app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
       .check(in_range(1, 1000));
   app.add_option(
@@ -79,18 +84,26 @@ void add_options(Program& program, Options& o) {
          "the image is a height map in that unit")
       .check(zero_or_more())
       .default_text("");
+}
+
+void add_pursuit_options(CommandLine& app, Options& o) {
   app.add_option("--spectrum-estimate", o.target,
                  "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
                  "nearest to the true one) or periodogram (raw, of the periodic component, as in Galerne et "
                  "al. 2012)")
       .check(one_of({"smoothed", "periodogram"}));
-  app.add_option("--solver", o.solver, "of the basis pursuit; both end with the same certified optimum")
+  app.add_option("--solver", o.solver,
+                 "solver of the basis pursuit; both end with the same certified optimum")
       .check(one_of({"working-set", "fista"}));
   app.add_option("--penalty", o.photo.fit.penalty_ratio,
                  "sparsity penalty over the largest useful one; smaller finds more lobes")
       .check(in_range(1e-4, 0.99));
   app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
       .check(in_range(1e-8, 0.5));
+}
+
+// The limit of memory, and the files that can be written beside the recipe.
+void add_output_options(CommandLine& app, Options& o) {
   app.add_option("--max-memory", o.max_memory_gb,
                  "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
                  "of the machine's")
@@ -109,7 +122,15 @@ void add_options(Program& program, Options& o) {
       .placeholder("FILE.npy");
 }
 
-// Said, and refused if need be, before the image is decoded.
+void add_options(Program& program, Options& o) {
+  add_photo_options(program.app, o);
+  add_layer_options(program.app, o);
+  add_pursuit_options(program.app, o);
+  add_output_options(program.app, o);
+}
+
+// Predicts the memory of the fit before the image is decoded. Throws InputError where the fit needs more than
+// allowed.
 void predict_memory(Program& program, const Options& o, const PhotoFitOptions& photo) {
   const ImageSize size = read_image_size(o.image);
   const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty());

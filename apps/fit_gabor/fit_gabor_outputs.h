@@ -1,4 +1,4 @@
-// What fit_gabor writes beside the recipe.
+// The files that fit_gabor writes beside the recipe.
 #pragma once
 
 #include <filesystem>
@@ -17,11 +17,12 @@ std::vector<std::vector<float>> synthesize_channels(const PhotoFit& photo, const
 // Variance that the syntheses have, over the exemplar's, all channels together.
 double synthesized_variance_ratio(const PhotoFit& photo, const std::vector<std::vector<float>>& syntheses);
 
-// A figure for each channel; that of the first, in `folder` itself, shows the colours where there are some.
+// Writes a figure for each channel. The first channel's figure lies in `folder` itself and shows colours
+// where the photo was fitted in colour.
 void write_reports(const std::filesystem::path& image, const PhotoFit& photo,
                    const std::vector<std::vector<float>>& syntheses, const std::filesystem::path& folder);
 
-// The fitted spectra: (height x width), or (channels x height x width) where there are several.
+// Writes the fitted spectra: (height x width), or (channels x height x width) where there are several.
 void write_spectra(const PhotoFit& photo, const std::filesystem::path& file);
 
 }  // namespace astrolith

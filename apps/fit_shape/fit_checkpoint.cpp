@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 
 constexpr int kFormat = 3;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
-constexpr std::size_t kNewEvaluations = 40;  // worth a file
+constexpr std::size_t kNewEvaluations = 40;  // evaluations after which the file is written again
 
 ordered_json key_json(const CheckpointKey& key) {
   ordered_json options = ordered_json::object();
@@ -63,7 +63,7 @@ ShapeFitResult base_of(const ordered_json& json, const std::string& name) {
   return base;
 }
 
-// Bits, so that a value reads back as it was, infinite ones too.
+// The log stores the bits of a value, so that every value reads back unchanged, infinite values too.
 ordered_json log_json(const EvaluationLog& log) {
   ordered_json entries = ordered_json::array();
   for (const auto& [key, value] : log.entries()) {

@@ -1,6 +1,6 @@
-// fit_shape's checkpoint: what a run that stopped need not do again. A JSON file with the base once it is
-// finished, and the value of every candidate for the details so far; the search itself is a function of these
-// (estimation/optimize/evaluation_log.h), so a resumed run ends as an uninterrupted one.
+// The checkpoint of fit_shape: a JSON file with the finished base and the value of every candidate for the
+// details so far. The search is a function of these values (estimation/optimize/evaluation_log.h), so a
+// resumed run ends like a run without a stop.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,10 @@
 
 namespace astrolith {
 
-// What a checkpoint belongs to. A checkpoint of another input, of other options or of other code is refused.
+// The run that a checkpoint belongs to. A checkpoint of another input, of other options or of other code is
+// refused.
 struct CheckpointKey {
-  std::string tool;     // with its version and commit
+  std::string tool;     // name, version and commit of the program
   std::string changes;  // CodeVersion::changes
   std::string input_sha256;
   std::vector<std::pair<std::string, std::string>> options;
@@ -23,8 +24,8 @@ struct CheckpointKey {
 
 class FitCheckpoint {
  public:
-  // With an empty name nothing is ever read or written. Reads the file where it exists. Throws InputError for
-  // one that is damaged, or that belongs to something else.
+  // Reads the file where it exists. Throws InputError for a file that is damaged or belongs to another run.
+  // With an empty name nothing is ever read or written.
   FitCheckpoint(std::filesystem::path file, CheckpointKey key);
 
   bool resumed() const { return resumed_; }

@@ -35,7 +35,7 @@ std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) 
           {"volume_ratio", fit.check.volume_ratio}};
 }
 
-// Without layers, and without what it achieved.
+// The recipe of a fitted body, without layers and without the figures that the fit achieved.
 Recipe recipe_of(const Program& program, const FitArguments& arguments, const ShapeFitResult& fit) {
   Recipe recipe;
   recipe.length_unit = arguments.unit;
@@ -136,7 +136,7 @@ void say_wrong_unit(const Program& program, const FitArguments& arguments, const
 }
 
 void run(Program& program, FitArguments& arguments) {
-  // Before minutes of work: can the results be written at all?
+  // A result that cannot be written should be refused before minutes of work.
   require_writable(arguments.output);
   if (!arguments.checkpoint.empty()) {
     require_writable(arguments.checkpoint);
@@ -171,7 +171,7 @@ void run(Program& program, FitArguments& arguments) {
                      arguments.report);
   }
   summarize(program, fit, Program::interrupted() || limit.reached());
-  program.summary["diagonal"] = target.diagonal;  // what the distances are fractions of
+  program.summary["diagonal"] = target.diagonal;  // distances are fractions of it
   program.summary["length_unit"] = arguments.unit;
   if (!variations.empty() && !Program::interrupted()) {
     program.summary["variations"] = write_variations(program, target, recipe, arguments.details, variations);

@@ -26,7 +26,7 @@ double size_of(const Recipe& recipe) {
   return box.diagonal();
 }
 
-// A recipe whose layers can be scaled to another body.
+// Reads a recipe whose layers can be scaled to another body.
 Recipe read_details(const std::string& file) {
   Recipe other = read_recipe(file);
   if (!other.body) {
@@ -71,10 +71,12 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
   arguments.device.add_to(program.app);
   Option base_only = program.app.add_flag("--base-only", arguments.base_only,
                                           "metaballs alone, without a search for details");
-  Option generations = program.app
-                           .add_option("--generations", arguments.generations,
-                                       "of the search for details: population x generations evaluations")
-                           .check(in_range(1, 100000));
+  Option generations =
+      program.app
+          .add_option(
+              "--generations", arguments.generations,
+              "generations of the search for details, which makes population x generations evaluations")
+          .check(in_range(1, 100000));
   program.app
       .add_option("--details", arguments.transfer,
                   "no search: the layers of this recipe, scaled by the ratio of the two bodies' sizes")

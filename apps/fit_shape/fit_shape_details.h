@@ -1,4 +1,4 @@
-// What fit_shape does after the base: details by search, and measures of the whole recipe.
+// The steps of fit_shape after the base: the search for details, and measures of the whole recipe.
 #pragma once
 
 #include <filesystem>
@@ -18,16 +18,16 @@ struct DetailArguments {
   int generations = 100;
   std::string transfer;                           // a recipe whose layers are taken instead of a search
   std::string micro;                              // a recipe of Gabor layers, "auto", or nothing
-  double mm_per_px = 0.0, micro_height_mm = 0.0;  // of the recipe's layers; 0 = as the recipe says
+  double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;
-  DeviceOption device;  // of the search
+  DeviceOption device;  // computes the search
 };
 
-// Declares the options that fill these in.
+// Declares the options that fill in the arguments.
 void declare_detail_options(Program& program, DetailArguments& arguments);
 
-// Throws InputError where a recipe that the options name cannot be used: better before long work than after.
+// Throws InputError where a recipe that the options name cannot be used. Programs call it before long work.
 void check_detail_inputs(const DetailArguments& arguments);
 
 // Adds the layers that the search finds to the recipe (in the file's frame, with its body). The optimiser and
@@ -39,29 +39,30 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
 // Adds the layers of another recipe, scaled by the ratio of the two bodies' bounding-box diagonals.
 void transfer_details(const Program& program, const std::string& file, Recipe& recipe);
 
-// Of a whole recipe, in the target's frame, as fit_shape checks its base.
+// Checks a whole recipe, in the target's frame, as fit_shape checks its base.
 FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options);
 
-// Sets the fit's similarity, of the mesh in its check, and its floor: by the descriptor that `compare` uses
-// by default (ahd), 5,000 points each.
+// Sets the similarity of the mesh in the fit's check with the target, and its floor. Both are measured by the
+// descriptor that `compare` uses by default (ahd), with 5,000 points for each mesh.
 void measure_similarity(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& fit);
 
 // Adds the Gabor layers of --micro RECIPE to the recipe, as its finest detail.
 void add_micro_layers(const DetailArguments& arguments, Recipe& recipe);
 
-// --micro auto: a Gabor layer of what the base leaves of the target. Returns a sentence about it.
+// Adds the layer of --micro auto: Gabor noise like the heights that the base leaves of the target. Returns a
+// sentence about the layer.
 std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, const Progress& progress,
                                  Recipe& recipe);
 
 // FIT.json becomes FIT_variation_K.json, K from 1. Throws InputError for the first that cannot be written.
 std::vector<std::filesystem::path> variation_files(const std::filesystem::path& fit, int count);
 
-// Writes variations of the recipe, each with its measured similarity to the target; returns these.
+// Writes variations of the recipe, each with its measured similarity to the target. Returns the similarities.
 std::vector<double> write_variations(const Program& program, const TargetBody& target, const Recipe& recipe,
                                      const DetailArguments& arguments,
                                      const std::vector<std::filesystem::path>& files);
 
-// For the summary: what the search did, and how rough target and details are at each lag.
+// The summary of a search: its evaluations and scores, and the roughness of target and details at each lag.
 nlohmann::ordered_json details_json(const DetailsFitResult& details);
 
 }  // namespace astrolith

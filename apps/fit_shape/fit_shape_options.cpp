@@ -13,10 +13,8 @@ Kernel kernel_named(const std::string& word) {
                        [&](Kernel kernel) { return kernel_word(kernel) == word; });
 }
 
-}  // namespace
-
-void declare_fit_options(Program& program, FitArguments& arguments) {
-  CommandLine& app = program.app;
+// The input, the output and the fit of the metaballs.
+void declare_base_options(CommandLine& app, FitArguments& arguments) {
   app.add_option("mesh", arguments.mesh,
                  "closed mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
                  "memory a facet")
@@ -25,21 +23,26 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
   app.add_option("-o,--output", arguments.output, "the recipe to write; with --packing-only a .csv")
       .required()
       .placeholder("RECIPE.json");
-  app.add_option("--spheres", arguments.fit.spheres, "metaballs at most").check(in_range(1, 10000));
-  app.add_option("--kernel", arguments.kernel, "of the metaballs")
+  app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs").check(in_range(1, 10000));
+  app.add_option("--kernel", arguments.kernel, "kernel of the metaballs")
       .check(one_of({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
   app.add_option("--subtract", arguments.fit.subtract,
-                 "share of the metaballs that may take away instead of adding; Gaussians alone. 0: none, for "
+                 "largest share of the metaballs that may be subtractive; only Gaussian metaballs may be. 0: "
+                 "none, for "
                  "mascons or other programs")
       .check(in_range(0.0, 0.9));
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
       .check(in_range(std::int64_t{0}, std::int64_t{10000000}));
   app.add_option("--optimizer", arguments.optimizer,
-                 "of the global parameters of the base, and of the details")
+                 "optimizer of the base's global parameters and of the details")
       .check(one_of({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
-  app.add_option("--population", arguments.fit.population, "of the optimizer").check(in_range(1, 10000));
-  declare_detail_options(program, arguments.details);
+  app.add_option("--population", arguments.fit.population, "population of the optimizer")
+      .check(in_range(1, 10000));
+}
+
+// The end of a fit, its checkpoint and its unit.
+void declare_run_options(CommandLine& app, FitArguments& arguments) {
   app.add_option(
          "--tolerance", arguments.fit.tolerance,
          "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
@@ -49,13 +52,18 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
                  "result then "
                  "depends on the machine")
       .check(zero_or_more());
-  app.add_option("--checkpoint", arguments.checkpoint,
-                 "keep here what a run that is stopped need not do again; where the file exists, go on from "
-                 "there. The result is that of a run without a stop")
+  app.add_option(
+         "--checkpoint", arguments.checkpoint,
+         "keep the progress of the fit in this file; where the file exists, go on from there. The result is "
+         "the result of a run without a stop")
       .placeholder("FILE.json");
   app.add_option("--unit", arguments.unit,
                  "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
       .check(one_of({"km", "m"}));
+}
+
+// The packing of spheres, and the report, which a packing does not have.
+void declare_packing_options(CommandLine& app, FitArguments& arguments) {
   Option packing_only = app.add_flag(
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
@@ -66,7 +74,7 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
     packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,
-                 "of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
+                 "density of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
       .check(above_zero())
       .needs(packing_only)
       .default_text("");
@@ -76,12 +84,21 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
       .placeholder("DIR");
 }
 
+}  // namespace
+
+void declare_fit_options(Program& program, FitArguments& arguments) {
+  declare_base_options(program.app, arguments);
+  declare_detail_options(program, arguments.details);
+  declare_run_options(program.app, arguments);
+  declare_packing_options(program.app, arguments);
+}
+
 void settle_fit_options(const Program& program, FitArguments& arguments) {
   arguments.fit.seed = program.seed;
   arguments.fit.kernel = kernel_named(arguments.kernel);
   if (arguments.fit.kernel != Kernel::kGaussian && program.app.option("--subtract").count() > 0 &&
       arguments.fit.subtract > 0.0) {
-    throw InputError("--subtract: Gaussians alone may take away; leave it out, or --kernel");
+    throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
   }
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
 }

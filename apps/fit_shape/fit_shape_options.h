@@ -21,10 +21,10 @@ struct FitArguments {
   DetailArguments details;
 };
 
-// Declares the options that fill these in.
+// Declares the options that fill in the arguments.
 void declare_fit_options(Program& program, FitArguments& arguments);
 
-// Takes over what the options name by words, and the seed.
+// Turns the words of the options into the fit's settings, and sets its seed.
 void settle_fit_options(const Program& program, FitArguments& arguments);
 
 }  // namespace astrolith

@@ -24,12 +24,12 @@ class TimeLimit {
     return [this, last, end, progress = std::move(progress)](double fraction, std::string_view words) {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
       const bool over = spent.count() > end;
-      // Of the earlier stages only their shares are over: that is no early stop.
+      // When an earlier stage ends, only its own share of the time is over. The fit goes on.
       reached_ = reached_ || (over && last);
       return progress(fraction, words) && !over;
     };
   }
-  // What meshing and measuring the result take, at most half of all.
+  // Seconds kept for meshing and measuring the result, at most half of all.
   double reserve() const { return std::min(4.0, 0.5 * seconds_); }
   bool reached() const { return reached_; }
 

@@ -8,7 +8,7 @@
 
 namespace astrolith {
 
-// Erodes the whole mesh of a field as its recipe says, and tells how far that went.
+// Erodes the whole mesh of a field as its recipe says. The summary and a line on stderr state the result.
 void erode_mesh(Program& program, const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh);
 
 }  // namespace astrolith

@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The mesh as a promise: closed (a tile or patch: open where it was cut, and only there) and manifold, or no
-// file.
+// Throws WorkError for a mesh that is not manifold or not closed. A tile or patch may be open where it was
+// cut.
 void require_closed_manifold(const ManifoldReport& report, const MeshStatistics& statistics) {
   if (report.open_vertices != statistics.cut_vertices || report.late_triangles > 0 ||
       report.non_manifold_vertices > 0) {
@@ -90,7 +90,7 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
     return triangles + (request.patch.empty() ? "tile " + request.tile : "a patch") +
            ", open where cut, manifold";
   }
-  // Rough noise leaves crumbs in the air, which few people want.
+  // Rough noise leaves small separate pieces, which few people want.
   const bool crumbs = report.components > 1 && !(request.least_component > 0.0);
   return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
          std::to_string(report.components) + (report.components == 1 ? " component" : " components") +
@@ -103,8 +103,8 @@ bool has_gabor(const Recipe& recipe) {
   return std::any_of(recipe.layers.begin(), recipe.layers.end(), is_gabor);
 }
 
-// For a prediction by coarse meshes, whose cells are far larger than the kernels of Gabor noise: there the
-// noise costs more than in the mesh itself, and adds little to the surface.
+// The recipe for a prediction by coarse meshes, whose cells are far larger than the kernels of Gabor noise.
+// In such meshes the noise costs more than in the mesh itself, and adds little to the surface.
 Recipe without_gabor(Recipe recipe) {
   std::erase_if(recipe.layers, is_gabor);
   return recipe;
@@ -128,14 +128,74 @@ MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field,
   return statistics;
 }
 
-// Where they are asked for; notes in the file's header what they mean.
-std::optional<SurfaceLabels> labels_of(const MeshRequest& request, const Recipe& recipe, const fs::path& file,
-                                       MeshFileInfo& info) {
-  if (!request.labels) return std::nullopt;
-  std::optional<SurfaceLabels> labels(std::in_place, recipe, file.string());
-  info.notes = labels->legend();
-  return labels;
+// Cells along the longest side of the region that was asked for.
+int resolution_of(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
+                  const Region& region, const fs::path& output) {
+  const ImplicitField coarse_field(without_gabor(recipe), file.string());
+  const auto discarded = [&](int resolution) {
+    MeshDiscard sink;
+    const Region uncut = region.is_patch ? region : Region{};
+    return mesh_region(coarse_field, uncut, resolution, sink, program.progress("prediction"));
+  };
+  const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), has_gabor(recipe)};
+  return choose_resolution(program, request.size, discarded, output, use, region.tile.count);
 }
+
+// Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
+// erosion changes the finished mesh. The other formats, erosion and the picture need the whole mesh in
+// memory.
+class MeshOutput {
+ public:
+  MeshOutput(const std::string& tool, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
+             const Region& region, const fs::path& output)
+      : output_(output), info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
+    if (region.is_patch) info_.origin = region.center;
+    if (request.labels) {
+      labels_.emplace(recipe, file.string());
+      info_.notes = labels_->legend();
+    }
+    sinks_.add(check_);
+    const bool streamed = output.extension() == ".ply" && !recipe.erosion;
+    if (!streamed || !request.preview.file.empty()) sinks_.add(collector_);
+    if (streamed) stream(region.center, request.points);
+  }
+  MeshOutput(const MeshOutput&) = delete;
+  MeshOutput& operator=(const MeshOutput&) = delete;
+
+  MeshSink& sink() { return sinks_; }
+  ManifoldReport finish_check() { return check_.finish(); }
+  // The mesh in memory; empty where nothing needs it there.
+  TriangleMesh& collected() { return collector_.mesh; }
+
+  // Completes the file. Before that it does not exist.
+  void write() {
+    if (writer_) {
+      writer_->finish();
+    } else {
+      write_mesh(collector_.mesh, output_, info_);
+    }
+  }
+
+ private:
+  void stream(const Vec3d& center, bool only_points) {
+    VertexLabeller labeller;
+    if (labels_) {
+      labeller = [this, center](auto vertices, auto out) { labels_->label(center, vertices, out); };
+    }
+    writer_ = std::make_unique<PlyStreamWriter>(output_, info_, std::move(labeller));
+    points_ = std::make_unique<PointsOnly>(*writer_);
+    sinks_.add(only_points ? static_cast<MeshSink&>(*points_) : *writer_);
+  }
+
+  fs::path output_;
+  MeshFileInfo info_;
+  std::optional<SurfaceLabels> labels_;
+  ManifoldCheck check_;
+  MeshCollector collector_;
+  std::unique_ptr<PlyStreamWriter> writer_;
+  std::unique_ptr<PointsOnly> points_;
+  SinkList sinks_;
+};
 
 }  // namespace
 
@@ -190,50 +250,21 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   if (field.bounds().empty()) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }
-  const ImplicitField coarse_field(without_gabor(recipe), file.string());
-  const auto discarded = [&](int resolution) {
-    MeshDiscard sink;
-    const Region uncut = region.is_patch ? region : Region{};
-    return mesh_region(coarse_field, uncut, resolution, sink, program.progress("prediction"));
-  };
-  const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), has_gabor(recipe)};
-  const int resolution = choose_resolution(program, request.size, discarded, output, use, region.tile.count);
-
+  const int resolution = resolution_of(program, request, recipe, file, region, output);
   if (request.size.only_predict) return;
   const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));
 
-  MeshFileInfo info{recipe.length_unit, recipe.frame, "made by " + program.tool(), {}};
-  if (region.is_patch) info.origin = region.center;
-  ManifoldCheck check;
-  MeshCollector collector;
-  SinkList sinks;
-  sinks.add(check);
-  const bool streamed = output.extension() == ".ply" && !recipe.erosion;
-  if (!streamed || use.preview) sinks.add(collector);
-  std::unique_ptr<PlyStreamWriter> writer;
-  std::unique_ptr<PointsOnly> points;
-  const std::optional<SurfaceLabels> labels = labels_of(request, recipe, file, info);
-  if (streamed) {
-    VertexLabeller labeller;
-    if (labels) labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
-    writer = std::make_unique<PlyStreamWriter>(output, info, std::move(labeller));
-    points = std::make_unique<PointsOnly>(*writer);
-    sinks.add(request.points ? static_cast<MeshSink&>(*points) : *writer);
-  }
+  MeshOutput result(program.tool(), request, recipe, file, region, output);
   const MeshStatistics statistics =
       mesh_without_crumbs(program, field, region, resolution, request.least_component,
-                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, sinks);
-  const ManifoldReport report = check.finish();
+                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, result.sink());
+  const ManifoldReport report = result.finish_check();
   if (report.triangles == 0) fail_empty(field, region, file);
   require_closed_manifold(report, statistics);
-  if (recipe.erosion) erode_mesh(program, field, recipe, collector.mesh);
+  if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
 
-  if (streamed) {
-    writer->finish();
-  } else {
-    write_mesh(collector.mesh, output, info);
-  }
-  if (use.preview) write_preview(program, request.preview, collector.mesh);
+  result.write();
+  if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
   if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
   summarize_mesh(program, region, statistics, report);
   summarize_output(program, output);

@@ -20,8 +20,7 @@ struct PreviewRequest {
 
 void declare_preview_options(Program& program, PreviewRequest& request);
 
-// Throws InputError when the picture that was asked for cannot be written, or was not asked for and
-// described.
+// Throws InputError when the picture cannot be written, or when --view or --sun is given without --preview.
 void check_preview(const Program& program, const PreviewRequest& request);
 
 void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);

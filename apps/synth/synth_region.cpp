@@ -16,7 +16,8 @@
 namespace astrolith {
 namespace {
 
-constexpr double kFinestCell = 0x1p-15;  // of a combined body, in its largest coordinate
+// The finest cell of a body made by operations, as a fraction of its largest coordinate.
+constexpr double kFinestCell = 0x1p-15;
 
 MeshTile parse_tile(const std::string& text) {
   if (text.empty()) return {};
@@ -30,7 +31,8 @@ MeshTile parse_tile(const std::string& text) {
   return tile;
 }
 
-// A point of the surface near p, by Newton's steps along the gradient; p itself where they lead nowhere.
+// A point of the surface near p, found by Newton's steps along the gradient. Returns p where the steps do not
+// converge.
 Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
   Vec3d q = p;
   for (int step = 0; step < 64; ++step) {
@@ -43,7 +45,8 @@ Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
   return q;
 }
 
-// A combined body is known to the float coordinates of its frame: finer cells would show their rounding.
+// A body made by operations is evaluated in float coordinates of its frame. Finer cells would show their
+// rounding.
 void check_cells(const ImplicitField& field, const Region& region, int resolution) {
   const double finest = kFinestCell * largest_coordinate(field.bounds());
   const double cell = region.size / resolution;

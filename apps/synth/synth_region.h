@@ -1,4 +1,4 @@
-// What synth meshes: the whole surface, a tile or a patch of it.
+// The region that synth meshes: the whole surface, a tile or a patch.
 #pragma once
 
 #include <filesystem>
@@ -14,24 +14,25 @@ namespace astrolith {
 struct Region {
   MeshTile tile;
   bool is_patch = false;
-  Vec3d center;       // of a patch
-  double size = 0.0;  // its side, length units
+  Vec3d center;       // centre of a patch
+  double size = 0.0;  // side of a patch, length units
 
   bool is_cut() const { return is_patch || tile.count > 1; }
 };
 
-// From "3/16", the third of sixteen tiles, or from a patch's centre and side; empty = the whole. Throws
-// InputError for others.
+// Reads a tile such as "3/16", the third of sixteen, or a patch's centre and side. Empty arguments stand for
+// the whole surface. Throws InputError for anything else.
 Region parse_region(const std::string& tile, const std::vector<double>& patch);
 
-// What of a field, or of a region, the GPU cannot mesh, in a few words; empty: nothing.
+// Names the part of a field or region that the GPU cannot mesh, in a few words. Empty where the GPU can mesh
+// all.
 std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution);
 
 enum class MeshingDevice { kCpu, kGpu };
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
 
-// The error of a region without surface; `file` is the recipe's.
+// Throws the error of a region without surface. `file` is the recipe's file.
 [[noreturn]] void fail_empty(const ImplicitField& field, const Region& region,
                              const std::filesystem::path& file);
 

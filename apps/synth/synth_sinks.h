@@ -1,4 +1,4 @@
-// Sinks that pass on to other sinks.
+// Mesh sinks that pass a mesh on to other sinks.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace astrolith {
 
-// Passes everything on to several sinks.
+// Passes vertices and triangles on to several sinks.
 class SinkList : public MeshSink {
  public:
   void add(MeshSink& sink) { sinks_.push_back(&sink); }

@@ -16,10 +16,11 @@ namespace {
 // Below this resolution a mesh is small and quick: predicting would cost more than it tells.
 constexpr int kWorthPredicting = 256;
 
-// Program, libraries and threads.
+// Memory of the program, its libraries and its threads.
 constexpr double kBytesAnyway = 50e6;
 
-// A format's bytes a triangle, half a vertex included: in the file, and in memory until it is written.
+// Bytes that a format takes for each triangle and half a vertex: in the file, and in memory until it is
+// written.
 struct OutputCost {
   double file;
   double memory;
@@ -36,7 +37,7 @@ OutputCost output_cost(const std::filesystem::path& output, MeshUse use) {
   return {75.0, collected + rendered};
 }
 
-// "1.2 M", "340 k"
+// A count in three characters or so: "1.2 M", "340 k".
 std::string rounded(double count) {
   return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
 }

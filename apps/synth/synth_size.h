@@ -1,4 +1,4 @@
-// How fine synth's mesh is to be, and whether there is room for it.
+// The resolution of synth's mesh, and the memory it needs.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct MeshSizeRequest {
   bool only_predict = false;
 };
 
-// What a mesh is held in memory for, and what its prediction leaves out.
+// The uses of a mesh that need it in memory, and the noise that its prediction leaves out.
 struct MeshUse {
   bool preview = false;
   bool erosion = false;
@@ -25,10 +25,10 @@ struct MeshUse {
 
 void declare_size_options(Program& program, MeshSizeRequest& request);
 
-// Cells along the longest side; `mesh` makes the mesh at one number of them, to no avail. `tiles` is how many
-// slabs the mesh is cut into, of which one is made. Large meshes are announced with triangles, bytes and
-// seconds, and stand as "predicted" in the summary. Throws InputError when the mesh needs more memory than
-// allowed.
+// Returns the cells along the longest side. `mesh` makes the mesh at a resolution and discards it. `tiles` is
+// the number of slabs that the mesh is cut into; one of them is made. Large meshes are announced with
+// triangles, bytes and seconds, and stand as "predicted" in the summary. Throws InputError when the mesh
+// needs more memory than allowed.
 int choose_resolution(Program& program, const MeshSizeRequest& request,
                       const std::function<MeshStatistics(int resolution)>& mesh,
                       const std::filesystem::path& output, MeshUse use, int tiles);

@@ -45,7 +45,7 @@ GaborLayer first_gabor_layer(const Recipe& recipe, const fs::path& file) {
                    ": layers: hold no Gabor layer, which --texture draws; fit one with fit_gabor");
 }
 
-// Values in [0, 1], others cut, as whole numbers from 0 to `top`.
+// Turns values into whole numbers from 0 to `top`: offset + scale * value, clamped to [0, 1], times `top`.
 template <typename Integer>
 std::vector<Integer> quantised(std::span<const float> values, double offset, double scale, double top) {
   std::vector<Integer> whole;
@@ -61,7 +61,7 @@ struct Picture {
   TextureSize size;
   int channels;  // 1 or 3
   const std::vector<float>& values;
-  double offset, scale;  // what turns a value into [0, 1] for a PNG
+  double offset, scale;  // offset + scale * value lies in [0, 1] for a PNG
 };
 
 void write_picture(const Picture& p, int bits, const fs::path& output) {
@@ -89,7 +89,7 @@ TextureOptions texture_options(const Recipe& recipe, const TextureRequest& reque
 void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe, GaborLayer layer,
                    const fs::path& output) {
   const TextureSize size = parse_size(request.size);
-  // A recipe that does not say how high its rock is still has a texture: in units of its own deviation.
+  // A layer without a height is drawn in units of its own standard deviation.
   const bool has_height = layer.height_rms > 0.0;
   if (!has_height) layer.height_rms = 1.0;
   const std::vector<float> heights = synthesize_texture(
@@ -137,7 +137,7 @@ void declare_texture_options(Program& program, TextureRequest& request) {
       .check(one_of({"height", "color"}))
       .default_text("");
   app.add_flag("--tileable", request.tileable, "the texture repeats without a seam in both directions");
-  app.add_option("--bits", request.bits, "of a texture's .png, a channel")
+  app.add_option("--bits", request.bits, "bits for each channel of a texture's .png")
       .check(one_of({8, 16}))
       .needs(app.option("--texture"));
 }

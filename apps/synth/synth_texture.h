@@ -13,7 +13,7 @@ struct TextureRequest {
   std::string size;     // "1024x1024"; empty = no texture
   std::string content;  // "height" or "color"; empty = colours where layers have them
   bool tileable = false;
-  int bits = 16;  // of a PNG's channel
+  int bits = 16;  // in a channel of a PNG
 };
 
 void declare_texture_options(Program& program, TextureRequest& request);

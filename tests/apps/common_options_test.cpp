@@ -1,4 +1,4 @@
-// What every program answers in the same way.
+// The answers that all programs give alike: help, version, refusals.
 #include <regex>
 
 #include "tests/apps/program_runner.h"

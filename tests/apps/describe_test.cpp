@@ -69,7 +69,7 @@ class Describe : public ::testing::Test {
   const std::string egg_ = folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
 };
 
-// With a GPU or without one.
+// Tests on a machine with a GPU and on one without.
 TEST_F(Describe, TheDeviceChangesNothing) {
   describe(egg_, {});
   const std::string on_cpu = text_of(folder_ / "h.npy");

@@ -59,7 +59,7 @@ TEST_F(FitGabor, SummaryHoldsTheFigures) {
   for (const char* field : {"lobes", "relative_duality_gap", "spectrum_distance", "variance_ratio",
                             "gaussianity", "iterations", "seconds"}) {
     ASSERT_TRUE(summary.contains(field)) << field;
-    EXPECT_FALSE(summary[field].is_null()) << field;  // what NaN would become
+    EXPECT_FALSE(summary[field].is_null()) << field;  // NaN would become null
   }
   EXPECT_GE(summary["relative_duality_gap"].get<double>(), 0.0);
   EXPECT_NEAR(summary["variance_ratio"].get<double>(), 1.0, 0.02);
@@ -109,7 +109,8 @@ TEST_F(FitGabor, BadImagesAreRefused) {
   expect_image_refused("cut.png", whole.substr(0, whole.size() / 2));
 }
 
-// The header alone decides, whatever the options; the message states what it would take.
+// The size in the header decides, whatever the options are. The message states the memory that the fit would
+// take.
 TEST_F(FitGabor, SizesThatMakeNoSenseAreRefused) {
   expect_image_refused("huge.png", testing::png_header(20000, 20000));
   expect_image_refused("negative.png", testing::png_header(0x80000000u, 4));

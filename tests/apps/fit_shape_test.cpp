@@ -113,7 +113,7 @@ TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {
 TEST_F(FitShape, AResumedFitIsThatOfARunWithoutAStop) {
   const std::string file = (folder_ / "stop.checkpoint").string();
   const std::string whole = fit("whole.json", {"--checkpoint", file});
-  // As if it had stopped after the base and one candidate.
+  // The checkpoint of a run that stopped after the base and one candidate.
   auto checkpoint = nlohmann::ordered_json::parse(text_of(file));
   ASSERT_EQ(checkpoint["evaluations"].size(), 8u);
   while (checkpoint["evaluations"].size() > 1) checkpoint["evaluations"].erase(1);

@@ -11,7 +11,7 @@
 
 namespace astrolith::testing {
 
-// Stretched a little, and every vertex moved a little.
+// A copy of a mesh, stretched a little and with every vertex moved a little.
 inline TriangleMesh varied(TriangleMesh mesh, std::uint64_t seed) {
   CounterRandom random(seed);
   const Vec3d stretch{random.uniform(0.9, 1.1), random.uniform(0.9, 1.1), random.uniform(0.9, 1.1)};

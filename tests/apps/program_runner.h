@@ -1,4 +1,4 @@
-// Runs a built program as a user would, in a folder of its own, and looks at what it said and left behind.
+// Runs a built program as a user would, in a folder of its own, and checks its messages and its files.
 #pragma once
 
 #include <fcntl.h>
@@ -18,7 +18,7 @@
 namespace astrolith::testing {
 
 struct Outcome {
-  int status = -1;  // of exit, or 128 + the signal that ended the program
+  int status = -1;  // exit status, or 128 + the signal that ended the program
   std::string output, errors;
 };
 
@@ -76,7 +76,8 @@ inline Outcome run_program(const std::string& program, std::vector<std::string> 
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(output), text_of(errors)};
 }
 
-// The promise about bad input: status 2, one line that names `culprit` and a remedy, nothing left behind.
+// Checks the promise about bad input: status 2, one line that names `culprit` and a remedy, and no file left
+// behind.
 inline void expect_refusal(const WorkFolder& folder, const std::string& program,
                            const std::vector<std::string>& arguments, const std::string& culprit) {
   const std::set<std::string> before = folder.files();

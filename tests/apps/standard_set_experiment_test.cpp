@@ -19,7 +19,7 @@ std::vector<std::string> arguments(const LabelledShapes& shapes) {
 
 TEST(StandardSetExperiment, StatesItsProtocolAndTellsClassesApart) {
   const LabelledShapes shapes;
-  // No surface: its spectrum comes from points.
+  // This mesh is no surface. Its spectrum comes from points.
   shapes.folder.write("shapes/box/fin.obj", testing::kTetrahedron + "v 2 2 2\nf 1 2 5\n");
   const testing::Outcome outcome = run_program(kExperiment, arguments(shapes));
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
@@ -29,7 +29,7 @@ TEST(StandardSetExperiment, StatesItsProtocolAndTellsClassesApart) {
   for (const auto& d : result["descriptors"]) {
     EXPECT_EQ(d["shapes"], 19);
     EXPECT_GE(d["cross_validation"]["accuracy"]["mean"], 0.7) << d["features"];
-    EXPECT_EQ(d["trained_on_few"].size(), 3u);  // 1, 2, 4 of the six
+    EXPECT_EQ(d["trained_on_few"].size(), 3u);  // forests trained on 1, 2 and 4 of the six models
     EXPECT_EQ(d["described_by_points"], d["features"]["kind"] == "shapedna" ? 1 : 0);
   }
 }
