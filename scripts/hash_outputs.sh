@@ -4,7 +4,7 @@
 #   scripts/hash_outputs.sh build/release > before.txt     # change the code, build, and then
 #   scripts/hash_outputs.sh build/release | diff before.txt -
 # Changes of structure keep every line. Bytes of fits depend on the machine's BLAS, so compare on one machine.
-# The version in a recipe's provenance is left out, since it changes with every commit.
+# The program's version is left out of recipes and meshes, since it changes with every commit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -18,13 +18,15 @@ for file in "$shape" "$photo"; do
   [[ -s $file ]] || { echo "hash_outputs.sh: $file is missing; run scripts/fetch_data.sh" >&2; exit 1; }
 done
 
-# report NAME FILE ...: one line a file. A recipe is printed without its provenance's tool.
+# report NAME FILE ...: prints one line for each file.
 report() {
   local name=$1 file
   shift
   for file in "$@"; do
     case $file in
       *.json) sed -E 's/"tool": *"[^"]*"//' "$file" ;;
+      *.stl) tail -c +81 "$file" ;;  # its first 80 bytes are a comment
+      *.ply | *.obj) LC_ALL=C sed -E '/^(comment|#) made by /d' "$file" ;;
       *) cat "$file" ;;
     esac | sha256sum | awk -v name="$name $(basename "$file")" '{print $1, name}'
   done
