@@ -27,7 +27,8 @@ synthesis/finish           -> numerics recipe geometry synthesis
 cuda                       -> numerics descriptor synthesis cuda/.
 cuda/mesher                -> numerics synthesis cuda/.
 estimation/optimize        -> numerics
-estimation/gabor           -> numerics recipe synthesis/picture estimation/gabor
+estimation/plot            -> numerics synthesis/picture
+estimation/gabor           -> numerics recipe synthesis/picture estimation/plot estimation/gabor
 estimation/gabor/image     -> numerics
 estimation/gabor/spectrum  -> numerics estimation/gabor/image
 estimation/gabor/pursuit   -> numerics recipe estimation/gabor/spectrum
@@ -38,7 +39,7 @@ estimation/shape/model     -> numerics recipe geometry synthesis
 estimation/shape/refinement -> numerics recipe geometry estimation/shape/target estimation/shape/model
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
-estimation/shape/report    -> numerics geometry synthesis/picture estimation/shape/target estimation/shape/fit
+estimation/shape/report    -> numerics geometry synthesis/picture estimation/plot estimation/shape/target estimation/shape/fit
 apps                       -> numerics recipe geometry descriptor synthesis cuda estimation apps
 ' '
   function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }

@@ -5,10 +5,10 @@
 namespace astrolith {
 namespace {
 
-constexpr double kBytesAnyway = 55e6;         // program, libraries, threads
-constexpr double kBytesPerGridPoint = 390.0;  // dictionary, estimates and solver
+constexpr double kBytesAnyway = 55e6;         // program, libraries and threads, whatever the image
+constexpr double kBytesPerGridPoint = 390.0;  // dictionary, estimates and solver together
 
-// Of the image's own pixels, at the stage that holds most of them.
+// The bytes per pixel of the image, at the stage of the fit that holds the most.
 double bytes_per_pixel(bool colors, bool report) {
   const double value = 8.0, decoded = 4.0, synthesis = 4.0, pictures = 6.0;
   if (!colors) return value + std::max(decoded, synthesis + (report ? pictures : 0.0));

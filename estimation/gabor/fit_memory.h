@@ -1,4 +1,4 @@
-// How much memory a fit takes, said before it.
+// Predicts how much memory a fit takes.
 #pragma once
 
 #include "estimation/gabor/image/image_reader.h"
@@ -6,9 +6,10 @@
 
 namespace astrolith {
 
-// Predicted peak of a program that fits an image of this size, bytes: what the image takes while it is read
-// and kept, and what the pursuit takes for each point of the spectrum's grid. Measured within a fifth for
-// 8-bit images; deeper ones take up to 20 bytes a pixel more while they are read.
+// The predicted peak memory, in bytes, of a program that fits an image of this size. It is the memory of the
+// image while it is read and kept, and the memory of the pursuit for each point of the spectrum's grid. For
+// 8-bit images the prediction was within a fifth of the measured peak. Deeper images take up to 20 bytes per
+// pixel more while they are read. `report`: pictures of the fit are drawn too.
 double predicted_fit_bytes(const ImageSize& image, const PhotoFitOptions& options, bool report);
 
 }  // namespace astrolith

@@ -37,8 +37,8 @@ double mean_of(const GreyImage& image) {
   return sum / static_cast<double>(image.values.size());
 }
 
-// Rows weighted by 1 / sqrt(S) turn a small error of the spectrum into twice the error of its square root,
-// the quantity of the optimal-transport distance. Frequency 0 holds no data.
+// The weights W of the dictionary's rows. With 1 / sqrt(S) a small error of the spectrum counts as twice the
+// error of its square root, which the optimal-transport distance measures. Frequency 0 holds no data.
 std::vector<double> row_weights(const PowerSpectrum& estimate, SpectrumTarget target) {
   std::vector<double> weight(estimate.power.size(), 1.0);
   if (target == SpectrumTarget::kSmoothed) {
@@ -51,7 +51,7 @@ std::vector<double> row_weights(const PowerSpectrum& estimate, SpectrumTarget ta
 
 std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, const Progress& progress) {
   const PowerSpectrum& target = fit.estimate.spectrum;
-  // Dividing by the variance keeps numbers near one, whatever the exemplar's unit.
+  // Division by the variance keeps numbers near 1 for exemplars in any unit.
   const double unit = target.variance();
   PowerSpectrum scaled = target;
   for (double& p : scaled.power) p /= unit;
@@ -71,10 +71,12 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   return lobes;
 }
 
-// Below this a lobe's variance, a part of the square, could leave a recipe's range.
+// The smallest standard deviation of an exemplar. With a smaller one, the variance of a lobe could fall out
+// of the range of a recipe.
 constexpr double kSmallestContrast = 1e-4;
 
-// Heights become variances; what the fit kept of the exemplar's variance is stretched to all of it.
+// Lobes with variances instead of heights. The variances are scaled so that their sum is the exemplar's
+// variance.
 std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, GaborFit& fit) {
   const PowerSpectrum& grid = fit.periodogram;
   std::vector<GaborLobe> result;

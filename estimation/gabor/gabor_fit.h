@@ -1,4 +1,4 @@
-// From an exemplar to a Gabor layer: the whole fit.
+// Fits a Gabor layer to an exemplar.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,12 @@
 namespace astrolith {
 
 enum class SpectrumTarget {
-  kSmoothed,     // smooth estimate, weighted so that errors count as optimal-transport distance
-  kPeriodogram,  // the single raw periodogram of the periodic component with equal weights, as in the paper:
-                 // fits the exemplar's speckle
+  // The smooth estimate, weighted so that errors count as optimal-transport distance.
+  kSmoothed,
+  // The raw periodogram of the periodic component with equal weights, as in Galerne et al. 2012. The lobes
+  // then
+  // fit the exemplar's speckle too.
+  kPeriodogram,
 };
 enum class PursuitSolver { kWorkingSet, kFista };
 
@@ -33,24 +36,25 @@ struct GaborFit {
   std::vector<GaborLobe> lobes;  // variances sum to exemplar_rms^2
   double exemplar_mean = 0.0;
   double exemplar_rms = 0.0;             // square root of the periodogram's variance
-  PowerSpectrum periodogram;             // of the exemplar
-  SpectrumEstimate estimate;             // what was fitted
-  PowerSpectrum fitted;                  // of the lobes, on the same grid
-  BasisPursuitResult pursuit;            // x left empty: the lobes say it
-  int pursuit_lobes = 0;                 // before selection
-  double variance_before_scaling = 0.0;  // of the selected lobes over the exemplar's
-  double spectrum_distance = 0.0;        // optimal-transport distance of fitted from the estimate
+  PowerSpectrum periodogram;             // spectrum of the exemplar
+  SpectrumEstimate estimate;             // the spectrum to which the lobes were fitted
+  PowerSpectrum fitted;                  // spectrum of the lobes, on the grid of the estimate
+  BasisPursuitResult pursuit;            // its x is empty
+  int pursuit_lobes = 0;                 // number of lobes before selection
+  double variance_before_scaling = 0.0;  // variance of the selected lobes over that of the exemplar
+  double spectrum_distance = 0.0;        // optimal-transport distance of `fitted` from the estimate
 };
 
-// Smallest sides a fit makes sense for.
+// The smallest side of an exemplar, in pixels.
 inline constexpr int kSmallestExemplarSide = 32;
 
-// Throws InputError, naming the exemplar, for sides below 32 pixels and for constant images.
+// Fits lobes to an exemplar, which messages call `name`. Throws InputError for sides below 32 pixels and for
+// constant images, WorkError where no lobe is found.
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress = {});
 
-// The same from a periodogram alone, as of patches that make no whole image; the mean is left 0. Throws
-// InputError for sides below 32 and for next to no contrast.
+// Fits lobes to a periodogram, for patches that do not make a whole image; exemplar_mean stays 0. Throws
+// InputError for sides below 32 pixels and for a standard deviation of at most 1e-4.
 GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
                             const GaborFitOptions& options, const Progress& progress = {});
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "estimation/gabor/figure_internal.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/plot/figure.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/image_file.h"
@@ -15,12 +15,13 @@
 namespace astrolith {
 namespace {
 
-constexpr double kDecades = 6.0;  // of the spectra shown
-constexpr double kPanel = 200.0;  // points a side
-constexpr double kLeft = 52.0;    // of the first panel
-constexpr double kTop = 58.0;
-constexpr double kColumn = kPanel + 58.0;  // from panel to panel
-constexpr double kRow = kPanel + 74.0;
+constexpr double kDecades = 6.0;  // range of the spectra shown
+// Lengths on the page, in points.
+constexpr double kPanel = 200.0;           // side of a panel
+constexpr double kLeft = 52.0;             // left end of the first panel
+constexpr double kTop = 58.0;              // upper end of the first panel
+constexpr double kColumn = kPanel + 58.0;  // distance from panel to panel along a row
+constexpr double kRow = kPanel + 74.0;     // distance from panel to panel down a column
 constexpr double kPageWidth = kLeft + 3.0 * kColumn + 14.0;
 constexpr double kPageHeight = kTop + 2.0 * kRow - 24.0;
 constexpr Ink kCurve{0.12, 0.35, 0.70};
@@ -42,7 +43,8 @@ ReportPicture tone(std::span<const T> values, int width, int height) {
   return picture;
 }
 
-// Frequency 0 in the middle, frequencies growing to the right and down; `top` is the brightest power.
+// The logarithm of a spectrum in colours. Frequency 0 lies in the middle; frequencies grow to the right and
+// down. `top` is the power of the brightest colour.
 ReportPicture spectrum_picture(const PowerSpectrum& spectrum, double top) {
   ReportPicture picture{spectrum.width, spectrum.height, {}};
   for (int y = 0; y < spectrum.height; ++y) {
@@ -66,7 +68,7 @@ void caption(Figure& page, const Rectangle& at, const std::string& letter, const
   page.text(at.x + 17.0, at.y - 7.0, words, 9.0);
 }
 
-// The numbers 0 .. size at a few round places.
+// An axis from 0 to size pixels, with ticks at a few round numbers.
 Axis pixel_axis(int size, bool upwards, const std::string& label) {
   const double step = size >= 4000 ? 2000 : size >= 800 ? 500 : size >= 300 ? 200 : size >= 150 ? 100 : 25;
   Axis axis{upwards ? double(size) : 0.0, upwards ? 0.0 : double(size), {}, label};
@@ -74,7 +76,8 @@ Axis pixel_axis(int size, bool upwards, const std::string& label) {
   return axis;
 }
 
-// A photo in a panel, its longer side filling it, drawn no finer than a page shows.
+// Draws a photo into a panel, whose side is as long as the longer side of the photo. A photo with more pixels
+// than a page shows is scaled down first.
 void draw_photo(Figure& page, const Rectangle& within, const ReportPicture& picture) {
   constexpr double kFinest = 800.0;
   const int longer = std::max(picture.width, picture.height);
@@ -101,7 +104,7 @@ void draw_spectrum(Figure& page, const Rectangle& at, const ReportPicture& pictu
             frequency_axis(true, "cycles per pixel down columns"));
 }
 
-// Every lobe as the circle where it has half its peak, thicker for more variance.
+// Draws every lobe as the circle where it has half its peak. Lobes with much variance get a thicker line.
 void draw_lobes(Figure& page, const Rectangle& at, const std::vector<GaborLobe>& lobes) {
   for (const GaborLobe& lobe : lobes) {
     const double share = std::sqrt(lobe.variance / lobes.front().variance);
@@ -127,7 +130,7 @@ void draw_color_bar(Figure& page, const Rectangle& beside) {
   page.y_axis_on_the_right(at, axis);
 }
 
-// The certified relative gap over the steps of the pursuit.
+// Draws the certified relative gap against the steps of the pursuit.
 void draw_gap(Figure& page, const Rectangle& at, const BasisPursuitResult& pursuit) {
   std::vector<std::pair<double, double>> points;
   double lowest = -1.0;
@@ -137,10 +140,7 @@ void draw_gap(Figure& page, const Rectangle& at, const BasisPursuitResult& pursu
   }
   const int last = std::max(1, pursuit.history.empty() ? 1 : pursuit.history.back().iteration);
   const int decades = static_cast<int>(std::ceil(-lowest));
-  Axis x{0.0, static_cast<double>(last), {}, "steps of the pursuit"};
-  const double raw = last / 5.0, power = std::pow(10.0, std::floor(std::log10(raw)));
-  const double step = std::max(1.0, power * (raw / power < 2.0 ? 2.0 : raw / power < 5.0 ? 5.0 : 10.0));
-  for (double v = 0.0; v <= last; v += step) x.ticks.emplace_back(v, fmt::format("{:g}", v));
+  const Axis x = linear_axis(0.0, last, "steps of the pursuit", 1.0);
   Axis y{-static_cast<double>(decades), 0.0, {}, "log10 of the relative duality gap"};
   for (int d = 0; d <= decades; d += decades > 8 ? 2 : 1) y.ticks.emplace_back(-d, fmt::format("{}", -d));
   page.axes(at, x, y, true);

@@ -1,4 +1,4 @@
-// Pictures of a fit that a person can judge, and put in a paper.
+// Pictures from which a person can judge a fit, and which can be put in a paper.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,18 @@ struct ReportPicture {
   std::vector<std::uint8_t> rgb;  // row-major (height x width x 3)
 };
 
-// In grey, 3.5 standard deviations on either side of the mean filling the scale; any mean and scale.
+// Grey pictures of width x height values, row-major, of any mean and scale. Black and white lie 3.5 standard
+// deviations below and above the mean.
 ReportPicture tone_mapped(std::span<const double> values, int width, int height);
 ReportPicture tone_mapped(std::span<const float> values, int width, int height);
 
-// Writes into `folder`, which is made if need be: the figure report.png (200 pixels an inch) and report.svg,
-// with (a) the exemplar, (b) the synthesis of the same size, (c) the certified gap over the steps, (d) the
-// spectrum estimated from the exemplar, (e) the fitted spectrum, (f) the lobes over the estimate; and
-// exemplar.png, synthesis.png, spectrum_exemplar.png and spectrum_fitted.png pixel by pixel. Spectra are
-// logarithmic over six decades, frequency 0 in the middle.
+// Writes the pictures of a fit into `folder`, which is made if it is missing:
+//   report.png, report.svg   one figure (200 pixels an inch) of (a) the exemplar, (b) the synthesis, (c) the
+//                            certified gap against the steps of the pursuit, (d) the spectrum estimated from
+//                            the exemplar, (e) the fitted spectrum, (f) the lobes over the estimated spectrum
+//   exemplar.png, synthesis.png, spectrum_exemplar.png, spectrum_fitted.png   pictures a, b, d and e in full
+// `synthesis` has the size of `exemplar`. Spectra are logarithmic over six decades, with frequency 0 in the
+// middle. Throws InputError where a file cannot be written.
 void write_gabor_report(const ReportPicture& exemplar, const ReportPicture& synthesis, const GaborFit& fit,
                         const std::string& title, const std::filesystem::path& folder);
 

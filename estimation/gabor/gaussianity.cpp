@@ -23,12 +23,12 @@ constexpr int kBlocks = 8;
 
 constexpr std::array<int, 3> kLags{1, 4, 16};
 
-// Skewness, kurtosis and the logarithm of the blocks' spread, then the kurtosis of differences by lag and
-// axis.
+// The measures that are compared with those of surrogates. at(k) lists them: skewness, kurtosis, the
+// logarithm of the spread, and the kurtosis of differences by lag and axis.
 struct Measures {
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
-  double variance_spread = 0.0;  // coefficient of variation among blocks
+  double variance_spread = 0.0;  // coefficient of variation of the blocks' variances
   std::array<double, 2 * kLags.size()> steps{};
 
   static constexpr std::size_t kCount = 3 + 2 * kLags.size();
@@ -87,7 +87,7 @@ std::array<double, 2> shape_of(const std::vector<double>& values) {
   return {moments[1] / std::pow(moments[0], 1.5), moments[2] / (moments[0] * moments[0]) - 3.0};
 }
 
-// The image is periodic, and so are its differences, whose mean is therefore 0.
+// Excess kurtosis of the differences over (dx, dy) pixels. Their mean is 0, because the image is periodic.
 double step_kurtosis(const GreyImage& image, int dx, int dy) {
   double second = 0.0, fourth = 0.0;
   const auto add = [&](const double* from, const double* to, int n) {
@@ -135,9 +135,9 @@ Measures measure(const GreyImage& image) {
   return m;
 }
 
-// The same moduli with independent uniform phases, as far as the transform of a real image allows: in the
-// columns that hold both a frequency and its opposite, one is the other's conjugate, and a frequency that is
-// its own opposite stays real.
+// Noise with the moduli of `spectrum` and independent uniform phases. The transform of a real image is
+// symmetric: in the columns that hold both a frequency and its opposite, one is the conjugate of the other,
+// and a frequency that is its own opposite is real.
 GreyImage random_phase_surrogate(const FourierTransform& fourier,
                                  const std::vector<std::complex<double>>& spectrum, std::uint64_t seed,
                                  std::uint64_t index) {
@@ -166,7 +166,7 @@ GreyImage random_phase_surrogate(const FourierTransform& fourier,
   return noise;
 }
 
-// How unusual each of the samples is among all: its largest standardised measure.
+// How unusual each sample is among all samples: its largest standardised measure.
 std::vector<double> unusualness(const std::vector<Measures>& samples) {
   std::vector<double> largest(samples.size(), 0.0);
   const auto n = static_cast<double>(samples.size());
@@ -183,7 +183,7 @@ std::vector<double> unusualness(const std::vector<Measures>& samples) {
   return largest;
 }
 
-// The first size of each pair ends kClose, the second kRoughly.
+// The largest measures of a photo that is close to, or roughly, a Gaussian texture.
 struct Limits {
   double skewness, excess_kurtosis, edges, spread;
 };
@@ -200,7 +200,7 @@ Likeness likeness_of(const Gaussianity& g) {
   return within(g, kClose) ? Likeness::kClose : Likeness::kRoughly;
 }
 
-// What of the photo is not Gaussian, largest offence or not.
+// A phrase for every measure beyond its limit.
 std::string reasons(const Gaussianity& g, const Limits& limits) {
   std::string why;
   if (std::abs(g.skewness) > limits.skewness)
@@ -235,9 +235,10 @@ std::string sentence_for(const Gaussianity& g) {
 
 }  // namespace
 
-// False alarms at p <= 0.05 over 200 Gaussian textures (gaussianity_benchmark): 3.5 to 7 % of whole
-// periods, 5.5 to 6.5 % of squares cut out of white noise, but 18 % of 64 x 64 squares cut out of a smooth
-// texture, where the border is a large part of the square and the periodic component changes it.
+// False alarms at p <= 0.05 over 200 Gaussian textures, measured by gaussianity_benchmark: 3.5 to 7 % of
+// whole periods, 5.5 to 6.5 % of squares cut out of white noise, and 18 % of 64 x 64 squares cut out of a
+// smooth texture. In the last case the border is a large part of the square, and the periodic component
+// changes it.
 Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
   const GreyImage exemplar = decompose_periodic(central_square(image)).periodic;
   const FourierTransform fourier(exemplar.width, exemplar.height);

@@ -13,7 +13,7 @@ namespace astrolith {
 namespace {
 
 void detrend(GreyImage& image, const std::string& name, const PhotoFitOptions& options) {
-  // Smaller images are refused by the fit, with a better word than a polynomial has.
+  // The fit refuses smaller images with a better message than remove_trend has.
   if (options.detrend_degree == 0 || std::min(image.width, image.height) < kSmallestExemplarSide) return;
   remove_trend(image, options.detrend_degree, options.trend, name);
 }
@@ -60,7 +60,7 @@ double PhotoFit::relative_gap() const {
   return largest;
 }
 
-// Squared distances of square roots add up, and so do the variances they are relative to.
+// Distances are relative to variances. Squared distances add up over channels, and so do variances.
 double PhotoFit::spectrum_distance() const {
   double square = 0.0, variance = 0.0;
   for (const FittedChannel& c : channels) {

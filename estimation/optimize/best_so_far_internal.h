@@ -1,4 +1,4 @@
-// What every optimiser keeps while it runs.
+// The record that every optimiser keeps while it runs.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ class BestSoFar {
   BestSoFar(const OptimizeOptions& options, const Progress& progress)
       : options_(options), progress_(progress) {}
 
-  // Counts one evaluation; the first of equals stays the best.
+  // Counts one evaluation. The first of several equal values stays the best.
   void record(std::span<const double> x, double value) {
     ++result_.evaluations;
     if (!result_.x.empty() && !(value < result_.value)) return;
@@ -22,7 +22,7 @@ class BestSoFar {
     result_.value = value;
   }
 
-  // To be called after each generation; false when the run is to end, with the termination set.
+  // Is called after each generation. Returns false and sets the termination when the run is to end.
   bool generation_done() {
     result_.history.push_back(result_.value);
     const double done =

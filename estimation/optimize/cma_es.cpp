@@ -1,9 +1,9 @@
 // (mu/mu_w, lambda)-CMA-ES with the default parameters of Hansen, "The CMA evolution strategy: a tutorial"
-// (arXiv:1604.00772), numbers of equations as there, and restarts of doubled population (Auger and Hansen,
-// "A restart CMA evolution strategy with increasing population size", CEC 2005).
+// (arXiv:1604.00772), whose numbers of equations are cited below, and restarts of doubled population (Auger
+// and Hansen, "A restart CMA evolution strategy with increasing population size", CEC 2005).
 //
-// The search runs over the free variables scaled to [0, 1]; a sample beyond a wall is evaluated at its mirror
-// image, so the objective is continued evenly and the strategy itself knows no walls.
+// The search runs over the free variables scaled to [0, 1]. A sample beyond a wall is evaluated at its mirror
+// image. The objective is thus continued evenly, and the strategy itself knows no walls.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -19,15 +19,15 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the box's sides: the first step and the largest.
+// The first step and the largest one, as shares of the box's sides.
 constexpr double kFirstStep = 0.3;
 constexpr double kLargestStep = 1.0;
 
 // A restart is due once the steps are this small, or the covariance this far from round.
 constexpr double kSmallestStep = 1e-11;
 constexpr double kLargestCondition = 1e14;
-// ... or the best values of this many generations, and those of the last one, differ by no more than this
-// part.
+// A restart is also due once the best values of `patience` generations, and all values of the last
+// generation, differ by no more than this share.
 constexpr double kFlat = 1e-12;
 
 double mirrored(double y) {
@@ -84,10 +84,10 @@ struct Strategy {
     c_c = (4 + mu_eff / n) / (n + 4 + 2 * mu_eff / n);
     c_1 = 2 / ((n + 1.3) * (n + 1.3) + mu_eff);
     c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff - 2 + 1 / mu_eff) / ((n + 2) * (n + 2) + mu_eff));
-    // Eq. 50 to 53: how much the worse half may take away and leave C positive definite.
-    const double taken =
+    // The largest sum of negative weights that leaves C positive definite (eq. 50 to 53).
+    const double negative_sum =
         std::min({1 + c_1 / c_mu, 1 + 2 * mu_eff_worse / (mu_eff + 2), (1 - c_1 - c_mu) / (n * c_mu)});
-    worse *= taken / worse.cwiseAbs().sum();
+    worse *= negative_sum / worse.cwiseAbs().sum();
     expected_length = std::sqrt(n) * (1 - 1 / (4 * n) + 1 / (21 * n * n));
     patience = 10 + static_cast<std::size_t>(std::ceil(30 * n / lambda));
   }
@@ -124,7 +124,7 @@ class Distribution {
     return mean_ + sigma_ * (axes_ * lengths_.cwiseProduct(z));  // eq. 5 with C = B D^2 B^T
   }
 
-  // All samples, best first.
+  // Updates mean, paths, covariance and step size from all samples of a generation, the best first.
   void update(const Strategy& s, std::span<const Sample> samples) {
     ++generation_;
     const VectorXd old_mean = mean_;
@@ -156,19 +156,19 @@ class Distribution {
     return axes_ * (axes_.transpose() * v).cwiseQuotient(lengths_);
   }
 
-  // Eq. 47.
+  // Updates the covariance (eq. 47).
   void adapt_covariance(const Strategy& s, std::span<const Sample> samples, const VectorXd& old_mean,
                         bool stalls) {
     const double n = static_cast<double>(mean_.size());
     MatrixXd change = s.c_1 * path_c_ * path_c_.transpose();
-    double taken = s.c_1 + s.c_mu * s.weights.sum() - (stalls ? s.c_1 * s.c_c * (2 - s.c_c) : 0.0);
+    const double decay = s.c_1 + s.c_mu * s.weights.sum() - (stalls ? s.c_1 * s.c_c * (2 - s.c_c) : 0.0);
     for (int i = 0; i < s.samples; ++i) {
       const VectorXd y = (samples[std::size_t(i)].y - old_mean) / sigma_;
       const double weight =
           s.weights[i] >= 0 ? s.weights[i] : s.weights[i] * n / std::max(whitened(y).squaredNorm(), 1e-300);
       change += s.c_mu * weight * y * y.transpose();
     }
-    covariance_ = (1 - taken) * covariance_ + change;
+    covariance_ = (1 - decay) * covariance_ + change;
   }
 
   void decompose() {
@@ -205,7 +205,7 @@ class CmaEs {
   }
 
  private:
-  // Every variable is fixed: there is one point.
+  // Evaluates the only point there is when every variable is fixed.
   OptimizeResult run_fixed() {
     std::vector<Sample> only(1);
     only[0].y = VectorXd(0);
@@ -214,7 +214,8 @@ class CmaEs {
     return best_.result();
   }
 
-  // One descent from a random point, or from the start given; false when the whole run is to end.
+  // Runs one descent from a random point, or from the given start. Returns false when the whole run is to
+  // end.
   bool descend(const Strategy& strategy, bool from_start) {
     Distribution distribution(from_start ? variables_.from_box(options_.start) : random_mean());
     std::vector<double> bests;
@@ -238,7 +239,7 @@ class CmaEs {
     return mean;
   }
 
-  // As many samples as the budget allows: the last generation may be short.
+  // Draws a generation, or as many samples as the budget still allows.
   std::vector<Sample> draw(const Strategy& strategy, const Distribution& distribution) {
     const std::int64_t left = options_.max_evaluations - best_.result().evaluations;
     std::vector<Sample> samples(static_cast<std::size_t>(std::min<std::int64_t>(strategy.samples, left)));

@@ -1,4 +1,4 @@
-// Covariance matrix adaptation evolution strategy.
+// Minimises by the covariance matrix adaptation evolution strategy; arguments as in optimizer.h.
 #pragma once
 
 #include "estimation/optimize/optimizer.h"

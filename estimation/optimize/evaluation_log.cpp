@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-// Two of 32 bits with different starts; of some 10^5 points two share all 64 bits once in 10^9 runs.
+// Two hashes of 32 bits with different starts. Among 10^5 points, two share all 64 bits once in 10^9 runs.
 std::uint64_t key_of(std::span<const double> x) {
   std::uint32_t low = 1, high = 2;
   for (const double value : x) {

@@ -1,6 +1,6 @@
-// What an objective's values were, by the points they were asked for. The optimisers are functions of
-// objective, bounds and options alone, so a run that is begun again with the log of an earlier one takes the
-// same way at once to where that one stopped, whatever the algorithm: that is all a checkpoint needs.
+// A log of an objective's values by their points, which serves as a checkpoint. The optimisers are functions
+// of objective, bounds and options alone. A run that starts with the log of an earlier run therefore repeats
+// its steps without evaluations, and goes on where the earlier run stopped.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace astrolith {
 
 class EvaluationLog {
  public:
-  // May be called from many threads at once.
+  // Many threads may call these functions at once.
   std::optional<double> find(std::span<const double> x) const;
   void add(std::span<const double> x, double value);
   std::size_t size() const;
 
-  // Keys are hashes of all bits of a point; ascending.
+  // The values by key, ascending. A key is a hash of all bits of a point.
   std::map<std::uint64_t, double> entries() const;
   void restore(std::map<std::uint64_t, double> entries);
 
@@ -29,7 +29,8 @@ class EvaluationLog {
   std::map<std::uint64_t, double> values_;
 };
 
-// The objective, asked only where the log has no value, and logged. Both must outlive the result.
+// An objective that evaluates `objective` only at points without a value in the log, and adds the values to
+// the log. `objective` and `log` must outlive the result.
 BatchObjective logged(const BatchObjective& objective, EvaluationLog& log);
 
 }  // namespace astrolith

@@ -36,7 +36,7 @@ void require(nlopt_result status, const char* what) {
   if (status < 0) throw WorkError(std::string("NLopt refuses its ") + what);
 }
 
-// One run; lives on one thread.
+// One run, on one thread.
 class NloptRun {
  public:
   NloptRun(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& options,
@@ -44,7 +44,7 @@ class NloptRun {
       : objective_(objective), bounds_(bounds), options_(options), best_(options, progress) {}
 
   OptimizeResult run() {
-    // The generator's state belongs to the thread, which is ours alone; 32 bits of seed are all it takes.
+    // The generator's state belongs to the thread, which no other run uses. Its seed has 32 bits.
     nlopt_srand(mix_bits(static_cast<std::uint32_t>(options_.seed) ^
                          mix_bits(static_cast<std::uint32_t>(options_.seed >> 32))));
     set_up();
@@ -93,7 +93,7 @@ class NloptRun {
   }
 
   double evaluate_one(std::span<const double> x) {
-    // Some algorithms make a few more calls after being told to stop.
+    // Some algorithms make a few more calls after nlopt_force_stop.
     if (ended_) return std::numeric_limits<double>::infinity();
     const std::vector<double> point(x.begin(), x.end());
     const double value = finite_or_infinity(objective_(std::span(&point, 1)).front());
@@ -108,7 +108,7 @@ class NloptRun {
     return value;
   }
 
-  // The algorithm ended by itself.
+  // Sets the termination after the algorithm ended by itself.
   void finish(nlopt_result status) {
     const bool converged = status == NLOPT_SUCCESS || status == NLOPT_FTOL_REACHED ||
                            status == NLOPT_XTOL_REACHED || status == NLOPT_ROUNDOFF_LIMITED;
@@ -132,8 +132,8 @@ class NloptRun {
 
 OptimizeResult nlopt_search(const BatchObjective& objective, const Bounds& bounds,
                             const OptimizeOptions& options, const Progress& progress) {
-  // NLopt keeps its random state per thread, so each run gets a thread of its own: runs side by side, or an
-  // objective that itself minimises, cannot disturb one another's numbers.
+  // NLopt keeps its random state per thread, so each run gets a thread of its own. Runs side by side, or an
+  // objective that itself minimises, then cannot change each other's random numbers.
   OptimizeResult result;
   std::exception_ptr failure;
   std::thread([&] {

@@ -1,4 +1,4 @@
-// NLopt's algorithms with our bounds, seed, progress and bookkeeping.
+// Minimises by an algorithm of NLopt; arguments as in optimizer.h.
 #pragma once
 
 #include "estimation/optimize/optimizer.h"

@@ -37,7 +37,7 @@ void check(const Bounds& bounds, const OptimizeOptions& options) {
   }
 }
 
-// NaN starts at the lower bound.
+// Clips the start to the box. NaN becomes the lower bound.
 OptimizeOptions inside(OptimizeOptions options, const Bounds& bounds) {
   for (std::size_t d = 0; d < options.start.size(); ++d) {
     options.start[d] = std::fmin(std::fmax(options.start[d], bounds.lower[d]), bounds.upper[d]);

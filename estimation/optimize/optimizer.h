@@ -1,5 +1,5 @@
-// Minimises a function of a few dozen numbers inside a box, without derivatives: particle swarm, CMA-ES and
-// four algorithms of NLopt behind one face.
+// Minimises a function of a few dozen numbers inside a box, without derivatives. One interface serves
+// particle swarm, CMA-ES and four algorithms of NLopt.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ enum class OptimizerAlgorithm {
   cmaes   // covariance matrix adaptation with restarts (Hansen 2016; Auger and Hansen 2005)
 };
 
-// "pso", "crs2", ...; throws InputError that lists the names.
+// The algorithm of a name such as "pso". Throws InputError, which lists the names, for an unknown name.
 OptimizerAlgorithm optimizer_from_name(const std::string& name);
 std::string optimizer_name(OptimizerAlgorithm algorithm);
 
@@ -33,19 +33,20 @@ struct Bounds {
 
 struct OptimizeOptions {
   OptimizerAlgorithm algorithm = OptimizerAlgorithm::pso;
-  // Particles of pso; samples of cmaes a generation (at least 4, doubled at each restart); population of
-  // crs2, isres and esch (crs2 needs one more than there are variables and gets it); 0 = 20 for pso, 4 + 3
-  // log n for cmaes, NLopt's own choice for the others.
+  // The number of particles of pso, of samples per generation of cmaes, or the population of crs2, isres and
+  // esch. cmaes takes at least 4 and doubles the number at each restart. crs2 takes at least one more than
+  // there are variables. 0 stands for 20 for pso, 4 + 3 ln n for cmaes and n variables, and NLopt's choice
+  // for the others.
   int population = 0;
-  // Calls of the objective; pso rounds up to whole generations of population calls.
+  // The largest number of calls of the objective. pso rounds it up to whole generations.
   std::int64_t max_evaluations = 2000;
-  // Stop once value <= target.
+  // The run stops once value <= target.
   double target = -std::numeric_limits<double>::infinity();
-  // Stop sbplx and crs2 once all x[i] change by less than x_tolerance * (upper[i] - lower[i]).
+  // sbplx and crs2 stop once all x[i] change by less than x_tolerance * (upper[i] - lower[i]).
   double x_tolerance = 1e-9;
   std::uint64_t seed = 1;
-  // Where to start: one particle of pso, the first point of the others. Empty = a random particle or first
-  // mean, the box's centre for NLopt. Clipped to the box.
+  // The start: one particle of pso, the first point of the others, clipped to the box. If it is empty, pso
+  // and cmaes start at random and the others at the centre of the box.
   std::vector<double> start;
 };
 
@@ -62,14 +63,14 @@ struct OptimizeResult {
 // Values that are not finite count as +infinity. pso and cmaes call the objective from many threads at once.
 using Objective = std::function<double(std::span<const double> x)>;
 
-// The values at many points at once, for whoever has them cheaper together. pso and cmaes ask for those of a
-// generation, the others for one at a time.
+// The values at many points at once, for objectives that compute them faster together. pso and cmaes ask for
+// all points of a generation, the others for one point at a time.
 using BatchObjective = std::function<std::vector<double>(std::span<const std::vector<double>> points)>;
 
-// The result is a function of objective, bounds and options alone: thread count and other runs in the process
-// change nothing. Progress is asked after every generation and may come from another thread than the
-// caller's; when it returns false the best so far is returned. Exceptions of the objective end the run and
-// are rethrown. Wrong bounds or options: InputError.
+// Minimises the objective. The result is a function of objective, bounds and options alone: the thread count
+// and other runs in the process do not change it. `progress` is called after every generation, possibly from
+// another thread than the caller's; when it returns false, the best point so far is returned. Exceptions of
+// the objective end the run and are rethrown. Throws InputError for wrong bounds or options.
 OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options = {},
                         const Progress& progress = {});
 OptimizeResult minimize(const BatchObjective& objective, const Bounds& bounds,

@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-// Type 1'' constriction of Clerc and Kennedy 2002 with phi = c1 + c2 = 4.1:
+// The constriction of type 1'' of Clerc and Kennedy 2002 with phi = c1 + c2 = 4.1:
 // chi = 2 / |2 - phi - sqrt(phi^2 - 4 phi)|.
 constexpr double kConstriction = 0.7298437881283576;
 constexpr double kAttraction = 2.05;  // c1 = c2
@@ -20,13 +20,13 @@ struct Particle {
   double best_value = 0;
 };
 
-// Random numbers by (generation, particle), so that no order of evaluation matters.
+// Random numbers of one particle in one generation. They do not depend on the order of evaluation.
 CounterRandom random_of(const OptimizeOptions& options, std::int64_t generation, std::size_t particle) {
   return CounterRandom(options.seed, static_cast<std::uint64_t>(generation) << 32 | particle);
 }
 
-// Uniform positions, and velocities that lead half way to another uniform position (Bratton and Kennedy
-// 2007).
+// A particle at a uniform position, whose velocity leads half way to another uniform position (Bratton and
+// Kennedy 2007).
 Particle scatter(const Bounds& bounds, CounterRandom random) {
   Particle p;
   for (std::size_t d = 0; d < bounds.lower.size(); ++d) {

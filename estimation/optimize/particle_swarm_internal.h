@@ -1,4 +1,4 @@
-// Particle swarm optimisation with constriction.
+// Minimises by a particle swarm with constriction; arguments as in optimizer.h.
 #pragma once
 
 #include "estimation/optimize/optimizer.h"

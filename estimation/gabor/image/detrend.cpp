@@ -10,7 +10,8 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// P_0 .. P_degree at n evenly spaced pixels, a column each: Gram-Schmidt on x P_(i-1), twice for rounding.
+// The Gram polynomials P_0 .. P_degree at n evenly spaced pixels, one per column. Gram-Schmidt on x P_(i-1)
+// runs twice to remove rounding errors.
 Eigen::MatrixXd gram_polynomials(Eigen::Index n, int degree) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1.0, 1.0);
   Eigen::MatrixXd p(n, degree + 1);
@@ -30,16 +31,16 @@ void remove_trend(GreyImage& image, int degree, TrendModel model, const std::str
   const Eigen::MatrixXd px = gram_polynomials(image.width, degree);
   const Eigen::MatrixXd py = gram_polynomials(image.height, degree);
   Eigen::MatrixXd c = py.transpose() * v * px;
-  for (int j = 0; j <= degree; ++j) c.row(j).tail(j).setZero();  // terms above the total degree
+  for (int j = 0; j <= degree; ++j) c.row(j).tail(j).setZero();  // terms with i + j above the degree
   const double mean = v.mean();
-  // A row at a time: the trend of a whole image would take as much memory as the image.
+  // The trend is computed row by row: for the whole image it would take as much memory as the image.
   for (Eigen::Index y = 0; y < v.rows(); ++y) {
     const Eigen::RowVectorXd t = (py.row(y) * c) * px.transpose();
     if (model == TrendModel::kAdded) {
       v.row(y) += Eigen::RowVectorXd::Constant(v.cols(), mean) - t;
     } else if (t.minCoeff() < 0.1 * mean || mean <= 0.0) {
       throw InputError(name +
-                       ": --detrend-by division: the trend comes near zero; use a lower degree, or "
+                       ": trend removal by division: the trend comes near zero; use a lower degree, or "
                        "subtraction");
     } else {
       v.row(y) = v.row(y).cwiseQuotient(t) * mean;

@@ -6,7 +6,8 @@
 
 namespace astrolith {
 
-// Row-major, width * height values; full scale of integer images is 1, float images keep their values.
+// A grey image of width x height pixels, row-major, the top row first. The full scale of an integer image is
+// 1; a float image keeps its values.
 struct GreyImage {
   int width = 0;
   int height = 0;

@@ -28,8 +28,8 @@ Eigen::Matrix3d covariance(const std::vector<GreyImage>& planes) {
   return sum / static_cast<double>(n);
 }
 
-// A sign for an eigenvector, which has none: towards brighter, and where that is undecided its first large
-// part is positive.
+// Chooses the sign of an eigenvector: it points towards brighter colours. Where its components add up to
+// zero, its first component that is not zero becomes positive.
 Eigen::Vector3d towards_brighter(Eigen::Vector3d axis) {
   double sign = axis.sum();
   for (int i = 0; std::abs(sign) < 1e-9 && i < 3; ++i) sign = axis(i);

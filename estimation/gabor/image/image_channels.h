@@ -14,10 +14,10 @@ struct ImageChannel {
   Vec3d axis;       // unit vector; red, green, blue
 };
 
-// The principal components of the colours: the axes are the eigenvectors of the 3 x 3 covariance over all
-// pixels, the channel of the largest variance first. Each axis points towards brighter colours (its parts add
-// up to >= 0). Channels whose standard deviation is below `smallest_deviation` are left out, except the
-// first. planes: red, green and blue of the same size.
+// The principal components of the colours. The axes are the eigenvectors of the 3 x 3 covariance over all
+// pixels; the channel of the largest variance is the first. Each axis points towards brighter colours: its
+// components add up to >= 0. Channels whose standard deviation is below `smallest_deviation` are left out,
+// except the first. `planes` holds red, green and blue, all of the same size.
 std::vector<ImageChannel> principal_channels(const std::vector<GreyImage>& planes,
                                              double smallest_deviation = 1e-3);
 

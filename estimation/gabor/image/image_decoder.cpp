@@ -14,8 +14,8 @@
 namespace astrolith {
 namespace {
 
-// Image libraries print about damaged files on their own, past every logger; while this lives, what is
-// printed on stderr goes nowhere. Our error says it once.
+// Image libraries print about damaged files on stderr, past every logger. While an object of this class
+// lives, stderr goes to /dev/null; our own error reports the damage.
 class SilentStderr {
  public:
   SilentStderr() : kept_(::dup(STDERR_FILENO)) {
@@ -43,7 +43,7 @@ struct CloseTiff {
   throw InputError(name + ": " + what);
 }
 
-// OpenCV has no 16-bit floats. Rows of the first page, grey or RGB, alpha left out.
+// Reads the first page of a TIFF of 16-bit floats, which OpenCV cannot read, as grey or RGB without alpha.
 cv::Mat decode_half_floats(const std::string& name) {
   const std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(name.c_str(), "r"));
   std::uint32_t width = 0, height = 0;
@@ -84,7 +84,7 @@ cv::Mat read_with_opencv(const std::string& name, int flags) {
 
 cv::Mat decode_image(const std::filesystem::path& file, const ImageHeader& header) {
   if (header.half_floats) return decode_half_floats(file.string());
-  // These flags, unlike IMREAD_UNCHANGED, turn the image as its orientation says.
+  // These flags, unlike IMREAD_UNCHANGED, turn the image upright.
   const cv::Mat mat = read_with_opencv(file.string(), cv::IMREAD_ANYCOLOR | cv::IMREAD_ANYDEPTH);
   if (mat.empty()) {
     fail(file.string(), "the image cannot be decoded; it is damaged or of a rare kind, save it again as PNG");

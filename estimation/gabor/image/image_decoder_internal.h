@@ -1,4 +1,4 @@
-// The pixels of an image file, by OpenCV and, for what it does not know, libtiff.
+// Decodes image files by OpenCV, and TIFF files of 16-bit floats by libtiff.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,12 @@
 
 namespace astrolith {
 
-// 1 or 3 channels (blue, green, red) of 8 or 16 bits unsigned or of floats, palettes expanded, upright as the
-// file's EXIF orientation asks. Throws InputError for what cannot be decoded.
+// An image of 1 or 3 channels (blue, green, red), 8 or 16 bits unsigned or floats. Palettes are expanded, and
+// the image is turned upright as the file's EXIF orientation asks. Throws InputError for files that cannot be
+// decoded.
 cv::Mat decode_image(const std::filesystem::path& file, const ImageHeader& header);
 
-// Share of pixels that the alpha channel calls not quite opaque.
+// The share of pixels that are not fully opaque, in [0, 1].
 double share_not_opaque(const std::filesystem::path& file, const ImageHeader& header);
 
 }  // namespace astrolith

@@ -39,8 +39,8 @@ ImageHeader png_header(std::ifstream& in, const Bytes& start) {
   return header;
 }
 
-// Whether FF D9, the end of the image, still comes: decoders fill what is missing with grey and say nothing.
-// Scans hold no FF that D9 follows.
+// Whether the end of a JPEG, FF D9, still follows. Decoders fill the missing part of a cut file with grey and
+// do not report it. FF D9 cannot occur inside a scan.
 bool jpeg_ends(std::ifstream& in) {
   std::vector<char> block(std::size_t{1} << 16);
   bool after_ff = false;
@@ -53,8 +53,8 @@ bool jpeg_ends(std::ifstream& in) {
   return false;
 }
 
-// A JPEG is a chain of segments FF, marker, length; the frame header (C0 to CF but for C4, C8 and CC) holds
-// the size.
+// A JPEG is a chain of segments that begin with FF, a marker and a length. The segment of the frame header
+// holds the size; its marker is C0 to CF, but not C4, C8 or CC.
 ImageHeader jpeg_header(std::ifstream& in, const std::string& name) {
   in.seekg(2);
   for (int segment = 0; segment < 10000; ++segment) {
@@ -78,7 +78,7 @@ ImageHeader jpeg_header(std::ifstream& in, const std::string& name) {
 }
 
 ImageHeader tiff_header(const std::string& name) {
-  // libtiff prints on its own unless told not to.
+  // Without handlers libtiff does not print.
   TIFFSetErrorHandler(nullptr);
   TIFFSetWarningHandler(nullptr);
   TIFF* tiff = TIFFOpen(name.c_str(), "r");

@@ -1,4 +1,4 @@
-// What an image file says about itself, read without decoding it.
+// Reads the header of an image file without decoding the image.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct ImageHeader {
   bool half_floats = false;  // 16-bit floats (TIFF)
 };
 
-// Throws InputError for files that cannot be read or are none of the three.
+// Throws InputError for files that cannot be read, and for files that are not PNG, JPEG or TIFF.
 ImageHeader read_image_header(const std::filesystem::path& file);
 
 }  // namespace astrolith

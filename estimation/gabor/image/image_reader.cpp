@@ -22,7 +22,7 @@ ImageHeader read_fitting_header(const std::filesystem::path& file) {
   return header;
 }
 
-// What turns a stored number into [0, 1].
+// The stored number that becomes 1.
 double full_scale(const cv::Mat& mat, const std::string& name) {
   switch (mat.depth()) {
     case CV_8U:
@@ -38,7 +38,7 @@ double full_scale(const cv::Mat& mat, const std::string& name) {
   }
 }
 
-// Float images hold anything; beyond this a value is a "no data" mark or in a unit too small.
+// Float images may hold any number. A larger value is a "no data" mark, or its unit is too small.
 constexpr double kLargestValue = 1e5;
 
 void require_usable(double value, int x, int y, const std::string& name) {
@@ -49,7 +49,7 @@ void require_usable(double value, int x, int y, const std::string& name) {
                   name, x, y, value, kLargestValue));
 }
 
-// Calls take(pixel) with the channels of every pixel, scaled, row by row.
+// Calls take(pixel) with the scaled channels of every pixel, row by row.
 template <typename Take>
 void for_each_pixel(const cv::Mat& mat, const std::string& name, const Take& take) {
   const double scale = 1.0 / full_scale(mat, name);

@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-// One axis of a lobe where it is not negligible, and its derivative by the centre in deviations.
+// One axis of a lobe at the bins where it is not negligible, and its derivative by the centre in deviations.
 struct AxisProfile {
   std::vector<std::size_t> bins;
   std::vector<double> values;
@@ -18,11 +18,11 @@ struct AxisProfile {
 };
 
 AxisProfile axis_profile(int n, double center, double deviation) {
-  constexpr double kReach = 5.0;  // deviations: 4e-6 of the peak
+  constexpr double kReach = 5.0;  // deviations; beyond, the Gaussian is below 4e-6 of its peak
   AxisProfile profile;
   const auto first = static_cast<int>(std::ceil(center - kReach * deviation));
   const auto last = static_cast<int>(std::floor(center + kReach * deviation));
-  if (last - first + 1 >= n) {  // wraps around: every bin, and all the images of the Gaussian in it
+  if (last - first + 1 >= n) {  // the Gaussian covers every bin, and its periodic images add up
     profile.values.assign(static_cast<std::size_t>(n), 0.0);
     profile.slopes = profile.values;
     for (int i = 0; i < n; ++i) profile.bins.push_back(static_cast<std::size_t>(i));
@@ -54,7 +54,7 @@ LobeOnGrid on_grid(const SpectralLobe& lobe, int width, int height) {
           axis_profile(height, lobe.y * height, deviation * height), lobe.height};
 }
 
-// The half of each lobe at +c; the half at -c is its mirror image.
+// The sum over the lobes of their Gaussians at +c. Those at -c are mirror images.
 std::vector<double> sum_of_halves(const std::vector<LobeOnGrid>& lobes, int width, int height) {
   std::vector<std::vector<std::pair<const LobeOnGrid*, double>>> by_row(static_cast<std::size_t>(height));
   for (const LobeOnGrid& lobe : lobes) {
@@ -73,7 +73,7 @@ std::vector<double> sum_of_halves(const std::vector<LobeOnGrid>& lobes, int widt
   return grid;
 }
 
-// Sums of weight times a lobe's half and of its derivatives.
+// The sums over the grid of weight times a lobe's Gaussian at +c, and times its derivatives.
 struct LobeSums {
   double value = 0.0, slope_x = 0.0, slope_y = 0.0;
 };

@@ -1,4 +1,4 @@
-// How far a sum of lobes is from a spectrum, as a function of where the lobes are and how high.
+// The distance of a sum of lobes from a spectrum, as a function of the lobes' centres and heights.
 #pragma once
 
 #include <span>
@@ -13,18 +13,21 @@ namespace astrolith {
 //
 //   sum over f != 0 of (sqrt(S(f) + e) - sqrt(target(f) + e))^2 / sum of target,
 //
-// of S = sum_j height_j (g(f - c_j) + g(f + c_j)), e = 1e-6 of the mean power, which keeps the roots smooth.
-// Three parameters a lobe: how far the centre has moved along x and y, in deviations of the lobe, and the
-// logarithm of height over the height at the start. All are 0 at the start; bandwidths stay.
+// of S = sum_j height_j (g(f - c_j) + g(f + c_j)). e is 1e-6 of the mean power and keeps the roots smooth.
+// Each lobe has three parameters: the motion of its centre along x and y, in deviations of the lobe, and the
+// logarithm of its height over its height at the start. All parameters are 0 at the start. Bandwidths do not
+// change.
 class LobeMisfit {
  public:
   LobeMisfit(std::vector<SpectralLobe> start, const PowerSpectrum& target);
 
   int parameters() const { return 3 * static_cast<int>(start_.size()); }
-  // `gradient`: empty, or as many values as there are parameters. Infinite where a lobe has no finite place
-  // or height: an optimiser that strays there turns back.
+  // The misfit, and its derivatives by the parameters in `gradient`, which is empty or has as many values as
+  // `parameters`. The misfit is infinite where a lobe's centre or height is not finite, so that an optimiser
+  // turns back.
   double operator()(std::span<const double> parameters, std::span<double> gradient) const;
-  // Centres are brought back to [-1/2, 1/2): the grid is periodic.
+  // The lobes that the parameters describe. Centres are wrapped to [-1/2, 1/2) cycles per pixel, since the
+  // grid is periodic.
   std::vector<SpectralLobe> lobes_at(std::span<const double> parameters) const;
 
  private:

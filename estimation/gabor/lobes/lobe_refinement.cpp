@@ -25,7 +25,7 @@ class MisfitFunction : public ceres::FirstOrderFunction {
   const LobeMisfit& misfit_;
 };
 
-// The root of the misfit is the distance, but for the tiny offset in its roots.
+// The optimal-transport distance: the root of the misfit, whose small offset e is neglected.
 double distance_of(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
   const LobeMisfit misfit(lobes, target);
   const std::vector<double> start(static_cast<std::size_t>(misfit.parameters()), 0.0);
@@ -42,7 +42,7 @@ std::vector<SpectralLobe> refine_lobes(const std::vector<SpectralLobe>& lobes, c
   ceres::GradientProblemSolver::Options options;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 40;
-  options.function_tolerance = 1e-3;  // stop when a step lowers the misfit by a smaller part
+  options.function_tolerance = 1e-3;  // stop when a step lowers the misfit by a smaller share
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, parameters.data(), &summary);
   return misfit.lobes_at(parameters);

@@ -19,11 +19,11 @@ LobeProfile profile_of(const SpectralLobe& lobe, int width, int height, double a
                            deviation * height, amplitude);
 }
 
-// Least squares over heights: |sum_j x_j a_j - s|^2 in the metric = x'G x - 2 q'x + constant, columns of unit
-// norm.
+// The least squares over heights, |sum_j x_j a_j - s|^2 = x'G x - 2 q'x + constant. The norm is weighted, and
+// the columns a_j have unit norm.
 struct HeightFit {
   std::vector<SpectralLobe> lobes;
-  std::vector<double> norms;  // of the columns before scaling
+  std::vector<double> norms;  // norms of the columns before scaling
   Eigen::MatrixXd G;
   Eigen::VectorXd q;
   Eigen::VectorXd x;
@@ -85,9 +85,9 @@ HeightFit set_up(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
   return fit;
 }
 
-// Removing lobe j and refitting the others raises the sum of squares by x_j^2 / (G^-1)_jj, and moves x by
-// -(G^-1)_.j x_j / (G^-1)_jj: the inverse of what is left follows by a rank-one step, so each removal is
-// cheap.
+// The lobes that remain after the least needed ones are removed one by one. The removal of lobe j, with the
+// others refitted, raises the sum of squares by x_j^2 / (G^-1)_jj and moves x by -(G^-1)_.j x_j / (G^-1)_jj.
+// The inverse for the remaining lobes follows by a rank-one step, so each removal is cheap.
 std::vector<Eigen::Index> most_needed(const HeightFit& fit, int count) {
   const Eigen::Index n = fit.x.size();
   const Eigen::MatrixXd ridged = fit.G + 1e-9 * Eigen::MatrixXd::Identity(n, n);
@@ -96,7 +96,7 @@ std::vector<Eigen::Index> most_needed(const HeightFit& fit, int count) {
   std::vector<Eigen::Index> kept(static_cast<std::size_t>(n));
   std::iota(kept.begin(), kept.end(), Eigen::Index{0});
   while (static_cast<int>(kept.size()) > count) {
-    // A height that the refits have made negative is no longer wanted at all.
+    // A lobe whose height became negative by the refits goes first.
     const auto rise = [&](Eigen::Index j) { return x(j) <= 0.0 ? x(j) : x(j) * x(j) / inverse(j, j); };
     const auto least = std::min_element(kept.begin(), kept.end(),
                                         [&](Eigen::Index a, Eigen::Index b) { return rise(a) < rise(b); });

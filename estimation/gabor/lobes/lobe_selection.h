@@ -1,4 +1,4 @@
-// From the many lobes of basis pursuit to the few of a layer.
+// Selects the few lobes of a layer from the many lobes of basis pursuit.
 #pragma once
 
 #include <vector>
@@ -16,20 +16,22 @@ struct SpectralLobe {
   double height = 0.0;  // power, > 0
 };
 
-// The lobes with a positive coefficient.
+// The lobes of the atoms with a positive coefficient; x has dictionary.size() values.
 std::vector<SpectralLobe> lobes_of(const GaborDictionary& dictionary, const std::vector<double>& x);
 
-// Refits the heights to the spectrum without the penalty, which had pulled them down (debiasing):
-// non-negative least squares of weight * (model - spectrum), weight as in the dictionary. Then removes, one
-// at a time, the lobe whose removal raises that sum least, all others refitted, until at most max_lobes are
-// left. Neighbours that stand in for each other go first.
+// Refits the heights to the spectrum without the penalty, which had pulled them down (debiasing). The fit is
+// a non-negative least squares of weight * (model - spectrum), with the weights of the dictionary. Then lobes
+// are removed one by one until at most max_lobes are left. Each time the lobe goes whose removal raises the
+// sum of squares least, after all others are refitted. So the first to go is a lobe whose neighbour can
+// replace it.
 std::vector<SpectralLobe> select_lobes(std::vector<SpectralLobe> lobes, const PowerSpectrum& spectrum,
                                        const std::vector<double>& weight, int max_lobes);
 
-// What a lobe adds to the variance of a texture: its mean over the grid, frequency 0 included.
+// The variance that a lobe adds to a texture of width x height pixels: its mean over the grid, frequency 0
+// included.
 double lobe_variance(const SpectralLobe& lobe, int width, int height);
 
-// The sum of a layer's lobes on the grid; frequency 0, which no image of this size shows, holds no power.
+// The sum of a layer's lobes on a width x height grid. Frequency 0 holds no power.
 PowerSpectrum spectrum_of(const std::vector<GaborLobe>& lobes, int width, int height);
 
 }  // namespace astrolith

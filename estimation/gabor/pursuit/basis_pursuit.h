@@ -24,7 +24,7 @@ struct BasisPursuitOptions {
   int max_iterations = 20000;
 };
 
-// One check of the certificate.
+// The values at one check of the certificate.
 struct GapSample {
   int iteration = 0;
   double primal = 0.0;        // P(x)
@@ -36,20 +36,21 @@ struct BasisPursuitResult {
   double primal = 0.0;
   double relative_gap = 0.0;  // certified: (P(x) - minimum of P) / P(x) is at most this
   int iterations = 0;
-  bool reached = false;  // relative_gap is at most what was asked for
+  bool reached = false;  // relative_gap is at most the one asked for
   std::vector<GapSample> history;
 };
 
 // The smallest penalty whose solution is x = 0: max_j (a_j's)+.
 double largest_penalty(const GaborDictionary& dictionary, std::span<const double> target);
 
-// Accelerated proximal gradient (Beck and Teboulle 2009) with the gradient restart of O'Donoghue and Candes
-// 2015 and a step from a certified bound on |A'A|. Slow on this dictionary, and simple: the reference.
+// FISTA: the accelerated proximal gradient (Beck and Teboulle 2009) with the gradient restart of O'Donoghue
+// and Candes 2015 and a step from a certified bound on |A'A|. It is slow on this dictionary, but simple, and
+// serves as the reference.
 BasisPursuitResult solve_fista(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
                                const Progress& progress = {});
 
-// Working set: solves the problem exactly on a few atoms, lets the certificate name the atoms that violate
-// optimality most, adds them, drops those at zero, repeats. `start`, if not empty, is a first guess of x.
+// The working-set method. It solves the problem exactly on a few atoms, adds the atoms that violate
+// optimality most, drops the atoms at zero, and repeats. `start`, if not empty, is a first guess of x.
 BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
                                      const Progress& progress = {}, std::span<const double> start = {});
 

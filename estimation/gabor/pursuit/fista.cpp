@@ -10,8 +10,9 @@
 namespace astrolith {
 namespace {
 
-// An upper bound on the largest eigenvalue of A'A. For a matrix without negative entries and any positive v
-// it is at most max_j (A'A v)_j / v_j (Collatz and Wielandt); power iterations make that bound tight.
+// An upper bound on the largest eigenvalue of A'A. If a matrix has no negative entries, its largest
+// eigenvalue is at most max_j (A'A v)_j / v_j for any positive v (Collatz and Wielandt). Power iterations
+// make this bound tight.
 double largest_eigenvalue_bound(const GaborDictionary& dictionary) {
   constexpr int kIterations = 40;
   std::vector<double> v(dictionary.size(), 1.0);
@@ -28,7 +29,7 @@ double largest_eigenvalue_bound(const GaborDictionary& dictionary) {
       largest = std::max(largest, next[j]);
     }
     bound = std::min(bound, ratio);
-    // A floor keeps v positive; any positive v gives a valid bound.
+    // A floor keeps v positive, as the bound needs.
     for (std::size_t j = 0; j < v.size(); ++j) v[j] = std::max(next[j] / largest, 1e-6);
   }
   return bound;
@@ -36,64 +37,103 @@ double largest_eigenvalue_bound(const GaborDictionary& dictionary) {
 
 struct Iterate {
   std::vector<double> x;      // coefficients
-  std::vector<double> image;  // A x: kept, so that extrapolation costs no product
+  std::vector<double> image;  // A x, kept so that extrapolation costs no product
+};
+
+double sum_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum;
+}
+
+// out = a + factor * (a - b)
+void extrapolate(const std::vector<double>& a, const std::vector<double>& b, double factor,
+                 std::vector<double>& out) {
+  for (std::size_t i = 0; i < a.size(); ++i) out[i] = a[i] + factor * (a[i] - b[i]);
+}
+
+class Fista {
+ public:
+  explicit Fista(const BasisPursuitProblem& problem)
+      : problem_(problem),
+        step_(1.0 / largest_eigenvalue_bound(problem.dictionary)),
+        certificate_(problem),
+        now_{std::vector<double>(problem.dictionary.size(), 0.0),
+             std::vector<double>(problem.dictionary.rows(), 0.0)},
+        previous_(now_),
+        ahead_(now_),
+        r_(problem.dictionary.rows()),
+        gradient_(problem.dictionary.size()) {}
+
+  BasisPursuitResult run(const BasisPursuitOptions& options, const Progress& progress) {
+    constexpr int kCheckEvery = 10;
+    BasisPursuitResult result;
+    for (int k = 0;; ++k) {
+      if (k % kCheckEvery == 0) {
+        certify(k, result);
+        result.reached = result.relative_gap <= options.relative_gap;
+        const bool go_on = report(progress, static_cast<double>(k) / options.max_iterations,
+                                  fmt::format("gap {:.2e}", result.relative_gap));
+        if (result.reached || !go_on || k >= options.max_iterations) break;
+      }
+      const bool uphill = proximal_step();
+      accelerate(uphill);
+    }
+    result.x = std::move(now_.x);
+    return result;
+  }
+
+ private:
+  void certify(int iteration, BasisPursuitResult& result) {
+    update_gradient(now_);
+    result.relative_gap = certificate_.check(r_, gradient_, sum_of(now_.x));
+    result.primal = certificate_.primal();
+    result.iterations = iteration;
+    result.history.push_back({iteration, result.primal, result.relative_gap});
+  }
+
+  void update_gradient(const Iterate& at) {
+    for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = problem_.target[i] - at.image[i];
+    problem_.dictionary.analyze(r_, gradient_);
+  }
+
+  // x = (ahead + step (A'r - penalty))+. Returns whether momentum points uphill:
+  // (ahead - now)'(now - previous) > 0.
+  bool proximal_step() {
+    update_gradient(ahead_);
+    std::swap(previous_, now_);
+    double uphill = 0.0;
+    for (std::size_t j = 0; j < now_.x.size(); ++j) {
+      now_.x[j] = std::max(0.0, ahead_.x[j] + step_ * (gradient_[j] - problem_.penalty));
+      uphill += (ahead_.x[j] - now_.x[j]) * (now_.x[j] - previous_.x[j]);
+    }
+    problem_.dictionary.synthesize(now_.x, now_.image);
+    return uphill > 0.0;
+  }
+
+  // Extrapolates by the momentum of Beck and Teboulle, or begins with none where it pointed uphill.
+  void accelerate(bool restart) {
+    const double next = restart ? 1.0 : 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum_ * momentum_));
+    const double factor = restart ? 0.0 : (momentum_ - 1.0) / next;
+    momentum_ = next;
+    extrapolate(now_.x, previous_.x, factor, ahead_.x);
+    extrapolate(now_.image, previous_.image, factor, ahead_.image);
+  }
+
+  const BasisPursuitProblem& problem_;
+  double step_;
+  DualityCertificate certificate_;
+  Iterate now_, previous_, ahead_;  // ahead_ is the extrapolated point
+  std::vector<double> r_;           // residual s - A x
+  std::vector<double> gradient_;    // A'r, the negative gradient of the quadratic
+  double momentum_ = 1.0;
 };
 
 }  // namespace
 
 BasisPursuitResult solve_fista(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
                                const Progress& progress) {
-  constexpr int kCheckEvery = 10;
-  const GaborDictionary& dictionary = problem.dictionary;
-  const double step = 1.0 / largest_eigenvalue_bound(dictionary);
-  DualityCertificate certificate(problem);
-  Iterate now{std::vector<double>(dictionary.size(), 0.0), std::vector<double>(dictionary.rows(), 0.0)};
-  Iterate previous = now;
-  Iterate ahead = now;  // the extrapolated point
-  std::vector<double> r(dictionary.rows());
-  std::vector<double> gradient(dictionary.size());  // A'r: the negative gradient of the quadratic
-  const auto residual_of = [&](const Iterate& at) {
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] = problem.target[i] - at.image[i];
-    dictionary.analyze(r, gradient);
-  };
-
-  BasisPursuitResult result;
-  double momentum = 1.0;
-  for (int k = 0;; ++k) {
-    if (k % kCheckEvery == 0) {
-      residual_of(now);
-      double sum = 0.0;
-      for (const double x : now.x) sum += x;
-      result.relative_gap = certificate.check(r, gradient, sum);
-      result.primal = certificate.primal();
-      result.iterations = k;
-      result.history.push_back({k, result.primal, result.relative_gap});
-      result.reached = result.relative_gap <= options.relative_gap;
-      const bool go_on = report(progress, static_cast<double>(k) / options.max_iterations,
-                                fmt::format("gap {:.2e}", result.relative_gap));
-      if (result.reached || !go_on || k >= options.max_iterations) break;
-    }
-    residual_of(ahead);
-    std::swap(previous, now);
-    double uphill = 0.0;  // (ahead - now)'(now - previous): positive when momentum points uphill
-    for (std::size_t j = 0; j < now.x.size(); ++j) {
-      now.x[j] = std::max(0.0, ahead.x[j] + step * (gradient[j] - problem.penalty));
-      uphill += (ahead.x[j] - now.x[j]) * (now.x[j] - previous.x[j]);
-    }
-    dictionary.synthesize(now.x, now.image);
-    const double next_momentum =
-        uphill > 0.0 ? 1.0 : 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
-    const double extrapolation = uphill > 0.0 ? 0.0 : (momentum - 1.0) / next_momentum;
-    momentum = next_momentum;
-    for (std::size_t j = 0; j < now.x.size(); ++j) {
-      ahead.x[j] = now.x[j] + extrapolation * (now.x[j] - previous.x[j]);
-    }
-    for (std::size_t i = 0; i < now.image.size(); ++i) {
-      ahead.image[i] = now.image[i] + extrapolation * (now.image[i] - previous.image[i]);
-    }
-  }
-  result.x = std::move(now.x);
-  return result;
+  return Fista(problem).run(options, progress);
 }
 
 }  // namespace astrolith

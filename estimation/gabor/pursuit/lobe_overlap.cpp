@@ -14,7 +14,7 @@ struct AxisTerm {
   double value;
 };
 
-// a_i b_i (or a_i b_-i) where it is not negligible.
+// The products a_i b_i (or a_i b_-i) that are not negligible.
 void axis_product(const std::vector<double>& a, const std::vector<double>& b, bool mirrored,
                   std::vector<AxisTerm>& terms) {
   terms.clear();
@@ -52,7 +52,7 @@ LobeProfile make_lobe_profile(int width, int height, double center_x, double cen
           amplitude};
 }
 
-// The metric is symmetric, so both halves of a give the same: 2 <g_a(f - m_a), b>.
+// <a, b> = 2 <g_a(f - m_a), b>, since the metric and b are symmetric.
 double lobe_overlap(const std::vector<double>& metric, const LobeProfile& a, const LobeProfile& b) {
   std::vector<AxisTerm> xs;
   std::vector<AxisTerm> ys;

@@ -11,7 +11,7 @@ namespace {
 
 using Indices = std::vector<Eigen::Index>;
 
-// Neighbouring lobes are almost parallel: a hint of a ridge keeps the factorisation positive.
+// Neighbouring lobes are almost parallel. A very small ridge keeps the factorisation positive.
 constexpr double kRidge = 1e-12;
 
 class ActiveSet {
@@ -23,10 +23,12 @@ class ActiveSet {
     }
   }
 
-  // The best coordinate alone always grows but for rounding, so every round lowers the value. What enters and
-  // leaves without lowering it by more than rounding does not count: it would come back for ever.
+  // Every round lowers the value, since the best coordinate alone always grows, apart from rounding.
+  // Coordinates that enter and leave without lowering the value by more than rounding do not count: they
+  // would come back for ever.
   bool minimize() {
-    // A start that comes from an earlier solution needs no first factorisation: the ridge leaves about this.
+    // A start that comes from an earlier solution has a gradient of about this size, which the ridge leaves.
+    // It needs no first factorisation.
     if (!free_.empty() && free_gradient() > 100.0 * tolerance_) descend(solve(free_));
     while (solves_left_ > 0) {
       const Eigen::VectorXd descent = q_ - G_ * x_;
@@ -56,15 +58,15 @@ class ActiveSet {
 
   double value_at(const Eigen::VectorXd& x) const { return x.dot(0.5 * (G_ * x) - q_); }
 
-  // The minimum over these coordinates, signs free.
+  // The minimum over these coordinates with any signs.
   Eigen::VectorXd solve(const Indices& at) {
     --solves_left_;
     const auto n = static_cast<Eigen::Index>(at.size());
     Eigen::MatrixXd block = G_(at, at);
     block.diagonal() *= 1.0 + kRidge;
     const Eigen::VectorXd right = q_(at);
-    // Blocked, and several times faster than the pivoted factorisation that is left for a block without full
-    // rank.
+    // The blocked factorisation is several times faster than the pivoted one, which serves blocks without
+    // full rank.
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(block);
     if (n > 0 && cholesky.info() == Eigen::Success) return cholesky.solve(right);
     block = G_(at, at);
@@ -77,8 +79,8 @@ class ActiveSet {
     return enter(entering) && value_at(x_) < before - 1e-14 * std::abs(before);
   }
 
-  // Lets those of `entering` (at zero now) into the free set that grow together, and descends; returns
-  // whether any does.
+  // Adds the coordinates of `entering`, which are at zero, to the free set as far as they grow together, and
+  // descends. Returns whether any of them grows.
   bool enter(Indices entering) {
     while (!entering.empty() && solves_left_ > 0) {
       Indices trial = free_;
@@ -93,16 +95,16 @@ class ActiveSet {
         descend(std::move(z));
         return true;
       }
-      // At least halved, best first, so that few factorisations end at those that do grow.
+      // The list is at least halved, and keeps the best, so that few factorisations find those that grow.
       growing.resize(std::min(growing.size(), entering.size() / 2));
       entering = std::move(growing);
     }
     return false;
   }
 
-  // Moves towards z, the minimum over the free coordinates, and on until one is reached that has no negative
-  // part. The step to the boundary never raises the value; the cut, which drops many coordinates for one
-  // factorisation, is taken where it is no worse.
+  // Moves towards z, the minimum over the free coordinates, until a minimum without negative coordinates is
+  // reached. The step to the boundary never raises the value. The cut at zero drops many coordinates for one
+  // factorisation and is taken where its value is no higher.
   void descend(Eigen::VectorXd z) {
     while (z.size() > 0 && z.minCoeff() <= 0.0) {
       Indices free_after_cut = free_;
@@ -128,7 +130,7 @@ class ActiveSet {
     free = std::move(kept);
   }
 
-  // Moves x towards z until the first coordinate reaches zero; those at zero leave the free set.
+  // Moves x towards z until the first coordinate reaches zero. Coordinates at zero leave the free set.
   void step_to_boundary(const Eigen::VectorXd& z) {
     double length = 1.0;
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -140,7 +142,7 @@ class ActiveSet {
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const double target = z(static_cast<Eigen::Index>(k));
       double& value = x_(free_[k]);
-      // The very quotient whose least is the length: multiplied out it may round, and nothing would leave.
+      // This is the quotient whose least is the length. A product could round, and nothing would leave.
       const bool leaves = target <= 0.0 && (value == 0.0 || value / (value - target) <= length);
       value = leaves ? 0.0 : std::max(0.0, value + length * (target - value));
       if (!leaves) kept.push_back(free_[k]);

@@ -26,8 +26,21 @@ class RestrictedProblem {
 
   bool contains(std::size_t j) const { return contained_[j]; }
   const std::vector<std::size_t>& atoms() const { return atoms_; }
-  const Eigen::VectorXd& x() const { return x_; }
 
+  // The solution as coefficients of the whole dictionary.
+  std::vector<double> coefficients() const {
+    std::vector<double> x(contained_.size(), 0.0);
+    for (std::size_t i = 0; i < atoms_.size(); ++i) x[atoms_[i]] = x_(static_cast<Eigen::Index>(i));
+    return x;
+  }
+
+  double sum_x() const {
+    double sum = 0.0;
+    for (const double x : x_) sum += x;
+    return sum;
+  }
+
+  // Adds atoms, with their values in `start` as a first guess, or 0 if `start` is empty.
   void add(const std::vector<std::size_t>& atoms, std::span<const double> start) {
     const auto old = static_cast<Eigen::Index>(atoms_.size());
     for (const std::size_t j : atoms) {
@@ -36,22 +49,13 @@ class RestrictedProblem {
       profiles_.push_back(profile(j));
     }
     const auto n = static_cast<Eigen::Index>(atoms_.size());
-    gram_.conservativeResize(n, n);
     x_.conservativeResize(n);
     for (Eigen::Index i = old; i < n; ++i)
       x_(i) = start.empty() ? 0.0 : start[atoms_[static_cast<std::size_t>(i)]];
-    parallel_for(old, n, [&](std::int64_t row) {
-      for (Eigen::Index column = 0; column <= row; ++column) {
-        const double product = row == column ? 1.0
-                                             : lobe_overlap(metric_, profiles_[static_cast<std::size_t>(row)],
-                                                            profiles_[static_cast<std::size_t>(column)]);
-        gram_(row, column) = gram_(column, row) = product;
-      }
-    });
+    extend_gram(old, n);
   }
 
-  // Returns whether the minimum was reached within so many factorisations: while the working set still grows,
-  // more than a few are better spent after its next atoms are known.
+  // Returns whether the minimum was reached within `max_solves` factorisations.
   bool solve(int max_solves) {
     Eigen::VectorXd q(x_.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -79,6 +83,20 @@ class RestrictedProblem {
   }
 
  private:
+  void extend_gram(Eigen::Index old, Eigen::Index n) {
+    gram_.conservativeResize(n, n);
+    parallel_for(old, n, [&](std::int64_t row) {
+      for (Eigen::Index column = 0; column <= row; ++column) {
+        gram_(row, column) = gram_(column, row) = row == column ? 1.0 : overlap(row, column);
+      }
+    });
+  }
+
+  double overlap(Eigen::Index i, Eigen::Index j) const {
+    return lobe_overlap(metric_, profiles_[static_cast<std::size_t>(i)],
+                        profiles_[static_cast<std::size_t>(j)]);
+  }
+
   LobeProfile profile(std::size_t j) const {
     const GaborDictionary& d = problem_.dictionary;
     const GaborAtom& atom = d.atom(j);
@@ -89,15 +107,16 @@ class RestrictedProblem {
 
   const BasisPursuitProblem& problem_;
   std::span<const double> target_correlations_;
-  std::vector<double> metric_;
-  std::vector<bool> contained_;
+  std::vector<double> metric_;   // W^2
+  std::vector<bool> contained_;  // by atom of the dictionary
   std::vector<std::size_t> atoms_;
   std::vector<LobeProfile> profiles_;
   Eigen::MatrixXd gram_;
   Eigen::VectorXd x_;
 };
 
-// Squared distance of two atoms' centres in joint deviations; below 1 their columns are much alike.
+// The squared distance of two atoms' centres over the sum of their squared deviations. Below 1 their columns
+// are much alike.
 double squared_separation(const GaborDictionary& dictionary, const GaborAtom& a, const GaborAtom& b) {
   const double da = lobe_deviation(a.bandwidth);
   const double db = lobe_deviation(b.bandwidth);
@@ -106,91 +125,153 @@ double squared_separation(const GaborDictionary& dictionary, const GaborAtom& a,
   return (dx * dx + dy * dy) / (da * da + db * db);
 }
 
-// The atoms that violate optimality most, a_j'r > penalty, no two of them much alike: adding neighbours
-// together mostly adds atoms that end at zero.
-std::vector<std::size_t> worst_violators(const BasisPursuitProblem& problem,
-                                         std::span<const double> correlations,
-                                         const RestrictedProblem& restricted) {
-  constexpr std::size_t kBatch = 60;
-  constexpr std::size_t kCandidates = 4000;
-  std::vector<std::size_t> candidates;
+// The atoms outside the working set that violate optimality most, a_j'r > penalty, in descending order; at
+// most 4000.
+std::vector<std::size_t> sorted_violators(const BasisPursuitProblem& problem,
+                                          std::span<const double> correlations,
+                                          const RestrictedProblem& restricted) {
+  constexpr std::size_t kMost = 4000;
+  std::vector<std::size_t> violators;
   for (std::size_t j = 0; j < correlations.size(); ++j) {
-    if (correlations[j] > problem.penalty && !restricted.contains(j)) candidates.push_back(j);
+    if (correlations[j] > problem.penalty && !restricted.contains(j)) violators.push_back(j);
   }
   const auto worse = [&](std::size_t a, std::size_t b) {
     return correlations[a] != correlations[b] ? correlations[a] > correlations[b] : a < b;
   };
-  const std::size_t sorted = std::min(candidates.size(), kCandidates);
-  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(sorted),
-                    candidates.end(), worse);
+  const std::size_t sorted = std::min(violators.size(), kMost);
+  std::partial_sort(violators.begin(), violators.begin() + static_cast<std::ptrdiff_t>(sorted),
+                    violators.end(), worse);
+  violators.resize(sorted);
+  return violators;
+}
+
+// The atoms that enter the working set next: the worst violators, of which no two are much alike. If
+// neighbours entered together, most of them would end at zero.
+std::vector<std::size_t> next_batch(const GaborDictionary& dictionary,
+                                    const std::vector<std::size_t>& violators) {
+  constexpr std::size_t kBatch = 60;
   std::vector<std::size_t> chosen;
-  for (std::size_t c = 0; c < sorted && chosen.size() < kBatch; ++c) {
-    const GaborAtom& atom = problem.dictionary.atom(candidates[c]);
+  for (const std::size_t candidate : violators) {
+    if (chosen.size() >= kBatch) break;
+    const GaborAtom& atom = dictionary.atom(candidate);
     const bool alone = std::none_of(chosen.begin(), chosen.end(), [&](std::size_t k) {
-      return squared_separation(problem.dictionary, atom, problem.dictionary.atom(k)) < 1.0;
+      return squared_separation(dictionary, atom, dictionary.atom(k)) < 1.0;
     });
-    if (alone) chosen.push_back(candidates[c]);
+    if (alone) chosen.push_back(candidate);
   }
   return chosen;
 }
+
+std::vector<std::size_t> positive_entries(std::span<const double> x) {
+  std::vector<std::size_t> positive;
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    if (x[j] > 0.0) positive.push_back(j);
+  }
+  return positive;
+}
+
+// How many factorisations a round may take. While the working set grows, a few are enough: more are better
+// spent once the next atoms are known. A few may let none of the new atoms in, and the same atoms would then
+// enter for ever, so the budget grows eightfold while P does not fall.
+class FactorisationBudget {
+ public:
+  int solves() const { return solves_; }
+  void after_round(bool improved) { solves_ = improved ? kFew : 8 * solves_; }
+  bool exhausted() const { return solves_ > 8 * 8 * 8 * 8 * kFew; }
+
+ private:
+  static constexpr int kFew = 12;
+  int solves_ = kFew;
+};
+
+std::vector<double> target_correlations(const BasisPursuitProblem& problem) {
+  std::vector<double> correlations(problem.dictionary.size());
+  problem.dictionary.analyze(problem.target, correlations);
+  return correlations;
+}
+
+class WorkingSetPursuit {
+ public:
+  WorkingSetPursuit(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
+                    std::span<const double> start)
+      : problem_(problem),
+        options_(options),
+        start_(start),
+        target_correlations_(target_correlations(problem)),
+        restricted_(problem, target_correlations_),
+        certificate_(problem),
+        correlations_(problem.dictionary.size()) {
+    result_.x.assign(problem.dictionary.size(), 0.0);
+  }
+
+  BasisPursuitResult run(const Progress& progress) {
+    std::vector<std::size_t> entering = positive_entries(start_);
+    for (int k = 0;; ++k) {
+      restricted_.add(entering, start_);
+      const bool solved = restricted_.solve(budget_.solves());
+      restricted_.drop_zeros();
+      std::vector<double> x = restricted_.coefficients();
+      const double gap = certify(x);
+      result_.history.push_back({k, certificate_.primal(), gap});
+      const bool improved = k == 0 || certificate_.primal() < result_.primal;
+      if (improved) keep(std::move(x));
+      update_gap(k);
+      budget_.after_round(improved);
+      // Rounding in the restricted problem must not loop for ever: no progress is the end.
+      const bool stuck = !improved && (solved || budget_.exhausted());
+      const bool go_on = report_gap(progress, gap);
+      if (result_.reached || !go_on || stuck || k >= options_.max_iterations) break;
+      entering = next_batch(problem_.dictionary, sorted_violators(problem_, correlations_, restricted_));
+      if (entering.empty() && solved) break;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  // The relative gap at x; correlations_ become A'r with the residual r = s - A x.
+  double certify(const std::vector<double>& x) {
+    std::vector<double> r(problem_.dictionary.rows());
+    problem_.dictionary.synthesize(x, r);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] = problem_.target[i] - r[i];
+    problem_.dictionary.analyze(r, correlations_);
+    return certificate_.check(r, correlations_, restricted_.sum_x());
+  }
+
+  void keep(std::vector<double> x) {
+    result_.x = std::move(x);
+    result_.primal = certificate_.primal();
+  }
+
+  // The bound from below may improve even where x does not.
+  void update_gap(int iteration) {
+    result_.relative_gap = certificate_.relative_gap_of(result_.primal);
+    result_.iterations = iteration;
+    result_.reached = result_.relative_gap <= options_.relative_gap;
+  }
+
+  // Progress is the share of the wanted gap's decades.
+  bool report_gap(const Progress& progress, double gap) const {
+    const double done = -std::log10(std::max(gap, 1e-12)) / -std::log10(options_.relative_gap);
+    return report(progress, std::min(0.99, done),
+                  fmt::format("gap {:.2e}, {} lobes", gap, restricted_.atoms().size()));
+  }
+
+  const BasisPursuitProblem& problem_;
+  const BasisPursuitOptions& options_;
+  std::span<const double> start_;
+  std::vector<double> target_correlations_;  // A's
+  RestrictedProblem restricted_;
+  DualityCertificate certificate_;
+  FactorisationBudget budget_;
+  std::vector<double> correlations_;  // A'r
+  BasisPursuitResult result_;
+};
 
 }  // namespace
 
 BasisPursuitResult solve_working_set(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
                                      const Progress& progress, std::span<const double> start) {
-  const GaborDictionary& dictionary = problem.dictionary;
-  std::vector<double> correlations(dictionary.size());
-  std::vector<double> target_correlations(dictionary.size());
-  dictionary.analyze(problem.target, target_correlations);
-  RestrictedProblem restricted(problem, target_correlations);
-  std::vector<std::size_t> entering;
-  for (std::size_t j = 0; j < start.size(); ++j) {
-    if (start[j] > 0.0) entering.push_back(j);
-  }
-  DualityCertificate certificate(problem);
-  BasisPursuitResult result;
-  result.x.assign(dictionary.size(), 0.0);
-  std::vector<double> r(dictionary.rows());
-  double best_primal = 0.0;
-  constexpr int kFewSolves = 12;
-  int solves = kFewSolves;
-  for (int k = 0;; ++k) {
-    restricted.add(entering, start);
-    const bool solved = restricted.solve(solves);
-    restricted.drop_zeros();
-    std::vector<double> x(dictionary.size(), 0.0);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < restricted.atoms().size(); ++i) {
-      x[restricted.atoms()[i]] = restricted.x()(static_cast<Eigen::Index>(i));
-      sum += restricted.x()(static_cast<Eigen::Index>(i));
-    }
-    dictionary.synthesize(x, r);
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] = problem.target[i] - r[i];
-    dictionary.analyze(r, correlations);
-    const double gap = certificate.check(r, correlations, sum);
-    result.history.push_back({k, certificate.primal(), gap});
-    // Rounding in the small problem must not loop for ever: no progress is the end.
-    const bool progressed = k == 0 || certificate.primal() < best_primal;
-    if (progressed) {
-      best_primal = certificate.primal();
-      result.x = std::move(x);
-      result.primal = certificate.primal();
-    }
-    // The bound from below may improve even where x does not.
-    result.relative_gap = certificate.relative_gap_of(best_primal);
-    result.iterations = k;
-    result.reached = result.relative_gap <= options.relative_gap;
-    const bool go_on = report(
-        progress, std::min(0.99, -std::log10(std::max(gap, 1e-12)) / -std::log10(options.relative_gap)),
-        fmt::format("gap {:.2e}, {} lobes", gap, restricted.atoms().size()));
-    // Few factorisations may not be enough to let any of the new atoms in, and the same would enter for ever.
-    solves = progressed ? kFewSolves : 8 * solves;
-    const bool stuck = !progressed && (solved || solves > 8 * 8 * 8 * 8 * kFewSolves);
-    if (result.reached || !go_on || stuck || k >= options.max_iterations) break;
-    entering = worst_violators(problem, correlations, restricted);
-    if (entering.empty() && solved) break;
-  }
-  return result;
+  return WorkingSetPursuit(problem, options, start).run(progress);
 }
 
 }  // namespace astrolith

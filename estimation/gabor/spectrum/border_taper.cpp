@@ -7,14 +7,14 @@
 namespace astrolith {
 namespace {
 
-constexpr double kFadedShare = 0.1;  // of a side, at each of its ends
+constexpr double kFadedShare = 0.1;  // share of a side that is faded at each end
 
 double squared_bend(double before, double here, double after) {
   const double bend = before - 2.0 * here + after;
   return bend * bend;
 }
 
-// Sum over column x of the squared second difference along x, the image taken as periodic.
+// The sum over column x of the squared second differences along x of the periodic image.
 double column_bend(const GreyImage& image, int x) {
   const int w = image.width;
   double sum = 0.0;
@@ -50,7 +50,8 @@ std::vector<double> fading(int n, bool tiles) {
   return taper;
 }
 
-// A taper correlates neighbouring frequencies: (sum w^2)^2 / (n sum w^4) of them are worth one.
+// The share of independent frequencies, (sum w^2)^2 / (n sum w^4). A taper w correlates neighbouring
+// frequencies.
 double independent_share(const std::vector<double>& taper) {
   double square = 0.0;
   double fourth = 0.0;

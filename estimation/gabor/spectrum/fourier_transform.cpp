@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-// FFTW's planner keeps global state; its plans may run anywhere.
+// FFTW's planner keeps global state. Plans may run on any thread.
 std::mutex& planner_mutex() {
   static std::mutex mutex;
   return mutex;
@@ -47,7 +47,7 @@ FourierTransform::~FourierTransform() {
 void FourierTransform::forward(std::span<const double> in, std::span<std::complex<double>> out) const {
   require_aligned(in.data());
   require_aligned(out.data());
-  // A real transform out of place leaves its input alone unless told otherwise.
+  // A real transform out of place does not change its input.
   fftw_execute_dft_r2c(static_cast<fftw_plan>(forward_plan_), const_cast<double*>(in.data()),
                        as_fftw(out.data()));
 }

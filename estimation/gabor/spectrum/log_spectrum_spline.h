@@ -1,4 +1,4 @@
-// The smooth logarithm of a spectrum that explains a periodogram best.
+// The smooth log spectrum that best explains a periodogram.
 #pragma once
 
 #include <vector>
@@ -15,29 +15,27 @@ namespace astrolith {
 //
 //   sum over f != 0 of n (g + I exp(-g))  +  1/2 w^6 |third differences of g|^2,
 //
-// periodic over the grid. In the logarithm speckle is equally strong everywhere, and third differences cost
-// nothing on a Gaussian lobe, whose logarithm is quadratic: its peak is not blurred, as by a moving average.
-// The expected Hessian is n + w^6 L^3 with the Laplacian L, diagonal in Fourier space, so that a step of
-// Fisher scoring is one convolution. A w is a length in bins of 1 / sqrt(width * height) cycles per pixel:
-// what is narrower is smoothed away.
+// periodic over the grid. In the logarithm speckle is equally strong everywhere. A Gaussian lobe has a
+// quadratic logarithm, whose third differences are zero, so its peak is not blurred as it would be by a
+// moving average. The expected Hessian is n + w^6 L^3 with the Laplacian L. It is diagonal in Fourier space,
+// so a step of Fisher scoring is one convolution. w is a length in bins of 1 / sqrt(width * height) cycles
+// per pixel: narrower features of the spectrum are smoothed away.
 class LogSpectrumSpline {
  public:
-  explicit LogSpectrumSpline(const PowerSpectrum& periodogram);
+  explicit LogSpectrumSpline(const PowerSpectrum& periodogram);  // which must outlive the spline
 
-  // g on the grid; the value at frequency 0 is extrapolated. `start`: a first guess, as from a smaller w; the
-  // logarithm of the periodogram where empty.
+  // g on the grid, row-major; the value at frequency 0 is extrapolated. w > 0. `start` is a first guess, such
+  // as the fit with a smaller w. If it is empty, the fit starts from the logarithm of the periodogram.
   std::vector<double> fit(double w, std::vector<double> start = {}) const;
 
-  // What a fit with this w spends and is worth.
+  // The degrees of freedom of a fit, with h = n / (n + w^6 L^3).
   struct Freedom {
-    double parameters = 0.0;  // a bin, in (0, 1]: mean over Fourier space of h = n / (n + w^6 L^3)
-    double variance = 0.0;    // of g, from speckle of variance 1 / n: mean of h^2 / n
+    double parameters = 0.0;  // effective parameters per bin, in (0, 1]: mean of h over Fourier space
+    double variance = 0.0;    // variance of g from speckle of variance 1 / n: mean of h^2 / n
   };
   Freedom freedom(double w) const;
 
  private:
-  double objective(const std::vector<double>& g, const std::vector<double>& rough) const;
-
   const PowerSpectrum& periodogram_;
   FourierTransform fourier_;
   std::vector<double> cubed_laplacian_;  // L^3 by frequency of the half plane that the transform keeps

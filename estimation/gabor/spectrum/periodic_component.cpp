@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-// v of Moisan's eq. 9: what each border pixel lacks to equal the opposite one.
+// v of Moisan's eq. 9: the difference of each border pixel to the opposite one.
 std::vector<double> border_jumps(const GreyImage& image) {
   const int w = image.width;
   const int h = image.height;
@@ -29,7 +29,7 @@ std::vector<double> border_jumps(const GreyImage& image) {
   return v;
 }
 
-// 2 cos(2 pi k / n) - 2: the second difference's factor on frequency k, zero only at k = 0.
+// The factor of the second difference on frequency k, 2 cos(2 pi k / n) - 2. It is zero only at k = 0.
 double second_difference_factor(int k, int n) {
   const double s = std::sin(std::numbers::pi * k / n);
   return -4.0 * s * s;

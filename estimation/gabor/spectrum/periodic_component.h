@@ -1,5 +1,5 @@
-// Moisan's periodic plus smooth decomposition: an image's borders do not match, and the jump between them
-// draws a cross over its spectrum; the periodic component has the same details and no cross.
+// Moisan's periodic plus smooth decomposition. The borders of an image do not match, and the jump between
+// them draws a cross over its spectrum. The periodic component has the details of the image and no cross.
 #pragma once
 
 #include "estimation/gabor/image/grey_image.h"
@@ -12,7 +12,8 @@ struct PeriodicDecomposition {
 };
 
 // Solves (periodic Laplacian of smooth) = v, where v holds the jumps between opposite borders and is zero
-// inside (Moisan, Periodic plus smooth image decomposition, JMIV 2011, eq. 11). Both sides >= 2.
+// inside (Moisan, Periodic plus smooth image decomposition, JMIV 2011, eq. 11). Both sides of the image are
+// >= 2.
 PeriodicDecomposition decompose_periodic(const GreyImage& image);
 
 }  // namespace astrolith

@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-// First pixels of half-overlapping tiles that cover 0 .. extent-1, evenly spread.
+// The first pixels of half-overlapping tiles that are evenly spread over 0 .. extent-1.
 std::vector<int> tile_starts(int extent, int tile) {
   const int steps = tile >= extent ? 0 : (2 * (extent - tile) + tile - 1) / tile;
   std::vector<int> starts{0};
@@ -84,7 +84,7 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
   }
   const double tiles = static_cast<double>(xs.size() * ys.size());
   for (double& p : mean.power) p /= tiles;
-  // Tiles that overlap share pixels: as many independent looks as tiles fit side by side.
+  // Tiles that overlap share pixels, so the number of independent looks is that of tiles side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());
   return mean;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/log_spectrum_spline.h"
@@ -11,7 +12,7 @@ namespace {
 
 double bins_per_cycle(const PowerSpectrum& s) { return std::sqrt(static_cast<double>(s.width) * s.height); }
 
-// log2 |f| of every grid point but frequency 0, |f| in bins and at least one.
+// log2 |f| of every grid point, with |f| in bins and at least 1.
 std::vector<double> octave_positions(const PowerSpectrum& s) {
   std::vector<double> positions;
   positions.reserve(s.power.size());
@@ -25,13 +26,15 @@ std::vector<double> octave_positions(const PowerSpectrum& s) {
   return positions;
 }
 
-// A factor of sqrt(2) apart, from no smoothing to an eighth of the distance to the Nyquist frequency.
+// Smoothing widths in bins, a factor of sqrt(2) apart. They reach from no smoothing to an eighth of the
+// distance to the Nyquist frequency.
 std::vector<double> widths_tried(const PowerSpectrum& s) {
   std::vector<double> widths;
   for (double w = 0.6; w <= std::max(2.0, bins_per_cycle(s) / 16.0); w *= std::sqrt(2.0)) widths.push_back(w);
   return widths;
 }
 
+// The Akaike criterion of a spline g, summed over each octave of |f|.
 std::vector<double> octave_scores(const PowerSpectrum& data, const std::vector<double>& g, double parameters,
                                   const std::vector<double>& positions) {
   std::vector<double> scores;
@@ -43,7 +46,7 @@ std::vector<double> octave_scores(const PowerSpectrum& data, const std::vector<d
   return scores;
 }
 
-// Mean of g(f) and g(-f), which differ by rounding only, unless nearly all bins are empty.
+// The mean of g(f) and g(-f). They differ by rounding only, unless nearly all bins are empty.
 std::vector<double> symmetrised(const std::vector<double>& g, const PowerSpectrum& grid) {
   std::vector<double> mean(g.size());
   const auto w = static_cast<std::size_t>(grid.width);
@@ -54,53 +57,95 @@ std::vector<double> symmetrised(const std::vector<double>& g, const PowerSpectru
   return mean;
 }
 
+// The spline of one width.
+struct TriedSpline {
+  double width;
+  std::vector<double> g;       // ln S on the grid
+  std::vector<double> scores;  // by octave
+  LogSpectrumSpline::Freedom freedom;
+};
+
+// The splines of all widths, the roughest first; each fit starts from the one before it.
+std::vector<TriedSpline> try_widths(const PowerSpectrum& periodogram, const std::vector<double>& positions) {
+  const LogSpectrumSpline spline(periodogram);
+  std::vector<TriedSpline> tried;
+  for (const double w : widths_tried(periodogram)) {
+    TriedSpline next{w, {}, {}, spline.freedom(w)};
+    next.g = symmetrised(spline.fit(w, tried.empty() ? std::vector<double>{} : tried.back().g), periodogram);
+    next.scores = octave_scores(periodogram, next.g, next.freedom.parameters, positions);
+    tried.push_back(std::move(next));
+  }
+  return tried;
+}
+
+// For each octave the index of the spline with the least criterion; the first of equals.
+std::vector<std::size_t> best_by_octave(const std::vector<TriedSpline>& tried) {
+  std::vector<std::size_t> best(tried[0].scores.size(), 0);
+  for (std::size_t octave = 0; octave < best.size(); ++octave) {
+    for (std::size_t k = 1; k < tried.size(); ++k) {
+      if (tried[k].scores[octave] < tried[best[octave]].scores[octave]) best[octave] = k;
+    }
+  }
+  return best;
+}
+
+// A fractional index into a list: `fraction` of the way from `lower` to `upper`.
+struct Between {
+  std::size_t lower, upper;
+  double fraction;
+
+  Between(double index, std::size_t size)
+      : lower(static_cast<std::size_t>(index)),
+        upper(std::min(lower + 1, size - 1)),
+        fraction(index - static_cast<double>(lower)) {}
+};
+
+// The fractional index of the spline at log2 |f|, interpolated between octaves. Octave o is centred at o +
+// 1/2.
+double spline_index(double position, const std::vector<std::size_t>& best) {
+  const double index = std::clamp(position - 0.5, 0.0, static_cast<double>(best.size() - 1));
+  const Between octave(index, best.size());
+  return std::lerp(static_cast<double>(best[octave.lower]), static_cast<double>(best[octave.upper]),
+                   octave.fraction);
+}
+
+std::vector<OctaveSmoothing> smoothing_of(const std::vector<std::size_t>& best,
+                                          const std::vector<TriedSpline>& tried,
+                                          const PowerSpectrum& periodogram) {
+  std::vector<OctaveSmoothing> smoothing;
+  for (std::size_t octave = 0; octave < best.size(); ++octave) {
+    smoothing.push_back({std::exp2(static_cast<double>(octave) + 0.5) / bins_per_cycle(periodogram),
+                         tried[best[octave]].width});
+  }
+  return smoothing;
+}
+
+void scale_to_variance(PowerSpectrum& spectrum, double variance) {
+  const double gain = variance / spectrum.variance();
+  for (double& p : spectrum.power) p *= gain;
+}
+
 }  // namespace
 
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram) {
-  const LogSpectrumSpline spline(periodogram);
   const std::vector<double> positions = octave_positions(periodogram);
-  const std::vector<double> widths = widths_tried(periodogram);
-  std::vector<std::vector<double>> logs;
-  std::vector<std::vector<double>> scores;
-  std::vector<LogSpectrumSpline::Freedom> freedom;
-  for (const double w : widths) {
-    logs.push_back(
-        symmetrised(spline.fit(w, logs.empty() ? std::vector<double>{} : logs.back()), periodogram));
-    freedom.push_back(spline.freedom(w));
-    scores.push_back(octave_scores(periodogram, logs.back(), freedom.back().parameters, positions));
-  }
-
-  SpectrumEstimate estimate{periodogram, {}, 0.0};
-  std::vector<double> choice;  // index into widths by octave
-  for (std::size_t octave = 0; octave < scores[0].size(); ++octave) {
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < widths.size(); ++k) {
-      if (scores[k][octave] < scores[best][octave]) best = k;
-    }
-    choice.push_back(static_cast<double>(best));
-    estimate.smoothing.push_back(
-        {std::exp2(static_cast<double>(octave) + 0.5) / bins_per_cycle(periodogram), widths[best]});
-  }
+  const std::vector<TriedSpline> tried = try_widths(periodogram, positions);
+  const std::vector<std::size_t> best = best_by_octave(tried);
+  SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0};
+  std::vector<double>& power = estimate.spectrum.power;
   const double floor = 1e-12 * periodogram.variance();
-  const auto last = static_cast<double>(choice.size() - 1);
   double error = 0.0;
-  for (std::size_t i = 1; i < periodogram.power.size(); ++i) {
-    // Octave o is centred at o + 1/2.
-    const double position = std::clamp(positions[i] - 0.5, 0.0, last);
-    const auto lower = static_cast<std::size_t>(position);
-    const std::size_t upper = std::min(lower + 1, choice.size() - 1);
-    const double k = std::lerp(choice[lower], choice[upper], position - static_cast<double>(lower));
-    const auto rough = static_cast<std::size_t>(k);
-    const std::size_t smooth = std::min(rough + 1, widths.size() - 1);
-    const double g = std::lerp(logs[rough][i], logs[smooth][i], k - static_cast<double>(rough));
-    estimate.spectrum.power[i] = std::max(floor, std::exp(g));
-    error += estimate.spectrum.power[i] * freedom[rough].variance / 4.0;
+  power[0] = 0.0;
+  for (std::size_t i = 1; i < power.size(); ++i) {
+    const Between spline(spline_index(positions[i], best), tried.size());
+    const TriedSpline& rough = tried[spline.lower];
+    const double g = std::lerp(rough.g[i], tried[spline.upper].g[i], spline.fraction);
+    power[i] = std::max(floor, std::exp(g));
+    error += power[i] * rough.freedom.variance / 4.0;
   }
-  estimate.spectrum.power[0] = 0.0;
   estimate.standard_error =
-      std::sqrt(error / (estimate.spectrum.variance() * static_cast<double>(periodogram.power.size())));
-  const double gain = periodogram.variance() / estimate.spectrum.variance();
-  for (double& p : estimate.spectrum.power) p *= gain;
+      std::sqrt(error / (estimate.spectrum.variance() * static_cast<double>(power.size())));
+  scale_to_variance(estimate.spectrum, periodogram.variance());
   return estimate;
 }
 

@@ -2,72 +2,60 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "estimation/shape/report/plot_page_internal.h"
 
 namespace astrolith {
 namespace {
 
-constexpr int kWidth = 800, kHeight = 500, kMargin = 70;
-const cv::Scalar kInk(40, 40, 40), kGrid(215, 215, 215), kCurve(40, 90, 160);
+double percent(const ConvergencePoint& p) { return 100.0 * std::max(p.mean_distance, 1e-9); }
 
-void write_text(cv::Mat& canvas, const std::string& text, cv::Point at) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.42, kInk, 1, cv::LINE_AA);
+Axis distance_axis(std::span<const ConvergencePoint> points) {
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(),
+      [](const ConvergencePoint& a, const ConvergencePoint& b) { return percent(a) < percent(b); });
+  return logarithmic_axis(percent(*low), percent(*high), "mean distance, % of the bounding-box diagonal");
 }
 
-class Axes {
+// Labels of numbers of metaballs, set to the upper right of their points. A label that would cover the label
+// before it is left out.
+class SphereLabels {
  public:
-  explicit Axes(std::span<const ConvergencePoint> points)
-      : last_iteration_(std::max(1, points.back().iterations)) {
-    double low = 1e300, high = 0.0;
-    for (const ConvergencePoint& p : points) {
-      low = std::min(low, percent(p));
-      high = std::max(high, percent(p));
-    }
-    low_ = std::floor(std::log10(low) * 4.0) / 4.0;
-    high_ = std::max(std::ceil(std::log10(high) * 4.0) / 4.0, low_ + 0.25);
-  }
+  explicit SphereLabels(Figure& page) : page_(page) {}
 
-  cv::Point at(int iterations, double log_percent) const {
-    const double x = static_cast<double>(iterations) / last_iteration_;
-    const double y = (log_percent - low_) / (high_ - low_);
-    return {kMargin + static_cast<int>(x * (kWidth - 2 * kMargin)),
-            kHeight - kMargin - static_cast<int>(y * (kHeight - 2 * kMargin))};
-  }
-  cv::Point at(const ConvergencePoint& p) const { return at(p.iterations, std::log10(percent(p))); }
-
-  void draw(cv::Mat& canvas) const {
-    for (double level = low_; level < high_ + 0.01; level += 0.25) {
-      cv::line(canvas, at(0, level), at(last_iteration_, level), kGrid);
-      const std::string number = std::to_string(std::pow(10.0, level));
-      write_text(canvas, number.substr(0, 5) + " %", at(0, level) + cv::Point(-64, 4));
-    }
-    write_text(canvas, "mean distance, % of the bounding-box diagonal, at so many metaballs",
-               {kMargin, kMargin / 2});
-    write_text(canvas, "iterations: " + std::to_string(last_iteration_),
-               at(last_iteration_, low_) + cv::Point(-90, 30));
+  void draw(double x, double y, int spheres) {
+    constexpr double kSize = 8.0, kWidth = 16.0;
+    if (std::abs(x - last_x_) < kWidth && std::abs(y - last_y_) < kSize) return;
+    page_.text(x + 3.0, y - 4.0, std::to_string(spheres), kSize);
+    last_x_ = x;
+    last_y_ = y;
   }
 
  private:
-  static double percent(const ConvergencePoint& p) { return 100.0 * std::max(p.mean_distance, 1e-9); }
-
-  int last_iteration_;
-  double low_, high_;
+  Figure& page_;
+  double last_x_ = -1e9, last_y_ = -1e9;
 };
 
 }  // namespace
 
-RgbImage plot_convergence(std::span<const ConvergencePoint> points) {
-  cv::Mat canvas(kHeight, kWidth, CV_8UC3, cv::Scalar(255, 255, 255));
-  const Axes axes(points);
-  axes.draw(canvas);
+void write_convergence_plot(std::span<const ConvergencePoint> points, const std::filesystem::path& file) {
+  Figure page = plot_page("Convergence; the numbers at the curve count the metaballs");
+  const Axis x = linear_axis(0.0, std::max(1, points.back().iterations), "iterations of the refinement", 1.0);
+  const Axis y = distance_axis(points);
+  page.axes(kPlotDiagram, x, y, true);
+  std::vector<std::pair<double, double>> curve;
+  for (const ConvergencePoint& p : points) curve.emplace_back(p.iterations, std::log10(percent(p)));
+  page.curve(kPlotDiagram, x, y, curve, kPlotCurve);
+  SphereLabels labels(page);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i > 0) cv::line(canvas, axes.at(points[i - 1]), axes.at(points[i]), kCurve, 2, cv::LINE_AA);
-    cv::circle(canvas, axes.at(points[i]), 3, kCurve, cv::FILLED, cv::LINE_AA);
     if (i > 0 && points[i].spheres == points[i - 1].spheres) continue;
-    write_text(canvas, std::to_string(points[i].spheres), axes.at(points[i]) + cv::Point(2, -8));
+    labels.draw(place_along_x(curve[i].first, x, kPlotDiagram),
+                place_along_y(curve[i].second, y, kPlotDiagram), points[i].spheres);
   }
-  return {kWidth, kHeight, {canvas.data, canvas.data + canvas.total() * canvas.elemSize()}};
+  page.write_png(file, kPlotPixelsPerInch);
 }
 
 }  // namespace astrolith

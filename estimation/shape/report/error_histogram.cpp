@@ -1,61 +1,62 @@
 #include "estimation/shape/report/error_histogram.h"
 
 #include <algorithm>
-#include <opencv2/imgproc.hpp>
-#include <string>
 #include <vector>
+
+#include "estimation/shape/report/plot_page_internal.h"
 
 namespace astrolith {
 namespace {
 
-constexpr int kWidth = 800, kHeight = 500, kMargin = 70, kBars = 60;
-const cv::Scalar kInk(40, 40, 40), kGrid(215, 215, 215), kBar(40, 90, 160);
+constexpr int kBars = 60;
+constexpr Ink kZeroLine{0.85, 0.85, 0.85};
 
-void write_text(cv::Mat& canvas, const std::string& text, cv::Point at) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.42, kInk, 1, cv::LINE_AA);
-}
-
-std::vector<std::size_t> count(std::span<const double> distances, double limit) {
-  std::vector<std::size_t> bars(kBars);
+// The percentage of the distances that falls into each bar.
+std::vector<double> bar_heights(std::span<const double> distances, double limit) {
+  std::vector<std::size_t> counts(kBars);
   for (const double d : distances) {
     const double part = std::clamp((d + limit) / (2.0 * limit), 0.0, 1.0);
-    ++bars[std::min<std::size_t>(static_cast<std::size_t>(part * kBars), kBars - 1)];
+    ++counts[std::min<std::size_t>(static_cast<std::size_t>(part * kBars), kBars - 1)];
   }
-  return bars;
+  std::vector<double> heights;
+  const double all = std::max<double>(1.0, static_cast<double>(distances.size()));
+  for (const std::size_t count : counts) heights.push_back(100.0 * static_cast<double>(count) / all);
+  return heights;
 }
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f %%", 100.0 * fraction);
-  return text;
+void draw_bars(Figure& page, const std::vector<double>& heights, const Axis& y) {
+  const double width = kPlotDiagram.width / kBars;
+  double left = kPlotDiagram.x;
+  for (const double height : heights) {
+    const double top = place_along_y(height, y, kPlotDiagram);
+    page.fill({left, top, width - 0.6, kPlotDiagram.bottom() - top}, kPlotCurve);
+    left += width;
+  }
+}
+
+void draw_sides(Figure& page) {
+  constexpr double kSize = 9.0, kInset = 10.0;
+  const double baseline = kPlotDiagram.y + 16.0;
+  page.text(kPlotDiagram.x + kInset, baseline, "fit outside the target", kSize);
+  page.text(kPlotDiagram.right() - kInset, baseline, "fit inside the target", kSize, Figure::Align::kRight);
 }
 
 }  // namespace
 
-RgbImage plot_error_histogram(std::span<const double> distances, double limit) {
-  cv::Mat canvas(kHeight, kWidth, CV_8UC3, cv::Scalar(255, 255, 255));
-  const std::vector<std::size_t> bars = count(distances, limit);
-  const auto highest =
-      static_cast<double>(std::max<std::size_t>(1, *std::max_element(bars.begin(), bars.end())));
-  const double width = static_cast<double>(kWidth - 2 * kMargin) / kBars;
-  const int floor = kHeight - kMargin;
-  for (std::size_t i = 0; i < bars.size(); ++i) {
-    const int left = kMargin + static_cast<int>(width * static_cast<double>(i));
-    const int height = static_cast<int>((kHeight - 2 * kMargin) * static_cast<double>(bars[i]) / highest);
-    cv::rectangle(canvas, {left, floor - height}, {left + static_cast<int>(width) - 1, floor}, kBar,
-                  cv::FILLED);
-  }
-  cv::line(canvas, {kMargin, floor}, {kWidth - kMargin, floor}, kInk);
-  cv::line(canvas, {kWidth / 2, kMargin}, {kWidth / 2, floor}, kGrid);
-  write_text(canvas, percent(-limit), {kMargin - 24, floor + 20});
-  write_text(canvas, "0", {kWidth / 2 - 4, floor + 20});
-  write_text(canvas, percent(limit), {kWidth - kMargin - 24, floor + 20});
-  write_text(canvas, "fit outside the target", {kMargin, floor + 42});
-  write_text(canvas, "fit inside", {kWidth - kMargin - 70, floor + 42});
-  write_text(canvas,
-             "share of the fit's surface at each distance from the target, of the bounding-box diagonal",
-             {kMargin, kMargin / 2});
-  return {kWidth, kHeight, {canvas.data, canvas.data + canvas.total() * canvas.elemSize()}};
+void write_error_histogram(std::span<const double> distances, double limit,
+                           const std::filesystem::path& file) {
+  const std::vector<double> heights = bar_heights(distances, limit);
+  const double highest = std::max(1e-3, *std::max_element(heights.begin(), heights.end()));
+  const Axis x = linear_axis(-100.0 * limit, 100.0 * limit,
+                             "distance of the fit from the target, % of the bounding-box diagonal");
+  const Axis y = linear_axis(0.0, 1.12 * highest, "share of the fit's surface, %");
+  Figure page = plot_page("Distances over the fit; the outer bars also count all that lies beyond");
+  draw_bars(page, heights, y);
+  const double middle = place_along_x(0.0, x, kPlotDiagram);
+  page.line(middle, kPlotDiagram.y, middle, kPlotDiagram.bottom(), 0.7, kZeroLine);
+  draw_sides(page);
+  page.axes(kPlotDiagram, x, y);
+  page.write_png(file, kPlotPixelsPerInch);
 }
 
 }  // namespace astrolith

@@ -5,15 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "estimation/shape/report/captioned_picture.h"
 #include "estimation/shape/report/convergence_plot.h"
 #include "estimation/shape/report/error_histogram.h"
-#include "estimation/shape/report/picture_label.h"
 #include "estimation/shape/report/report_page.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/picture/colormap.h"
-#include "synthesis/picture/image_file.h"
 #include "synthesis/picture/preview.h"
 
 namespace astrolith {
@@ -26,21 +25,7 @@ PreviewOptions small_preview() {
   return options;
 }
 
-RgbImage side_by_side(const RgbImage& left, const RgbImage& right) {
-  RgbImage both{left.width + right.width, left.height, {}};
-  both.pixels.reserve(left.pixels.size() + right.pixels.size());
-  const auto append_row = [&](const RgbImage& image, int y) {
-    const auto row = image.pixels.begin() + std::ptrdiff_t{3} * image.width * y;
-    both.pixels.insert(both.pixels.end(), row, row + std::ptrdiff_t{3} * image.width);
-  };
-  for (int y = 0; y < both.height; ++y) {
-    append_row(left, y);
-    append_row(right, y);
-  }
-  return both;
-}
-
-// Distance of every vertex of the fit to the target, fractions of the diagonal.
+// The distance of every vertex of the fit from the target, as a fraction of the diagonal.
 std::vector<double> vertex_distances(const TargetBody& target, const TriangleMesh& mesh) {
   std::vector<double> distances(mesh.vertices.size());
   parallel_for(
@@ -59,29 +44,27 @@ std::string percent(double fraction) {
   return text;
 }
 
-RgbImage target_and_fit(const TargetBody& target, const ShapeFitResult& fit) {
-  RgbImage left = render_preview(target.mesh, small_preview());
-  RgbImage right = render_preview(fit.check.mesh, small_preview());
-  draw_label(left, "target", 14, 24);
-  draw_label(right,
-             std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
-                 percent(fit.check.distance.mean) + " of the diagonal",
-             14, 24);
-  return side_by_side(left, right);
+void write_target_and_fit(const TargetBody& target, const ShapeFitResult& fit,
+                          const std::filesystem::path& file) {
+  write_captioned_pictures({{render_preview(target.mesh, small_preview()), "target"},
+                            {render_preview(fit.check.mesh, small_preview()),
+                             std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
+                                 percent(fit.check.distance.mean) + " of the diagonal"}},
+                           file);
 }
 
-RgbImage distance_map(const TargetBody& target, const ShapeFitResult& fit) {
+void write_distance_map(const TargetBody& target, const ShapeFitResult& fit,
+                        const std::filesystem::path& file) {
   PreviewOptions options = small_preview();
   options.vertex_colors = sequential_colors(vertex_distances(target, fit.check.mesh), 0.0,
                                             std::max(fit.check.distance.p99, 1e-9));
-  options.fill_light = 0.5;  // colours are to be read in the shadows too
-  RgbImage map = render_preview(fit.check.mesh, options);
-  draw_label(map, "distance from the fit to the target, of the diagonal", 14, 24);
-  draw_color_scale(map, "0", percent(fit.check.distance.p99));
-  return map;
+  options.fill_light = 0.5;  // keeps colours readable in the shadows
+  write_picture_with_scale(
+      {render_preview(fit.check.mesh, options), "distance from the fit to the target, of the diagonal"},
+      {"0", percent(fit.check.distance.p99)}, file);
 }
 
-// Signed, at points spread evenly over the fit.
+// Signed distances from the target at points spread evenly over the fit, as fractions of the diagonal.
 std::vector<double> sampled_distances(const TargetBody& target, const TriangleMesh& mesh) {
   constexpr std::int64_t kSamples = 50000;
   const std::vector<Vec3d> points = sample_surface(mesh, kSamples, 1).points;
@@ -115,17 +98,17 @@ PageTable distance_table(const SurfaceDistanceReport& d) {
 PageTable likeness_table(const ShapeFitResult& fit) {
   return {{"likeness", ""},
           {{"similarity of the shape histograms (ahd)", percent(fit.similarity)},
-           {"the same of two samplings of the target", percent(fit.similarity_floor)},
-           {"volume of the fit over the target's", number(fit.check.volume_ratio, "%.5f")}}};
+           {"similarity of two samplings of the target", percent(fit.similarity_floor)},
+           {"volume of the fit over that of the target", number(fit.check.volume_ratio, "%.5f")}}};
 }
 
 PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
   return {{"body", "target", "fit"},
-          {{"parts", std::to_string(target.components), std::to_string(fit.check.topology.components)},
+          {{"components", std::to_string(target.components), std::to_string(fit.check.topology.components)},
            {"handles", "", std::to_string(fit.check.topology.genus)},
            {"triangles or metaballs", std::to_string(target.mesh.triangles.size()),
             std::to_string(fit.body.num_metaballs())},
-           {"of them take away", "", std::to_string(fit.body.subtract.size())},
+           {"subtractive metaballs", "", std::to_string(fit.body.subtract.size())},
            {"sharpness m a of the blend", "", number(fit.body.blend_exponent * fit.body.a, "%.4g")}}};
 }
 
@@ -134,11 +117,10 @@ PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
                       const std::filesystem::path& folder) {
   make_output_folder(folder);
-  write_png8_rgb(target_and_fit(target, fit), folder / "target_and_fit.png");
-  write_png8_rgb(distance_map(target, fit), folder / "distance_map.png");
-  write_png8_rgb(plot_error_histogram(sampled_distances(target, fit.check.mesh),
-                                      std::max(1.2 * fit.check.distance.p99, 1e-9)),
-                 folder / "error_histogram.png");
+  write_target_and_fit(target, fit, folder / "target_and_fit.png");
+  write_distance_map(target, fit, folder / "distance_map.png");
+  write_error_histogram(sampled_distances(target, fit.check.mesh),
+                        std::max(1.2 * fit.check.distance.p99, 1e-9), folder / "error_histogram.png");
   ReportPage page{title,
                   std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
                       percent(fit.check.distance.mean) + " of the bounding-box diagonal.",
@@ -147,7 +129,7 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
                    {"distance_map.png", "Distance from the fit to the target, on the fit."},
                    {"error_histogram.png", "How the distances are spread over the fit."}}};
   if (!fit.convergence.empty()) {
-    write_png8_rgb(plot_convergence(fit.convergence), folder / "convergence.png");
+    write_convergence_plot(fit.convergence, folder / "convergence.png");
     page.pictures.push_back(
         {"convergence.png", "Mean distance over the samples of the refinement, after each of its stages."});
   }

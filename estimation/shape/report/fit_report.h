@@ -1,5 +1,4 @@
-// Pictures and a page of a fit: target and fit side by side, how far they lie apart, and how the fit got
-// there.
+// A report on a fit: pictures of target and fit, the distances between them, and the convergence of the fit.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +9,13 @@
 
 namespace astrolith {
 
-// Writes into the folder, which is made if need be:
+// Writes these files into the folder, which is made if it is missing. Throws InputError where a file cannot
+// be written.
 //   target_and_fit.png   the two bodies in the same light, from four sides each
 //   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
 //   error_histogram.png  signed distances of the fit from the target
 //   convergence.png      mean distance (logarithmic) against iterations of the refinement
-//   index.html           a page with these and the figures as tables
+//   index.html           a page with these pictures and with tables of the numbers
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
                       const std::filesystem::path& folder);
 

@@ -18,8 +18,8 @@ double total_variance(const std::vector<GaborLobe>& lobes) {
   return sum;
 }
 
-// The reference estimator of Galerne et al. is 0.284 away at its best, texton noise 0.193, the best of
-// smoothed periodograms 0.136.
+// The best distance of the reference estimator of Galerne et al. is 0.284. Texton noise reaches 0.193, and
+// the best smoothed periodogram 0.136.
 TEST(GaborFit, RecoversAKnownSpectrumFromOneRealisation) {
   const PowerSpectrum truth = testing::four_lobe_spectrum();
   constexpr int kSeeds = 4;
@@ -61,7 +61,7 @@ TEST(GaborFit, KeepsTheVarianceOfTheExemplar) {
   }
 }
 
-// Units cancel: an exemplar in other units or with another mean gives the same lobes, variances scaled.
+// An exemplar in other units and with another mean gives the same lobes with scaled variances.
 TEST(GaborFit, ScalesWithTheExemplar) {
   const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 10);
   GreyImage other = exemplar;
@@ -87,7 +87,7 @@ TEST(GaborFit, BothSolversFindTheSameSpectrum) {
   options.solver = PursuitSolver::kFista;
   const GaborFit b = fit_gabor_lobes(small, "small", options);
   EXPECT_NEAR(a.pursuit.primal, b.pursuit.primal, 2e-5 * a.pursuit.primal);
-  // Far nearer to each other than either can be to the truth.
+  // The two are far nearer to each other than either can be to the truth.
   EXPECT_LT(optimal_transport_distance(a.fitted, b.fitted), 0.2 * a.estimate.standard_error);
 }
 
@@ -106,7 +106,7 @@ TEST(GaborFit, RefusesWhatHasNoTexture) {
   EXPECT_THROW(fit_gabor_lobes({64, 64, std::vector<double>(64 * 64, 0.5)}, "flat.png", {}), InputError);
 }
 
-// One bright pixel, a pure cosine, a checkerboard: no texture anyone photographs, and no crash.
+// One bright pixel, a pure cosine and a checkerboard must not crash the fit.
 TEST(GaborFit, SurvivesDegenerateTextures) {
   std::vector<GreyImage> images(3, GreyImage{33, 40, std::vector<double>(33 * 40, 0.0)});
   images[0].values[400] = 1.0;

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "estimation/gabor/image/image_reader.h"
-
 #include "tests/estimation/gabor/known_spectrum.h"
 #include "tests/support/data.h"
 
@@ -31,7 +30,7 @@ TEST(Gaussianity, SeesALopsidedMarginal) {
   EXPECT_NE(g.sentence.find("lopsided"), std::string::npos);
 }
 
-// The same values, but strong on the left and weak on the right.
+// A Gaussian texture that is strong on the left and weak on the right.
 TEST(Gaussianity, SeesDetailThatSitsInPlaces) {
   GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 2);
   for (int y = 0; y < image.height; ++y) {
@@ -46,7 +45,7 @@ TEST(Gaussianity, SeesDetailThatSitsInPlaces) {
   EXPECT_NE(g.likeness, Likeness::kClose);
 }
 
-// Sharp-edged cells with the marginal of a Gaussian: only the phases tell.
+// Sharp-edged cells with a Gaussian marginal, which only the phases reveal.
 TEST(Gaussianity, SeesEdgesUnderAGaussianMarginal) {
   GreyImage image{128, 128, {}};
   CounterRandom random(4);

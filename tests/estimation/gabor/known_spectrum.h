@@ -1,4 +1,4 @@
-// Spectra that are known, and realisations of them.
+// Known spectra, and realisations of them.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,8 @@
 
 namespace astrolith::testing {
 
-// weight times a symmetric pair of Gaussians at +-(cx, cy), deviations sx and sy along axes turned by angle.
+// weight times a symmetric pair of Gaussians at +-(cx, cy) with deviations sx and sy along axes turned by
+// angle.
 inline double gaussian_pair(double fx, double fy, double cx, double cy, double sx, double sy, double angle,
                             double weight) {
   double sum = 0.0;
@@ -29,8 +30,8 @@ inline double gaussian_pair(double fx, double fy, double cx, double cy, double s
   return weight * sum;
 }
 
-// A function of integer frequencies on a 128 x 128 grid, zero at frequency 0 and in the Nyquist row and
-// column, unit variance.
+// The spectrum of unit variance that a function of integer frequencies gives on a 128 x 128 grid. It is zero
+// at frequency 0 and in the Nyquist row and column.
 inline PowerSpectrum spectrum_from(const std::function<double(double fx, double fy)>& power) {
   constexpr int n = 128;
   PowerSpectrum s{n, n, {}};
@@ -53,19 +54,19 @@ inline PowerSpectrum four_lobe_spectrum() {
   });
 }
 
-// Grains of one size, in no direction.
+// The spectrum of grains of one size without a preferred direction.
 inline double ring_power(double fx, double fy) {
   const double r = std::hypot(fx, fy);
   return std::exp(-(r - 20) * (r - 20) / 18) + 0.02 * std::exp(-r * r / 1250.0);
 }
 inline PowerSpectrum ring_spectrum() { return spectrum_from(ring_power); }
 
-// A height map: 1 / f^3 from two cycles an image on.
+// The spectrum of a height map: it falls as 1 / f^3 beyond two cycles per image.
 inline PowerSpectrum steep_spectrum() {
   return spectrum_from([](double fx, double fy) { return std::pow(1.0 + (fx * fx + fy * fy) / 4.0, -1.5); });
 }
 
-// Two long and narrow ridges, as of fibres or layers.
+// Two long and narrow ridges, as fibres or layers have.
 inline PowerSpectrum line_spectrum() {
   return spectrum_from([](double fx, double fy) {
     return gaussian_pair(fx, fy, 18, 6, 1.2, 12, 0.3, 1.0) +
@@ -81,7 +82,7 @@ inline PowerSpectrum broad_spectrum() {
   });
 }
 
-// What a recipe of eight lobes holds: the one spectrum here that lobes can match exactly.
+// The lobes of the only spectrum here that Gabor lobes can match exactly.
 inline std::vector<SpectralLobe> eight_lobes() {
   return {{5, 10.3 / 128, 4.2 / 128, 1.0},   {4, 9.1 / 128, 12.6 / 128, 0.5},
           {4, -20.4 / 128, 8.7 / 128, 0.3},  {6, 3.3 / 128, 1.2 / 128, 3.0},
@@ -104,7 +105,7 @@ struct NamedSpectrum {
   PowerSpectrum spectrum;
 };
 
-// All of them, different in kind.
+// All spectra of this file; they differ in kind.
 inline std::vector<NamedSpectrum> known_spectra() {
   return {{"four lobes", four_lobe_spectrum()}, {"ring", ring_spectrum()},
           {"steep", steep_spectrum()},          {"lines", line_spectrum()},
@@ -129,8 +130,8 @@ inline GreyImage realisation_of(const PowerSpectrum& spectrum, std::uint64_t see
   return image;
 }
 
-// A 128 x 128 corner of a realisation four times as large, whose borders do not match, with the truth on its
-// grid at the variance of the corner.
+// A 128 x 128 corner of a realisation four times as large, so that its borders do not match. `truth` is the
+// true spectrum on the corner's grid, scaled to the variance of the corner.
 struct CutTexture {
   GreyImage image;
   PowerSpectrum truth;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A recipe's colours become a photo, and the photo a recipe.
+// Fits the photo that a recipe with two coloured layers makes.
 class PhotoFitTest : public ::testing::Test {
  protected:
   PhotoFitTest() {

@@ -13,7 +13,7 @@ namespace astrolith {
 namespace {
 
 using Algorithm = OptimizerAlgorithm;
-// Off the box's centre and different in each variable, so that no symmetry helps.
+// The optimum lies off the box's centre and differs in each variable, so that no symmetry helps.
 const std::vector<double> kOptimum = {0.7, -1.3, 2.1, -0.4};
 const Bounds kBox = {{-5, -5, -5, -5}, {5, 5, 5, 5}};
 
@@ -23,7 +23,7 @@ double sphere(std::span<const double> x) {
   return sum;
 }
 
-// Least value 0 at kOptimum.
+// The Rosenbrock function, moved so that its least value, 0, lies at kOptimum.
 double rosenbrock(std::span<const double> x) {
   double sum = 0;
   for (std::size_t d = 0; d + 1 < x.size(); ++d) {
@@ -155,7 +155,7 @@ TEST_P(EveryOptimizer, RethrowsWhatTheObjectiveThrows) {
   EXPECT_THROW(minimize(objective, kBox, options_of(GetParam(), 100)), std::domain_error);
 }
 
-// 20 seeds: the bounds hold for the median, which a broken update rule does not reach.
+// The median over 20 seeds. A broken update rule does not reach the bounds that the tests set for it.
 double median_value(Algorithm algorithm, double (*f)(std::span<const double>), std::int64_t evaluations) {
   std::vector<double> values;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -183,7 +183,7 @@ TEST(CmaEs, RosenbrockAndRastrigin) {
   EXPECT_LT(median_value(Algorithm::cmaes, rastrigin, 10000), 1.0);
 }
 
-// Rotated and stretched by 1000: what adapting the covariance is for.
+// A rotated ellipsoid with axes up to 1000 : 1, which needs an adapted covariance.
 TEST(CmaEs, EllipsoidInManyDimensions) {
   const std::size_t n = 20;
   const Bounds box = {std::vector<double>(n, -5.0), std::vector<double>(n, 5.0)};

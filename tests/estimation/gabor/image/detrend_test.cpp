@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-// A texture of deviation 0.1 about 0.5.
+// A texture of mean 0.5 and standard deviation 0.1.
 GreyImage texture() {
   GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 3);
   for (double& v : image.values) v = 0.5 + 0.1 * v;
@@ -53,7 +53,7 @@ TEST(Detrend, APolynomialLeavesNothing) {
   }
 }
 
-// Least squares: what is left holds no trend, so taking it out twice changes nothing.
+// The image without its trend holds no trend, so a second removal changes nothing.
 TEST(Detrend, IsAProjection) {
   GreyImage once = texture();
   remove_trend(once, 3, TrendModel::kAdded, "p");
@@ -62,7 +62,7 @@ TEST(Detrend, IsAProjection) {
   EXPECT_LT(largest_difference(once, twice), 1e-12);
 }
 
-// A light spot; a plain slope would go with the periodic component alone.
+// The trend is a light spot, since the periodic component alone would already remove a slope.
 TEST(Detrend, ASpotOnATextureGoesAndTheTextureStays) {
   const GreyImage clean = texture();
   GreyImage image =
@@ -72,7 +72,7 @@ TEST(Detrend, ASpotOnATextureGoesAndTheTextureStays) {
   EXPECT_LT(distance(image, clean), 0.05);
 }
 
-// Uneven light scales the contrast too: division restores it, subtraction cannot.
+// Uneven light scales the contrast too. Division restores the contrast, subtraction cannot.
 TEST(Detrend, UnevenLightGoesByDivision) {
   const GreyImage clean = texture();
   const GreyImage lit = changed(clean, [](double v, double x, double) { return v * (1.0 + 0.6 * x); });

@@ -7,7 +7,7 @@
 namespace astrolith {
 namespace {
 
-// Colours along known axes with known deviations.
+// Colours that vary along known axes with known deviations.
 std::vector<GreyImage> colors(double first, double second) {
   CounterRandom random(11);
   std::vector<GreyImage> planes(3, GreyImage{64, 64, {}});
@@ -37,7 +37,7 @@ TEST(ImageChannels, AreThePrincipalComponents) {
   EXPECT_NEAR(product - first_mean * second_mean, 0.0, 1e-12);
 }
 
-// rgb = mean + sum of axis * (image - its mean): what synthesis relies on.
+// Synthesis relies on rgb = mean + sum of axis * (image - its mean).
 TEST(ImageChannels, AddUpToTheColours) {
   const std::vector<GreyImage> planes = colors(0.1, 0.02);
   const Vec3d mean = mean_color(planes);

@@ -87,7 +87,7 @@ TEST_F(ImageReaderTest, HalfFloatsAreRead) {
   EXPECT_NE(error_of(folder / "nan.tif").find("pixel (0, 0)"), std::string::npos);
 }
 
-// Orientation 6: the stored picture is to be turned clockwise to stand upright.
+// With orientation 6 the stored picture must be turned clockwise to stand upright.
 TEST_F(ImageReaderTest, OrientationIsHonoured) {
   TIFF* tiff = TIFFOpen((folder / "o.tif").c_str(), "w");
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 3);
@@ -181,7 +181,7 @@ TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
             std::string::npos);
 }
 
-// The header alone decides: nothing is allocated for a size that is refused.
+// The header alone decides, and nothing is allocated for a refused size.
 TEST_F(ImageReaderTest, HugeImagesAreRefusedBeforeDecoding) {
   const std::string header = std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) +
                              std::string("\0\0\x4e\x20\0\0\x4e\x20\x08\0\0\0\0", 13) + std::string(8, '\0');

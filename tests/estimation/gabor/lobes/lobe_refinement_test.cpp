@@ -18,7 +18,8 @@ PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int heig
   return spectrum_of(layer, width, height);
 }
 
-// One of them broad enough to wrap around the grid, one on the axis, one at frequency 0.
+// Four lobes: the third is broad enough to wrap around the grid and lies on an axis, the fourth at frequency
+// 0.
 std::vector<SpectralLobe> four_lobes() {
   return {{4, 0.11, 0.06, 3.0}, {3, -0.2, 0.25, 1.0}, {1, 0.3, 0.0, 0.4}, {4, 0.0, 0.0, 0.7}};
 }
@@ -78,7 +79,7 @@ TEST(RefineLobes, ThreadsDoNotChangeABit) {
   EXPECT_EQ(refined_with(1), refined_with(4));
 }
 
-// Superfluous lobes go; those that carry the spectrum stay, whatever the criterion must allow for.
+// Superfluous lobes are removed, and the lobes that carry the spectrum stay.
 TEST(FewestLobes, KeepsWhatTheEstimateIsWorth) {
   const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
   std::vector<SpectralLobe> lobes = disturbed(four_lobes());

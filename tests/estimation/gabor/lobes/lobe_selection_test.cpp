@@ -53,7 +53,7 @@ TEST(SelectLobes, RemovesTheOneThatMattersLeast) {
   for (const SpectralLobe& lobe : kept) EXPECT_GT(lobe.height, 0.1);
 }
 
-// Two lobes a fraction of a deviation apart stand in for each other: one goes before anything else does.
+// Two lobes a fraction of a deviation apart can replace each other, so one of them is removed first.
 TEST(SelectLobes, MergesNeighbours) {
   std::vector<SpectralLobe> lobes = three_lobes();
   lobes.push_back({4, 0.1 + 0.1 * lobe_deviation(4), 0.05, 1.5});

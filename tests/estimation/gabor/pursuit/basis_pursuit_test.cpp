@@ -30,7 +30,8 @@ std::vector<double> speckled_target(const GaborDictionary& dictionary, std::uint
   return s;
 }
 
-// Cyclic coordinate descent on explicit columns: slow, dense and independent of the solvers under test.
+// The minimum by cyclic coordinate descent on explicit columns. It is slow and dense, and independent of the
+// solvers under test.
 double dense_minimum(const BasisPursuitProblem& problem) {
   const std::size_t n = problem.dictionary.size();
   std::vector<std::vector<double>> columns(n, std::vector<double>(problem.dictionary.rows()));
@@ -110,7 +111,7 @@ TEST_P(BasisPursuitTest, AboveTheLargestPenaltyTheSolutionIsZero) {
   EXPECT_EQ(*std::max_element(result.x.begin(), result.x.end()), 0.0);
 }
 
-// Targets no spectrum would be: negative, zero, one spike. The gap stays a true bound.
+// The gap stays a true bound on targets that no spectrum has: negative values, zeros and one spike.
 TEST_P(BasisPursuitTest, AdversarialTargetsKeepTheGapNonNegative) {
   const GaborDictionary dictionary(32, 32, 2, 5, std::vector<double>(32 * 32, 1.0));
   std::vector<std::vector<double>> targets(3, std::vector<double>(dictionary.rows(), 0.0));
@@ -132,8 +133,8 @@ TEST_P(BasisPursuitTest, AdversarialTargetsKeepTheGapNonNegative) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, BasisPursuitTest, ::testing::Values(&fista, &working_set));
 
-// The optimality conditions, checked in the test's own arithmetic: a_j'r <= penalty everywhere, with equality
-// where x_j > 0. And one optimum: both solvers end at the same value and nearly the same spectrum.
+// The test checks the optimality conditions in its own arithmetic: a_j'r <= penalty everywhere, with equality
+// where x_j > 0. Both solvers must end at the same value and at nearly the same spectrum.
 TEST(BasisPursuit, BothSolversMeetTheOptimalityConditionsAndEachOther) {
   const GaborDictionary dictionary(32, 24, 2, 5, std::vector<double>(32 * 24, 1.0));
   BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 12), 0.0};
@@ -160,7 +161,7 @@ TEST(BasisPursuit, BothSolversMeetTheOptimalityConditionsAndEachOther) {
     EXPECT_GT(size, 0.0);
     for (std::size_t i = 0; i < a.size(); ++i) a[i] = problem.target[i] - a[i];
     dictionary.analyze(a, correlations);
-    // For the same reason the residual, and so every correlation, is this far from the optimum's at most.
+    // By strong convexity every correlation is at most this far from its value at the optimum.
     const double slack = std::sqrt(2.0 * options.relative_gap * exact.primal);
     for (std::size_t j = 0; j < correlations.size(); ++j) {
       EXPECT_LE(correlations[j], problem.penalty + slack);
@@ -171,8 +172,8 @@ TEST(BasisPursuit, BothSolversMeetTheOptimalityConditionsAndEachOther) {
   }
 }
 
-// With the residual pointing away from the target the scaled dual's factor would be negative; an unclipped
-// certificate then claims a bound above the minimum.
+// Where the residual points away from the target, the scaled dual has a negative factor. A certificate
+// without a clip would then claim a bound above the minimum.
 TEST(DualityCertificate, ResidualsAgainstTheTargetGiveNoFalseBound) {
   const GaborDictionary dictionary(32, 32, 2, 4, std::vector<double>(32 * 32, 1.0));
   const BasisPursuitProblem problem{dictionary, speckled_target(dictionary, 6), 1.0};

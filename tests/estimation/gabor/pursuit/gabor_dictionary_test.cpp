@@ -21,7 +21,7 @@ std::vector<double> uneven_weight(int width, int height) {
   return weight;
 }
 
-// A column by its definition, without transforms.
+// A column computed by its definition, without transforms.
 std::vector<double> column(const GaborDictionary& dictionary, std::size_t j) {
   const GaborAtom& atom = dictionary.atom(j);
   const double deviation = lobe_deviation(atom.bandwidth);
@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, DictionarySizes,
                          ::testing::Values(std::pair{32, 32}, std::pair{40, 33}, std::pair{35, 64}));
 
 TEST(GaborDictionary, HasTheAtomsOfThePaper) {
-  // The reference estimator counts 26,836 atoms at 128 x 128 for bandwidths 2 .. 7; it keeps the Nyquist
-  // frequencies, which belong to no pair.
+  // The reference estimator counts 26,836 atoms at 128 x 128 for bandwidths 2 .. 7. It also keeps atoms at
+  // the Nyquist frequencies, which belong to no pair.
   const GaborDictionary dictionary(128, 128, 2, 7, std::vector<double>(128 * 128, 1.0));
   EXPECT_NEAR(static_cast<double>(dictionary.size()), 26836.0, 0.02 * 26836.0);
   EXPECT_EQ(narrowest_bandwidth(128, 128), 7);

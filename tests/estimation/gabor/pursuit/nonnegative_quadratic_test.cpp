@@ -14,7 +14,7 @@ struct Problem {
   double value(const Eigen::VectorXd& x) const { return 0.5 * x.dot(G * x) - q.dot(x); }
 };
 
-// Columns of positive numbers are much alike, as lobes are.
+// A problem whose columns are positive and therefore much alike, as those of lobes are.
 Problem random_problem(int n, std::uint64_t seed) {
   CounterRandom random(seed);
   Eigen::MatrixXd A(n + 2, n);
@@ -24,7 +24,7 @@ Problem random_problem(int n, std::uint64_t seed) {
   return {A.transpose() * A, A.transpose() * s - Eigen::VectorXd::Constant(n, 0.1)};
 }
 
-// Tries every set of positive coordinates.
+// The least value over every set of positive coordinates.
 double exhaustive_minimum(const Problem& p) {
   const int n = static_cast<int>(p.q.size());
   double best = 0.0;
@@ -63,7 +63,7 @@ TEST(NonnegativeQuadratic, MeetsTheOptimalityConditionsOfALargeProblem) {
   }
 }
 
-// Stopped after any number of factorisations the point is feasible and no worse than before.
+// After any number of factorisations the point is feasible and its value no higher than before.
 TEST(NonnegativeQuadratic, NeverRisesWhereverItStops) {
   const Problem p = random_problem(80, 5);
   Eigen::VectorXd x = Eigen::VectorXd::Constant(80, 0.05);

@@ -49,8 +49,8 @@ TEST(BorderTaper, FadesACutAndKeepsItsVariance) {
   EXPECT_LT(tapered.looks, 1.0);
 }
 
-// The reason for it: of a square cut out of a larger texture the taper tells more than the periodic
-// component.
+// The taper's estimate from a square cut out of a larger texture is nearer to the truth than that from the
+// periodic component.
 TEST(BorderTaper, ServesCutsBetterThanThePeriodicComponent) {
   double taper = 0.0;
   double periodic = 0.0;

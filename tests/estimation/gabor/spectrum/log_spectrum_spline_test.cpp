@@ -12,7 +12,7 @@ PowerSpectrum periodogram_of(const PowerSpectrum& truth, std::uint64_t seed) {
   return power_spectrum(testing::realisation_of(truth, seed));
 }
 
-// Without noise nothing needs smoothing: a Gaussian's logarithm has no third differences.
+// Smoothing does not change a Gaussian without noise, since its logarithm has no third differences.
 TEST(LogSpectrumSpline, GoesThroughASmoothSpectrum) {
   PowerSpectrum hill{64, 48, {}};
   for (int y = 0; y < 48; ++y) {
@@ -27,8 +27,8 @@ TEST(LogSpectrumSpline, GoesThroughASmoothSpectrum) {
   for (std::size_t i = 0; i < g.size(); ++i) EXPECT_NEAR(g[i], std::log(hill.power[i]), 2e-3);
 }
 
-// At the minimum the score of the likelihood balances the penalty, whose sum over the grid is zero: the mean
-// of I / S over the frequencies with data is one.
+// At the minimum the score of the likelihood balances the penalty, whose sum over the grid is zero. The mean
+// of I / S over the frequencies with data is therefore one.
 TEST(LogSpectrumSpline, ExplainsThePowerOnAverage) {
   const PowerSpectrum data = periodogram_of(testing::four_lobe_spectrum(), 4);
   const LogSpectrumSpline spline(data);
@@ -52,7 +52,7 @@ TEST(LogSpectrumSpline, DoesNotDependOnTheStart) {
   EXPECT_LT(largest, 0.05);
 }
 
-// White noise: the scatter of g about its truth, zero, is as predicted.
+// On white noise the scatter of g about the truth, zero, is as predicted.
 TEST(LogSpectrumSpline, PredictsItsOwnVariance) {
   const PowerSpectrum white = testing::spectrum_from([](double, double) { return 1.0; });
   PowerSpectrum data = periodogram_of(white, 6);

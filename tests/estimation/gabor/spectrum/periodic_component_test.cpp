@@ -14,7 +14,7 @@ GreyImage random_image(int width, int height) {
   return image;
 }
 
-// Laplacian over neighbours; `wrap` decides whether neighbours across the border count.
+// The Laplacian over neighbours. `wrap` decides whether neighbours across the border count.
 double laplacian(const GreyImage& image, int x, int y, bool wrap) {
   const int w = image.width;
   const int h = image.height;
@@ -39,7 +39,7 @@ TEST(PeriodicComponent, PartsAddUpToTheImage) {
   EXPECT_NEAR(smooth_sum, 0.0, 1e-10);
 }
 
-// Moisan's definition: the periodic Laplacian of the periodic component is the interior Laplacian of the
+// By Moisan's definition the periodic Laplacian of the periodic component is the interior Laplacian of the
 // image.
 TEST(PeriodicComponent, ItsPeriodicLaplacianIsTheInteriorLaplacianOfTheImage) {
   for (const auto& [w, h] : {std::pair{33, 40}, {32, 17}, {2, 5}}) {

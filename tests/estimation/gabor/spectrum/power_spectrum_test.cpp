@@ -41,7 +41,7 @@ TEST(PowerSpectrum, IsSymmetric) {
   }
 }
 
-// A cosine of amplitude a has variance a^2/2, all of it in two bins.
+// A cosine of amplitude a has the variance a^2/2, all of it in two bins.
 TEST(PowerSpectrum, OfACosineIsTwoBins) {
   GreyImage image{64, 48, {}};
   for (int y = 0; y < 48; ++y) {
@@ -62,7 +62,7 @@ TEST(PowerSpectrum, LargeExemplarsAreAveragedOverTiles) {
   EXPECT_EQ(s.width, 64);
   EXPECT_EQ(s.height, 64);
   EXPECT_NEAR(s.variance(), sample_variance(image), 0.05 * sample_variance(image));
-  // Speckle of a single periodogram is as large as the spectrum; averaging must have lowered it.
+  // The speckle of a single periodogram is as large as the spectrum. Averaging must have lowered it.
   double square = 0.0;
   for (const double p : s.power) square += (p / s.variance() - 1.0) * (p / s.variance() - 1.0);
   EXPECT_LT(square / static_cast<double>(s.power.size()), 1.5 / s.averages);

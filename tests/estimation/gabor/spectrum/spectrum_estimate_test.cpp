@@ -11,8 +11,8 @@
 namespace astrolith {
 namespace {
 
-// The best Gaussian smoothing of one width, chosen with the truth in hand, and the estimate, which does not
-// know it: nearer on every kind of spectrum.
+// On every kind of spectrum the estimate is nearer to the truth than the best Gaussian smoothing of one
+// width, which is chosen with knowledge of the truth.
 TEST(SpectrumEstimate, IsNearerToTheTruthThanTheBestSmoothing) {
   const std::map<std::string, double> best_smoothed = {{"four lobes", 0.136}, {"ring", 0.113},
                                                        {"steep", 0.154},      {"lines", 0.200},
@@ -52,7 +52,7 @@ TEST(SpectrumEstimate, TurnsWithTheImage) {
   EXPECT_LT(largest, 1e-4 * *std::max_element(a.power.begin(), a.power.end()));
 }
 
-// White noise has nothing to blur; an oblique peak has.
+// White noise has no features that smoothing could blur. An oblique peak has.
 TEST(SpectrumEstimate, SmoothsWhiteNoiseMoreThanAPeak) {
   PowerSpectrum flat{128, 128, std::vector<double>(128 * 128, 1.0)};
   flat.power[0] = 0.0;

@@ -1,19 +1,20 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "estimation/gabor/figure_internal.h"
+#include "estimation/plot/figure.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kTick = 3.0;       // length
-constexpr double kTickText = 7.5;   // size
-constexpr double kLabelText = 8.5;  // size
+constexpr double kTickLength = 3.0;
+constexpr double kTickText = 7.5;   // size of the ticks' numbers
+constexpr double kLabelText = 8.5;  // size of an axis's label
 constexpr Ink kGrid{0.88, 0.88, 0.88};
 
 double place(double value, const Axis& axis, double begin, double extent) {
@@ -29,13 +30,13 @@ cairo_status_t append(void* file, const unsigned char* data, unsigned int length
   return CAIRO_STATUS_SUCCESS;
 }
 
-// The bytes of a UTF-8 character that starts with this one; 0 where none does.
+// The number of bytes of a UTF-8 character with this first byte, or 0 if no character starts with it.
 std::size_t utf8_length(unsigned char first) {
   return first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
 }
 
-// Cairo draws nothing at all once it met text that is no UTF-8, as file names may be: their characters
-// outside ASCII become question marks.
+// Replaces all characters outside ASCII by question marks if the text is not valid UTF-8. File names may be
+// invalid, and Cairo draws nothing more after it met an invalid text.
 std::string printable(std::string text) {
   bool valid = true;
   for (std::size_t i = 0, next = 0; i < text.size() && valid; i = next) {
@@ -59,6 +60,14 @@ void require_success(cairo_status_t status, const std::filesystem::path& file) {
 
 }  // namespace
 
+double place_along_x(double value, const Axis& axis, const Rectangle& at) {
+  return place(value, axis, at.x, at.width);
+}
+
+double place_along_y(double value, const Axis& axis, const Rectangle& at) {
+  return place(value, axis, at.bottom(), -at.height);
+}
+
 void Figure::Free::operator()(cairo_t* context) const { cairo_destroy(context); }
 void Figure::Free::operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
 
@@ -80,17 +89,24 @@ void Figure::line(double x0, double y0, double x1, double y1, double width, cons
   cairo_stroke(context_.get());
 }
 
-void Figure::text(double x, double y, const std::string& words, double size, Align align, bool bold) {
-  const std::string text = printable(words);
+double Figure::text_width(const std::string& words, double size, bool bold) {
   cairo_t* c = context_.get();
   cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                          bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(c, size);
   cairo_text_extents_t extents;
-  cairo_text_extents(c, text.c_str(), &extents);
+  cairo_text_extents(c, words.c_str(), &extents);
+  return extents.x_advance;
+}
+
+void Figure::text(double x, double y, const std::string& words, double size, Align align, bool bold,
+                  const Ink& ink) {
+  const std::string text = printable(words);
+  const double width = text_width(text, size, bold);  // also selects the font
+  cairo_t* c = context_.get();
   const double shift = align == Align::kLeft ? 0.0 : align == Align::kCenter ? 0.5 : 1.0;
-  set({});
-  cairo_move_to(c, x - shift * extents.x_advance, y);
+  set(ink);
+  cairo_move_to(c, x - shift * width, y);
   cairo_show_text(c, text.c_str());
 }
 
@@ -130,6 +146,16 @@ void Figure::picture(const Rectangle& at, int width, int height, std::span<const
   cairo_restore(c);
 }
 
+void Figure::picture(const Rectangle& at, const RgbImage& image, bool smooth) {
+  picture(at, image.width, image.height, image.pixels, smooth);
+}
+
+void Figure::fill(const Rectangle& at, const Ink& ink) {
+  set(ink);
+  cairo_rectangle(context_.get(), at.x, at.y, at.width, at.height);
+  cairo_fill(context_.get());
+}
+
 void Figure::frame(const Rectangle& at) {
   set({});
   cairo_set_line_width(context_.get(), 0.7);
@@ -138,30 +164,33 @@ void Figure::frame(const Rectangle& at) {
 }
 
 void Figure::axes(const Rectangle& at, const Axis& x, const Axis& y, bool grid) {
-  const double bottom = at.y + at.height;
+  const double bottom = at.bottom();
   for (const auto& [value, words] : x.ticks) {
-    const double px = place(value, x, at.x, at.width);
+    const double px = place_along_x(value, x, at);
     if (grid) line(px, at.y, px, bottom, 0.5, kGrid);
-    line(px, bottom, px, bottom + kTick, 0.7, {});
-    text(px, bottom + kTick + kTickText + 1.0, words, kTickText, Align::kCenter);
+    line(px, bottom, px, bottom + kTickLength, 0.7, {});
+    text(px, bottom + kTickLength + kTickText + 1.0, words, kTickText, Align::kCenter);
   }
+  double widest = 0.0;
   for (const auto& [value, words] : y.ticks) {
-    const double py = place(value, y, bottom, -at.height);
+    const double py = place_along_y(value, y, at);
+    widest = std::max(widest, text_width(words, kTickText));
     if (grid) line(at.x, py, at.x + at.width, py, 0.5, kGrid);
-    line(at.x - kTick, py, at.x, py, 0.7, {});
-    text(at.x - kTick - 2.0, py + 0.35 * kTickText, words, kTickText, Align::kRight);
+    line(at.x - kTickLength, py, at.x, py, 0.7, {});
+    text(at.x - kTickLength - 2.0, py + 0.35 * kTickText, words, kTickText, Align::kRight);
   }
   text(at.x + 0.5 * at.width, bottom + 25.0, x.label, kLabelText, Align::kCenter);
-  vertical_text(at.x - 30.0, at.y + 0.5 * at.height, y.label, kLabelText);
+  vertical_text(at.x - std::max(30.0, kTickLength + 6.0 + widest), at.y + 0.5 * at.height, y.label,
+                kLabelText);
   frame(at);
 }
 
 void Figure::y_axis_on_the_right(const Rectangle& at, const Axis& y) {
   const double right = at.x + at.width;
   for (const auto& [value, words] : y.ticks) {
-    const double py = place(value, y, at.y + at.height, -at.height);
-    line(right, py, right + kTick, py, 0.7, {});
-    text(right + kTick + 2.0, py + 0.35 * kTickText, words, kTickText);
+    const double py = place_along_y(value, y, at);
+    line(right, py, right + kTickLength, py, 0.7, {});
+    text(right + kTickLength + 2.0, py + 0.35 * kTickText, words, kTickText);
   }
   vertical_text(right + 34.0, at.y + 0.5 * at.height, y.label, kLabelText);
   frame(at);
@@ -171,8 +200,8 @@ void Figure::curve(const Rectangle& at, const Axis& x, const Axis& y,
                    const std::vector<std::pair<double, double>>& points, const Ink& ink) {
   constexpr std::size_t kFew = 60;
   cairo_t* c = context_.get();
-  const auto px = [&](double value) { return place(value, x, at.x, at.width); };
-  const auto py = [&](double value) { return place(value, y, at.y + at.height, -at.height); };
+  const auto px = [&](double value) { return place_along_x(value, x, at); };
+  const auto py = [&](double value) { return place_along_y(value, y, at); };
   set(ink);
   cairo_set_line_width(c, 1.4);
   cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
@@ -204,12 +233,10 @@ void Figure::write_png(const std::filesystem::path& file, double pixels_per_inch
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::lround(width_ * scale)),
                                  static_cast<int>(std::lround(height_ * scale))));
   const std::unique_ptr<cairo_t, Free> c(cairo_create(page.get()));
-  // The page's own white ends at a fraction of a pixel.
+  // The page may end at a fraction of a pixel: the last row and column of pixels are then painted white here.
   cairo_set_source_rgb(c.get(), 1.0, 1.0, 1.0);
   cairo_paint(c.get());
   cairo_scale(c.get(), scale, scale);
-  cairo_rectangle(c.get(), 1.0, 1.0, width_ - 2.0, height_ - 2.0);
-  cairo_clip(c.get());
   cairo_set_source_surface(c.get(), surface_.get(), 0.0, 0.0);
   cairo_paint(c.get());
   require_success(cairo_status(context_.get()), file);

@@ -1,0 +1,84 @@
+// A page that is drawn once and written as PNG and as SVG: text, pictures, curves and axes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimation/plot/axis.h"
+#include "synthesis/picture/image_file.h"
+
+struct _cairo;
+struct _cairo_surface;
+
+namespace astrolith {
+
+// A box on the page. Lengths are points, 1/72 inch; y points down.
+struct Rectangle {
+  double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
+
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+};
+
+// An sRGB colour, components in [0, 1].
+struct Ink {
+  double red = 0.15, green = 0.15, blue = 0.15;
+};
+
+// All lengths and places are points of the page, its upper left corner is (0, 0).
+class Figure {
+ public:
+  Figure(double width, double height);  // a white page
+
+  enum class Align { kLeft, kCenter, kRight };
+  // Text of one size whose baseline lies at y; x is its left end, middle or right end.
+  void text(double x, double y, const std::string& text, double size, Align align = Align::kLeft,
+            bool bold = false, const Ink& ink = {});
+  // Text that reads upwards, its baseline at x and its middle at y.
+  void vertical_text(double x, double y, const std::string& text, double size);
+  // rgb: row-major (height x width x 3), sRGB; stretched over `at`. `smooth` suits photos, blocks suit grids.
+  void picture(const Rectangle& at, int width, int height, std::span<const std::uint8_t> rgb, bool smooth);
+  void picture(const Rectangle& at, const RgbImage& image, bool smooth);
+  void fill(const Rectangle& at, const Ink& ink);
+  void frame(const Rectangle& at);
+  void line(double x0, double y0, double x1, double y1, double width, const Ink& ink = {});
+  // Ticks, texts and labels of x below and of y (upwards) to the left of a frame.
+  void axes(const Rectangle& at, const Axis& x, const Axis& y, bool grid = false);
+  void y_axis_on_the_right(const Rectangle& at, const Axis& y);
+  // A curve through points in axis units; at most 60 points are marked by dots.
+  void curve(const Rectangle& at, const Axis& x, const Axis& y,
+             const std::vector<std::pair<double, double>>& points, const Ink& ink);
+  // A circle, cut off at the border of `inside`.
+  void circle(const Rectangle& inside, double x, double y, double radius, double line_width, const Ink& ink);
+
+  double width() const { return width_; }
+  double height() const { return height_; }
+
+  // Both throw InputError where the file cannot be written, WorkError where the page cannot be drawn.
+  void write_png(const std::filesystem::path& file, double pixels_per_inch) const;
+  void write_svg(const std::filesystem::path& file) const;
+
+ private:
+  void set(const Ink& ink);
+  // Selects the font and measures valid UTF-8 text in it.
+  double text_width(const std::string& text, double size, bool bold = false);
+
+  struct Free {
+    void operator()(_cairo* context) const;
+    void operator()(_cairo_surface* surface) const;
+  };
+  double width_, height_;
+  std::unique_ptr<_cairo_surface, Free> surface_;
+  std::unique_ptr<_cairo, Free> context_;
+};
+
+// The place on the page of a value on a horizontal or a vertical axis of the diagram `at`.
+double place_along_x(double value, const Axis& axis, const Rectangle& at);
+double place_along_y(double value, const Axis& axis, const Rectangle& at);
+
+}  // namespace astrolith

@@ -1,0 +1,42 @@
+#include "estimation/plot/figure.h"
+
+#include <gtest/gtest.h>
+
+#include "numerics/errors.h"
+#include "tests/support/scratch_folder.h"
+
+namespace astrolith {
+namespace {
+
+// Bytes 16 to 23 of a PNG hold its width and its height, big-endian.
+int png_number(const std::string& png, std::size_t at) {
+  int value = 0;
+  for (std::size_t i = at; i < at + 4; ++i) value = value << 8 | static_cast<unsigned char>(png.at(i));
+  return value;
+}
+
+TEST(Figure, WritesPngOfThePageSize) {
+  const testing::ScratchFolder folder;
+  Figure page(144.0, 72.0);
+  page.fill({0.0, 0.0, 10.0, 10.0}, {1.0, 0.0, 0.0});
+  page.write_png(folder / "page.png", 100.0);
+  const std::string png = testing::file_content(folder / "page.png");
+  EXPECT_EQ(png_number(png, 16), 200);
+  EXPECT_EQ(png_number(png, 20), 100);
+}
+
+TEST(Figure, DrawsTextThatIsNotUtf8) {
+  const testing::ScratchFolder folder;
+  Figure page(100.0, 50.0);
+  page.text(5.0, 20.0, "gr\xfcn.png", 10.0);
+  EXPECT_NO_THROW(page.write_svg(folder / "page.svg"));
+  EXPECT_NE(testing::file_content(folder / "page.svg").find("</svg>"), std::string::npos);
+}
+
+TEST(Figure, RefusesFilesThatCannotBeWritten) {
+  const testing::ScratchFolder folder;
+  EXPECT_THROW(Figure(10.0, 10.0).write_png(folder / "missing" / "page.png", 72.0), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith
