@@ -34,7 +34,7 @@ struct FieldLayer {
 
 // A list of impulses in every block: those of one kind of spots, or of one band of Gabor noise.
 struct ImpulseList {
-  std::uint32_t layer, part;
+  std::uint32_t layer, element;
 };
 
 struct FieldView {

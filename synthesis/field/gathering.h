@@ -38,7 +38,7 @@ ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box
   const FieldLayer& layer = f.layers[from.layer];
   const SpotNoise& noise = *layer.noise.get_if<SpotNoise>();
   const Box where = displaced_layer_box(box, layer.join.displaced);
-  for_each_spot(f.arrays[noise.kinds][from.part], f.arrays[noise.thresholds],
+  for_each_spot(f.arrays[noise.kinds][from.element], f.arrays[noise.thresholds],
                 moved_into(where, noise.low, noise.high), write);
 }
 
@@ -103,7 +103,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
                                const Box& box, Write&& write) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];
   const GaborSurfaceNoise& noise = *f.layers[from.layer].noise.get_if<GaborSurfaceNoise>();
-  const SurfaceBand& band = f.arrays[noise.bands][from.part];
+  const SurfaceBand& band = f.arrays[noise.bands][from.element];
   const FloatBox at = outer_float_box(projected_block(f, box), noise.low, noise.high);
   const auto write_reaching = [&](const GaborImpulse& impulse) {
     if (beyond_gabor_reach(impulse, at.center, at.half) <= 0.0f) write(impulse);
@@ -122,7 +122,7 @@ inline double gabor_margin(const FieldView& f) {
   double margin = 0.0;
   for (const ImpulseList& list : f.arrays.span(f.gabor_lists)) {
     const GaborSurfaceNoise& noise = *f.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
-    const SurfaceBand& band = f.arrays[noise.bands][list.part];
+    const SurfaceBand& band = f.arrays[noise.bands][list.element];
     margin = std::max(margin, 1.01 * double{band.reach} + 2.0 * double{band.cell});
   }
   return margin;

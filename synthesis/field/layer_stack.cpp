@@ -103,7 +103,7 @@ class LayerStack {
   // Appends the lists of impulses of the layer to come; returns the number of the first.
   std::uint32_t add_lists(std::uint32_t count, std::vector<ImpulseList>& lists) const {
     const auto first = static_cast<std::uint32_t>(lists.size());
-    for (std::uint32_t part = 0; part < count; ++part) lists.push_back({number_of_next_layer(), part});
+    for (std::uint32_t i = 0; i < count; ++i) lists.push_back({number_of_next_layer(), i});
     return first;
   }
   std::uint32_t number_of_next_layer() const { return static_cast<std::uint32_t>(model_.layers.size()); }

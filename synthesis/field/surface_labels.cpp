@@ -91,10 +91,10 @@ void SurfaceLabels::label_some(const Vec3d& origin, std::span<const MeshVertex> 
     stage.field.gather(box).evaluate({x.data(), n}, {y.data(), n}, {z.data(), n}, {after.data(), n});
     const bool is_bare = stage.label == 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const float part = is_bare ? rounding_ : std::fabs(after[i] - before[i]);
+      const float change = is_bare ? rounding_ : std::fabs(after[i] - before[i]);
       if (is_bare) bare[i] = after[i];
-      if (is_bare || part > largest[i]) {
-        largest[i] = part;
+      if (is_bare || change > largest[i]) {
+        largest[i] = change;
         labels[i].label = stage.label;
       }
       labels[i].elevation = after[i] - bare[i];

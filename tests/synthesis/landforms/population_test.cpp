@@ -85,9 +85,9 @@ TEST(Population, PlacesAreUniformOverTheArea) {
   double area = 0.0, right = 0.0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3d a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
-    const double part = norm(cross(b - a, c - a));
-    area += part;
-    right += a.x + b.x + c.x > 3.0 ? part : 0.0;
+    const double twice_area = norm(cross(b - a, c - a));
+    area += twice_area;
+    right += a.x + b.x + c.x > 3.0 ? twice_area : 0.0;
   }
   const BareSurface surface(bare_body(egg));
   EXPECT_NEAR(surface.area(), 0.5 * area, 1e-3 * area);
