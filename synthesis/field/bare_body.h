@@ -1,4 +1,4 @@
-// The body of a recipe without its layers, as landforms are placed on it.
+// The body of a recipe without its layers. Landforms are placed on it.
 #pragma once
 
 #include "recipe/recipe.h"
@@ -6,7 +6,7 @@
 
 namespace astrolith {
 
-// Expects a recipe with a body. Throws InputError as ImplicitField does.
+// Expects a recipe with a body. Throws InputError for a recipe that ImplicitField refuses.
 BareBody bare_body(const Recipe& recipe);
 
 }  // namespace astrolith

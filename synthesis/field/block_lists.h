@@ -1,4 +1,4 @@
-// The lists of blocks (field_tables.h), gathered on the host one block after another.
+// The lists of the elements that reach blocks (field_tables.h), gathered on the host block by block.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@ namespace astrolith {
 
 class BlockListStore {
  public:
-  // Lists of the metaballs of one leaf, without layers.
+  // A store for blocks of a body of one leaf, without layers.
   BlockListStore() = default;
-  // Lists of this field.
+  // A store for blocks of this field.
   explicit BlockListStore(const FieldView& field)
       : leaves_(field.body.leaves.count),
         spot_lists_(field.spot_lists.count),
@@ -20,10 +20,10 @@ class BlockListStore {
 
   // Appends the lists of a block of the field that the store was made for.
   void add(const FieldView& field, const Box& box);
-  // Appends a block that metaballs alone reach.
+  // Appends a block that only these metaballs reach. Expects a store without layers.
   void add(std::span<const MetaballSphere<float>> of_leaf);
 
-  // A view of this object's arrays.
+  // A view of this object's arrays, valid until a block is added.
   BlockListArrays view() const;
   std::size_t size() const { return (first_metaball.size() - 1) / leaves_; }
 
@@ -40,7 +40,7 @@ class BlockListStore {
   void add_metaballs(const FieldView& field, const Box& box);
   void add_landforms(const FieldView& field, const Box& box);
 
-  std::uint32_t leaves_ = 1, spot_lists_ = 0, gabor_lists_ = 0, landform_lists_ = 0;  // a block
+  std::uint32_t leaves_ = 1, spot_lists_ = 0, gabor_lists_ = 0, landform_lists_ = 0;  // lists of one block
 };
 
 }  // namespace astrolith

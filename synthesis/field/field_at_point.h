@@ -1,4 +1,4 @@
-// F at one point from a field's tables, for CPU and GPU: the bits of ImplicitField.
+// F at one point from a field's tables, for CPU and GPU, with the bits of ImplicitField.
 #pragma once
 
 #include "synthesis/body/body_at_point.h"
@@ -6,22 +6,25 @@
 
 namespace astrolith {
 
-// As many layers' heights can be kept for masks where a point is evaluated by itself.
+// The most layers whose heights can be kept for masks where a point is evaluated by itself. The functions
+// here expect FieldView::num_kept_heights not to exceed it; obstacle_on_gpu() (cuda/mesher/gpu_obstacle.h)
+// checks.
 inline constexpr std::uint32_t kMostKeptHeights = 4;
 
-// What the layers so far have made of the surface near a point.
+// The state of a point after the layers that were applied so far.
 struct FieldState {
   float elevation = 0.0f;
-  bool is_displaced = false;
+  bool is_displaced = false;  // whether any layer warps the coordinates of the layers after it
   Vec3f displacement;
-  float kept[kMostKeptHeights] = {};
+  float kept[kMostKeptHeights] = {};  // heights kept for masks, by slot
 };
 
+// The projection of a point on the bare surface.
 ASTROLITH_HD inline Vec3f projected_point(const FieldView& f, const BodyAtPoint& body) {
   return projected_point(body, f.leaf(0).metaballs.gradient_floor, static_cast<float>(f.height_bound));
 }
 
-// Joins a layer's height with what the layers before it made.
+// Joins a layer's height with the elevation that the layers before it made.
 ASTROLITH_HD inline void join_height(const FieldView& f, const LayerJoin& join, const Vec3f& p, float height,
                                      FieldState& state) {
   if (join.keeps >= 0) state.kept[join.keeps] = height;
@@ -38,7 +41,7 @@ ASTROLITH_HD inline void join_height(const FieldView& f, const LayerJoin& join, 
   if (join.changes_elevation()) state.elevation = join_elevation(join, weight, height, state.elevation);
 }
 
-// Applies one layer at a point; visits the layer's noise.
+// Visits a layer's noise: applies the layer at a point.
 struct LayerAtPoint {
   const FieldView& f;
   const BlockLists& lists;
@@ -66,7 +69,7 @@ struct LayerAtPoint {
   }
 
  private:
-  // Where a noise in space is evaluated for the point.
+  // The point where a noise in space is evaluated.
   ASTROLITH_HD Vec3f displaced() const { return state.is_displaced ? p + state.displacement : p; }
   ASTROLITH_HD void join(float height) const { join_height(f, layer.join, p, height, state); }
 };
@@ -81,8 +84,8 @@ ASTROLITH_HD inline bool boulders_reach(const FieldView& f, const BlockLists& li
   return false;
 }
 
-// F without boulders. Layers are added until those to come cannot bring F into the band, except where
-// boulders reach.
+// F without boulders. Layers are left out as soon as they and all layers after them cannot bring F into
+// +-band. Where boulders reach, all layers are applied.
 ASTROLITH_HD inline float terrain_at(const FieldView& f, const BlockLists& lists, const Vec3f& p,
                                      float band) {
   const BodyAtPoint body = body_at(f.body, f.arrays, lists.metaballs, p);
@@ -99,6 +102,7 @@ ASTROLITH_HD inline float terrain_at(const FieldView& f, const BlockLists& lists
   return body.distance + state.elevation;
 }
 
+// F of the union with the boulders that reach the block, where `value` is F without boulders.
 ASTROLITH_HD inline float with_boulders(const FieldView& f, const BlockLists& lists, const Vec3f& p,
                                         float value) {
   const FieldBoulder* boulders = f.arrays[f.boulders];
@@ -109,13 +113,14 @@ ASTROLITH_HD inline float with_boulders(const FieldView& f, const BlockLists& li
   return value;
 }
 
-// F(p) as FieldBlock::evaluate has it for the same band; `lists` must hold what reaches p.
+// F(p) with the bits of FieldBlock::evaluate for the same band (length units). `lists` must hold all elements
+// that reach p.
 ASTROLITH_HD inline float field_at(const FieldView& f, const BlockLists& lists, const Vec3f& p, float band) {
   const float steepest = static_cast<float>(f.body.lipschitz_bound);
   return with_boulders(f, lists, p, terrain_at(f, lists, p, band * steepest));
 }
 
-// Applies one layer at the corners of a tetrahedron; visits the layer's noise.
+// Visits a layer's noise: applies the layer at the four corners of a tetrahedron.
 struct LayerAtTetrahedron {
   const FieldView& f;
   const BlockLists& lists;
@@ -138,7 +143,7 @@ struct LayerAtTetrahedron {
   }
 };
 
-// F at the corners of a small tetrahedron, as FieldBlock::evaluate_tetrahedra has it.
+// F at the four corners p of a small tetrahedron, with the bits of FieldBlock::evaluate_tetrahedra.
 ASTROLITH_HD inline void field_at_tetrahedron(const FieldView& f, const BlockLists& lists, const Vec3f* p,
                                               float* values) {
   BodyAtPoint body[4];

@@ -1,4 +1,4 @@
-// Points of a field that are evaluated together, and what becomes of them.
+// The points of a field that are evaluated together, and their state from layer to layer.
 #pragma once
 
 #include <array>
@@ -8,25 +8,27 @@
 
 namespace astrolith {
 
-// Points evaluated together: a block of 9^3 samples and some, on the stack.
+// The most points evaluated together. A block of 9^3 samples fits, and a batch fits on the stack.
 inline constexpr int kBatch = 1024;
 
-// Points, where the metaballs are evaluated for them, s and grad L there, what the layers so far have made of
-// the surface, and a layer's heights.
 struct Batch {
-  int n = 0;
-  std::array<float, kBatch> x, y, z, mx, my, mz, distance, gx, gy, gz, elevation, height;
-  std::array<float, kBatch> px, py, pz;  // projected on the bare surface
-  bool is_projected = false;             // for the first layer that asks
-  const SpotImpulses* spots = nullptr;   // of the layer, that reach the points; null where none were drawn
-  std::array<float, kBatch> lx, ly, lz;  // coordinates local to an origin, where there is one
-  const Vec3d* origin = nullptr;         // null: there is none
-  std::array<float, kBatch> weight;
-  // Displacements by the layers that warp those after them, and displaced coordinates; of a model with such.
-  bool is_displaced = false;
-  std::array<float, kBatch> dx, dy, dz, qx, qy, qz;
-  std::vector<std::array<float, kBatch>> kept;  // heights that masks ask for, by slot
-  bool tetrahedra = false;  // whether points are the corners of such, and none may be left out
+  int n = 0;                                       // number of points
+  std::array<float, kBatch> x, y, z;               // the points
+  std::array<float, kBatch> mx, my, mz;            // where the metaballs are evaluated for the points
+  std::array<float, kBatch> distance, gx, gy, gz;  // s and grad L at (mx, my, mz)
+  std::array<float, kBatch> elevation;             // elevation that the layers so far have made
+  std::array<float, kBatch> height;                // heights of the current layer
+  std::array<float, kBatch> px, py, pz;            // projections of the points on the bare surface
+  bool is_projected = false;                       // whether px, py and pz are there
+  const SpotImpulses* spots = nullptr;   // spots of the current layer that reach the points; null: not drawn
+  std::array<float, kBatch> lx, ly, lz;  // coordinates local to `origin`
+  const Vec3d* origin = nullptr;         // origin of local coordinates; null: there are none
+  std::array<float, kBatch> weight;      // weight of the current layer
+  bool is_displaced = false;             // whether a layer so far warps the coordinates of later layers
+  std::array<float, kBatch> dx, dy, dz;  // displacements by the layers that warp later layers
+  std::array<float, kBatch> qx, qy, qz;  // displaced coordinates
+  std::vector<std::array<float, kBatch>> kept;  // heights kept for masks, by slot
+  bool tetrahedra = false;  // whether the points are corners of tetrahedra, of which none may be left out
 };
 
 struct PointArrays {
@@ -39,22 +41,24 @@ struct LocalPoints {
   PointArrays local;
 };
 
-// How well F is asked for.
+// The accuracy that a caller needs (implicit_field.h).
 struct Accuracy {
   float band = kExactEverywhere;
   bool tetrahedra = false;
 };
 
-// What reaches the points of a block, as lists; null spots of a layer are drawn.
+// The metaballs and the spots that reach the points of a block. Spots of a layer that are null are drawn for
+// each batch.
 struct BatchLists {
   LeafLists metaballs;
   const DrawnSpots& spots;
 };
 
-// Joins a layer's heights to what those before it made of the elevation of a batch (layer_join.h).
+// Evaluates a layer at the points of a batch and joins it with the elevation so far (layer_join.h).
 void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
 
-// value[i] = F at n <= kBatch points of a block; `local` has them in coordinates local to an origin.
+// value[i] = F at n <= kBatch points of a block. `local`, unless null, holds the same points in coordinates
+// local to an origin.
 void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
                     const Accuracy& accuracy, float* value, const LocalPoints* local = nullptr);
 

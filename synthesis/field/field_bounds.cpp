@@ -1,4 +1,4 @@
-// What is certain about a field over whole boxes, on the CPU.
+// Bounds of a field over boxes, on the CPU.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-// The elements of a model that reach a box, as field_content() asks for them.
+// The `Lists` of field_content.h, found with the search structures of the model.
 struct ModelLists {
   const FieldModel& model;
   const ReachingMetaballs& reaching;
@@ -29,7 +29,7 @@ struct ModelLists {
   bool boulder_reaches(const Box& box) const { return model.boulder_tree.any_touching(box); }
 };
 
-// Arrays for the bounds of one box; reused, since thousands of boxes are bounded.
+// Scratch memory for the bounds of one box. It is reused, since thousands of boxes are bounded.
 BoundScratch scratch_for(const FieldModel& model, const ReachingMetaballs& metaballs) {
   thread_local std::vector<KernelInterval> kernels;
   thread_local std::vector<Interval> kept;
@@ -38,7 +38,8 @@ BoundScratch scratch_for(const FieldModel& model, const ReachingMetaballs& metab
   return {kernels.data(), kept.data()};
 }
 
-// The content of a box by the bound of all heights everywhere, which costs nothing. `at` is its body_box().
+// The content of a box by the bound of all heights everywhere, without evaluating a layer. `at` is the
+// body_box() of the box.
 BlockContent content_by_height_bound(const FieldModel& model, const ReachingMetaballs& metaballs,
                                      const Box& at) {
   const FieldView& f = model.tables;
@@ -70,8 +71,8 @@ bool within(const Box& inner, const Box& outer) {
          inner.max.x <= outer.max.x && inner.max.y <= outer.max.y && inner.max.z <= outer.max.z;
 }
 
-// Extends `bounds` by the smallest boxes of an octree that are not proved empty. The grid of a mesh depends
-// on the result: it is a promise that it does not change.
+// Extends `bounds` by the smallest boxes of an octree that are not proved empty. The grid of a mesh follows
+// from the bounds, so this function must never give others for the same recipe.
 void extend_bounds(const FieldModel& model, const LeafLists& metaballs, const Box& box, int depth,
                    Box& bounds) {
   if (!bounds.empty() && within(box, bounds)) return;
@@ -108,7 +109,8 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
   return spots;
 }
 
-// Repeated on what is left until that stops shrinking much, because supports reach far beyond the surface.
+// The supports reach far beyond the surface. The octree is therefore built again on the box that is left,
+// until the box stops shrinking much.
 Box surface_bounds(const FieldModel& model) {
   constexpr int kDepth = 6;
   const BodyLeaf& first = model.tables.leaf(0);

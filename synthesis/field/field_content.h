@@ -1,10 +1,10 @@
-// What is certain about a field over a box, for CPU and GPU, which agree bit by bit.
+// Bounds of a field over a box, and whether the field keeps one sign there. CPU and GPU find the same bits.
 //
-// `Lists` knows which elements of the field reach the box:
-//   MetaballList metaballs(leaf)                  those of a leaf that reach leaf_box() of the box
-//   Interval bound_spots(noise, layer, box)       the heights of a layer of spots over a box
-//   for_each_crater(relief, box, visit)           visit(number) for the craters that reach a box, ascending
-//   bool boulder_reaches(box)                     whether any boulder does
+// A type `Lists` tells which elements of the field reach the box:
+//   MetaballList metaballs(leaf)                  the metaballs of a leaf that reach leaf_box() of the box
+//   Interval bound_spots(noise, layer, box)       bounds of the heights of a layer of spots over a box
+//   for_each_crater(relief, box, visit)           visit(number) for every crater that reaches a box,
+//   ascending bool boulder_reaches(box)                     whether any boulder reaches a box
 #pragma once
 
 #include "synthesis/body/body_bounds.h"
@@ -13,23 +13,24 @@
 
 namespace astrolith {
 
-// The weight of a layer over a box, from the heights that masks ask for; it is not below 0.
+// Bounds of a layer's weight over a box, within [0, 1]. `kept` holds bounds of the heights kept for masks, by
+// slot.
 ASTROLITH_HD inline Interval bound_join_weight(const FieldView& f, const LayerJoin& join, const Box& box,
                                                const Interval* kept) {
   const Interval local = join.local ? bound_weight(join.locality, f.arrays, box) : Interval{1.0, 1.0};
   return join.mask < 0 ? local : product(local, bound_mask(join.mask_from, join.mask_to, kept[join.mask]));
 }
 
-// The elevations over a box after a layer, from those before it; visits the layer's noise.
+// Visits a layer's noise: bounds the elevations over a box after the layer, from the bounds before it.
 template <class Lists>
 struct LayerOverBox {
   const FieldView& f;
   const Lists& lists;
   std::uint32_t number;
   const Box& box;
-  const Box& projected;  // where the points of the box are projected on the bare surface
+  const Box& projected;  // holds the projections of the points of the box on the bare surface
   Interval before;
-  Interval* kept;  // heights that masks ask for, by slot
+  Interval* kept;  // bounds of the heights kept for masks, by slot
 
   ASTROLITH_HD Interval operator()(const CraterRelief& relief) const {
     const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
@@ -54,7 +55,7 @@ struct LayerOverBox {
   }
 };
 
-// The elevations over a box that all layers make. `kept` has room for f.num_kept_heights.
+// Bounds of the elevations that all layers make over a box. `kept` has room for f.num_kept_heights intervals.
 template <class Lists>
 ASTROLITH_HD Interval bound_elevations(const FieldView& f, const Lists& lists, const Box& box,
                                        const Box& projected, Interval* kept) {
@@ -66,12 +67,13 @@ ASTROLITH_HD Interval bound_elevations(const FieldView& f, const Lists& lists, c
   return {elevation.low - slack, elevation.high + slack};
 }
 
-// Where bounds of one box write what they need once; both arrays belong to the caller.
+// Scratch memory for the bounds of one box; both arrays belong to the caller.
 struct BoundScratch {
-  KernelInterval* kernels;  // as many as the longest list of metaballs
-  Interval* kept;           // as many as there are kept heights
+  KernelInterval* kernels;  // (length of the longest list of metaballs)
+  Interval* kept;           // (f.num_kept_heights)
 };
 
+// The content of a box, without boulders, for a body with operations.
 template <class Lists>
 ASTROLITH_HD BlockContent content_of_combined(const FieldView& f, const Lists& lists, const Box& box,
                                               const BoundScratch& scratch) {
@@ -83,6 +85,7 @@ ASTROLITH_HD BlockContent content_of_combined(const FieldView& f, const Lists& l
   return content_by_distance(distance, bound_elevations(f, lists, box, projected, scratch.kept));
 }
 
+// The content of a box, without boulders, for a plain body.
 template <class Lists>
 ASTROLITH_HD BlockContent content_of_plain(const FieldView& f, const Lists& lists, const Box& box,
                                            const BoundScratch& scratch) {
@@ -93,12 +96,13 @@ ASTROLITH_HD BlockContent content_of_plain(const FieldView& f, const Lists& list
   const BlockContent content = content_by_height_bound(bound, f.height_bound);
   if (content != BlockContent::kMixed || f.num_layers == 0) return content;
   const auto divisor = [&] { return smallest_gradient(leaf, spheres, at, scratch.kernels); };
-  // Only craters ask where points are projected.
+  // Only craters read the projected box.
   const Box projected = f.crater_layers.count == 0 ? at : projected_box(at, bound, f.height_bound, divisor());
   return content_by_heights(bound, bound_elevations(f, lists, box, projected, scratch.kept), divisor);
 }
 
-// Whether F keeps one sign over the box. A union with boulders only adds.
+// Whether F keeps one sign over the box. Boulders only add matter, so they can make a box mixed that lies
+// outside the rest of the body, and never one that lies inside.
 template <class Lists>
 ASTROLITH_HD BlockContent field_content(const FieldView& f, const Lists& lists, const Box& box,
                                         const BoundScratch& scratch) {

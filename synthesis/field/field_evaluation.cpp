@@ -7,8 +7,8 @@
 namespace astrolith {
 namespace {
 
-// Keeps the points whose F the heights may bring into the band and those that boulders reach, and where the
-// metaballs were evaluated for them; returns how many, and where they were.
+// Keeps the points with |s| <= reach and the points that boulders reach, and drops all others from the batch.
+// Returns the number of points kept; origin[k] becomes the old number of point k.
 template <typename Reach>
 int keep_near_surface(int n, float reach, const Reach& boulders_reach, const PointArrays& at,
                       const PointArrays& metaballs_at, const LocalPoints* local, Batch& b,
@@ -29,9 +29,9 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
   return kept;
 }
 
-// Keeps the points whose F, as far as it is known, may still come within `reach` of 0, and those that
-// boulders reach: fine layers are the dearest, and coarse ones have told by then where the surface is not.
-// The others' F is left as known.
+// Keeps the points where |F| with the layers so far is at most `reach`, and the points that boulders reach.
+// Fine layers cost most, and the coarse layers before them already tell for most points that no surface is
+// near. value[i] of a dropped point becomes F with the layers so far.
 template <typename Reach>
 void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::array<int, kBatch>& origin,
                     float* value) {
@@ -56,8 +56,8 @@ void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::arr
   b.n = kept;
 }
 
-// s and grad L of the body to the digits of local coordinates; `metaballs_at` holds the points `at` displaced
-// by the body's warp.
+// s and grad L of a plain body to the digits of local coordinates. `metaballs_at` holds the points `at`
+// displaced by the body's warp.
 void evaluate_local_body(const MetaballsView& metaballs, int n, const LocalPoints& local,
                          const PointArrays& at, const PointArrays& metaballs_at, Batch& b) {
   const auto displaced = [n](const float* p, const float* from, const float* to, float* out) {
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const
   return model.boulder_tree.touching(box);
 }
 
-// Adds what the layers make of the surface, near to it and wherever boulders reach.
+// Adds to value[i] the elevation that the layers make, close to the surface and wherever boulders reach.
 void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<const std::uint32_t> boulders,
                     const PointArrays& at, const PointArrays& metaballs_at, const LocalPoints* local,
                     float band, Batch& b, float* value) {
@@ -110,7 +110,7 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   const FieldView& f = model.tables;
   const BodyLeaf& first = f.leaf(0);
   const bool plain = f.body.plain();
-  // s changes so much faster than a distance does.
+  // The band is a distance, and s may change faster than a distance by this factor.
   const float band = accuracy.band * static_cast<float>(f.body.lipschitz_bound);
   Batch b;
   b.n = n;

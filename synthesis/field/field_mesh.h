@@ -1,6 +1,6 @@
-// Meshes of the two fields that recipes make. These functions are the templates of synthesis/mesh/mesher.h,
-// compiled once here: a file that includes this header does not compile the mesher, which takes some six
-// seconds.
+// Meshes of an ImplicitField and of a PatchField. These functions instantiate the templates of
+// synthesis/mesh/mesher.h once. A file that includes this header need not compile the mesher, which takes
+// about six seconds.
 #pragma once
 
 #include "synthesis/field/implicit_field.h"

@@ -1,5 +1,5 @@
-// What an ImplicitField and its blocks share: the field's tables, and what finds their elements fast on a
-// CPU.
+// The model that an ImplicitField and its blocks share: the field's tables, and the search structures with
+// which the CPU finds elements of the tables.
 #pragma once
 
 #include <string>
@@ -12,48 +12,50 @@
 namespace astrolith {
 
 struct FieldModel {
-  // The tables (field_tables.h).
+  // The storage of the tables (field_tables.h).
   ArrayStore arrays;
   BodyTables body;
-  std::vector<FieldLayer> layers;  // in the recipe's order; boulders are none of them
+  std::vector<FieldLayer> layers;  // in the recipe's order, without boulders
   std::vector<ImpulseList> spot_lists, gabor_lists;
   std::vector<std::uint32_t> crater_layers;
-  std::vector<FieldBoulder> boulders;  // on the surface that the layers make
-  double height_bound = 0.0;           // of the |elevation| that all layers make
+  std::vector<FieldBoulder> boulders;  // boulders on the surface that the layers make
+  double height_bound = 0.0;           // bound of the |elevation| that all layers make, length units
   std::uint32_t num_kept_heights = 0;
-  FieldView tables{};  // a view of all of these, once finish() was called
+  FieldView tables{};  // a view of the members above, made by finish()
 
-  // What the CPU finds elements with.
-  ReachingMetaballs metaballs;               // all of the body's
-  std::vector<BoxTree> crater_trees;         // by list of craters
-  BoxTree boulder_tree;                      // of what boulders reach
-  std::vector<GaborTileCache> gabor_caches;  // by list of Gabor impulses
+  // Search structures of the CPU.
+  ReachingMetaballs metaballs;               // all metaballs of the body
+  std::vector<BoxTree> crater_trees;         // one tree for each list of craters
+  BoxTree boulder_tree;                      // the boxes that boulders reach
+  std::vector<GaborTileCache> gabor_caches;  // one cache for each list of Gabor impulses
 
-  // Landforms as they lie on the body, for lists of them.
+  // Landforms as they lie on the body, for ImplicitField::craters() and boulders().
   std::vector<LayerCraters> placed_craters;
   std::vector<LayerBoulders> placed_boulders;
 
-  Box bounds;  // of the surface
+  Box bounds;  // holds the whole surface
 
-  // Makes `tables` a view of the layers as they are now. Adding to the model makes it invalid.
+  // Makes `tables` a view of the model as it is now. Adding to `arrays` or `layers` later makes the view
+  // invalid, until finish() is called again.
   void finish();
 };
 
-// Adds a recipe's layers to a model that holds its body. Throws InputError as ImplicitField.
+// Adds a recipe's layers to a model that holds its body. Throws InputError as ImplicitField does.
 void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model);
 
 // F at a point.
 float value_at(const FieldModel& model, const Vec3d& p);
 
-// The spots that reach a box, from those of a larger one or, where that has none, drawn.
+// The spots that reach a box. They are chosen from the spots of a larger box, or drawn where `of_larger` is
+// empty.
 DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger);
 
-// The spots of one layer; null where none were drawn.
+// The spots of layer number `layer`; null where none were drawn.
 inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) {
   return spots.empty() ? nullptr : spots[layer].get();
 }
 
-// Whether F keeps one sign over the box; `metaballs` and `spots` must hold what reaches the box.
+// Whether F keeps one sign over the box; `metaballs` and `spots` must hold all that reach the box.
 BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
                         const Box& box);
 

@@ -1,6 +1,7 @@
-// The model of a recipe's field: its body and its layers as plain tables, built once from the recipe and read
-// by CPU and GPU alike. field_at_point.h evaluates them at a point, field_content.h says what is certain over
-// a box, and gathering.h which of their elements reach a box. ImplicitField evaluates many points at once.
+// The model of a recipe's field: its body and its layers as plain tables. The tables are built once from the
+// recipe, and CPU and GPU read them alike. field_at_point.h evaluates the field at a point. field_content.h
+// bounds it over a box. gathering.h tells which elements of the tables reach a box. ImplicitField evaluates
+// many points at once.
 #pragma once
 
 #include <cstdint>
@@ -20,36 +21,39 @@
 
 namespace astrolith {
 
-// The table of kinds: every type that a layer of heights can be. A noise in space has make_noise, height_at,
-// evaluate_heights and bound_heights in its own room, and needs nothing else.
+// The table of kinds: every type that a layer of heights can have. A new noise in space needs an entry here,
+// a make_noise, a height_at, an evaluate_heights and a bound_heights, and nothing else.
 using LayerNoise = PlainVariant<FractalNoise, SparseNoise, SpotNoise, PhasorNoise, RandomPhaseNoise,
                                 CraterRelief, GaborSurfaceNoise>;
 
-// A layer, and how it joins those before it; craters join by themselves.
+// A layer and how it joins the layers before it. Craters change the elevation by their own rule, so that only
+// the bounds in their `join` are read.
 struct FieldLayer {
   LayerNoise noise;
   LayerJoin join;
-  std::uint32_t first_list = 0;  // of the layer's lists of impulses in a block, for spots and Gabor noise
+  std::uint32_t first_list = 0;  // number of the layer's first list of impulses, for spots and Gabor noise
 };
 
-// A list of impulses in every block: those of one kind of spots, or of one band of Gabor noise.
+// Every block has one list of impulses for each kind of spots, and one for each band of Gabor noise.
 struct ImpulseList {
-  std::uint32_t layer, element;
+  std::uint32_t layer;    // number of the layer
+  std::uint32_t element;  // number of the kind of spots or of the band within the layer
 };
 
+// A view of a field's tables. Ranges point into `arrays`.
 struct FieldView {
   ArrayView arrays;
   const FieldLayer* layers;
   std::uint32_t num_layers;
-  std::uint32_t num_kept_heights;  // slots for heights that masks ask for
+  std::uint32_t num_kept_heights;  // number of layers whose heights are kept for masks
   BodyTables body;
   ArrayRange<ImpulseList> spot_lists, gabor_lists;
-  ArrayRange<std::uint32_t> crater_layers;  // by list of craters: the number of the layer
-  ArrayRange<FieldBoulder> boulders;        // on the surface that the layers make
-  double height_bound;                      // of the |elevation| that all layers make, length units
-  float height_reach;                       // no elevation exceeds it; more than height_bound by rounding
+  ArrayRange<std::uint32_t> crater_layers;  // number of the layer of each list of craters
+  ArrayRange<FieldBoulder> boulders;        // boulders on the surface that the layers make
+  double height_bound;                      // bound of the |elevation| that all layers make, length units
+  float height_reach;                       // height_bound with a margin for rounding, length units
 
-  // Lists of craters and, last, of boulders that reach a block.
+  // Every block has one list of craters for each layer of craters, and after these one list of boulders.
   ASTROLITH_HD std::uint32_t num_landform_lists() const { return crater_layers.count + 1; }
   ASTROLITH_HD std::uint32_t boulder_list() const { return crater_layers.count; }
   ASTROLITH_HD const BodyLeaf& leaf(std::uint32_t number) const { return arrays[body.leaves][number]; }
@@ -58,15 +62,16 @@ struct FieldView {
   }
 };
 
-// The elements of the field that reach a block. List l of each array goes from first[l] to first[l + 1] - 1.
+// The lists of the elements that reach one block. List l of each array goes from first[l] to first[l + 1]
+// - 1.
 struct BlockLists {
-  LeafLists metaballs;  // by leaf
+  LeafLists metaballs;  // one list for each leaf of the body
   const SpotImpulse* spots;
-  const std::uint32_t* first_spot;  // by list of spots
+  const std::uint32_t* first_spot;  // (spot lists + 1)
   const GaborImpulse* gabor;
-  const std::uint32_t* first_gabor;     // by list of Gabor impulses
-  const std::uint32_t* landforms;       // numbers of craters and boulders
-  const std::uint32_t* first_landform;  // by list of landforms
+  const std::uint32_t* first_gabor;     // (Gabor lists + 1)
+  const std::uint32_t* landforms;       // numbers of craters within their layer, and of boulders
+  const std::uint32_t* first_landform;  // (landform lists + 1)
 };
 
 // The lists of many blocks, stored one after another.
@@ -78,8 +83,8 @@ struct BlockListArrays {
   const GaborImpulse* gabor;
   const std::uint32_t* first_gabor;  // (blocks * Gabor lists + 1)
   const std::uint32_t* landforms;
-  const std::uint32_t* first_landform;  // (blocks * landform lists + 1)
-  std::uint32_t leaves, spot_lists, gabor_lists, landform_lists;
+  const std::uint32_t* first_landform;                            // (blocks * landform lists + 1)
+  std::uint32_t leaves, spot_lists, gabor_lists, landform_lists;  // lists of one block
 
   ASTROLITH_HD BlockLists block(std::size_t i) const {
     return {{metaballs, first_metaball + i * leaves},

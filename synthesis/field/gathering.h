@@ -1,5 +1,5 @@
-// Which elements of a field reach a block: the rule by which the lists of BlockLists are gathered, for CPU
-// and GPU.
+// The rules for which elements of a field reach a block, for CPU and GPU. The lists of BlockLists
+// (field_tables.h) are gathered by them.
 #pragma once
 
 #include "synthesis/body/body_at_point.h"
@@ -9,29 +9,30 @@
 
 namespace astrolith {
 
-// Where the points of a box may be projected on the bare surface; craters and Gabor noise are looked up
-// there.
+// A box that holds the projections of the points of `box` on the bare surface. Craters and Gabor noise are
+// evaluated there.
 ASTROLITH_HD inline Box projected_block(const FieldView& f, const Box& box) {
   return farthest_projected_box(body_box(f.body, f.arrays, box), f.height_bound);
 }
 
-// `at` is the leaf_box() of the block.
+// Whether a metaball of the leaf reaches a block; `at` is the leaf_box() of the block.
 ASTROLITH_HD inline bool metaball_reaches(const BodyLeaf& leaf, const MetaballSphere<float>& sphere,
                                           const Box& at) {
   return reaches_box(sphere, double{leaf.metaballs.cutoff_squared}, at);
 }
 
-// `projected` is the projected_block().
+// Whether a crater of a list reaches a block; `projected` is the projected_block() of the block.
 ASTROLITH_HD inline bool crater_reaches(const FieldView& f, std::uint32_t list, std::uint32_t number,
                                         const Box& projected) {
   return boxes_touch(crater_reach(f.arrays[f.craters(list).craters][number]), projected);
 }
 
+// Whether a boulder reaches a block.
 ASTROLITH_HD inline bool boulder_reaches(const FieldView& f, std::uint32_t number, const Box& box) {
   return boxes_touch(f.arrays[f.boulders][number].box, box);
 }
 
-// Calls write(impulse) for the spots of a list that reach the block.
+// Calls write(impulse) for every spot of list number `list` that reaches the block.
 template <class Write>
 ASTROLITH_HD void gather_spots(const FieldView& f, std::uint32_t list, const Box& box, Write&& write) {
   const ImpulseList from = f.arrays[f.spot_lists][list];
@@ -67,8 +68,8 @@ ASTROLITH_HD inline FloatBox outer_float_box(const Box& box, const Vec3f& least,
   return out;
 }
 
-// Visits the cells of a band whose impulses may reach a box, tile by tile, as the CPU keeps them: kernels are
-// added in that order.
+// Visits the cells of a band whose impulses may reach a box. Cells come tile by tile, because the CPU keeps
+// impulses in tiles (synthesis/gabor/gabor_tiles.h) and adds kernels in this order.
 template <class Visit>
 ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box, const Visit& visit) {
   GaborCellSpan cells[3], tiles[3];
@@ -95,9 +96,9 @@ ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box
   }
 }
 
-// Calls write(impulse) for the Gabor impulses of a list that may reach the block; there may be more, which
-// add nothing. `metaballs` must hold those that reach the cells around the block, whose frames follow from
-// the body.
+// Calls write(impulse) for the Gabor impulses of list number `list` that may reach the block. Impulses that
+// do not reach it may be among them; they add nothing. The frames of impulses follow from the body at the
+// centres of their cells, so `metaballs` must hold the metaballs that reach the cells around the block.
 template <class Write>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
                                const Box& box, Write&& write) {
@@ -116,8 +117,8 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
   });
 }
 
-// How far beyond a block the cells of Gabor impulses that may reach it have their centres; 0 without such
-// noise.
+// The largest distance, in length units, from the projected_block() of a block to the centre of a cell whose
+// Gabor impulses may reach the block; 0 for a field without Gabor noise.
 inline double gabor_margin(const FieldView& f) {
   double margin = 0.0;
   for (const ImpulseList& list : f.arrays.span(f.gabor_lists)) {

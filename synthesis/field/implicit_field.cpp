@@ -29,7 +29,7 @@ void for_each_batch(std::size_t n, const Evaluate& evaluate) {
     evaluate(begin, std::min<std::size_t>(kBatch, n - begin));
 }
 
-// The body's float coordinates of points that are given local to an origin.
+// Points given in coordinates local to an origin, as float coordinates of the body's frame.
 struct BodyPoints {
   std::array<float, kBatch> x, y, z;
 

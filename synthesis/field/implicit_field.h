@@ -26,38 +26,38 @@
 
 namespace astrolith {
 
-struct FieldModel;     // what the field and its blocks share
+struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
 struct LayerBoulders;  // synthesis/landforms/boulder_field.h
 
-// The spots of each layer that reach a box, by layer; null where nothing was drawn. Empty without layers of
-// spots.
+// The spots that reach a box, one pointer for each layer; null where nothing was drawn. The vector is empty
+// for a field without layers of spots.
 using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
 
-// The part of a field that reaches a box. Lives no longer than its field. All members may be called from
-// many threads.
+// A field narrowed to a box. The block must not outlive its field. All members may be called from many
+// threads.
 class FieldBlock {
  public:
   // kOutside: F < 0 at every float point of the box; kInside: F > 0.
   BlockContent content() const;
 
-  // For a box within this one. Cheaper than gathering from the field, and the same block.
+  // The block of a box within this one: the block that the field would gather, at a lower cost.
   FieldBlock restricted_to(const Box& child) const;
 
-  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size. Layers are added in
-  // their order until those to come cannot bring F into the band (length units): there value[i] lacks them.
+  // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size. Where the remaining
+  // layers cannot bring F into +-band (length units), value[i] lacks them.
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band = kExactEverywhere) const;
 
-  // F everywhere at the corners of small tetrahedra, four after four, whose differences give the slope
-  // of F: what is dear is evaluated once for all four, to first order about their centre.
+  // value[i] = F at the corners of small tetrahedra, four after four. Their differences give the slope of F.
+  // Gabor noise is evaluated once for all four corners, to first order about the tetrahedron's centre.
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                            std::span<float> value) const;
 
-  // value[i] = F(origin + (x, y, z)) for points within the box but for the rounding of its coordinates to
-  // float. A body that has_local_form() and fractal layers are evaluated to the digits of x, y and z; other
-  // bodies and layers are evaluated to the digits of float coordinates in the body's frame.
+  // value[i] = F(origin + (x, y, z)). The points must lie within the box, but for the rounding of its
+  // coordinates to float. A body that has_local_form() and fractal layers are evaluated to the digits of x, y
+  // and z; other bodies and layers are evaluated to the digits of float coordinates in the body's frame.
   void evaluate_local(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                       std::span<const float> z, std::span<float> value, float band) const;
   void evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
@@ -78,8 +78,8 @@ class FieldBlock {
 
 class ImplicitField {
  public:
-  // Expects a recipe that validation accepts. Throws InputError when it has no body, and for craters that
-  // find no place on it.
+  // Expects a recipe that validation accepts; `name` begins the messages of errors. Throws InputError for a
+  // recipe without a body, and for craters and boulders that have no place on it or are wider than it.
   explicit ImplicitField(const Recipe& recipe, const std::string& name = "recipe");
 
   double value(const Vec3d& p) const;
@@ -87,14 +87,15 @@ class ImplicitField {
   // The gradient of F, pointing inwards. Analytic for a bare body; with layers, central differences over
   // gradient_step().
   Vec3d gradient(const Vec3d& p) const;
-  // The step of those differences: 2^-11 of the longest side of bounds(), in length units.
+  // The step of the central differences of gradient(): 2^-11 of the longest side of bounds(), in length
+  // units.
   double gradient_step() const;
 
-  // Whether the body can be evaluated to the digits of coordinates local to an origin: not where operations
-  // combine bodies.
+  // Whether the body can be evaluated to the digits of coordinates local to an origin. A body with operations
+  // cannot.
   bool has_local_form() const;
 
-  // Holds the whole surface, within about 1/64 of its longest side; empty where the body is.
+  // A box that holds the whole surface, within about 1/64 of its longest side; empty for an empty body.
   Box bounds() const;
   // The |elevation| never exceeds this, in length units.
   double height_bound() const;
@@ -102,12 +103,13 @@ class ImplicitField {
   // The craters of each layer, listed and drawn, from the oldest to the youngest.
   std::span<const LayerCraters> craters() const;
 
-  // The boulders of each layer: those listed, then those drawn.
+  // The boulders of each layer: the listed ones, then the drawn ones.
   std::span<const LayerBoulders> boulders() const;
 
+  // The field narrowed to a box.
   FieldBlock gather(const Box& box) const;
 
-  // The field's tables, for whoever evaluates them on a GPU. They live as long as the field.
+  // The field's tables, for evaluation on a GPU. They live as long as the field.
   const FieldView& tables() const;
 
  private:

@@ -18,7 +18,7 @@ constexpr std::array kNumbers = {"x",   "y",      "z",      "diameter", "depth",
 struct Row {
   int layer;
   std::string kind;
-  std::vector<std::optional<double>> numbers;  // as kNumbers, where the kind has them
+  std::vector<std::optional<double>> numbers;  // in the order of kNumbers; absent where the kind has none
 };
 
 std::string text_of(double value) {

@@ -40,7 +40,7 @@ void project(const FieldModel& model, Batch& b) {
   along(b.mz, b.gz, b.pz.data());
 }
 
-// The points as far as layers have displaced them.
+// The points p, displaced by the layers so far that warp later layers.
 PointArrays displaced(Batch& b, const PointArrays& p) {
   if (!b.is_displaced) return p;
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
@@ -52,7 +52,7 @@ PointArrays displaced(Batch& b, const PointArrays& p) {
 }
 PointArrays layer_points(Batch& b) { return displaced(b, {b.x.data(), b.y.data(), b.z.data()}); }
 
-// The heights of one layer at the points of a batch; visits the layer's noise.
+// Visits a layer's noise: evaluates its heights at the points of a batch.
 struct LayerHeights {
   const FieldModel& model;
   const FieldLayer& layer;
@@ -78,7 +78,7 @@ struct LayerHeights {
       evaluate_heights(noise, ground, caches, b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
     }
   }
-  void operator()(const CraterRelief&) const {}  // falls on elevations, and has no heights of its own
+  void operator()(const CraterRelief&) const {}  // craters change elevations and have no heights
   template <class Noise>
   void operator()(const Noise& noise) const {
     evaluate(noise);
@@ -93,7 +93,7 @@ struct LayerHeights {
   }
 };
 
-// Null where the layer counts fully everywhere.
+// The weights of a layer at the points; null where the layer has weight 1 everywhere.
 const float* layer_weights(const FieldModel& model, const LayerJoin& join, Batch& b) {
   if (!join.weighted()) return nullptr;
   std::fill_n(b.weight.data(), b.n, 1.0f);

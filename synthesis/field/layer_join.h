@@ -1,5 +1,5 @@
-// How a layer's heights join the elevation that the layers before it made (recipe's Combination), and with
-// what weight (Locality and LayerMask).
+// How a layer's heights join the elevation that the layers before it made (Combination in recipe/recipe.h),
+// and with what weight in [0, 1] (Locality and LayerMask).
 #pragma once
 
 #include "numerics/interval.h"
@@ -9,25 +9,26 @@
 
 namespace astrolith {
 
-// The weight of a mask: from 0 where a height is `from` to 1 where the range ends.
+// The weight of a mask: 0 up to height `from`, 1 where the range ends, and a cubic step between.
 ASTROLITH_KERNEL float smooth_step(float height, float from, float inverse_range) {
   const float t = math::clamp((height - from) * inverse_range, 0.0f, 1.0f);
   return t * t * math::fma(-2.0f, t, 3.0f);
 }
 
-// The union of surfaces at two heights, rounded at the joint: symmetric, and the higher one where width is 0.
+// The height of the union of surfaces at heights a and b, rounded at the joint: R = (a + b + sqrt((a - b)^2 +
+// width^2)) / 2. It is symmetric in a and b, and max(a, b) for width 0.
 ASTROLITH_KERNEL float rounded_max(float a, float b, float width) {
   const float d = math::abs(a - b);
   return math::fma(0.5f, math::sqrt(math::fma(d, d, width * width)) - d, math::max(a, b));
 }
 
-// The blend of a height with an elevation; sign is -1 for the intersection.
+// The blend of a height with an elevation; `sign` is 1 for the union and -1 for the intersection.
 ASTROLITH_KERNEL float blended_height(float sign, float width, float elevation, float height) {
   return sign * rounded_max(sign * elevation, sign * height, width);
 }
 
-// What a height makes of an elevation that it is added to, or that it takes the place of. Where it counts
-// fully there is no weight.
+// The elevation after a layer that adds its height (is_change) or replaces the elevation by it. The form
+// without a weight is for a layer of weight 1.
 ASTROLITH_KERNEL float joined_elevation(bool is_change, float height, float elevation) {
   return is_change ? elevation + height : height;
 }
@@ -37,15 +38,15 @@ ASTROLITH_KERNEL float joined_elevation(bool is_change, float weight, float heig
 
 struct LayerJoin {
   Combination how;
-  bool local = false;  // whether the layer is tied to a group of spheres
-  LocalWeight locality;
-  int keeps = -1;  // the slot where the layer's heights are kept for masks; -1: they are not
-  int mask = -1;   // the slot of the heights that mask the layer; -1: none
+  bool local = false;    // whether the layer is tied to a group of spheres
+  LocalWeight locality;  // read only if `local`
+  int keeps = -1;        // slot in which the layer's heights are kept for masks; -1: they are not kept
+  int mask = -1;         // slot of the heights that mask the layer; -1: no mask
   float mask_from = 0.0f, mask_to = 1.0f, mask_inverse_range = 1.0f;
-  Vec3d displaced;                // the layer's coordinates are at most so far from the points, by axis
-  double height_bound = 0.0;      // of the layer's heights, length units
-  double change_bound = 0.0;      // by which the layer changes an elevation at most, length units
-  float remaining_change = 0.0f;  // by which this layer and all after it change an elevation at most
+  Vec3d displaced;            // bound of the displacement of the layer's coordinates, by axis, length units
+  double height_bound = 0.0;  // bound of the layer's |height|, length units
+  double change_bound = 0.0;  // bound of the layer's change of an elevation, length units
+  float remaining_change = 0.0f;  // bound of the change by this layer and all layers after it, length units
 
   ASTROLITH_HD bool changes_elevation() const {
     return how.kind != Combine::kWarp && how.kind != Combine::kMask;
@@ -53,11 +54,12 @@ struct LayerJoin {
   ASTROLITH_HD bool weighted() const { return local || mask >= 0; }
 };
 
-// The most |elevation| after a layer whose heights are at most `height`, where it was at most `before`.
+// A bound of |elevation| after a layer with |height| <= height, where |elevation| <= before. All are in
+// length units.
 double elevation_bound(const Combination& how, double before, double height);
 
-// What a height makes of an elevation at one point. `weight` counts where the join is weighted. Expects a
-// layer that changes elevations.
+// The elevation at one point after a layer. `weight` is read only if the join is weighted. Expects a layer
+// that changes elevations.
 ASTROLITH_HD inline float join_elevation(const LayerJoin& join, float weight, float height, float elevation) {
   const Combination& how = join.how;
   const bool is_change = how.kind == Combine::kAdd;
@@ -69,11 +71,11 @@ ASTROLITH_HD inline float join_elevation(const LayerJoin& join, float weight, fl
                          : joined_elevation(is_change, height, elevation);
 }
 
-// weight[i] *= the weight of the mask for height[i].
+// Multiplies weight[i] by the weight of the mask for height[i], for n points.
 void multiply_by_mask(const LayerJoin& join, int n, const float* height, float* weight);
 
-// elevation[i] becomes what the layer makes of it: the bits of join_elevation at one point, vectorised.
-// `weight` is null where the layer counts fully everywhere; `height` is used up.
+// Replaces elevation[i] by the elevation after the layer, for n points: the vectorised join_elevation, with
+// its bits. `weight` is null for a layer of weight 1. `height` is overwritten.
 void join_elevations(const Combination& how, int n, const float* weight, float* height, float* elevation);
 
 ASTROLITH_HD inline double rounded_max(double a, double b, double width) {
@@ -81,7 +83,7 @@ ASTROLITH_HD inline double rounded_max(double a, double b, double width) {
   return std::max(a, b) + 0.5 * (std::sqrt(d * d + width * width) - d);
 }
 
-// What a layer makes of one elevation where its weight is 1.
+// The elevation after a layer of weight 1, in double precision, for bounds.
 ASTROLITH_HD inline double joined_fully(const Combination& how, double before, double height) {
   if (how.kind == Combine::kAdd) return before + height;
   if (how.kind == Combine::kReplace) return height;
@@ -90,8 +92,8 @@ ASTROLITH_HD inline double joined_fully(const Combination& how, double before, d
   return sign * rounded_max(sign * before, sign * height, how.width);
 }
 
-// What a layer makes of intervals of elevations; it is monotonic in the elevation before, in the height and
-// in the weight.
+// Bounds of the elevation after a layer. The elevation is monotonic in the elevation before, in the height
+// and in the weight, so that the ends of the intervals suffice.
 ASTROLITH_HD inline Interval join_bounds(const Combination& how, const Interval& weight,
                                          const Interval& before, const Interval& height) {
   const double low = joined_fully(how, before.low, height.low);
@@ -101,7 +103,7 @@ ASTROLITH_HD inline Interval join_bounds(const Combination& how, const Interval&
           std::max(mixed(weight.low, before.high, high), mixed(weight.high, before.high, high))};
 }
 
-// The weight of a mask for heights of an interval.
+// Bounds of the weight of a mask, from bounds of the masking layer's heights.
 ASTROLITH_HD inline Interval bound_mask(float from, float to, const Interval& heights) {
   const auto at = [&](double height) {
     const double t = clamped((height - double{from}) / (double{to} - double{from}), 0.0, 1.0);

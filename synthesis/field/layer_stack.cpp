@@ -1,4 +1,4 @@
-// Puts a recipe's layers on the model of its body.
+// Adds a recipe's layers to the field model that holds its body.
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,7 +15,8 @@
 namespace astrolith {
 namespace {
 
-// What the layers so far have made of the bare surface at points of it, where s = 0.
+// The elevations that the layers of the model make at points of the bare surface. There s = 0, so that F is
+// the elevation.
 std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d> points) {
   std::vector<float> elevations(points.size());
   parallel_for(0, static_cast<std::int64_t>(points.size()), [&](std::int64_t i) {
@@ -74,12 +75,13 @@ class LayerStack {
     model_.height_bound = relief.elevation_bound;
     LayerJoin join;
     join.height_bound = relief.elevation_bound;
-    join.change_bound = std::numeric_limits<double>::infinity();  // they replace what was
+    join.change_bound = std::numeric_limits<double>::infinity();  // craters replace the elevation
     model_.layers.push_back({LayerNoise(relief), join});
     model_.placed_craters.push_back({index_, std::move(craters)});
   }
 
-  void add(const BoulderLayer&) {}  // once the surface is there
+  // Boulders are added by add_boulders(), when all layers have made the surface that they lie on.
+  void add(const BoulderLayer&) {}
 
   void add_boulders() {
     const Terrain terrain{[this](const Vec3d& p) { return static_cast<double>(value_at(model_, p)); },
@@ -100,7 +102,7 @@ class LayerStack {
     model_.boulders = std::move(all);
   }
 
-  // Appends the lists of impulses of the layer to come; returns the number of the first.
+  // Appends lists of impulses for the layer that is pushed next. Returns the number of the first list.
   std::uint32_t add_lists(std::uint32_t count, std::vector<ImpulseList>& lists) const {
     const auto first = static_cast<std::uint32_t>(lists.size());
     for (std::uint32_t i = 0; i < count; ++i) lists.push_back({number_of_next_layer(), i});
@@ -108,7 +110,7 @@ class LayerStack {
   }
   std::uint32_t number_of_next_layer() const { return static_cast<std::uint32_t>(model_.layers.size()); }
 
-  // By how much each layer and all after it may change an elevation; craters replace what is there.
+  // Finds for each layer by how much it and all layers after it may change an elevation.
   void sum_changes() {
     for (std::size_t first = 0; first < model_.layers.size(); ++first) {
       double bound = 0.0;
@@ -151,7 +153,7 @@ class LayerStack {
     model_.layers.push_back({LayerNoise(noise), join, first_list});
   }
 
-  // Evaluates later layers so much farther out.
+  // Widens the domain of the later layers, whose coordinates a warp displaces by up to |direction| * height.
   void displace_later(const Vec3d& direction, double height) {
     const Vec3d d{std::fabs(direction.x) * height, std::fabs(direction.y) * height,
                   std::fabs(direction.z) * height};
@@ -160,7 +162,7 @@ class LayerStack {
     domain_.max += d;
   }
 
-  // The layer that a mask of layer number `index` names.
+  // The number of the layer that the mask of layer number `index` names.
   int masking_layer(const LayerMask& mask, int index) const {
     return find_layer(std::span(recipe_.layers).first(static_cast<std::size_t>(index)), mask.layer);
   }
@@ -183,7 +185,7 @@ class LayerStack {
     join.mask_inverse_range = 1.0f / (join.mask_to - join.mask_from);
   }
 
-  // Points on the metaballs' side of a plain body's warp, where craters lie.
+  // Points of the bare surface, as craters are given them: on the metaballs' side of a plain body's warp.
   std::vector<Vec3d> unwarped(std::vector<Vec3d> points) const {
     const BodyLeaf& first = model_.tables.leaf(0);
     if (!model_.body.plain() || !first.warped) return points;
@@ -195,13 +197,14 @@ class LayerStack {
   }
 
   const Recipe& recipe_;
-  const std::string& name_;  // the recipe's, for errors
+  const std::string& name_;  // name of the recipe, for errors
   FieldModel& model_;
-  // Layers' coordinates are kept within the supports of the body's kernels, outside of which no surface is.
+  // No surface lies outside the supports of the body's kernels. `domain_` is where layers are evaluated: the
+  // supports, widened by the warps of the body and of the layers so far.
   Box supports_, domain_;
-  Vec3d displaced_;                  // the coordinates of later layers are displaced by so much, by axis
-  std::map<int, int> slots_;         // by masking layer
-  std::optional<BareSurface> bare_;  // made for the first layer that asks
+  Vec3d displaced_;           // bound of the displacement of later layers along each axis, length units
+  std::map<int, int> slots_;  // slot of the kept heights of each masking layer
+  std::optional<BareSurface> bare_;  // made for the first layer that needs it
   int index_ = 0;
 };
 

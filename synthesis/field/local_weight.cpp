@@ -15,7 +15,7 @@ namespace {
 constexpr int kChunk = 256;
 using Chunk = std::array<float, kChunk>;
 
-// The spheres that may be the nearest of all to a point of the box. Leaving out the others changes no bit.
+// The spheres that may be nearest to some point of the box. Leaving out all other spheres changes no bit.
 void nearest_candidates(std::span<const WeightSphere> spheres, const Box& box,
                         std::vector<WeightSphere>& out) {
   double least = std::numeric_limits<double>::infinity();

@@ -1,5 +1,6 @@
-// Where a layer that is tied to a group of spheres counts (recipe's Locality; thesis 5.1): at one point, over
-// many points at once, and over boxes.
+// The weight of a layer that is tied to a group of spheres (Locality in recipe/recipe.h; thesis 5.1): at one
+// point, over many points at once, and bounds over boxes. With d the distance to the group's nearest sphere
+// less the distance to the nearest other sphere, the weight is 1/2 - atan(d / width) / pi.
 #pragma once
 
 #include <limits>
@@ -12,30 +13,30 @@
 
 namespace astrolith {
 
-// The distance from a sphere's surface, or a distance that is less.
+// The smaller of `distance` and the distance from (x, y, z) to a sphere's surface, negative inside.
 ASTROLITH_KERNEL float nearer_sphere(const Vec3f& center, float radius, float x, float y, float z,
                                      float distance) {
   const float dx = x - center.x, dy = y - center.y, dz = z - center.z;
   return math::min(distance, math::sqrt(math::fma(dx, dx, math::fma(dy, dy, dz * dz))) - radius);
 }
 
-// The weight from the distances to the group's spheres and to all others.
+// The weight, from the distance to the group's nearest sphere and the distance to the nearest other sphere.
 ASTROLITH_KERNEL float local_weight(float group, float others, float inverse_width) {
   return math::fma(-2.0f, math::atan2_turns((group - others) * inverse_width, 1.0f), 0.5f);
 }
 
-// A sphere as points and boxes are measured from it.
+// A metaball's sphere: its centre and radius, length units.
 struct WeightSphere {
   Vec3f center;
   float radius;
 };
 
 struct LocalWeight {
-  ArrayRange<WeightSphere> group, others;  // no others: the weight is 1 everywhere
-  float inverse_width = 0.0f;
+  ArrayRange<WeightSphere> group, others;  // without others, the weight is 1 everywhere
+  float inverse_width = 0.0f;              // per length unit
 };
 
-// Throws InputError, with the layer's name, when the body has no such group.
+// Throws InputError when the body has no such group; the message begins with `layer`.
 LocalWeight make_local_weight(const Locality& locality, const MetaballBody& body, const std::string& layer,
                               ArrayStore& arrays);
 
@@ -53,11 +54,11 @@ ASTROLITH_HD inline float weight_at(const LocalWeight& weight, const ArrayView& 
   return local_weight(distance(weight.group), distance(weight.others), weight.inverse_width);
 }
 
-// height[i] *= the weight at p_i: the bits of weight_at, vectorised.
+// Multiplies height[i] by the weight at p_i, for n points: the vectorised weight_at, with its bits.
 void multiply_by_weight(const LocalWeight& weight, const ArrayView& arrays, int n, const float* x,
                         const float* y, const float* z, float* height);
 
-// The distances from a sphere's surface to the points of a box.
+// Bounds of the distance from a sphere's surface to the points of a box, in exact arithmetic.
 ASTROLITH_HD inline Interval sphere_distances(const WeightSphere& s, const Box& box) {
   const auto nearest = [](double c, double low, double high) {
     return std::max(std::max(low - c, c - high), 0.0);
@@ -71,13 +72,14 @@ ASTROLITH_HD inline Interval sphere_distances(const WeightSphere& s, const Box& 
           norm(Vec3d{farthest(c.x, a.x, b.x), farthest(c.y, a.y, b.y), farthest(c.z, a.z, b.z)}) - radius};
 }
 
-// How far a distance in float may be from the exact one.
+// A bound of the rounding error of such a distance in float, length units.
 ASTROLITH_HD inline double distance_rounding(const WeightSphere& s, const Box& box) {
   const Vec3d c{double{s.center.x}, double{s.center.y}, double{s.center.z}};
   return 2e-6 * (largest_coordinate(box) + norm(c) + double{s.radius});
 }
 
-// The distance to the nearest of some spheres, and the largest rounding of one; nothing is nearest of none.
+// Bounds of the distance to the nearest of some spheres, and the largest rounding error of a distance.
+// Without spheres the distance is infinite.
 struct NearestBound {
   Interval distance{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double rounding = 0.0;
@@ -93,7 +95,7 @@ ASTROLITH_HD inline NearestBound bound_nearest(const WeightSphere* spheres, std:
   return nearest;
 }
 
-// The weight at every float point of a box.
+// Bounds of the weight at the float points of a box.
 ASTROLITH_HD inline Interval bound_weight(const LocalWeight& weight, const ArrayView& arrays,
                                           const Box& box) {
   if (weight.others.count == 0) return {1.0, 1.0};
@@ -101,7 +103,7 @@ ASTROLITH_HD inline Interval bound_weight(const LocalWeight& weight, const Array
   const NearestBound others = bound_nearest(arrays[weight.others], weight.others.count, box);
   const double rounding = 2.0 * std::max(group.rounding, others.rounding),
                width = double{weight.inverse_width};
-  // The arc tangent that points have is within 2e-7.
+  // The float arc tangent is within 2e-7 of the exact one.
   const auto at = [&](double difference) {
     const float ratio = static_cast<float>(clamped(difference * width, -1e30, 1e30));
     return double{local_weight(ratio, 0.0f, 1.0f)};

@@ -1,12 +1,12 @@
-// A field in coordinates local to an origin of double precision: what mesh_patch meshes.
+// A field in coordinates local to an origin of double precision, for mesh_patch().
 //
 //   mesh_patch(PatchField(field, {0.12345678901, 0.2, -0.05}), 1e-5, 256, sink);   // vertices are local
 //
-// Float coordinates of a body's frame tell points apart to 2^-24 of its size, and its field is as uncertain:
-// on a body of 500 m, 0.02 mm. Here the body and the layers that can (implicit_field.h) are evaluated to the
-// digits of local coordinates; the others see their points rounded to the body's float coordinates, which
-// moves their pattern by up to that, and tilts it by that over a cell. The surface is the same but for such
-// rounding.
+// Float coordinates in a body's frame have a spacing of about 2^-24 of its size: 0.02 mm on a body of 500 m.
+// F is uncertain by as much. A PatchField evaluates a body that has_local_form() and fractal layers to the
+// digits of local coordinates. Other bodies and layers are evaluated at points rounded to float coordinates
+// of the body's frame. This rounding moves their pattern by up to one spacing, and changes its slope by one
+// spacing over a cell. Otherwise the surface is that of the ImplicitField.
 #pragma once
 
 #include "numerics/interval.h"
@@ -31,7 +31,7 @@ class PatchBlock {
     block_.evaluate_local_tetrahedra(origin_, x, y, z, value);
   }
 
-  // Holds the body's float coordinates of every point of a local box.
+  // A box of the body's frame that holds every point of a local box, after rounding to float coordinates.
   static Box in_body(const Box& local, const Vec3d& origin) {
     const Box moved{local.min + origin, local.max + origin};
     return widened(moved, 0x1p-23 * largest_coordinate(moved));
@@ -44,7 +44,7 @@ class PatchBlock {
 
 class PatchField {
  public:
-  // The field must live longer.
+  // The field must outlive the PatchField.
   PatchField(const ImplicitField& field, const Vec3d& origin) : field_(field), origin_(origin) {}
 
   PatchBlock gather(const Box& local) const {

@@ -11,11 +11,11 @@ namespace astrolith {
 namespace {
 
 constexpr std::size_t kChunk = 256;  // points of one gathered block
-constexpr double kRounding = 4e-6;   // of values, in largest coordinates
+constexpr double kRounding = 4e-6;   // rounding of F, relative to the largest coordinate
 
 bool is_boulders(const Layer& layer) { return std::holds_alternative<BoulderLayer>(layer); }
 
-// Layers in the order in which they make the surface.
+// The numbers of the layers in the order in which they make the surface: boulders last.
 std::vector<std::size_t> order_of_layers(const Recipe& recipe) {
   std::vector<std::size_t> order;
   for (const bool boulders : {false, true}) {
@@ -26,7 +26,8 @@ std::vector<std::size_t> order_of_layers(const Recipe& recipe) {
   return order;
 }
 
-// A layer that does nothing and keeps its place, on which the random numbers of others depend.
+// A layer that changes nothing. It keeps the place of a layer in the recipe, because the random numbers of
+// other layers depend on their place.
 Layer idle() { return BoulderLayer{}; }
 
 std::string kind_of(const FractalLayer& layer) {

@@ -12,19 +12,21 @@
 
 namespace astrolith {
 
-// Label 0 is the bare body, label i + 1 the recipe's layer i. A layer's part at a point is by how much it
-// changed the elevation that the layers before it left there (boulders come last, as they lie on all others);
-// the label is that of the largest part by magnitude, of equal ones the earlier, and 0 where none is above
-// the rounding of the field. A warp or a mask has no part.
+// Label 0 is the bare body, and label i + 1 is layer i of the recipe. A layer's change at a point is the
+// difference of the elevations with and without it, above the layers before it. Boulders come last, as they
+// lie on all other layers. The label of a point is that of the largest |change|, and the earlier one of two
+// equal changes. It is 0 where no change exceeds the rounding of the field. A warp or a mask changes nothing
+// by itself.
 class SurfaceLabels {
  public:
-  // `recipe` and `name` as for ImplicitField; throws as that does.
+  // Takes the recipe and the name that ImplicitField takes, and throws what its constructor throws.
   SurfaceLabels(const Recipe& recipe, const std::string& name);
 
-  // labels[i] of points on the surface, origin + vertices[i].position; elevations are above the bare body.
+  // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. Elevations are
+  // above the bare body, in length units. Both spans have one size.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels) const;
 
-  // "label 2: craters \"old ones\"", for each label.
+  // One line for each label, such as: label 2: craters "old ones".
   std::vector<std::string> legend() const { return legend_; }
 
  private:
@@ -38,7 +40,7 @@ class SurfaceLabels {
 
   std::vector<Stage> stages_;  // the bare body first
   std::vector<std::string> legend_;
-  float rounding_ = 0.0f;  // of the field's values
+  float rounding_ = 0.0f;  // bound of the rounding of F, length units
 };
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// A point evaluated by itself has the bits of many points evaluated together.
+// A point evaluated by itself (field_at_point.h) has the bits of many points evaluated together.
 #include "synthesis/field/field_at_point.h"
 
 #include <vector>
@@ -14,7 +14,7 @@ Box box_about(const Vec3d& p, double half) {
   return {p - Vec3d{half, half, half}, p + Vec3d{half, half, half}};
 }
 
-// Blocks of all sizes, and the bands of meshes and of normals.
+// Compares points in blocks of several sizes, with the bands that meshes and normals use.
 void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
   const ImplicitField field(recipe);
   const FieldView& tables = field.tables();
@@ -26,7 +26,7 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
     const double half = b < 3 ? 0.03 : 0.15;
     const FieldBlock block = field.gather(box_about(center, half));
     BlockListStore blocks(tables);
-    blocks.add(tables, box_about(center, 0.01));  // another one before it
+    blocks.add(tables, box_about(center, 0.01));  // a block before the tested one
     blocks.add(tables, block.box());
     std::vector<float> x(60), y(60), z(60), value(60);
     for (std::size_t i = 0; i < x.size(); ++i) {

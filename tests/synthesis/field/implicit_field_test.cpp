@@ -179,7 +179,7 @@ TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
   EXPECT_GT(different, 1000);
 }
 
-// Proofs are proofs: no box that is called outside or inside holds a point of the other kind.
+// No box that is called outside or inside holds a point of the other kind.
 TEST(FieldBlock, ContentIsNeverWrong) {
   CounterRandom random(10);
   int proved = 0;
@@ -231,7 +231,8 @@ TEST(FieldBlock, ContentIsNeverWrong) {
   EXPECT_GT(proved, 1500);
 }
 
-// Counts 8^3 blocks of a 128^3 grid that are called mixed against those that hold both signs.
+// The number of blocks of 8^3 cells that are called mixed, over the number of blocks that hold both signs, in
+// a grid of 128^3 cells.
 double mixed_over_active(const Recipe& recipe) {
   const ImplicitField field(recipe);
   const Box bounds = field.bounds();

@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-// Near the surface of a potato, the field less that of the bare body.
+// The elevations at points near the surface of a potato: the field less the field of the bare body.
 std::vector<double> elevations(const Recipe& recipe) {
   Recipe bare = recipe;
   bare.layers.clear();
@@ -50,7 +50,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
-constexpr double kRounding = 1e-6;  // of values on a body about 1 long
+constexpr double kRounding = 1e-6;  // rounding of F on a body about 1 long
 
 TEST(LayerJoin, ReplacedIsTheLayerAlone) {
   FractalLayer hills = named("hills", 0.05, 3.0), plains = named("plains", 0.01, 9.0);
@@ -102,7 +102,7 @@ TEST(LayerJoin, ABlendIsSymmetricAndNeverBelowEither) {
     EXPECT_NEAR(sharp[i], higher, kRounding);
     EXPECT_GE(ab[i], higher - kRounding);
     EXPECT_LE(ab[i], higher + 0.5 * width + kRounding);
-    // The surface lies where R_1 of both is zero, but for the rounding: (f + g + |f - g|) / 2 + ...
+    // But for its rounding, the union is zero where R_1 of both heights is zero: (f + g + |f - g|) / 2 + ...
     const double d = of_a[i] - of_b[i];
     EXPECT_NEAR(ab[i], 0.5 * (of_a[i] + of_b[i] + std::sqrt(d * d + width * width)), kRounding);
   }
@@ -139,7 +139,7 @@ TEST(LayerJoin, AWarpOfNothingIsNothing) {
 TEST(LayerJoin, AWarpMovesLaterLayers) {
   FractalLayer hills = named("hills", 0.05, 3.0);
   hills.seed = 4;
-  SparseLayer constant;  // every cell holds 1 less something: not constant, so its cells are huge
+  SparseLayer constant;  // noise varies within a cell, so the cells are huge
   constant.cell_size = 1e6;
   constant.levels = 1;
   constant.probability = 1.0;
@@ -177,7 +177,7 @@ TEST(LayerJoin, AGaborLayerCannotBeWarped) {
   EXPECT_THROW(validate_recipe(with_layers({warp, testing::gabor_layer(0.02, 0.01)}), "r"), InputError);
 }
 
-// A layer with a seed of its own stays as it is wherever it stands; one without does not.
+// A layer with a seed of its own does not change when it moves among the layers. A layer without one does.
 TEST(LayerJoin, OwnSeedsOutliveMoves) {
   FractalLayer hills = named("hills", 0.05, 3.0), flat = named("flat", 0.0, 3.0);
   EXPECT_NE(elevations(with_layers({hills, flat})), elevations(with_layers({flat, hills})));
@@ -189,7 +189,7 @@ TEST(LayerJoin, OwnSeedsOutliveMoves) {
   EXPECT_EQ(elevations(with_layers({craters, flat})), elevations(with_layers({flat, craters})));
 }
 
-// All ways to join, one upon the other.
+// A recipe whose layers join in all ways, one upon another.
 Recipe joined_in_all_ways() {
   FractalLayer hills = named("hills", 0.06, 3.0), warp = named("warp", 0.1, 2.0), mask = named("m", 1.0, 4.0),
                rocks = named("rocks", 0.03, 8.0), dust = named("dust", 0.005, 12.0);
@@ -230,7 +230,7 @@ TEST(LayerJoin, NoBoxIsProvedEmptyThatIsNot) {
   EXPECT_GT(proved, 200);
 }
 
-// Blocks, whatever they have gathered, and points see the same bits.
+// Blocks of any box have the bits of single points.
 TEST(LayerJoin, BlocksHaveTheBitsOfPoints) {
   const ImplicitField field(joined_in_all_ways());
   CounterRandom random(5);
@@ -245,7 +245,7 @@ TEST(LayerJoin, BlocksHaveTheBitsOfPoints) {
   }
 }
 
-// In coordinates around an origin too, where noise has the digits of those.
+// Layers also join in coordinates local to an origin, where noise has the digits of local coordinates.
 TEST(LayerJoin, IsTheSameNearAnOrigin) {
   const ImplicitField field(joined_in_all_ways());
   CounterRandom random(6);

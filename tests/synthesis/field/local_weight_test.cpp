@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-// A potato whose spheres left of x = 0 are one group, the others another.
+// A potato with two groups: its spheres left of x = 0, and all others.
 Recipe halves(int num_spheres, std::uint64_t seed) {
   Recipe recipe = testing::potato_recipe(num_spheres, seed);
   SphereGroup left{"left", {}}, right{"right", {}};
@@ -133,7 +133,7 @@ TEST(LocalWeight, NeedsItsGroup) {
   EXPECT_THROW(LoneWeight({"middle", 1.0}, *halves(10, 1).body), InputError);
 }
 
-// A layer on the left half leaves the far right as it is; no box is proved empty that is not.
+// A layer on the left half leaves the far right as it is, and no box is proved empty that holds surface.
 TEST(LocalWeight, KeepsLayersWhereTheyBelong) {
   Recipe recipe = halves(60, 8);
   const ImplicitField bare(recipe);

@@ -22,7 +22,7 @@ SpotLayer spots(double size) {
   return layer;
 }
 
-// About 1 long, with every kind of layer, and a warp.
+// A body about 1 long with every kind of layer and a warp.
 Recipe layered_potato() {
   Recipe recipe = testing::potato_recipe(12, 5);
   recipe.layers = {testing::fractal_layer(0.02, 5.0, 6), spots(0.03), testing::gabor_layer(0.03, 0.003)};
@@ -83,10 +83,10 @@ TEST(PatchField, OnTheGridOfTheWholeMeshItHasItsVertices) {
   for (std::size_t i = 0; i < inside.size(); ++i) {
     farthest = std::max(farthest, norm(inside[i] - patch.mesh.vertices[i]));
   }
-  EXPECT_LT(farthest, 4e-6);  // of a body about 1 long
+  EXPECT_LT(farthest, 4e-6);  // the body is about 1 long
 }
 
-// Two origins see the same surface, although none of their float coordinates is common.
+// Two origins give the same surface, although they share no float coordinates.
 TEST(PatchField, ValuesDoNotDependOnTheOrigin) {
   for (const Noise noise : {Noise::kSimplex, Noise::kPerlin, Noise::kWorleyF1, Noise::kWorleyF2MinusF1}) {
     const ImplicitField field(large_sphere(noise, is_worley(noise) ? 0.0 : 0.3));
@@ -106,8 +106,9 @@ TEST(PatchField, ValuesDoNotDependOnTheOrigin) {
   }
 }
 
-// What has no local form sees float coordinates, 1.5e-5 m apart at 250 m: along a line in steps of a
-// millimetre, over which these layers are straight, that is all that values deviate from a straight line by.
+// Layers without a local form are evaluated at float coordinates, which are 1.5e-5 m apart at 250 m. Over
+// steps of a millimetre these layers are straight, so that values along a line deviate from a straight line
+// by that rounding only.
 TEST(PatchField, SpotsCratersBouldersAndGaborNoiseAreRoughByTheRoundingAlone) {
   CraterLayer craters;
   craters.population = CraterPopulation{{300, std::nullopt, 5.0, 80.0, 2.0}, 1.0, 0.0, 0.0};
@@ -128,7 +129,7 @@ TEST(PatchField, SpotsCratersBouldersAndGaborNoiseAreRoughByTheRoundingAlone) {
       for (int i = 0; i < 20; ++i) bends.push_back(std::abs(at(i - 1) - 2.0 * at(i) + at(i + 1)));
     }
     std::sort(bends.begin(), bends.end());
-    EXPECT_LT(bends[bends.size() * 95 / 100], 2e-5) << layer.index();  // where no edge of a boulder is
+    EXPECT_LT(bends[bends.size() * 95 / 100], 2e-5) << layer.index();  // 5 % may be at edges of boulders
   }
 }
 
@@ -150,7 +151,8 @@ TEST(PatchField, CentimetresOnABodyOf500Metres) {
   }
 }
 
-// Known to float coordinates alone, 2^-16 of a metre at 250 m: well below a cell of a centimetre.
+// A combined body is evaluated at float coordinates, which are 2^-16 m apart at 250 m. This is well below a
+// cell of a centimetre.
 TEST(PatchField, CombinedBodiesInCellsOfACentimetre) {
   Recipe recipe = testing::sphere_recipe(250.0);
   BodyOperation& operation = recipe.body->operations.emplace_back();  // changes nothing

@@ -36,7 +36,7 @@ TEST(SurfaceLabels, ABareBodyIsLabelZeroAtNoHeight) {
   }
 }
 
-// Two layers tied to the halves of a body: each has its half.
+// Two layers are tied to the halves of a body, and each is the label of its half.
 TEST(SurfaceLabels, LocalLayersHaveTheirPlaces) {
   Recipe recipe = testing::sphere_recipe(1.0, {-1.2, 0, 0});
   recipe.body->spheres.push_back({{1.2, 0, 0}, 1.0});
@@ -52,11 +52,11 @@ TEST(SurfaceLabels, LocalLayersHaveTheirPlaces) {
     if (std::fabs(vertices[i].position.x) < 0.2f) continue;
     wrong += labels[i].label != (vertices[i].position.x < 0.0f ? 1 : 2);
   }
-  // Where a layer is about 0 the far one's last thousandths may be more.
+  // Where the height of the near layer is about 0, the small weight of the far layer may change more.
   EXPECT_LT(wrong, static_cast<int>(vertices.size() / 50));
 }
 
-// On the surface s + elevation is 0.
+// The elevation of a label is the height above the bare body.
 TEST(SurfaceLabels, ElevationsAreAboveTheBareBody) {
   Recipe recipe = testing::sphere_recipe(1.0);
   recipe.layers = {testing::fractal_layer(0.1, 1.0, 1)};
