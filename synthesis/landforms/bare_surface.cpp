@@ -10,8 +10,9 @@
 namespace astrolith {
 namespace {
 
-constexpr int kMeshCells = 64;     // areas within 1e-3 of the surface's own
-constexpr int kRaySamples = 1024;  // along a direction, to find the last crossing
+constexpr int kMeshCells =
+    64;  // cells along the longest side; the mesh's area is within 1e-3 of the surface's
+constexpr int kRaySamples = 1024;  // samples along a ray, to find its last crossing
 
 }  // namespace
 
@@ -26,7 +27,7 @@ Vec3d BareSurface::nearer(const Vec3d& p) const {
   return steepness > 0.0 ? p - (body_.value(p) / steepness) * g : p;
 }
 
-// Where a kernel's cut-off is the surface no gradient need be.
+// Where the surface is the cut-off of a kernel, the gradient may be zero.
 Vec3d BareSurface::normal(const Vec3d& p) const {
   const Vec3d outwards = normalized(-body_.gradient(p));
   if (squared_norm(outwards) > 0.0) return outwards;

@@ -1,4 +1,4 @@
-// The surface of a recipe's body without layers, as a place to put things on.
+// The surface of a recipe's body without layers, on which landforms are placed.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ namespace astrolith {
 
 // The body without its layers, as functions of a point in the recipe's frame and length unit.
 struct BareBody {
-  Box bounds;                                        // holds the surface; empty where the body is
-  std::function<double(const Vec3d&)> value;         // close to the signed distance, positive inside
-  std::function<Vec3d(const Vec3d&)> gradient;       // of value, inwards
-  std::function<TriangleMesh(int cells)> meshed_at;  // closed, with so many cells along the longest side
+  Box bounds;                                   // holds the surface; empty for an empty body
+  std::function<double(const Vec3d&)> value;    // about the signed distance, length units, positive inside
+  std::function<Vec3d(const Vec3d&)> gradient;  // gradient of value, pointing inwards
+  std::function<TriangleMesh(int cells)> meshed_at;  // closed mesh with `cells` cells along the longest side
 
   bool inside(const Vec3d& p) const { return value(p) > 0.0; }
 };
@@ -26,29 +26,31 @@ class BareSurface {
   explicit BareSurface(BareBody body) : body_(std::move(body)) {}
 
   bool empty() const { return body_.bounds.empty(); }
-  // Of its bounding box, length units.
+  // The longest side of the body's bounding box, length units.
   double longest_side() const;
 
-  // A point of the surface. Throws InputError, naming `where`, when there is none.
+  // The point of the surface at a place. Throws InputError, naming `where`, when the place has none.
   Vec3d find(const SurfacePlace& place, const std::string& where) const;
-  // Unit, outwards; from the middle of the body where the surface has none.
+  // The unit normal at a point of the surface, outwards. Where the gradient is zero, it is the direction from
+  // the centre of the bounding box.
   Vec3d normal(const Vec3d& p) const;
 
-  // For scattering: a mesh stands for the surface. Squared length units.
+  // The area of a mesh of the surface, in squared length units.
   double area() const;
-  // Points of the surface, uniform over its area by three numbers in [0, 1) each.
+  // Points of the surface, uniform over its area: one for each element of `random`, whose coordinates lie in
+  // [0, 1). Empty for a body without a surface.
   std::vector<Vec3d> scatter(std::span<const Vec3d> random) const;
 
  private:
   void make_mesh() const;
   Vec3d on_mesh(const Vec3d& random) const;
-  // One step of Newton's towards the surface.
+  // The point after one step of Newton's method towards the surface.
   Vec3d nearer(const Vec3d& p) const;
   Vec3d nearest(const Vec3d& p, const std::string& where) const;
   Vec3d last_crossing(const Vec3d& direction, const std::string& where) const;
 
   BareBody body_;
-  // Made when first asked for.
+  // The mesh is made at the first call of area() or scatter(), which must not run in two threads at once.
   mutable TriangleMesh mesh_;
   mutable std::vector<double> areas_;  // running sum over the mesh's triangles
 };

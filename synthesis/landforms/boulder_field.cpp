@@ -21,7 +21,8 @@ void expect_on_body(double axis, const BareSurface& surface, const std::string& 
                    std::to_string(surface.longest_side()) + "; lower it");
 }
 
-// Along the normal to where F = 0, which falls by about one a length unit.
+// The point with F = 0 on the normal through a point of the bare surface. F falls by about 1 for each length
+// unit along the normal, so that each step goes by F.
 Vec3d on_terrain(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain) {
   double height = 0.0;
   for (int step = 0; step < 12; ++step) {
@@ -32,7 +33,7 @@ Vec3d on_terrain(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain)
   return bare + height * normal;
 }
 
-// Turned by its heading and tilt about the normal.
+// Sets the boulder's axes from its heading and tilt about the normal.
 void turn(const Vec3d& normal, PlacedBoulder& boulder) {
   Vec3d east = cross(Vec3d{0, 0, 1}, normal);
   east = norm(east) > 1e-6 ? normalized(east) : Vec3d{1, 0, 0};
@@ -46,7 +47,7 @@ void turn(const Vec3d& normal, PlacedBoulder& boulder) {
 }
 
 struct Placement {
-  Vec3d bare;
+  Vec3d bare;  // on the bare surface
   PlacedBoulder boulder;
 };
 
@@ -85,7 +86,8 @@ void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t s
 BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder) {
   const Vec3d half = 0.5 * boulder.axes;
   const double least = std::min({half.x, half.y, half.z});
-  // The distance is at least (1 - |u|) times the least half axis.
+  // |distance| is at least |1 - |u|| times the least half axis. Beyond this |u| neither the noise nor the
+  // smoothing reaches F = 0.
   const double reach = 1.0 + layer.smoothing + layer.roughness;
   return {to_float(boulder.center),
           {to_float(boulder.directions[0] * (1.0 / half.x)), to_float(boulder.directions[1] * (1.0 / half.y)),
@@ -98,7 +100,7 @@ BoulderKernel kernel_of(const BoulderLayer& layer, const PlacedBoulder& boulder)
           static_cast<float>(reach * reach)};
 }
 
-// How far a boulder about the origin reaches along a direction, its roughness included.
+// The extent of a boulder about the origin along a direction, with its roughness, by bisection.
 double extent_along(const BoulderKernel& kernel, const Vec3d& direction, double longest) {
   double in = 0.0, out = longest;
   for (int halving = 0; halving < 30; ++halving) {
@@ -109,8 +111,8 @@ double extent_along(const BoulderKernel& kernel, const Vec3d& direction, double 
   return in;
 }
 
-// As deep in the ground as its burial says, measured along the normal through its centre: whatever its shape,
-// it touches the ground.
+// Places a boulder as deep in the ground as its burial says, measured along the normal through its centre. A
+// boulder of any shape therefore touches the ground.
 void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& normal, PlacedBoulder& boulder) {
   turn(normal, boulder);
   const BoulderKernel kernel = kernel_of(layer, boulder);
@@ -119,6 +121,7 @@ void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& normal,
   boulder.center = ground + (below - boulder.burial * (above + below)) * normal;
 }
 
+// The box of a boulder whose axes are longer by the factor `reach`.
 Box reach_of(const PlacedBoulder& boulder, double reach) {
   const Vec3d half = 0.5 * boulder.axes;
   const auto extent = [&](double x, double y, double z) {

@@ -1,4 +1,4 @@
-// The boulders of a recipe, placed on the surface that its other layers make and joined to it.
+// The boulders of a layer: placed on the surface that the other layers make, and joined to it as a union.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace astrolith {
 // A boulder as it lies on a body; lengths in the recipe's unit, angles in degrees.
 struct PlacedBoulder {
   Vec3d center;
-  Vec3d directions[3];  // unit, of the axes
+  Vec3d directions[3];  // unit vectors along the axes
   Vec3d axes;           // full lengths
   double heading = 0.0, tilt = 0.0, burial = 0.0;
   std::uint32_t noise_seed = 0;
@@ -28,19 +28,20 @@ struct LayerBoulders {
   std::vector<PlacedBoulder> boulders;
 };
 
-// F of the surface without boulders, and how far that lies from the bare surface at most.
+// The surface without boulders.
 struct Terrain {
-  std::function<double(const Vec3d&)> field;
-  double height_bound = 0.0;
+  std::function<double(const Vec3d&)> field;  // F, length units
+  double height_bound = 0.0;                  // bound of its distance from the bare surface, length units
 };
 
-// The layer's listed boulders and its drawn ones. Throws InputError, naming `where` in the recipe, for a
-// boulder that is nowhere on the body or longer than it.
+// The layer's listed boulders, then its drawn ones. Throws InputError, naming `where` in the recipe, for a
+// boulder that has no place on the body or is longer than it. The result is empty for a body without a
+// surface.
 std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareSurface& surface,
                                           const Terrain& terrain, std::uint64_t seed, int layer_index,
                                           const std::string& where);
 
-// A boulder as it joins a field, and the box that it reaches: elsewhere it changes nothing.
+// A boulder as it joins a field, and the box that it reaches. Outside the box it changes nothing.
 struct FieldBoulder {
   BoulderKernel kernel;
   Box box;
@@ -53,7 +54,8 @@ ASTROLITH_HD inline bool boulder_reaches(const FieldBoulder& boulder, float x, f
   return boxes_touch(boulder.box, {p, p});
 }
 
-// F of the union with one boulder at n points.
+// Replaces field[i], F at point i, by F of the union with one boulder, for n points: the vectorised
+// join_boulder of boulder_shape.h, with its bits.
 void join_boulder(const BoulderKernel& kernel, int n, const float* x, const float* y, const float* z,
                   float* field);
 

@@ -11,19 +11,19 @@
 
 namespace astrolith {
 
-// An ellipsoid, ready for evaluation.
+// A boulder with the constants that its evaluation needs: an ellipsoid with noise.
 struct BoulderKernel {
   Vec3f center;         // length units
-  Vec3f across[3];      // unit axes, each over half its length
-  Vec3f inverse_half;   // of the axes, per length unit
-  float floor;          // of |grad|: keeps the distance finite at the centre, per length unit
+  Vec3f across[3];      // unit vectors along the axes, each divided by half the axis' length, per length unit
+  Vec3f inverse_half;   // 1 / half the length of each axis, per length unit
+  float floor;          // added to |grad|, which keeps the distance finite at the centre, per length unit
   float smoothing;      // k of the union, length units
   float roughness;      // amplitude of the noise, length units
-  std::uint32_t seed;   // of the noise
-  float reach_squared;  // beyond it, in half axes, the boulder changes nothing
+  std::uint32_t seed;   // seed of the noise
+  float reach_squared;  // |u|^2 beyond which the boulder changes nothing, in half axes
 };
 
-// In half axes along its own axes.
+// The coordinates u of a point along the boulder's axes, in half axes: |u| = 1 on the ellipsoid.
 ASTROLITH_KERNEL Vec3f boulder_coordinates(const BoulderKernel& b, float x, float y, float z) {
   const float dx = x - b.center.x, dy = y - b.center.y, dz = z - b.center.z;
   const auto along = [&](const Vec3f& a) { return math::fma(a.x, dx, math::fma(a.y, dy, a.z * dz)); };
@@ -34,14 +34,15 @@ ASTROLITH_KERNEL float squared_length(float x, float y, float z) {
   return math::fma(x, x, math::fma(y, y, z * z));
 }
 
-// Two octaves in [-1, 1], with landforms as wide as a half axis.
+// Two octaves of simplex noise, in [-1, 1]. The features are about as wide as a half axis.
 ASTROLITH_KERNEL float boulder_noise(const Vec3f& u, std::uint32_t seed) {
   const float wide = simplex_noise(1.2f * u.x, 1.2f * u.y, 1.2f * u.z, seed);
   const float narrow = simplex_noise(2.9f * u.x, 2.9f * u.y, 2.9f * u.z, seed + 1u);
   return math::fma(0.4f, narrow, wide) * (1.0f / 1.4f);
 }
 
-// Positive inside: (1 - |u|) over the gradient of |u|, and noise.
+// The distance to the boulder's surface to first order, positive inside, length units:
+// (1 - |u|) / |grad |u|| + roughness * noise(u).
 ASTROLITH_KERNEL float boulder_distance(const BoulderKernel& b, const Vec3f& u) {
   const float length = math::sqrt(squared_length(u.x, u.y, u.z)) + 1e-6f;
   const float slope =
@@ -51,7 +52,7 @@ ASTROLITH_KERNEL float boulder_distance(const BoulderKernel& b, const Vec3f& u) 
   return b.roughness > 0.0f ? math::fma(b.roughness, boulder_noise(u, b.seed), smooth) : smooth;
 }
 
-// What becomes of F.
+// F of the union of the body, with F = `field` at the point, and the boulder.
 ASTROLITH_KERNEL float join_boulder(const BoulderKernel& b, float x, float y, float z, float field) {
   const Vec3f u = boulder_coordinates(b, x, y, z);
   const float together = smooth_max(field, boulder_distance(b, u), b.smoothing);

@@ -1,4 +1,4 @@
-// What is certain about craters over a box, for CPU and GPU.
+// Bounds of the relief of craters over a box, for CPU and GPU.
 #pragma once
 
 #include "numerics/interval.h"
@@ -7,9 +7,9 @@
 
 namespace astrolith {
 
-inline constexpr double kCraterSlack = 1e-5;  // relative, for the rounding of positions and heights
+inline constexpr double kCraterSlack = 1e-5;  // relative rounding of positions and heights
 
-// What a crater reaches.
+// A box outside of which a crater changes no elevation.
 ASTROLITH_HD inline Box crater_reach(const CraterKernel& c) {
   const double reach =
       std::sqrt(double{c.extent_squared} / double{c.inverse_radius_squared}) * (1.0 + kCraterSlack);
@@ -18,7 +18,7 @@ ASTROLITH_HD inline Box crater_reach(const CraterKernel& c) {
   return widened(box, reach + 1e-6 * largest_coordinate(box));
 }
 
-// x^2 over a box.
+// Bounds of x^2 over a box, with x = distance from the centre / radius.
 ASTROLITH_HD inline Interval crater_squares(const CraterKernel& c, const Box& box) {
   const MetaballSphere<float> sphere{{c.x, c.y, c.z}, 0.0f};
   const SquaredDistances range = squared_distances(sphere, box);
@@ -29,7 +29,7 @@ ASTROLITH_HD inline Interval crater_squares(const CraterKernel& c, const Box& bo
   return {near * near, far * far};
 }
 
-// Cavities rise with x, rims and peaks fall.
+// Bounds of crater_height(). The cavity rises with x, while rim and peak fall with x.
 ASTROLITH_HD inline Interval bound_crater_height(const CraterKernel& c, const Interval& x_squared) {
   const float low = static_cast<float>(x_squared.low), high = static_cast<float>(x_squared.high);
   const float cavity_low = crater_cavity(c, low), cavity_high = crater_cavity(c, high);
@@ -46,7 +46,7 @@ ASTROLITH_HD inline Interval bound_crater_height(const CraterKernel& c, const In
   return {std::min(height.low, 0.0), std::max(height.high, 0.0)};
 }
 
-// What a crater makes of elevations over a box, as `cratered`.
+// Bounds of cratered() over a box, from bounds of the elevations before the crater.
 ASTROLITH_HD inline Interval bound_cratered(const CraterKernel& c, const Box& box, const Interval& before) {
   const Interval x_squared = crater_squares(c, box);
   const double least = std::min(x_squared.low, 1.0), most = std::min(x_squared.high, 1.0);

@@ -9,8 +9,9 @@
 namespace astrolith {
 namespace {
 
-constexpr double kMostOverlaps = 2000.0;  // of craters at a place, on average: what a point may cost
-constexpr double kClip = 2.0;             // of craters that pile up, in the greatest relief of one
+constexpr double kMostOverlaps =
+    2000.0;                    // the most craters over a place on average, which bounds a point's cost
+constexpr double kClip = 2.0;  // bound of the relief of all craters, in the greatest relief of one
 
 const CraterProfile& profile_of(const CraterLayer& layer, bool complex) {
   return complex ? layer.complex : layer.simple;
@@ -58,7 +59,7 @@ void place_drawn(const CraterLayer& layer, const BareSurface& surface, std::uint
   }
 }
 
-// As often as the craters would cover a ball as wide as the body.
+// Throws InputError if the craters would cover a ball as wide as the body more than kMostOverlaps times.
 void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrater>& craters,
                          const BareSurface& surface, const std::string& where) {
   double covered = 0.0;
@@ -88,7 +89,7 @@ CraterKernel kernel_of(const CraterProfile& profile, const PlacedCrater& crater,
   kernel.terraces = static_cast<float>(profile.terraces);
   kernel.peak_height = static_cast<float>(profile.peak_height * crater.diameter);
   kernel.inverse_peak_radius_squared = static_cast<float>(1.0 / (profile.peak_radius * profile.peak_radius));
-  // So that smoothing ends within the extent.
+  // Smoothing must end within the extent, where cavity and rim must therefore differ by it.
   const float cavity_there = crater_cavity(kernel, kernel.extent_squared);
   kernel.smoothing = std::min(static_cast<float>(profile.smoothing * crater.depth), cavity_there);
   return kernel;
@@ -104,7 +105,7 @@ ASTROLITH_SIMD_CLONES void apply_crater(const CraterKernel& kernel, int n, const
   }
 }
 
-// The elevation that each crater starts from: what older craters, no smaller than it, made at its centre.
+// Sets the base of each crater: the elevation at its centre after the older craters that are no smaller.
 void find_bases(std::span<const PlacedCrater> placed, std::span<const float> elevations,
                 std::vector<CraterKernel>& craters) {
   const BoxTree tree = crater_tree(craters);

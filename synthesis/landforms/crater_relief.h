@@ -1,5 +1,5 @@
-// The craters of a layer: placed on a body, and what they make of elevations at one point, over many points,
-// and over boxes.
+// The craters of a layer: their places on a body, and the elevations after them at one point, over many
+// points and as bounds over boxes.
 #pragma once
 
 #include <span>
@@ -33,29 +33,32 @@ struct LayerCraters {
 };
 
 // The layer's listed craters and its drawn ones, from the oldest to the youngest. Throws InputError, naming
-// `where` in the recipe, for a crater that is nowhere on the body or wider than it.
+// `where` in the recipe, for a crater that has no place on the body or is wider than it, and for craters that
+// would cover every place more than 2000 times. The result is empty for a body without a surface.
 std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurface& surface,
                                         std::uint64_t seed, int layer_index, const std::string& where);
 
-// The craters of a layer, oldest first, as they fall on the elevations that the layers before them made.
+// The craters of a layer, oldest first, with the constants that their evaluation needs.
 struct CraterRelief {
   ArrayRange<CraterKernel> craters;
-  // |elevation| never exceeds this after the layer, length units: relief is cut where craters pile up beyond
-  // twice the greatest depth or height of one.
+  // Bound of |elevation| after the layer, length units. Where many craters overlap, elevations are cut at the
+  // bound before the layer plus twice the greatest depth or height of one crater.
   double elevation_bound = 0.0;
-  std::uint32_t list = 0;  // number of the list of craters that reach a block
+  std::uint32_t list = 0;  // number of the layer's list of craters in a block (field_tables.h)
 };
 
-// `centers` are the craters' places among the points that heights are taken at, `elevations` what the layers
-// before made there, never beyond +-`bound_before`.
+// The relief of placed craters. `centers` are their centres on the bare surface as the relief is evaluated:
+// on the metaballs' side of the body's warp. `elevations` are the elevations at the centres before the layer,
+// in length units, with |elevation| <= bound_before. All three spans have one size.
 CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const PlacedCrater> oldest_first,
                                 std::span<const Vec3d> centers, std::span<const float> elevations,
                                 double bound_before, ArrayStore& arrays);
 
-// The boxes that craters reach, as a tree that finds those of a box.
+// A tree of the boxes that the craters reach, in their order.
 BoxTree crater_tree(std::span<const CraterKernel> craters);
 
-// The elevation at a point of the bare surface after the craters of a list of numbers, ascending.
+// The elevation at a point p of the bare surface after the craters with the given numbers, which ascend. They
+// must include all craters that reach p.
 ASTROLITH_HD inline float cratered_elevation(const CraterRelief& relief, const ArrayView& arrays,
                                              const std::uint32_t* numbers, std::uint32_t count,
                                              const Vec3f& p, float elevation) {
@@ -68,13 +71,13 @@ ASTROLITH_HD inline float cratered_elevation(const CraterRelief& relief, const A
   return math::clamp(elevation, -clip, clip);
 }
 
-// Lets the craters fall on elevations at points of the bare surface: the bits of cratered_elevation,
-// vectorised.
+// Replaces elevation[i] at n points of the bare surface by the elevation after the layer: the vectorised
+// cratered_elevation, with its bits. `tree` is the crater_tree() of the craters.
 void apply_craters(const CraterRelief& relief, const ArrayView& arrays, const BoxTree& tree, int n,
                    const float* x, const float* y, const float* z, float* elevation);
 
-// Elevations after the layer at every point of a box, from those before. `for_each_reaching(visit)` calls
-// visit(number) for every crater that reaches the box, ascending.
+// Bounds of the elevations after the layer over a box, from bounds of the elevations before it.
+// `for_each_reaching(visit)` calls visit(number) for every crater that reaches the box, in ascending order.
 template <class ForEachReaching>
 ASTROLITH_HD Interval bound_cratered_elevation(const CraterRelief& relief, const ArrayView& arrays,
                                                const ForEachReaching& for_each_reaching, const Box& box,

@@ -15,7 +15,7 @@ CounterRandom stream_of(std::uint64_t seed, int layer_index, std::uint64_t landf
   return CounterRandom(seed, kPopulationStream + (static_cast<std::uint64_t>(layer_index) << 32) + landform);
 }
 
-// By the waiting times between events.
+// A Poisson number, from the exponential waiting times between events.
 int poisson_number(double mean, CounterRandom random) {
   int number = 0;
   for (double waited = -std::log(1.0 - random.uniform()); waited < mean; ++number) {

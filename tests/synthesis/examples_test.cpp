@@ -1,5 +1,5 @@
-// Every example recipe says what it shows and becomes a closed manifold at any resolution; so do random
-// recipes.
+// Every example recipe has a description and becomes a closed manifold at any resolution. Random recipes
+// become closed manifolds too.
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -94,7 +94,8 @@ SparseLayer random_sparse(CounterRandom& random) {
   return layer;
 }
 
-// What stands on the surface. After all else, so that the other layers of a seed stay as they are.
+// Adds craters, boulders and sparse noise. They are drawn after all else, so that the other layers of a seed
+// stay as they are.
 void add_features(CounterRandom& random, Recipe& recipe) {
   const BareSurface surface(bare_body(recipe));
   if (surface.empty()) return;
@@ -123,7 +124,7 @@ PhasorLayer random_phasor(CounterRandom& random) {
   return layer;
 }
 
-// Any kernel, with a tension that it can have.
+// Chooses a kernel, and a tension that is valid for it.
 void choose_kernel(CounterRandom& random, MetaballBody& body) {
   body.kernel = kKernels[random.below(5)];
   if (body.kernel == Kernel::kGaussian) return;
@@ -131,7 +132,8 @@ void choose_kernel(CounterRandom& random, MetaballBody& body) {
   body.a = body.b = std::max(random.uniform(0.3, 3.0), least_tension(body) + 0.01);
 }
 
-// How layers join those before them, and masks. The layers have names for these.
+// Chooses how layers join the layers before them, and by which layers they are masked. Masks need the names
+// of layers.
 void choose_joins(CounterRandom& random, Recipe& recipe) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     std::visit([&](auto& l) { l.name = std::to_string(i); }, recipe.layers[i]);
@@ -156,7 +158,7 @@ void add_operation(CounterRandom& random, MetaballBody& body) {
   body.operations.push_back(std::move(operation));
 }
 
-// Spots of several parts on oblique lattices.
+// Makes some spots of several ellipsoids on oblique lattices.
 void compose_spots(CounterRandom& random, Recipe& recipe) {
   for (Layer& layer : recipe.layers) {
     auto* spots = std::get_if<SpotLayer>(&layer);

@@ -26,7 +26,7 @@ Recipe with_boulders(Recipe recipe, const BoulderLayer& layer) {
   return recipe;
 }
 
-// Highest point above a sphere about the origin.
+// The height of the surface above a sphere about the origin, along a direction.
 double summit(const ImplicitField& field, const Vec3d& direction, double radius) {
   double low = 0.5 * radius, high = 3.0 * radius;
   for (int i = 0; i < 50; ++i) {
@@ -48,7 +48,7 @@ TEST(BoulderField, BurialSaysHowMuchIsSeen) {
   }
 }
 
-// However rough, tilted and shallow: no boulder hovers.
+// No boulder hovers, however rough, tilted and shallow it is.
 TEST(BoulderField, EveryBoulderTouchesTheGround) {
   BoulderLayer layer;
   layer.roughness = 0.5;
@@ -68,7 +68,7 @@ TEST(BoulderField, EveryBoulderTouchesTheGround) {
   }
 }
 
-// At the equator east is +y for a place on +x: axis a lies along it, or along north with a heading of 90.
+// At a place on +x, east is +y. Axis a lies along east, and with a heading of 90 along north.
 TEST(BoulderField, AxesLieAsTheHeadingSays) {
   BoulderLayer layer;
   layer.boulders = {boulder_towards({1, 0, 0}, {2.0, 1.0, 1.0}, 0.5)};
@@ -82,7 +82,7 @@ TEST(BoulderField, AxesLieAsTheHeadingSays) {
   EXPECT_TRUE(north.inside({10.1, 0.0, 0.9}));
 }
 
-// On the hill or in the crater that other layers make, before or after it in the recipe.
+// Boulders lie on the hills and in the craters of layers that come before or after them in the recipe.
 TEST(BoulderField, StandsOnTheFinalSurface) {
   Recipe recipe = testing::sphere_recipe(10.0);
   BoulderLayer boulders;

@@ -28,7 +28,8 @@ Recipe cratered_sphere(double radius, const CraterLayer& layer) {
   return recipe;
 }
 
-// On a sphere about the origin, along the ray: what F = 0 says, for heights that are constant along it.
+// The elevation on a sphere about the origin in a direction. F on the bare sphere is the elevation, since s =
+// 0.
 double elevation_along(const ImplicitField& field, double radius, const Vec3d& direction) {
   const Vec3d p = radius * normalized(direction);
   return field.value(p);
@@ -97,7 +98,7 @@ TEST(CraterProfile, SmoothJointsAndTerracesKeepFloorRimAndOrder) {
   }
 }
 
-// Depth, rim and diameter, measured on the mesh of a large sphere.
+// Depth, rim and diameter are measured on the mesh of a large sphere.
 TEST(CraterRelief, MeshesHaveTheStatedDepthRimAndDiameter) {
   CraterLayer layer;
   Crater crater = crater_towards({0.3, -0.2, 1.0}, 6.0);
@@ -119,7 +120,8 @@ TEST(CraterRelief, MeshesHaveTheStatedDepthRimAndDiameter) {
   EXPECT_NEAR(crest, 6.0, 0.15);
 }
 
-// Seed and depth of craters around a place, seen at its centre and on its rim.
+// A small crater within a large one vanishes if it is older, and lies on the large one's floor if it is
+// younger.
 TEST(CraterRelief, YoungerCratersObscureOlder) {
   const double radius = 50.0;
   CraterLayer layer;
@@ -132,7 +134,7 @@ TEST(CraterRelief, YoungerCratersObscureOlder) {
   EXPECT_NEAR(elevation({0, 0, 1}), -0.2, 1e-3);  // nothing left of the small one at the large one's centre
   layer.craters[1].age = 0.5;
   const double with_younger = elevation(small_center);
-  EXPECT_NEAR(with_older, -0.2, 8e-3);           // fades with the square of the distance
+  EXPECT_NEAR(with_older, -0.2, 8e-3);           // the older one fades with the square of the distance
   EXPECT_NEAR(with_younger, -0.2 - 0.04, 6e-3);  // on the floor of the large one
 }
 
@@ -149,7 +151,7 @@ TEST(CraterRelief, BasesAreSampledFromWhatIsOlderAndNotSmaller) {
   EXPECT_NEAR(elevation_along(other, radius, {0, 0, 1}), -0.4, 2e-3);  // the small one is no base
 }
 
-// A layer before is obscured, one after lies on top.
+// Craters obscure a layer before them, and a layer after them lies on top.
 TEST(CraterRelief, OrderOfLayersMatters) {
   CraterLayer layer;
   layer.craters = {crater_towards({0, 0, 1}, 6.0)};
@@ -173,7 +175,7 @@ TEST(CraterRelief, OrderOfLayersMatters) {
   EXPECT_GT(after, bare + 0.05);
 }
 
-// A crater under the others changes nothing beyond its extent, to the bit.
+// A crater changes no bit beyond its extent.
 TEST(CraterRelief, NothingBeyondTheExtent) {
   CraterLayer layer;
   layer.craters = {crater_towards({0, 0, 1}, 2.0)};
@@ -252,7 +254,7 @@ Recipe random_body(std::uint64_t seed) {
   return recipe;
 }
 
-// No box that holds surface is proved empty or full.
+// No box that holds surface is proved to lie outside or inside.
 TEST(CraterRelief, CulledBoxesHoldNoSurface) {
   int culled = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {

@@ -22,7 +22,8 @@ Population population_of(int count, double least, double greatest, double expone
   return population;
 }
 
-// Maximum likelihood of a truncated power law, by bisection of its score; and its standard error.
+// The maximum-likelihood exponent of a truncated power law, by bisection of its score, and its standard
+// error.
 struct Exponent {
   double value, error;
 };
@@ -73,7 +74,7 @@ TEST(Population, NumbersOfADensityArePoissonDistributed) {
   EXPECT_NEAR(products / seeds, 0.0, 4.0 * 9.0 / 20.0);
 }
 
-// On the surface, and uniform over its area: an egg's two ends have their share.
+// Landforms lie on the surface and are uniform over its area: each end of an egg has its share of them.
 TEST(Population, PlacesAreUniformOverTheArea) {
   Recipe egg = testing::sphere_recipe(1.0);
   egg.body->blend_exponent = 8.0;
@@ -103,7 +104,7 @@ TEST(Population, PlacesAreUniformOverTheArea) {
   EXPECT_NEAR(upper, 0.5 * n, 4.0 * std::sqrt(0.25 * n));
 }
 
-// Cells of equal area on a sphere: counts as independent as those of a Poisson process.
+// In cells of equal area on a sphere, the counts are as independent as those of a Poisson process.
 TEST(Population, PlacesAreIndependent) {
   const BareSurface surface(bare_body(testing::sphere_recipe(1.0)));
   constexpr int kRings = 16, kSectors = 32;
