@@ -1,7 +1,7 @@
-// How the algorithms of this folder see a GPU: arrays in its memory, launches of many threads in groups, and
-// a running sum. An algorithm is a template over a Backend; DeviceBackend (device_backend.h) runs it on the
-// GPU, HostBackend (host_backend.h), its twin, on the CPU, where ordinary tests compare its results with
-// those of the CPU's own algorithm.
+// The interface through which the algorithms of this folder use a GPU: arrays in its memory, launches of many
+// threads in groups, and a running sum. An algorithm is a template over a Backend. DeviceBackend
+// (device_backend.h) runs it on the GPU. HostBackend (host_backend.h) runs it on the CPU, where ordinary
+// tests compare its results with those of the CPU's own algorithm.
 //
 //   template <class Backend>
 //   void double_all(Backend& backend, std::vector<float>& values) {
@@ -11,9 +11,9 @@
 //   }
 //
 // backend.launch_groups(what, groups, threads, body) calls body(group) for groups of threads that share
-// Body::kGroupBytes of memory, kSharedBytes at most. There group.each_thread(step) calls step(thread) for
-// every thread, and no thread goes on before all have done: what a thread must remember from step to step
-// stays in the shared memory.
+// Body::kGroupBytes of memory, kSharedBytes at most. Within it, group.each_thread(step) calls step(thread)
+// for every thread of the group. No thread goes on before all threads have finished the step. What a thread
+// must remember from step to step has to stay in the shared memory.
 #pragma once
 
 #include <cstddef>
@@ -24,16 +24,16 @@
 
 namespace astrolith {
 
-// Shared by the threads of a group: what every GPU has without asking.
+// The memory that the threads of a group can share on every GPU, bytes.
 inline constexpr std::size_t kSharedBytes = 48 * 1024;
 
-// The memory of a backend does not hold what was asked for; a smaller batch may fit.
+// An array does not fit into the memory of a backend. A smaller batch of work may fit.
 class OutOfDeviceMemory : public WorkError {
  public:
   using WorkError::WorkError;
 };
 
-// Adds to a number that other threads add to at the same time; returns what it was.
+// Adds to a number to which other threads add at the same time. Returns the number before the addition.
 template <typename T>
 ASTROLITH_HD T add_atomically(T* sum, T amount) {
 #ifdef __CUDA_ARCH__

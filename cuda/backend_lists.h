@@ -1,5 +1,5 @@
-// Lists of unknown lengths on a backend, one after the other in one array: each is written twice, the first
-// time only to count.
+// Lists of unknown lengths on a backend, stored one after another in one array. Each list is made twice:
+// first its items are counted, then they are written.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace astrolith {
 
-// A list in an array that holds many: elements first .. first + count - 1.
+// A list within an array: elements first .. first + count - 1.
 struct ListRange {
   std::uint32_t first = 0, count = 0;
 };
 
-// Where the items of a list go; without an array they are only counted.
+// Takes the items of a list. Without an array it only counts them.
 template <typename T>
 struct ListWriter {
   T* items;
@@ -26,7 +26,8 @@ struct ListWriter {
   }
 };
 
-// A thread a list: write(i, writer) gives list number i its items, the same both times.
+// Each thread makes one list: write(i, writer) passes the items of list number i to the writer, and must pass
+// the same items both times.
 template <typename T, typename Write>
 struct CountItems {
   Write write;
@@ -50,6 +51,7 @@ struct WriteItems {
   }
 };
 
+// List l has items[first[l]] to items[first[l + 1] - 1].
 template <class Backend, typename T>
 struct BackendLists {
   typename Backend::template Array<T> items;
@@ -63,7 +65,7 @@ typename Backend::template Array<T> zeros_on(Backend& backend, std::size_t count
   return array;
 }
 
-// Throws OutOfDeviceMemory as well where an item's number would need more than 32 bits.
+// Makes `lists` lists. Throws OutOfDeviceMemory where they do not fit, or have 2^32 items or more together.
 template <typename T, class Backend, typename Write>
 BackendLists<Backend, T> write_lists(Backend& backend, const char* what, std::size_t lists,
                                      const Write& write) {

@@ -1,6 +1,6 @@
-// The fitness of a whole swarm of candidates for a body's details in a few launches: where lines meet the
-// surface of each, and the pair counts of each one's samples. A backend that is a GPU, or its twin on the
-// host.
+// Evaluates many candidates for a body's details in a few launches of a backend: where lines meet the surface
+// of each candidate, and the pair counts of each candidate's samples. The fitness of a swarm follows from
+// both (estimation/shape/details/).
 #pragma once
 
 #include <algorithm>
@@ -13,23 +13,23 @@
 
 namespace astrolith {
 
-// Points that move along lines, t <- t + F(start + t direction), from 0 and within +- reach.
+// Lines along which points move to the surface: t <- t + F(start + t direction), from t = 0, within +-reach.
 struct ProbeLines {
-  std::vector<Vec3f> start, direction;   // (points)
-  std::vector<std::uint32_t> block;      // (points): which block of `metaballs` a point's are in
-  BlockListStore metaballs;              // those that reach the lines of each block
-  MetaballParameters<float> parameters;  // of all metaballs
+  std::vector<Vec3f> start, direction;   // (lines)
+  std::vector<std::uint32_t> block;      // (lines): number of the block of each line in `metaballs`
+  BlockListStore metaballs;              // metaballs that reach the lines of each block
+  MetaballParameters<float> parameters;  // parameters of all metaballs
   float reach = 0.0f;                    // length units
-  int steps = 0;
+  int steps = 0;                         // number of steps of each point
 };
 
-// The layers of candidates for a body's details, which add their heights, as tables.
+// The layers of the candidates as tables. The layers of a candidate add their heights.
 struct Candidates {
   ArrayStore arrays;
-  std::vector<FractalNoise> noises;
-  std::vector<ListRange> of_candidate;  // in `noises`
+  std::vector<FractalNoise> noises;     // layers of all candidates
+  std::vector<ListRange> of_candidate;  // layers of each candidate in `noises`
 
-  // `seed` is the recipe's; layers are numbered from 0. The surface lies in `domain`.
+  // Adds a candidate. `seed` is the recipe's. Layers are numbered from 0. The surface must lie in `domain`.
   void add(std::span<const FractalLayer> layers, std::uint64_t seed, const Box& domain) {
     of_candidate.push_back(
         {static_cast<std::uint32_t>(noises.size()), static_cast<std::uint32_t>(layers.size())});
@@ -43,17 +43,17 @@ struct Candidates {
 class CandidateEvaluator {
  public:
   virtual ~CandidateEvaluator() = default;
-  // t of every line (candidates, lines).
+  // The final t of every line, length units (candidates, lines).
   virtual std::vector<std::vector<float>> heights(const ProbeLines& lines, const Candidates& candidates) = 0;
-  // count_pairs (descriptor/pair_count.h) of each set.
+  // The counts that count_pairs (descriptor/pair_count.h) finds for each set. `bins` is kMinBins .. kMaxBins.
   virtual std::vector<std::vector<std::uint64_t>> count(std::span<const SurfletArrays> sets, int bins) = 0;
 };
 
-// A thread a line of a candidate, candidate by candidate.
+// Each thread moves the point of one line for one candidate. Threads are numbered candidate by candidate.
 struct ProbeLine {
   ArrayView arrays;
-  BodyTables body;             // of metaballs alone
-  const FractalNoise* noises;  // of all candidates
+  BodyTables body;             // a plain body of one leaf
+  const FractalNoise* noises;  // layers of all candidates
   const ListRange* of_candidate;
   BlockListArrays blocks;
   const Vec3f *start, *direction;
@@ -79,6 +79,7 @@ struct ProbeLine {
   }
 };
 
+// The evaluator on one backend.
 template <class Backend>
 class CandidateEvaluatorOn : public CandidateEvaluator {
  public:

@@ -1,4 +1,4 @@
-// The swarm's backend (candidate_evaluator.h) that is the GPU.
+// The CandidateEvaluator (candidate_evaluator.h) on the GPU.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@ namespace astrolith {
 
 class CandidateEvaluator;
 
-// Its functions throw WorkError, with CUDA's words, when the device fails or has too little memory; see
-// probe_device().
+// The evaluator's functions throw WorkError, with CUDA's words, when the device fails or has too little
+// memory. Call probe_device() (device.h) first.
 std::unique_ptr<CandidateEvaluator> candidates_on_gpu();
 
 }  // namespace astrolith

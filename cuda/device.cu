@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kProbeSize = 1024;
 
-// Touches everything the field functions and their bounds are made of.
+// A value at i that uses every elementary function of the field and of its bounds.
 struct Probe {
   std::int32_t single;
   std::int64_t wide;

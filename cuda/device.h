@@ -1,4 +1,4 @@
-// Whether there is a GPU that can be trusted.
+// Whether a GPU is there that gives the bits of the CPU.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct DeviceStatus {
   std::size_t memory_bytes = 0;
 };
 
-// Looks at device 0 and runs a small kernel whose results are known bit by bit: code built for the wrong
-// architecture must fail here, loudly, and not give a mesh of zeros. Throws nothing.
+// Looks at device 0 and runs a small kernel whose results are known bit by bit. Code built for the wrong
+// architecture must fail here, and not give a mesh of zeros later. Throws nothing.
 DeviceStatus probe_device();
 
 }  // namespace astrolith

@@ -9,7 +9,7 @@
 
 namespace astrolith {
 
-// The threads of a group at the same time: every thread of the device runs the whole body.
+// A group on the device. Every thread of the group runs the whole body.
 class DeviceGroup {
  public:
   __device__ DeviceGroup(std::size_t index, void* shared) : index_(index), shared_(shared) {}
@@ -23,7 +23,7 @@ class DeviceGroup {
     __syncthreads();
   }
 #else
-  unsigned threads() const { return 0; }  // for the compiler's pass over the host's half alone
+  unsigned threads() const { return 0; }  // never called; nvcc's pass over the host code needs it
   template <typename Step>
   void each_thread(const Step&) const {}
 #endif
@@ -89,7 +89,7 @@ class DeviceBackend {
     run_groups<<<static_cast<unsigned>(groups), threads>>>(body);
     check_cuda(cudaGetLastError(), what);
   }
-  // For all launches to end.
+  // Waits for all launches to end.
   void wait() { check_cuda(cudaDeviceSynchronize(), "waiting for the device"); }
   void running_sum(Array<std::uint32_t>& values) {
     if (values.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {

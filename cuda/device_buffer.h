@@ -13,8 +13,8 @@
 
 namespace astrolith {
 
-// Throws WorkError with CUDA's own words; OutOfDeviceMemory, after which the device can be used further,
-// where that is what they say.
+// Throws WorkError with CUDA's own words where `status` is an error. For an error of memory it throws
+// OutOfDeviceMemory, after which the device can still be used.
 inline void check_cuda(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
   const std::string words = std::string("GPU: ") + what + ": " + cudaGetErrorString(status);
@@ -48,7 +48,7 @@ class DeviceBuffer {
   }
   ~DeviceBuffer() { cudaFree(data_); }
 
-  // The first host.size() elements.
+  // Copies the first host.size() elements to the host.
   void download(std::span<T> host) const {
     if (!host.empty()) {
       check_cuda(cudaMemcpy(host.data(), data_, host.size_bytes(), cudaMemcpyDeviceToHost),

@@ -1,4 +1,4 @@
-// A field's tables (synthesis/field/field_tables.h) and lists of blocks in a backend's memory.
+// A field's tables and the lists of blocks (synthesis/field/field_tables.h), copied into a backend's memory.
 #pragma once
 
 #include "cuda/backend.h"
@@ -17,7 +17,7 @@ class FieldOnBackend {
     view_.layers = layers_.data();
   }
 
-  // The tables with the backend's pointers.
+  // The tables in the backend's memory. The view is valid while this object lives.
   const FieldView& view() const { return view_; }
 
  private:
@@ -43,13 +43,14 @@ class BlocksOnBackend {
         landforms_(upload(backend, store.landforms, view_.landforms)),
         first_landform_(upload(backend, store.first_landform, view_.first_landform)) {}
 
+  // The lists in the backend's memory. The view is valid while this object lives.
   BlockListArrays view() const { return view_; }
 
  private:
   template <typename T>
   using Array = typename Backend::template Array<T>;
 
-  // Uploads the values and lets the view point to them.
+  // Uploads the values and sets a pointer of the view to them.
   template <typename T>
   static Array<T> upload(Backend& backend, const std::vector<T>& values, const T*& pointer) {
     Array<T> array = backend.upload(std::span<const T>(values));

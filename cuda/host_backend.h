@@ -1,7 +1,7 @@
-// The twin of a GPU on the CPU: arrays are vectors, a launch is a loop. It computes what the GPU does, thread
-// by thread, for tests; it runs out of memory where it is told to, and threads come in any order that it is
-// told. Each array is an allocation of its own and a group's memory is as large as the group says, so that
-// the address sanitizer sees what reads or writes beyond one.
+// The backend of tests: it runs the algorithms of a GPU on the CPU, thread by thread. Arrays are vectors, and
+// a launch is a loop. A test can limit its memory and choose the order of threads. Each array is an
+// allocation of its own, and a group's memory has exactly the size that the group states. The address
+// sanitizer therefore finds every access beyond an array.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,11 @@
 
 namespace astrolith {
 
-// In which order threads come: one after the other, or as seemingly at random as a step through them makes
-// it.
+// The order of threads: by their numbers, or by steps of a fixed stride through them.
 struct HostOrder {
-  std::size_t seed = 0;  // 0: one after the other
+  std::size_t seed = 0;  // 0: by their numbers
 
-  // Calls step(i) for 0 .. n - 1.
+  // Calls step(i) for every i in 0 .. n - 1.
   template <typename Step>
   void each(std::size_t n, const Step& step) const {
     std::size_t stride = seed == 0 ? 1 : 1 + seed * 2654435761u % std::max<std::size_t>(n, 1);
@@ -32,14 +31,14 @@ struct HostOrder {
   }
 };
 
-// The threads of a group one after the other.
+// A group on the host. Its threads run one after another.
 class HostGroup {
  public:
   HostGroup(std::size_t index, unsigned threads, void* shared, HostOrder order)
       : index_(index), threads_(threads), shared_(shared), order_(order) {}
   ASTROLITH_HD std::size_t index() const { return index_; }
   ASTROLITH_HD unsigned threads() const { return threads_; }
-  // Holds anything at first.
+  // The shared memory. Its content is arbitrary at first.
   ASTROLITH_HD void* shared() const { return shared_; }
   template <typename Step>
   void each_thread(const Step& step) const {
@@ -55,7 +54,7 @@ class HostGroup {
 
 class HostBackend {
  public:
-  // Bytes of its arrays together.
+  // `memory` limits the bytes of all arrays together.
   explicit HostBackend(std::size_t memory = std::numeric_limits<std::size_t>::max(), HostOrder order = {})
       : left_(std::make_shared<std::size_t>(memory)), order_(order) {}
 
@@ -87,7 +86,7 @@ class HostBackend {
     std::shared_ptr<std::size_t> left_;
   };
 
-  // Holds anything at first: here what shows that it was used.
+  // The content of an array is arbitrary at first. Here it is a pattern that makes a wrong use visible.
   template <typename T>
   Array<T> allocate(std::size_t count) {
     if (count * sizeof(T) > *left_) throw OutOfDeviceMemory("GPU: out of memory");
@@ -106,7 +105,7 @@ class HostBackend {
   void fill_zero(Array<T>& array) {
     std::fill_n(array.data(), array.size(), T{});
   }
-  // The first values.size() of the array.
+  // Copies the first values.size() elements of the array.
   template <typename T>
   void download(const Array<T>& array, std::span<T> values) {
     std::copy_n(array.data(), values.size(), values.begin());
@@ -131,7 +130,7 @@ class HostBackend {
     });
   }
   void wait() {}
-  // values[i] becomes the sum of those before it.
+  // Replaces values[i] by the sum of the values before it.
   void running_sum(Array<std::uint32_t>& values) {
     std::exclusive_scan(values.data(), values.data() + values.size(), values.data(), std::uint32_t{0});
   }

@@ -1,5 +1,5 @@
-// What this folder offers in a build that found no CUDA compiler: the probe says so, and all else is an error
-// of whoever did not ask it.
+// The functions of this folder in a build without a CUDA compiler. probe_device() says that there is no GPU.
+// Callers must ask it first, and all other functions throw.
 #include "cuda/candidate_evaluator.h"
 #include "cuda/candidates_on_gpu.h"
 #include "cuda/device.h"

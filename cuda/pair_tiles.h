@@ -1,7 +1,7 @@
-// Counts pairs of surflets tile by tile (descriptor/pair_count.h): the pairs of some rows of one local code
-// with some columns of another. Within a tile only the surflet code and the side of the origin are left to
-// tell, so a tile's counters fit into the memory that a group of threads shares; integers, so that the order
-// in which tiles and threads add changes nothing.
+// Counts pairs of surflets (descriptor/pair_count.h) tile by tile. A tile holds the pairs of some rows of one
+// local code with some columns of another. Within a tile, pairs differ only by the surflet code and by which
+// point is the origin. The counters of a tile therefore fit into the memory that a group of threads shares.
+// They are integers, so that the order in which tiles and threads add does not change the counts.
 #pragma once
 
 #include <algorithm>
@@ -16,29 +16,30 @@
 
 namespace astrolith {
 
-// A row of a tile is a thread's.
+// Rows of a tile. Each row has a thread of its own.
 inline constexpr unsigned kTileRows = 256;
-// Enough pairs that adding up a tile's counters costs little beside them; below 2^32 in all, the range of a
-// counter.
+// Columns of a tile: enough that adding up the tile's counters costs little beside counting its pairs, and
+// few enough that no 32-bit counter overflows.
 inline constexpr std::int64_t kTileColumns = 4096;
 
-// Rows first_row .. end_row - 1 with columns first_column .. end_column - 1, as far as the column is less
-// than the row.
+// The pairs of rows first_row .. end_row - 1 with columns first_column .. end_column - 1 whose column is less
+// than their row.
 struct PairTile {
   std::uint32_t first_row, end_row, first_column, end_column;
   std::int32_t row_code, column_code;  // local codes
 };
 
-// All pairs of points whose local codes begin at first_of_code[l], each in one tile.
+// Tiles that hold each pair of points exactly once. Points are sorted by their local codes, and those of code
+// l are first_of_code[l] .. first_of_code[l + 1] - 1.
 std::vector<PairTile> pair_tiles(std::span<const std::int64_t> first_of_code);
 
-// One group of kTileRows threads a tile. Surflets lie in memory as nine arrays of `stride` floats; totals are
-// (num_local, kBins^4).
+// A group of kTileRows threads counts one tile. Surflets lie in memory as nine arrays of `stride` floats.
+// `totals` has the shape (num_local, kBins^4).
 template <int kBins>
 struct CountPairTiles {
   static constexpr std::int64_t kHalf = bin_count(PairFeatures::wahl, kBins), kCodes = 2 * kHalf;
-  // Columns in shared memory at a time; the rest of it holds counters, in copies for groups of rows, so that
-  // fewer threads wait for each other.
+  // Columns in shared memory at a time. The rest of the memory holds counters. They have several copies, each
+  // for some of the rows, so that fewer threads wait for each other.
   static constexpr unsigned kChunk = 128;
   static constexpr std::int64_t kCounters =
       static_cast<std::int64_t>((kSharedBytes - 9 * kChunk * sizeof(float)) / sizeof(std::uint32_t));
@@ -63,7 +64,7 @@ struct CountPairTiles {
     for (std::int64_t first = 0; first < kCodes; first += kWindow) count_window(group, tile, first);
   }
 
-  // Codes first .. first + kWindow - 1.
+  // Counts the pairs with codes first .. first + kWindow - 1.
   template <class Group>
   ASTROLITH_HD void count_window(const Group& group, const PairTile& tile, std::int64_t first) const {
     auto* columns = static_cast<float*>(group.shared());
@@ -102,7 +103,8 @@ struct CountPairTiles {
     }
   }
 
-  // The second half of the codes is of pairs whose origin is the column's point.
+  // Adds the tile's counters to the totals. In the second half of the codes, the column's point is the
+  // origin.
   ASTROLITH_HD void add_totals(unsigned thread, const PairTile& tile, std::int64_t first,
                                const std::uint32_t* counters) const {
     for (std::int64_t k = thread; k < kWindow && first + k < kCodes; k += kTileRows) {
@@ -116,21 +118,22 @@ struct CountPairTiles {
   }
 };
 
-// Sets of oriented points, none of whose pairs reach from one set to another, as one list of surflets: the
-// local codes of set number s are counted from s * num_local on.
+// Several sets of oriented points as one list of surflets. Pairs are counted within each set only. The local
+// codes of set number s begin at s * num_local.
 struct SurfletSets {
-  std::vector<float> surflets;  // nine arrays, one after the other
-  std::size_t stride = 0;       // length of each
+  std::vector<float> surflets;  // nine arrays, one after another
+  std::size_t stride = 0;       // length of each array
   std::vector<PairTile> tiles;
-  std::size_t num_codes = 0;  // of all sets
+  std::size_t num_codes = 0;  // number of local codes of all sets
 
-  // All of one number of local codes.
+  // Expects sets with one number of local codes.
   explicit SurfletSets(std::span<const SurfletArrays> sets);
 };
 
-// Tiles in one launch; a report follows.
+// The tiles of one launch, after which progress is reported.
 inline constexpr std::size_t kTilesPerLaunch = 16384;
 
+// The counts of all sets (num_codes, kBins^4). Throws WorkError when progress asks to stop.
 template <int kBins, class Backend>
 std::vector<std::uint64_t> count_tiles(Backend& backend, const SurfletSets& sets, const Progress& progress) {
   const auto points = backend.upload(std::span<const float>(sets.surflets));
@@ -152,7 +155,8 @@ std::vector<std::uint64_t> count_tiles(Backend& backend, const SurfletSets& sets
   return counts;
 }
 
-// count_pairs (descriptor/pair_count.h) of each set, one after the other: the same counts.
+// The counts that count_pairs (descriptor/pair_count.h) finds for each set, one set after another. `bins` is
+// kMinBins .. kMaxBins.
 template <class Backend>
 std::vector<std::uint64_t> count_sets_on(Backend& backend, std::span<const SurfletArrays> arrays, int bins,
                                          const Progress& progress) {
@@ -180,7 +184,7 @@ std::vector<std::uint64_t> count_sets_on(Backend& backend, std::span<const Surfl
   }
 }
 
-// count_pairs on a backend.
+// The counts of count_pairs (descriptor/pair_count.h), found on a backend.
 template <class Backend>
 std::vector<std::uint64_t> count_pairs_on(Backend& backend, std::span<const Vec3d> points,
                                           std::span<const Vec3d> normals, std::span<const std::int32_t> local,

@@ -1,6 +1,7 @@
-// LayeredMesher (synthesis/mesh/mesher.h) on a backend: the same vertices and triangles in the same order.
-// Some layers of blocks at a time are culled, gathered, sampled, numbered and polygonised together, and
-// handed to the sink, so that a mesh may be larger than the backend's memory.
+// LayeredMesher (synthesis/mesh/mesher.h) on a backend, with the same vertices and triangles in the same
+// order. The mesher works on some layers of blocks at a time: it culls blocks, gathers their lists, samples
+// the field, numbers vertices, makes triangles, and hands them to the sink. A mesh may therefore be larger
+// than the backend's memory.
 #pragma once
 
 #include <utility>
@@ -13,7 +14,7 @@ namespace astrolith {
 template <class Backend>
 class BackendMesher {
  public:
-  // Expects a field without obstacle_on_gpu().
+  // Expects a field for which obstacle_on_gpu() is empty. The field must outlive the mesher.
   BackendMesher(Backend& backend, const ImplicitField& field, const MeshGrid& grid, MeshSink& sink)
       : backend_(backend),
         grid_(grid),
@@ -40,9 +41,10 @@ class BackendMesher {
  private:
   template <typename T>
   using Array = typename Backend::template Array<T>;
-  static constexpr std::size_t kMostBlocks = 32768;  // in a batch: 400 MB
+  static constexpr std::size_t kMostBlocks = 32768;  // the most blocks of a batch: 400 MB
 
-  // Meshes the layers from `first` on that go together; returns how many. Where memory ends, half as many.
+  // Meshes a batch of layers from `first` on and returns their number. Where memory ends, it tries half as
+  // many.
   int next_batch(int first, int end) {
     for (;;) {
       const int wanted = std::min({layers_at_once_, most_layers(), end - first});
@@ -61,14 +63,14 @@ class BackendMesher {
     }
   }
 
-  // Culling marks every block of its layers: 256 MB at most.
+  // The most layers that are culled at once. Culling marks every block of its layers, with 256 MB at most.
   int most_layers() const {
     const std::int64_t blocks = std::int64_t{grid_.blocks(0)} * grid_.blocks(1);
     return static_cast<int>(std::max<std::int64_t>(1, (std::int64_t{1} << 26) / blocks));
   }
 
-  // As many of `wanted` layers as hold most_blocks_, at least one. Nothing has happened where it throws
-  // OutOfDeviceMemory.
+  // Meshes at most `wanted` layers with at most most_blocks_ blocks, but at least one layer; returns their
+  // number. Where it throws OutOfDeviceMemory, the mesher and the sink are as before.
   int mesh_layers(int first_z, int wanted) {
     auto failure = zeros_on<std::uint32_t>(backend_, 1);
     const CulledBlocks<Backend> culled = culler_.cull(first_z, wanted, failure);
@@ -93,7 +95,7 @@ class BackendMesher {
     return static_cast<int>(columns.size());
   }
 
-  // By layer, as many as hold most_blocks_.
+  // The blocks of each layer, for as many layers as hold most_blocks_ blocks, but at least one.
   std::vector<std::vector<BlockColumn>> columns_of(const std::vector<CullNode>& blocks, int first_z,
                                                    int layers) const {
     std::vector<std::vector<BlockColumn>> columns(static_cast<std::size_t>(layers));
@@ -104,7 +106,7 @@ class BackendMesher {
     return columns;
   }
 
-  // Layer by layer, as sinks expect.
+  // Hands the mesh of the batch to the sink, layer by layer.
   void pour() {
     for (std::size_t l = 0; l + 1 < made_.first_vertex.size(); ++l) {
       const std::uint32_t v = made_.first_vertex[l], t = made_.first_triangle[l];
@@ -137,11 +139,11 @@ class BackendMesher {
   int layers_at_once_ = 8;
   std::size_t most_blocks_ = kMostBlocks;
   KeptLayer<Backend> kept_;
-  MeshedLayers made_;  // kept for its memory
+  MeshedLayers made_;  // mesh of the last batch; a member so that its memory is used again
 };
 
-// mesh_field (synthesis/mesh/mesher.h) on a backend: the same bytes. Expects a field without
-// obstacle_on_gpu().
+// mesh_field (synthesis/mesh/mesher.h) on a backend, with the same bytes. Expects a field for which
+// obstacle_on_gpu() is empty.
 template <class Backend>
 MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const Box& bounds, int resolution,
                              MeshSink& sink, const Progress& progress, MeshTile tile) {
@@ -150,7 +152,7 @@ MeshStatistics mesh_field_on(Backend& backend, const ImplicitField& field, const
       .run(progress);
 }
 
-// The side of a block of that grid, as obstacle_on_gpu() asks for it.
+// The side of a block's box in the grid of mesh_field_on(), for obstacle_on_gpu(), length units.
 inline double block_side(const Box& bounds, int resolution) {
   return (kBlockCells + 1) * make_sample_grid(bounds, resolution).step;
 }

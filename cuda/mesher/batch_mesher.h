@@ -1,5 +1,5 @@
-// Meshes one batch of blocks on a backend: samples, counts, vertices, normals and triangles, each a launch
-// over all blocks together, and the results on the host.
+// Meshes one batch of blocks on a backend. Samples, counts, vertices, normals and triangles are each found by
+// a launch over all blocks together. The mesh is then copied to the host.
 #pragma once
 
 #include "cuda/mesher/evaluation_steps.h"
@@ -7,7 +7,7 @@
 
 namespace astrolith {
 
-// Vertices and triangles of some layers, and where each layer's begin.
+// The vertices and triangles of some layers, and where those of each layer begin.
 struct MeshedLayers {
   std::vector<MeshVertex> vertices;
   std::vector<Triangle> triangles;
@@ -15,11 +15,11 @@ struct MeshedLayers {
   std::uint64_t evaluations = 0, cut_vertices = 0;
 };
 
-// The last layer of the batch before.
+// The last layer of a batch, which the next batch reads.
 template <class Backend>
 struct KeptLayer {
-  typename Backend::template Array<MeshBlock> blocks;
-  std::size_t first = 0;  // in blocks
+  typename Backend::template Array<MeshBlock> blocks;  // blocks of the whole batch
+  std::size_t first = 0;                               // number of the layer's first block in `blocks`
   std::vector<BlockColumn> columns;
   LayerIndex index;
   int z = 0;
@@ -39,8 +39,7 @@ class BatchMesher {
   template <typename T>
   using Array = typename Backend::template Array<T>;
 
-  // `failure` is a MeshFailure in the backend's memory, which may hold one already. Numbers of vertices begin
-  // at first_number.
+  // `failure` is a MeshFailure in the backend's memory. It may already hold a failure.
   BatchMesher(Backend& backend, const MeshBatch& batch, const std::vector<BlockPlace>& places,
               const KeptLayer<Backend>& kept, Array<std::uint32_t>& failure)
       : backend_(backend),
@@ -50,7 +49,8 @@ class BatchMesher {
         kept_(kept),
         failure_(failure) {}
 
-  // `layer_sizes` are in blocks. Throws what the CPU's mesher throws, and OutOfDeviceMemory.
+  // `layer_sizes` are numbers of blocks. The first vertex gets the number `first_number`. Throws what the
+  // CPU's mesher throws, and OutOfDeviceMemory.
   void mesh(std::span<const std::size_t> layer_sizes, std::uint32_t first_number, MeshedLayers& out) {
     auto counters = zeros_on<std::uint64_t>(backend_, 2);  // evaluations, cut vertices
     sample(counters);
@@ -80,7 +80,8 @@ class BatchMesher {
     backend_.launch("taking signs", n_ * TakeSigns::kRows, TakeSigns{batch_});
   }
 
-  // Of this batch, and of the layer before it now that the one above it is known.
+  // Checks the sides of this batch. The layer before it is checked too, since the layer above it is known
+  // now.
   void check_sides() {
     backend_.launch("checking sides", 6 * n_, CheckSides{batch_, batch_.blocks, nullptr, 0});
     if (kept_.columns.empty()) return;

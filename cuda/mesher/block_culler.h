@@ -1,5 +1,6 @@
-// Finds the blocks of some layers that the surface may cross, on a backend: the blocks of mixed_blocks
-// (synthesis/mesh/block_culling.h), with lists of what of the field reaches each.
+// Finds the blocks of some layers that the surface may cross, on a backend. They are the blocks that
+// mixed_blocks (synthesis/mesh/block_culling.h) finds. Each comes with lists of the elements of the field
+// that reach it.
 #pragma once
 
 #include <bit>
@@ -10,13 +11,13 @@
 
 namespace astrolith {
 
-// Blocks in the order of layers, rows and columns.
+// Blocks sorted by layer, row and column.
 template <class Backend>
 struct CulledBlocks {
   typename Backend::template Array<CullNode> nodes;
-  typename Backend::template Array<ListRange> ranges;       // (nodes, lists) of the numbers
-  typename Backend::template Array<std::uint32_t> numbers;  // of metaballs, craters and boulders
-  std::vector<CullNode> on_host;
+  typename Backend::template Array<ListRange> ranges;       // (nodes, lists): where each list is in `numbers`
+  typename Backend::template Array<std::uint32_t> numbers;  // numbers of metaballs, craters and boulders
+  std::vector<CullNode> on_host;                            // a copy of `nodes`
 
   CullNodes view() const { return {nodes.data(), ranges.data(), numbers.data()}; }
 };
@@ -27,8 +28,9 @@ class BlockCuller {
   template <typename T>
   using Array = typename Backend::template Array<T>;
 
-  // `field` is on the host, `on_backend` in the backend's memory. Where wide_margin is not 0, nodes also get
-  // lists of the metaballs that come as close as that to where their points are projected.
+  // `field` is on the host, `on_backend` in the backend's memory. If wide_margin (length units) is not 0,
+  // nodes also get wide lists: the metaballs that reach their projected_block()
+  // (synthesis/field/gathering.h), widened by wide_margin.
   BlockCuller(Backend& backend, const FieldView& field, const FieldView& on_backend, const MeshGrid& grid,
               double wide_margin)
       : backend_(backend),
@@ -57,8 +59,8 @@ class BlockCuller {
 
   const NodeLists& lists() const { return lists_; }
 
-  // Of layers first_z .. first_z + count - 1. `failure` becomes a MeshFailure where the body fills the
-  // border.
+  // The blocks of layers first_z .. first_z + count - 1. `failure` becomes MeshFailure::kBorder where the
+  // body fills a block at the border of the grid.
   CulledBlocks<Backend> cull(int first_z, int count, Array<std::uint32_t>& failure) {
     const auto longest = static_cast<unsigned>(std::max(grid_.blocks(0), grid_.blocks(1)));
     const int size = std::max(2, static_cast<int>(std::bit_ceil(longest)));
@@ -72,6 +74,7 @@ class BlockCuller {
   }
 
  private:
+  // The nodes of one level of the quadtrees, and their lists.
   struct Level {
     Array<CullNode> nodes;
     Array<ListRange> ranges;
@@ -80,7 +83,8 @@ class BlockCuller {
     CullNodes view() const { return {nodes.data(), ranges.data(), numbers.data()}; }
   };
 
-  // Lists of a level's nodes, which are so many for each parent.
+  // Makes the lists of a level's nodes from the lists of their parents. Each parent has `nodes_a_parent`
+  // nodes.
   void narrow(const CullNodes& parents, std::uint32_t nodes_a_parent, Level& level) {
     const std::size_t lists = level.nodes.size() * lists_.count();
     auto narrowed = write_lists<std::uint32_t>(
@@ -91,6 +95,7 @@ class BlockCuller {
     level.numbers = std::move(narrowed.items);
   }
 
+  // The quarters of a level's nodes that the surface may cross.
   Level mixed_quarters(const Level& level, Array<std::uint32_t>& failure) {
     const std::size_t n = 4 * level.nodes.size();
     Level quarters{backend_.template allocate<CullNode>(n), {}, {}};
@@ -113,6 +118,7 @@ class BlockCuller {
     return mixed;
   }
 
+  // The nodes of the last level, which are single blocks, sorted by layer, row and column.
   CulledBlocks<Backend> ordered(Level& level, int first_z, int count) {
     const std::size_t n = level.nodes.size();
     auto marks = zeros_on<std::uint32_t>(backend_, static_cast<std::size_t>(count) *

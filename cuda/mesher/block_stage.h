@@ -1,5 +1,5 @@
-// The lists of a block, copied into the memory that a group of threads shares: all points of the block read
-// the same metaballs and impulses. Lists that do not fit stay where they are.
+// Copies the lists of a block into the memory that a group of threads shares, since all points of the block
+// read them. Lists that do not fit stay where they are.
 #pragma once
 
 #include "cuda/backend.h"
@@ -7,13 +7,14 @@
 
 namespace astrolith {
 
-// Lists of one kind of a block, and where they go in the shared memory.
+// The lists of one kind of a block, and their place in the shared memory.
 template <typename T>
 class StagedLists {
  public:
   static_assert(alignof(T) <= alignof(std::uint32_t));
 
-  // Takes what it needs from `left`, bytes that end at `end`.
+  // `left` is the number of free bytes, which end at byte `end` of the shared memory. If the lists fit, the
+  // constructor takes their bytes from it.
   ASTROLITH_HD StagedLists(const T* items, const std::uint32_t* first, std::uint32_t lists, std::size_t end,
                            std::size_t& left)
       : items_(items), first_(first), lists_(lists), count_(lists == 0 ? 0 : first[lists] - first[0]) {
@@ -23,12 +24,13 @@ class StagedLists {
     if (is_staged_) left -= bytes;
   }
 
-  // Copies a thread's share.
+  // Copies the share of one thread.
   ASTROLITH_HD void copy(char* shared, unsigned thread, unsigned threads) const {
     if (!is_staged_) return;
     for (std::uint32_t k = thread; k <= lists_; k += threads) offsets(shared)[k] = first_[k] - first_[0];
     for (std::uint32_t k = thread; k < count_; k += threads) copies(shared)[k] = items_[first_[0] + k];
   }
+  // Sets the pointers to the copies, if the lists were copied.
   ASTROLITH_HD void point_to(char* shared, const T*& items, const std::uint32_t*& first) const {
     if (!is_staged_) return;
     items = copies(shared);
@@ -50,7 +52,7 @@ class StagedLists {
 
 class BlockStage {
  public:
-  // A third of what a group may have: more groups at a time on a multiprocessor.
+  // Half of kSharedBytes, so that more groups run on a multiprocessor at a time.
   static constexpr std::size_t kBytes = 24 * 1024;
 
   ASTROLITH_HD BlockStage(const BlockListArrays& blocks, std::size_t block)
@@ -68,7 +70,7 @@ class BlockStage {
     landforms_.copy(shared, thread, threads);
     gabor_.copy(shared, thread, threads);
   }
-  // The block, once all have copied.
+  // The lists of the block, once all threads have copied their shares.
   ASTROLITH_HD BlockLists block(char* shared) const {
     BlockLists staged = from_;
     metaballs_.point_to(shared, staged.metaballs.spheres, staged.metaballs.first);

@@ -1,6 +1,6 @@
-// The steps in which a backend finds the blocks that the surface may cross, by quadtrees over layers of
-// blocks: mixed_blocks (synthesis/mesh/block_culling.h) for many nodes at once, with the bounds of
-// synthesis/field/field_content.h. A node carries lists of the elements of the field that reach it, chosen
+// The steps in which a backend finds the blocks that the surface may cross. They do the work of mixed_blocks
+// (synthesis/mesh/block_culling.h) for many nodes at once: quadtrees over layers of blocks, with the bounds
+// of synthesis/field/field_content.h. A node has lists of the elements of the field that reach it, chosen
 // from the lists of its parent.
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace astrolith {
 
-// A square of blocks of layer z; no size: there is none.
+// A square of size x size blocks of layer z. A size of 0 means that the node lies outside the grid.
 struct CullNode {
   int x, y, z, size;
 };
 
-// The lists of a node, in this order: metaballs of each leaf, craters of each layer of craters, boulders.
-// Where there is Gabor noise, metaballs of each leaf follow again, now those that reach its cells around the
-// block.
+// The numbers of lists of a node. Lists come in this order: metaballs of each leaf, craters of each layer of
+// craters, boulders, and the wide lists of metaballs of each leaf. Only a field with Gabor noise has wide
+// lists: the metaballs that reach the cells of impulses around the node.
 struct NodeLists {
   std::uint32_t leaves, landforms, wide;
 
@@ -28,7 +28,7 @@ struct NodeLists {
   ASTROLITH_HD bool is_craters(std::uint32_t list) const {
     return list >= leaves && list + 1 < leaves + landforms;
   }
-  // The leaf of a list of metaballs.
+  // The number of the leaf of a list of metaballs.
   ASTROLITH_HD std::uint32_t leaf(std::uint32_t list) const {
     return list < leaves ? list : list - leaves - landforms;
   }
@@ -37,11 +37,11 @@ struct NodeLists {
 // Nodes in a backend's memory, and their lists.
 struct CullNodes {
   const CullNode* nodes;
-  const ListRange* ranges;  // (nodes, lists)
+  const ListRange* ranges;  // (nodes, lists): where each list is in `numbers`
   const std::uint32_t* numbers;
 };
 
-// A thread a quarter of a node.
+// Each thread makes one quarter of a node.
 struct MakeQuarters {
   MeshGrid grid;
   const CullNode* parents;
@@ -56,7 +56,7 @@ struct MakeQuarters {
   }
 };
 
-// Writes the numbers in list i % lists of node i / lists, from those in its parent's.
+// Writes list i % lists of node i / lists: the numbers of the parent's list whose elements reach the node.
 struct NarrowLists {
   FieldView field;
   MeshGrid grid;
@@ -66,7 +66,7 @@ struct NarrowLists {
   CullNodes parents;
   std::uint32_t nodes_a_parent;
 
-  // Where the elements of a list must reach to be kept.
+  // The box that the elements of a list must reach.
   ASTROLITH_HD Box box_of(const CullNode& node, std::uint32_t list) const {
     const Box box = grid.box(node.x, node.y, node.z, node.size);
     if (lists.is_boulders(list)) return box;
@@ -94,18 +94,18 @@ struct NarrowLists {
   }
 };
 
-// A thread a list: where it is, from where it begins and the next one does.
+// Each thread finds the range of one list, from the first elements of the list and of the next list.
 struct MakeRanges {
   const std::uint32_t* first;
   ListRange* ranges;
   ASTROLITH_HD void operator()(std::size_t i) const { ranges[i] = {first[i], first[i + 1] - first[i]}; }
 };
 
-// The lists of one node, as field_content() asks for them.
+// The `Lists` of one node for field_content() (synthesis/field/field_content.h).
 struct ListsOfNode {
   const FieldView& field;
   const std::uint32_t* numbers;
-  const ListRange* ranges;  // by list
+  const ListRange* ranges;  // (lists)
 
   ASTROLITH_HD MetaballList metaballs(std::uint32_t leaf) const {
     return {field.arrays[field.leaf(leaf).spheres], numbers + ranges[leaf].first, ranges[leaf].count};
@@ -129,13 +129,13 @@ struct ListsOfNode {
   }
 };
 
-// A thread a node: 1 where the surface may cross it.
+// Each thread sets the flag of one node: 1 if the surface may cross the node, 0 otherwise.
 struct FlagMixed {
   FieldView field;
   MeshGrid grid;
   NodeLists lists;
   CullNodes nodes;
-  KernelInterval* scratch;  // as many as there are numbers
+  KernelInterval* scratch;  // (numbers): each node uses the elements of its own lists
   std::uint32_t* flags;
   std::uint32_t* failure;  // a MeshFailure
 
@@ -160,11 +160,11 @@ struct FlagMixed {
   }
 };
 
-// A thread a node: those that are kept, in their order.
+// Each thread copies one node and its ranges if the node's flag is set. The nodes keep their order.
 struct KeepMixed {
   std::uint32_t lists;
   CullNodes from;
-  const std::uint32_t* place;  // running sum of the flags, one more than there are nodes
+  const std::uint32_t* place;  // (nodes + 1): running sum of the flags
   CullNode* nodes;
   ListRange* ranges;
 
@@ -176,7 +176,8 @@ struct KeepMixed {
   }
 };
 
-// A thread a block: marks its place among all of some layers, from `first_z` on, in rows of y, then x.
+// Each thread marks the place of one block among all blocks of the layers from `first_z` on, in the order of
+// z, y and x.
 struct MarkBlocks {
   MeshGrid grid;
   int first_z;
@@ -191,7 +192,8 @@ struct MarkBlocks {
   }
   ASTROLITH_HD void operator()(std::size_t i) const { marks[slot(nodes[i])] = 1; }
 };
-// And the same order for the blocks and their lists, from the running sum of the marks.
+// Each thread copies one block and its ranges to the block's place. `places.marks` holds the running sum of
+// the marks.
 struct OrderBlocks {
   MarkBlocks places;
   std::uint32_t lists;

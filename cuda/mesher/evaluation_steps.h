@@ -1,5 +1,5 @@
-// The two steps of meshing a batch that evaluate the field: a group of threads a block, whose points read
-// the block's lists from the memory that the group shares.
+// The two steps of meshing a batch that evaluate the field. Each block has a group of threads, which read the
+// block's lists from the memory that the group shares.
 #pragma once
 
 #include "cuda/mesher/block_stage.h"
@@ -7,7 +7,7 @@
 
 namespace astrolith {
 
-// A group of threads a block, each some of its samples.
+// Each group of threads evaluates the samples of one block.
 struct EvaluateSamples {
   static constexpr unsigned kThreads = 256;
   static constexpr std::size_t kGroupBytes = BlockStage::kBytes;
@@ -47,21 +47,22 @@ struct EvaluateSamples {
   }
 };
 
-// A group of threads a block, each some of its vertices.
+// Each group of threads finds the normals at the vertices of one block.
 struct TakeNormals {
   static constexpr unsigned kThreads = 128;
   static constexpr std::uint32_t kRows = MeshBatch::kRows;
   static constexpr std::size_t kGroupBytes = BlockStage::kBytes + (2 * kRows + 1) * sizeof(std::uint32_t) + 4;
   MeshBatch batch;
-  float h;
-  const std::uint32_t* first;  // by row of the batch, and where the last ends
+  float h;                     // size of the tetrahedra whose differences give a normal, length units
+  const std::uint32_t* first;  // number of the first vertex of each row of the batch (rows + 1)
   MeshVertex* vertices;
 
   template <class Group>
   ASTROLITH_HD void operator()(const Group& group) const {
     const BlockStage stage(batch.lists, group.index());
     char* shared = static_cast<char*>(group.shared());
-    // Of each row: where its vertices begin in the batch, and how many the block has before it.
+    // For each row of the block: the number of its first vertex in the batch, and the number of vertices in
+    // the block's earlier rows.
     auto* begin = reinterpret_cast<std::uint32_t*>(shared + BlockStage::kBytes);
     std::uint32_t* before = begin + kRows;
     group.each_thread([&](unsigned thread) {

@@ -1,12 +1,12 @@
-// Steps that write the lists of blocks (synthesis/field/field_tables.h) on a backend: each struct writes list
-// number i, by the rule of synthesis/field/gathering.h.
+// The steps that write the lists of blocks (synthesis/field/field_tables.h) on a backend. Each struct writes
+// the items of list number i, by the rules of synthesis/field/gathering.h.
 #pragma once
 
 #include "cuda/mesher/cull_steps.h"
 
 namespace astrolith {
 
-// Blocks, and the lists that culling left of them.
+// The blocks that were culled, and their lists.
 struct GatherFrom {
   FieldView field;
   MeshGrid grid;
@@ -22,7 +22,8 @@ struct GatherFrom {
   }
 };
 
-// The metaballs of leaf i % leaves and block i / leaves, from list `first_list` on.
+// Writes the metaballs of leaf i % leaves that reach block i / leaves. `first_list` is 0, or the number of
+// the first wide list (NodeLists).
 struct GatherMetaballs {
   GatherFrom from;
   std::uint32_t first_list;
@@ -39,7 +40,7 @@ struct GatherMetaballs {
   }
 };
 
-// The numbers of craters and boulders.
+// Writes the numbers of craters or boulders in landform list i % landforms of block i / landforms.
 struct GatherLandforms {
   GatherFrom from;
 
@@ -51,6 +52,7 @@ struct GatherLandforms {
   }
 };
 
+// Writes the spots of spot list i % lists that reach block i / lists.
 struct GatherSpots {
   GatherFrom from;
 
@@ -61,9 +63,10 @@ struct GatherSpots {
   }
 };
 
+// Writes the impulses of Gabor list i % lists that may reach block i / lists.
 struct GatherGabor {
   GatherFrom from;
-  LeafLists metaballs;  // of all blocks, around their cells of impulses
+  LeafLists metaballs;  // the wide lists of all blocks
 
   template <typename Writer>
   ASTROLITH_HD void operator()(std::size_t i, Writer& write) const {

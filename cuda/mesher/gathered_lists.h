@@ -1,4 +1,4 @@
-// The lists of some blocks, gathered on the backend where they are used.
+// The lists of the elements that reach some blocks, gathered on the backend that uses them.
 #pragma once
 
 #include "cuda/mesher/block_culler.h"
@@ -9,7 +9,7 @@ namespace astrolith {
 template <class Backend>
 class GatheredLists {
  public:
-  // Gathers the lists of the first `count` blocks that were culled.
+  // Gathers the lists of the first `count` blocks of `from`.
   GatheredLists(Backend& backend, const GatherFrom& from, std::size_t count)
       : leaves_(from.lists.leaves),
         spot_lists_(from.field.spot_lists.count),
@@ -22,6 +22,7 @@ class GatheredLists {
         spots_(write_lists<SpotImpulse>(backend, "gathering spots", count * spot_lists_, GatherSpots{from})),
         gabor_(gather_gabor_lists(backend, from, count)) {}
 
+  // The lists in the backend's memory. The view is valid while this object lives.
   BlockListArrays view() const {
     return {metaballs_.items.data(),
             metaballs_.first.data(),
@@ -41,7 +42,7 @@ class GatheredLists {
   BackendLists<Backend, GaborImpulse> gather_gabor_lists(Backend& backend, const GatherFrom& from,
                                                          std::size_t count) {
     if (gabor_lists_ == 0) return write_lists<GaborImpulse>(backend, "gathering", 0, GatherGabor{});
-    // The frames of impulses follow from the body around the blocks' cells.
+    // The frames of impulses follow from the body at the centres of their cells, which lie around the blocks.
     const auto wide =
         write_lists<MetaballSphere<float>>(backend, "gathering metaballs", count * leaves_,
                                            GatherMetaballs{from, from.lists.leaves + from.lists.landforms});

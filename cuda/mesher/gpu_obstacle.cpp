@@ -5,8 +5,8 @@
 namespace astrolith {
 namespace {
 
-// Cells that a block's impulses may be drawn from, of all Gabor layers or of all layers of spots: every point
-// of the block adds all these impulses.
+// The most cells from which the impulses of a block may be drawn, over all Gabor layers or over all layers of
+// spots. Every point of the block adds all these impulses.
 constexpr double kMostCells = 32768.0;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What keeps a field from being meshed on a GPU.
+// Whether a field can be meshed on a GPU, and if not, why.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace astrolith {
 
-// The obstacle for blocks with sides so long (length units), in a few words ("masks by ..."); empty where
-// there is none.
+// The reason why the field cannot be meshed on a GPU in blocks with sides of `block_side` (length units), in
+// a few words ("masks by more than four layers"). Empty if it can.
 std::string obstacle_on_gpu(const FieldView& field, double block_side);
 
 }  // namespace astrolith

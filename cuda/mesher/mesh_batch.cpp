@@ -3,7 +3,7 @@
 namespace astrolith {
 namespace {
 
-// A layer in the batch; no index where there is none.
+// The indices of a layer and of the layers below and above it; null where a layer is not known.
 struct Neighbours {
   const LayerIndex* below;
   const LayerIndex* same;
@@ -37,7 +37,7 @@ std::uint32_t lacking_sides(const Neighbours& n, int x, int y) {
   return bits;
 }
 
-// Where the row of blocks of block i begins and ends.
+// The numbers, within its layer, of the first block of a row of blocks and of the block after its last.
 struct RowOfBlocks {
   std::size_t first, end;
 };
@@ -76,7 +76,7 @@ std::vector<BlockPlace> place_blocks(const MeshGrid& grid, int first_z,
                         static_cast<std::uint32_t>(row.end - row.first)});
     }
   }
-  // Numbers in the last layer alone.
+  // `last` counts blocks from 0 within the last layer.
   last = LayerIndex(grid.blocks(0), grid.blocks(1));
   std::int32_t number = 0;
   for (const BlockColumn& c : layers.back()) last.set(c.x, c.y, number++);

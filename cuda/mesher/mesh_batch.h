@@ -1,5 +1,5 @@
-// Some layers of blocks that a GPU meshes together: what each block must know of the others, worked out on
-// the host. Blocks are numbered layer by layer, and in a layer in rows of y, then x.
+// A batch: some layers of blocks that a GPU meshes together. The host works out what each block must know of
+// the other blocks. Blocks are numbered layer by layer, and within a layer by y, then x.
 #pragma once
 
 #include <array>
@@ -15,21 +15,24 @@ namespace astrolith {
 using MeshBlock = LayerBlock<kBlockCells>;
 using MeshGrid = BlockGrid<kBlockCells>;
 
-// Why a batch could not be meshed; as a number in the backend's memory.
+// Why a batch could not be meshed. The backend's memory holds it as a number.
 enum class MeshFailure : std::uint32_t { kNone, kBorder, kMissingBlock, kOpenSide };
 
+// The place of a block in the grid and among the blocks of its batch.
 struct BlockPlace {
   static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
 
-  int x, y, z;  // in the grid, in blocks
-  // By owner_of(): its number in the batch, or -1 less its number in the layer below the batch, or kNone.
+  int x, y, z;  // place in the grid, in blocks
+  // The owners of samples by owner_of() (synthesis/mesh/block_sampling.h). n >= 0 is block n of the batch, -1
+  // - n is block n of the layer below the batch, and kNone means that there is no such block.
   std::array<std::int32_t, 8> owner;
-  std::uint32_t lacking;  // bit s is set where a side s has no active block beyond it
-  // Rows of a layer are numbered by z, then y, then x: where those of the block's layer begin, how many
-  // blocks that has, and which and how many of them lie in this block's row of blocks.
+  std::uint32_t lacking;  // bit s is set where no active block lies beyond side s
+  // Rows of samples of a layer are numbered by z, then y, then x. Their numbers follow from the number of the
+  // first block of the layer, the number of its blocks, and both for this block's row of blocks.
   std::uint32_t first_of_layer, blocks_of_layer, first_of_row, blocks_of_row;
 
-  // Of the owned samples at local y, z of block number `block`, among all rows of the batch.
+  // The number, among all rows of the batch, of the row of owned samples at local y, z of block number
+  // `block`.
   ASTROLITH_HD std::uint32_t row(std::uint32_t block, int local_y, int local_z) const {
     constexpr std::uint32_t kRows = kBlockCells;
     const auto y_row = static_cast<std::uint32_t>(local_y - 1),
@@ -39,7 +42,7 @@ struct BlockPlace {
   }
 };
 
-// Which block of a layer stands where.
+// The numbers of a layer's active blocks, by their places.
 class LayerIndex {
  public:
   LayerIndex() = default;
@@ -49,7 +52,7 @@ class LayerIndex {
   void set(int x, int y, std::int32_t number) { numbers_[slot(x, y)] = number; }
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
   bool has(int x, int y) const { return contains(x, y) && numbers_[slot(x, y)] != kAbsent; }
-  // Number of an active block.
+  // The number of the block at x, y, which must be active.
   std::int32_t at(int x, int y) const { return numbers_[slot(x, y)]; }
 
  private:
@@ -66,15 +69,15 @@ struct BlockColumn {
   int x, y;
 };
 
-// Places of the blocks of consecutive layers that begin at `first_z`; `below` is of the layer before them (no
-// size: there is none). Sides towards a layer that is not given count as not lacking. Fills `last`, of the
-// last layer.
+// The places of the blocks of consecutive layers that begin at `first_z`. `below` is the index of the layer
+// before them, and has no size if there is none. Sides towards a layer that is not given count as not
+// lacking. `last` becomes the index of the last layer.
 std::vector<BlockPlace> place_blocks(const MeshGrid& grid, int first_z,
                                      std::span<const std::vector<BlockColumn>> layers,
                                      const LayerIndex& below, LayerIndex& last);
 
-// Of the blocks of the layer that `columns` holds: which of them have no active block above, by the index of
-// that layer.
+// Bit 5 of element i is set where block i of a layer has no active block above it. `columns` holds the blocks
+// of the layer, `above` is the index of the layer above.
 std::vector<std::uint32_t> lacking_above(std::span<const BlockColumn> columns, const LayerIndex& above);
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// The mesher on a GPU: mesh_field of synthesis/mesh/mesher.h, byte for byte.
+// The mesher on a GPU, with the bytes of mesh_field (synthesis/mesh/mesher.h).
 #pragma once
 
 #include "synthesis/field/implicit_field.h"
@@ -6,9 +6,9 @@
 
 namespace astrolith {
 
-// Expects a field without obstacle_on_gpu() (gpu_obstacle.h). Throws as mesh_field
-// does, and WorkError, with CUDA's words, when the device fails or has too little memory for one layer of
-// blocks; see probe_device().
+// Expects a field for which obstacle_on_gpu() (gpu_obstacle.h) is empty. Throws what mesh_field throws, and
+// WorkError, with CUDA's words, when the device fails or has too little memory for one layer of blocks. Call
+// probe_device() (cuda/device.h) first.
 MeshStatistics mesh_field_on_gpu(const ImplicitField& field, const Box& bounds, int resolution,
                                  MeshSink& sink, const Progress& progress = {}, MeshTile tile = {});
 

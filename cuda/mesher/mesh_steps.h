@@ -1,5 +1,5 @@
-// The steps in which a GPU meshes a batch of blocks, each over many threads: what a step does to one sample,
-// row or vertex is the function that LayeredMesher (synthesis/mesh/mesher.h) calls in its loops.
+// The steps in which a GPU meshes a batch of blocks, each over many threads. For one sample, row or vertex a
+// step calls the function that LayeredMesher (synthesis/mesh/mesher.h) calls in its loops.
 #pragma once
 
 #include "cuda/backend.h"
@@ -17,7 +17,7 @@ struct MeshBatch {
   BlockListArrays lists;  // the elements of the field that reach each block
   const BlockPlace* places;
   MeshBlock* blocks;
-  const MeshBlock* below;  // the last layer of the batch before
+  const MeshBlock* below;  // blocks of the last layer of the batch before
   const CellTriangles* cells;
   std::uint32_t* failure;  // a MeshFailure
 
@@ -37,7 +37,7 @@ struct MeshBatch {
   ASTROLITH_HD void fail(MeshFailure why) const { *failure = static_cast<std::uint32_t>(why); }
 };
 
-// Number of a thread among those of a block: a sample's local coordinates, or those of an owned row.
+// The block and the local coordinates of the sample of a thread, or of the row of owned samples of a thread.
 struct SampleThread {
   std::size_t block;
   int x, y, z;
@@ -59,7 +59,7 @@ struct RowThread {
         z(static_cast<int>(thread % MeshBatch::kRows) / kBlockCells + 1) {}
 };
 
-// A thread a block. Adds up how many samples blocks will evaluate.
+// Each thread starts one block and adds the number of samples that the block will evaluate.
 struct StartBlocks {
   MeshBatch batch;
   std::uint64_t* evaluations;
@@ -80,7 +80,7 @@ struct StartBlocks {
   }
 };
 
-// A thread a sample.
+// Each thread copies one sample of the halo from the block that owns it.
 struct FillSampleHalo {
   MeshBatch batch;
 
@@ -91,7 +91,7 @@ struct FillSampleHalo {
   }
 };
 
-// A thread a row of samples, the halo included.
+// Each thread finds the signs of one row of samples, the halo included.
 struct TakeSigns {
   static constexpr std::size_t kRows = std::size_t{MeshBlock::kSide} * MeshBlock::kSide;
   MeshBatch batch;
@@ -102,12 +102,13 @@ struct TakeSigns {
   }
 };
 
-// A thread a side of a block: six a block. `lacking` replaces what the places say where it is not null.
+// Each thread checks one of the six sides of a block: the surface must not cross a side that no active block
+// lies beyond. `lacking`, unless null, replaces BlockPlace::lacking.
 struct CheckSides {
   MeshBatch batch;
   const MeshBlock* blocks;
   const std::uint32_t* lacking;
-  int layer_z;  // with lacking
+  int layer_z;  // layer of the blocks; read only if `lacking` is not null
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
     const std::size_t i = thread / 6;
@@ -121,10 +122,10 @@ struct CheckSides {
   }
 };
 
-// A thread a row of owned samples.
+// Each thread counts the vertices and triangles of one row of owned samples.
 struct CountRows {
   MeshBatch batch;
-  std::uint32_t *vertices, *triangles;  // by row of the batch
+  std::uint32_t *vertices, *triangles;  // (rows of the batch)
   std::uint64_t* cut_vertices;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
@@ -137,11 +138,11 @@ struct CountRows {
   }
 };
 
-// A thread a row of owned samples: its vertices, with the normals of their edges.
+// Each thread places the vertices of one row of owned samples.
 struct PlaceVertices {
   MeshBatch batch;
-  const std::uint32_t* first;  // by row of the batch
-  std::uint32_t first_number;  // of the batch's vertices in the mesh
+  const std::uint32_t* first;  // number of the first vertex of each row of the batch
+  std::uint32_t first_number;  // number of the batch's first vertex in the mesh
   MeshVertex* vertices;
 
   ASTROLITH_HD void operator()(std::size_t thread) const {
@@ -156,7 +157,7 @@ struct PlaceVertices {
   }
 };
 
-// A thread a sample.
+// Each thread copies the vertex numbers at one sample of the halo from the block that owns it.
 struct FillVertexHalo {
   MeshBatch batch;
 
@@ -169,10 +170,10 @@ struct FillVertexHalo {
   }
 };
 
-// A thread a row of owned samples.
+// Each thread makes the triangles of one row of owned samples.
 struct MakeTriangles {
   MeshBatch batch;
-  const std::uint32_t* first;  // by row of the batch
+  const std::uint32_t* first;  // number of the first triangle of each row of the batch
   Triangle* triangles;
   std::array<std::ptrdiff_t, 12> offsets = edge_offsets<kBlockCells>();
 
@@ -184,7 +185,8 @@ struct MakeTriangles {
   }
 };
 
-// A thread a layer: where its rows begin, from running sums by row.
+// Each thread finds the first vertex and triangle of one layer. `vertices` and `triangles` are running sums
+// over the rows of the batch, `rows` holds the first row of each layer.
 struct PickStarts {
   const std::uint32_t *vertices, *triangles, *rows;
   std::uint32_t *first_vertex, *first_triangle;

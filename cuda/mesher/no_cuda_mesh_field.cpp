@@ -1,4 +1,5 @@
-// The mesher of a build that found no CUDA compiler: calling it is an error of the caller, who did not probe.
+// The mesher of a build without a CUDA compiler. Callers must ask probe_device() (cuda/device.h) first, so
+// that it is never called.
 #include "cuda/mesher/mesh_field.h"
 #include "numerics/errors.h"
 

@@ -1,11 +1,11 @@
-// What a GPU reaches: a table of rates, and what share of the device's limit each is.
+// Measures a GPU: prints a table of rates, and the share of the device's limit that each rate reaches.
 //
 //   gpu_benchmark            on the first GPU; says so, and exits with 3, where there is none
 //   gpu_benchmark --probe    only says which
 //
-// Limits are measured in the same run: instructions a second of a kernel that issues fused multiply-adds and
-// nothing else, bytes a second of a copy within the device, and of one to the host. What an item takes of
-// them stands in `cost` below.
+// The limits are measured in the same run: the instructions per second of a kernel that only issues fused
+// multiply-adds, the bytes per second of a copy within the device, and those of a copy to the host. The cost
+// of an item in instructions or bytes stands in `cost` below.
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -24,10 +24,10 @@ namespace astrolith {
 namespace {
 
 constexpr std::size_t kPoints = std::size_t{1} << 26;
-constexpr int kOctaves = 5;  // of the asteroid's noise
+constexpr int kOctaves = 5;  // octaves of the asteroid's noise
 
 double seconds_of(const auto& work) {
-  work();  // warm
+  work();  // warm-up
   check_cuda(cudaDeviceSynchronize(), "waiting");
   const auto start = std::chrono::steady_clock::now();
   work();
@@ -35,21 +35,21 @@ double seconds_of(const auto& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Of one item: instructions other than moves in the PTX of this file's kernels, which have no loops (nvcc
-// -ptx -arch=compute_90, release 13.0), less twelve for the index and the store; and bytes.
+// The cost of one item. Instructions are counted in the PTX of this file's kernels, which have no loops (nvcc
+// -ptx -arch=compute_90, release 13.0), without moves and without twelve for the index and the store.
 namespace cost {
 constexpr double kSimplex = 254.0, kPerlin = 310.0, kWorleyF1 = 615.0, kWorleyF2MinusF1 = 669.0;
 constexpr double kMetaball = 42.0, kPair = 111.0;
-// To the host: half a vertex of six floats, and three numbers.
+// The bytes of a triangle that are copied to the host: half a vertex of six floats, and three numbers.
 constexpr double kTriangleBytes = 24.0;
 }  // namespace cost
 
-// A second.
+// The limits of the device, per second.
 struct Limits {
   double instructions, memory_bytes, bytes_to_host;
 };
 
-// `share` is of the limit that is named.
+// Prints a row of the table. `share` is the share of the limit that `limit` names.
 void row(const std::string& what, double amount, const char* unit, double seconds, double share,
          const char* limit) {
   std::printf("| %-44s | %12.4g | %-14s | %9.4f | %5.1f %% of %s |\n", what.c_str(), amount, unit, seconds,
@@ -90,7 +90,7 @@ Limits measure_limits(DeviceBackend& backend) {
   return limits;
 }
 
-// One octave over a lattice of points.
+// Evaluates one octave of noise at the points of a lattice.
 template <auto noise>
 struct EvaluateNoise {
   NoiseOctave octave;
@@ -111,7 +111,7 @@ void measure_noise(DeviceBackend& backend, const char* name, const Limits& limit
   row(name, rate / 1e6, "M points/s", s, rate * instructions / limits.instructions, "arithmetic");
 }
 
-// The whole field at points around the surface.
+// Evaluates the whole field at points around the surface.
 struct EvaluateField {
   FieldView field;
   BlockListArrays lists;
@@ -125,7 +125,7 @@ struct EvaluateField {
   }
 };
 
-// One pair of surflets a thread; for the count of its instructions.
+// Codes one pair of surflets per thread. It exists so that its instructions can be counted.
 struct OnePair {
   const float* surflets;
   std::size_t count;
@@ -138,7 +138,7 @@ struct OnePair {
     codes[i] = surflet_code<5>(surflet(i), surflet(i + 1));
   }
 };
-// One metaball; for the same.
+// Evaluates one metaball per thread. It exists so that its instructions can be counted.
 struct OneMetaball {
   MetaballParameters<float> body;
   MetaballSphere<float> sphere;
@@ -149,7 +149,7 @@ struct OneMetaball {
   }
 };
 
-// Runs both once, so that they are compiled.
+// Runs OnePair and OneMetaball once, so that they are compiled.
 void run_counted_kernels(DeviceBackend& backend) {
   auto surflets = backend.allocate<float>(9 * 65);
   backend.fill_zero(surflets);
@@ -192,7 +192,8 @@ Recipe asteroid() {
   return recipe;
 }
 
-// Resolutions for about 1, 10 and 100 million triangles: their number goes as the square.
+// Measures meshes of about 1, 10 and 100 million triangles. The number of triangles grows with the square of
+// the resolution.
 void measure_mesh(const ImplicitField& field, const Limits& limits) {
   MeshDiscard sink;
   const MeshStatistics small = mesh_field_on_gpu(field, field.bounds(), 200, sink);
@@ -221,8 +222,8 @@ void measure_pairs(int n, const Limits& limits) {
       rate * cost::kPair / limits.instructions, "arithmetic");
 }
 
-// What the search for details asks of a GPU in 2,000 evaluations: 100 generations of 20 candidates with three
-// noises of eight octaves, 25,000 lines each, and the pairs of 4,000 samples.
+// Measures the work of the search for details in 2,000 evaluations: 100 generations of 20 candidates. Each
+// candidate has three noises of eight octaves, 25,000 lines and the pairs of 4,000 samples.
 void measure_swarm(const Limits& limits) {
   constexpr std::size_t kCandidates = 20, kLines = 25000, kGenerations = 100;
   constexpr int kSamples = 4000;

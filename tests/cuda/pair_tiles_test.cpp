@@ -1,4 +1,4 @@
-// The GPU's pair count on the host, thread by thread, and on a GPU where there is one.
+// Compares the GPU's pair count with the CPU's: on the host thread by thread, and on a GPU if there is one.
 #include "cuda/pair_tiles.h"
 
 #include "cuda/device.h"
@@ -74,7 +74,7 @@ TEST(PairTiles, HoldEveryPairOnce) {
   }
 }
 
-// Sizes around the edges of groups, chunks and tiles.
+// Numbers of points at and around the sizes of groups, chunks and tiles.
 TEST(PairTiles, CountWhatTheCpuCounts) {
   for (const int n : {0, 1, 2, 3, 31, 127, 128, 129, 255, 256, 257, 511, 513, 1000}) {
     const Surflets wahl = random_input(n, 1, 5), ahd = random_input(n, 25, 6);
@@ -108,7 +108,7 @@ TEST(PairTiles, CountWithEveryNumberOfBins) {
   }
 }
 
-// Sets of many sizes, none and one point among them.
+// Sets of many sizes, among them an empty set and a set of one point.
 TEST(PairTiles, CountSetsTogetherAsOneByOne) {
   std::vector<SurfletArrays> sets;
   Counts one_by_one;

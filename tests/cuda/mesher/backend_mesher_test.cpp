@@ -1,4 +1,4 @@
-// The GPU's mesher on the host, thread by thread, against the CPU's.
+// Compares the GPU's mesher, run on the host thread by thread, with the CPU's mesher.
 #include "cuda/mesher/backend_mesher.h"
 
 #include <cstring>
@@ -20,7 +20,8 @@ using testing::fractal_layer;
 using testing::potato_recipe;
 using testing::sphere_recipe;
 
-// Two blocks along a side; in full eight, of cells small enough that the GPU meshes more of the examples.
+// Two blocks along a side. In the full size there are eight, with cells so small that the GPU can mesh more
+// of the examples.
 const int kExampleCells = testing::by_size(12, 64);
 
 struct Made {
@@ -86,7 +87,7 @@ TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
 }
 
-// Samples whose field is exactly zero, and cells with many of them.
+// The field is exactly zero at some samples, and some cells have many such samples.
 TEST(BackendMesher, TreatsTiesAsTheCpu) {
   Recipe recipe = sphere_recipe(1.0);
   recipe.body->spheres.push_back({{2.0, 0.0, 0.0}, 1.0});
@@ -101,13 +102,14 @@ TEST(BackendMesher, MakesTheTilesOfTheCpu) {
   for (int i = 0; i < 3; ++i) expect_same(on_twin(field, 50, {i, 3}), on_cpu(field, 50, {i, 3}));
 }
 
-// Of the sources, or beside the programs where these were taken elsewhere (scripts/gpu.sh).
+// The folder of the examples: in the sources, or beside the programs where scripts/gpu.sh has copied them to
+// another computer.
 std::filesystem::path examples() {
   const std::filesystem::path sources = ASTROLITH_EXAMPLES;
   return std::filesystem::exists(sources) ? sources : std::filesystem::path("synthesis/examples");
 }
 
-// Every example of a recipe that the GPU can mesh, on a coarse grid.
+// Every example recipe that the GPU can mesh, on a coarse grid.
 TEST(BackendMesher, MeshesTheExamplesAsTheCpu) {
   if (!std::filesystem::exists(examples())) GTEST_SKIP() << "the examples are not here";
   int meshed = 0;
@@ -122,7 +124,7 @@ TEST(BackendMesher, MeshesTheExamplesAsTheCpu) {
   EXPECT_GE(meshed, testing::by_size(19, 30));
 }
 
-// Threads come at the same time on a GPU: whatever their order, the bytes are the same.
+// Threads run at the same time on a GPU, so that their order must not change the bytes.
 TEST(BackendMesher, TakesThreadsInAnyOrder) {
   const ImplicitField field(asteroid());
   const Made cpu = on_cpu(field, 33);
@@ -131,7 +133,7 @@ TEST(BackendMesher, TakesThreadsInAnyOrder) {
   }
 }
 
-// Less memory means smaller batches, down to a layer each, and the same mesh.
+// With less memory, batches are smaller, down to one layer each. The mesh must not change.
 TEST(BackendMesher, HalvesTheBatchWhereMemoryEnds) {
   const ImplicitField field(asteroid());
   const Made cpu = on_cpu(field, 50);

@@ -1,4 +1,5 @@
-// The blocks that a backend finds, and what reaches each, against the CPU's.
+// Compares the blocks that a backend finds, and the lists of the elements that reach them, with those of the
+// CPU.
 #include "cuda/mesher/gathered_lists.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ MeshGrid grid_of(const ImplicitField& field, int resolution) {
   return {samples, window_of_tile<kBlockCells>(samples, {}), true};
 }
 
-// Of all layers, one after the other.
+// The mixed blocks of all layers, one layer after another; layers[i] becomes the layer of block i.
 std::vector<BlockNode<FieldBlock>> blocks_of_cpu(const ImplicitField& field, const MeshGrid& grid,
                                                  std::vector<int>& layers) {
   const FieldBlock whole = field.gather(grid.samples.box({0, 0, 0}, grid.samples.cells, grid.samples.step));
@@ -86,7 +87,7 @@ TEST(BlockCuller, TakesThreadsInAnyOrder) {
   for (const std::size_t order : {1, 7}) expect_same_blocks(random_recipe(3), 30, {order});
 }
 
-// A field that fills the border of its bounds is refused, as by the CPU.
+// A body that fills the border of the grid is refused, as it is by the CPU.
 TEST(BlockCuller, SaysWhereTheBodyFillsTheBorder) {
   const ImplicitField field(testing::sphere_recipe(1.0));
   const SampleGrid samples = make_sample_grid({{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}}, 40);
