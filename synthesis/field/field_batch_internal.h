@@ -11,6 +11,7 @@ namespace astrolith {
 // The most points evaluated together. A block of 9^3 samples fits, and a batch fits on the stack.
 inline constexpr int kBatch = 1024;
 
+// A batch of points and their state while layer after layer is added.
 struct Batch {
   int n = 0;                                       // number of points
   std::array<float, kBatch> x, y, z;               // the points

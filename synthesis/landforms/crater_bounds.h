@@ -23,7 +23,7 @@ ASTROLITH_HD inline Interval crater_squares(const CraterKernel& c, const Box& bo
   const MetaballSphere<float> sphere{{c.x, c.y, c.z}, 0.0f};
   const SquaredDistances range = squared_distances(sphere, box);
   const double scale = double{c.inverse_radius_squared};
-  const double rounding = 2e-6 * std::sqrt(scale) * largest_coordinate(box);  // of x, by that of positions
+  const double rounding = 2e-6 * std::sqrt(scale) * largest_coordinate(box);  // rounding of x
   const double near = std::max(0.0, std::sqrt(range.nearest * scale) * (1.0 - kCraterSlack) - rounding);
   const double far = std::sqrt(range.farthest * scale) * (1.0 + kCraterSlack) + rounding;
   return {near * near, far * far};
