@@ -2,8 +2,8 @@
 // over all blocks together, and the results on the host.
 #pragma once
 
+#include "cuda/backend_lists.h"
 #include "cuda/mesher/evaluation_steps.h"
-#include "cuda/mesher/gathered_lists.h"
 
 namespace astrolith {
 

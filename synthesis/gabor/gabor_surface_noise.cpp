@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "synthesis/gabor/gabor_bands.h"
+#include "synthesis/gabor/gabor_surface_points.h"
 #include "synthesis/noise/points_in_domain.h"
 
 #include "numerics/interval.h"

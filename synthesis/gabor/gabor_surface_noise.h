@@ -12,9 +12,12 @@
 #include "numerics/arrays.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
-#include "synthesis/gabor/gabor_surface_points.h"
+#include "synthesis/gabor/gabor_cells.h"
+#include "synthesis/gabor/gabor_kernel.h"
 
 namespace astrolith {
+
+struct GaborTileCache;  // synthesis/gabor/gabor_tiles.h
 
 // The noise and its slope at a point, with one more impulse.
 ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amplitude, const Vec3f& p,
