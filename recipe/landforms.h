@@ -13,7 +13,7 @@
 
 namespace astrolith {
 
-inline constexpr int kMaxDrawnFeatures = 1'000'000;  // the most landforms that one layer draws
+inline constexpr int kMaxDrawnLandforms = 1'000'000;  // the most landforms that one layer draws
 
 inline constexpr double kMinAxisRatio = 0.05;  // the least ratio of a boulder's shortest axis to its longest
 
@@ -28,7 +28,7 @@ struct SurfacePlace {
 //   N(> D) ~ D^-exponent
 // between two limits. A population has either a count or a density.
 struct Population {
-  std::optional<int> count;        // exact number, 0 .. kMaxDrawnFeatures
+  std::optional<int> count;        // exact number, 0 .. kMaxDrawnLandforms
   std::optional<double> density;   // mean of a Poisson number, per squared length unit, >= 0
   double least_diameter = 0.0;     // > 0
   double greatest_diameter = 0.0;  // >= least_diameter

@@ -20,7 +20,7 @@ struct DrawnLandform {
 double power_law_diameter(const Population& population, double u);
 
 // Feature i is the same whatever the count. Throws InputError, naming `where`, when a density would draw more
-// than kMaxDrawnFeatures.
+// than kMaxDrawnLandforms.
 std::vector<DrawnLandform> draw_population(const Population& population, const BareSurface& surface,
                                            std::uint64_t seed, int layer_index, const std::string& where);
 
