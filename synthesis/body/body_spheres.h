@@ -22,8 +22,8 @@ inline std::vector<Sphere> adding_spheres(const MetaballBody& body) {
   std::vector<Sphere> spheres = body.spheres;
   for (const BodyOperation& operation : body.operations) {
     for (const MetaballBody& operand : operation.operand) {
-      const std::vector<Sphere> of_operand = adding_spheres(operand);
-      spheres.insert(spheres.end(), of_operand.begin(), of_operand.end());
+      const std::vector<Sphere> operand_spheres = adding_spheres(operand);
+      spheres.insert(spheres.end(), operand_spheres.begin(), operand_spheres.end());
     }
   }
   return spheres;

@@ -33,14 +33,14 @@ ASTROLITH_HD inline BodyIntervals bound_compact_kernels(const MetaballParameters
     const Interval q = squared_radii(s, box);
     if (q.low >= cutoff) return false;
     const bool inside = q.high < cutoff;
-    const KernelDerivatives<double> near = kernel_value(compact_kernel, q.low);
-    const KernelDerivatives<double> far = kernel_value(compact_kernel, inside ? q.high : cutoff);
-    const double power_max = kernel_to_power(std::max(near.value, 0.0) + rounding, m);
-    const double power_min = inside ? kernel_to_power(far.value - rounding, m) : 0.0;
-    const double slope_max = near.slope * (1.0 + kKernelRounding) + rounding * compact_kernel.scale;
+    const KernelDerivatives<double> nearest = kernel_value(compact_kernel, q.low);
+    const KernelDerivatives<double> farthest = kernel_value(compact_kernel, inside ? q.high : cutoff);
+    const double power_max = kernel_to_power(std::max(nearest.value, 0.0) + rounding, m);
+    const double power_min = inside ? kernel_to_power(farthest.value - rounding, m) : 0.0;
+    const double slope_max = nearest.slope * (1.0 + kKernelRounding) + rounding * compact_kernel.scale;
     const double radii = std::sqrt(std::min(q.high, cutoff) * inverse_square(s));
     kernel = {
-        &s,       power_min, power_max, 2.0 * slope_max * radii, inside ? far.slope * (1.0 - 1e-5) : 0.0,
+        &s,       power_min, power_max, 2.0 * slope_max * radii, inside ? farthest.slope * (1.0 - 1e-5) : 0.0,
         slope_max};
     return true;
   });
@@ -69,16 +69,12 @@ ASTROLITH_HD inline double largest_compact_gradient(const KernelIntervals& bound
 // Of |grad M| where the sum of K^m of the spheres that add is at least `sum` and M at most `largest`.
 ASTROLITH_HD inline double largest_net_gradient(const BodyIntervals& bounds, double sum, double largest,
                                                 double m) {
-  const double of_added = largest_compact_gradient(bounds.added, sum, m);
-  if (!bounds.subtractive()) return of_added;
-  const double of_subtracted = largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
-  return (of_added + largest * of_subtracted) / portable::pow(bounds.subtracted.sum_min, 1.0 / m) *
-         (1.0 + kDistanceSlack);
-}
-
-// How far a float coordinate may be from what it stands for.
-ASTROLITH_HD inline double coordinate_rounding(const Box& box) {
-  return 1e-6 * (norm(box.center()) + 0.5 * norm(box.extent()));
+  const double added_gradient = largest_compact_gradient(bounds.added, sum, m);
+  if (!bounds.subtractive()) return added_gradient;
+  const double subtracted_gradient =
+      largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
+  return (added_gradient + largest * subtracted_gradient) /
+         portable::pow(bounds.subtracted.sum_min, 1.0 / m) * (1.0 + kDistanceSlack);
 }
 
 // bound_gaussian_body with M(p) - 1 and |grad M| in the place of L and |grad L|.
@@ -127,14 +123,15 @@ ASTROLITH_HD inline Vec3d compact_outward(const MetaballParameters<float>& body,
   return normalized(sum);
 }
 
-// Of |grad M| where |grad P^(1/m)| is at least `of_added`.
-ASTROLITH_HD inline double least_net_gradient(const BodyIntervals& bounds, double of_added, double m) {
-  const double of_subtracted = portable::pow(bounds.net_max(), 1.0 / m) *
-                               largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
+// Of |grad M| where |grad P^(1/m)| is at least `added_gradient`.
+ASTROLITH_HD inline double least_net_gradient(const BodyIntervals& bounds, double added_gradient, double m) {
+  const double subtracted_gradient =
+      portable::pow(bounds.net_max(), 1.0 / m) *
+      largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
   // Where next to nothing is left, floor hides the slope of A.
   const double floor_weight =
       std::min(1.0, double{kKernelFloor} * bounds.subtracted.sum_max / bounds.added.sum_min);
-  const double least = of_added * (1.0 - floor_weight) - of_subtracted * (1.0 + kDistanceSlack);
+  const double least = added_gradient * (1.0 - floor_weight) - subtracted_gradient * (1.0 + kDistanceSlack);
   return std::max(0.0, least) / portable::pow(bounds.subtracted.sum_max, 1.0 / m);
 }
 

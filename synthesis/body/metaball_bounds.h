@@ -165,8 +165,8 @@ ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameter
                                                          double height, KernelInterval* scratch) {
   const double m = 1.0 / static_cast<double>(body.inverse_m);
   const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
-  const double of_subtracted = largest_gaussian_gradient(bounds.subtracted);
-  const double steepest = largest_gaussian_gradient(bounds.added) + of_subtracted;
+  const double subtracted_gradient = largest_gaussian_gradient(bounds.subtracted);
+  const double steepest = largest_gaussian_gradient(bounds.added) + subtracted_gradient;
   double gradient = steepest;
   if (height < std::numeric_limits<double>::infinity()) {
     sort_steepest_first(bounds.added.kernels, bounds.added.count);
@@ -174,7 +174,7 @@ ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameter
     for (int pass = 0; pass < 3; ++pass) {
       const double net = 0.999 * portable::exp(-m * height * metaball_divisor(body, gradient));
       const double sum = net * bounds.subtracted.sum_min;
-      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + of_subtracted);
+      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + subtracted_gradient);
     }
   }
   // Float rounding: of the exponents and the logarithm, and of the coordinates.
@@ -200,47 +200,79 @@ ASTROLITH_HD inline Vec3d gaussians_outward(const MetaballParameters<float>& bod
   return normalized(sum);
 }
 
+// A bound of the error of a float coordinate of the points of a box, length units.
+ASTROLITH_HD inline double coordinate_rounding(const Box& box) {
+  return 1e-6 * (norm(box.center()) + 0.5 * norm(box.extent()));
+}
+
 // How far the points of a box reach from its centre along a direction.
 ASTROLITH_HD inline double spread_along(const Box& box, const Vec3d& u) {
   const Vec3d half = 0.5 * box.extent();
   return std::fabs(u.x) * half.x + std::fabs(u.y) * half.y + std::fabs(u.z) * half.z;
 }
 
+// A box along a unit vector `direction`: every point p of it has |(p - center).direction| <= spread.
+struct BoxAlong {
+  Vec3d center, direction;
+  double spread;
+};
+
+// The least value of -grad log f_i.direction / m over a box. It equals 2 b / r_i^2 (p - c_i).direction.
+ASTROLITH_HD inline double least_component(double b, const MetaballSphere<float>& s, const BoxAlong& box) {
+  const double inverse = static_cast<double>(s.inverse_radius_squared);
+  const Vec3d c{s.center.x, s.center.y, s.center.z};
+  return 2.0 * b * inverse * (dot(box.center - c, box.direction) - box.spread);
+}
+
+// A lower bound of |sum_i w_i grad log f_i| / m over the spheres that add, with the weights
+// w_i = f_i / (P + floor (1 + N)). It is the larger of two bounds of the sum's component along one direction:
+//   - the sum of the least components d_i, each with the least weight if d_i > 0, else with the largest;
+//   - the least d_i times the least sum of the weights, which is 1 minus the floor's own weight.
+ASTROLITH_HD inline double smallest_added_gradient(const BodyIntervals& bounds, double b,
+                                                   const BoxAlong& box) {
+  const KernelIntervals& added = bounds.added;
+  const double floor_max = double{kKernelFloor} * bounds.subtracted.sum_max;
+  const double sum_max =
+      bounds.subtractive() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
+  double weighted = 0.0, least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < added.count; ++i) {
+    const KernelInterval& k = added.kernels[i];
+    const double component = least_component(b, *k.sphere, box);
+    const double weight =
+        component > 0.0 ? k.min / (sum_max - k.max + k.min) : k.max / (added.sum_min - k.min + k.max);
+    weighted += component * weight;
+    least = std::min(least, component);
+  }
+  if (added.count == 0) least = 0.0;
+  const double floor_weight = std::min(1.0, floor_max / added.sum_min);
+  return std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
+}
+
+// The largest 1 / r^2 of the spheres of one kind.
+ASTROLITH_HD inline double largest_inverse_square(const KernelIntervals& bounds) {
+  double largest = 0.0;
+  for (std::uint32_t i = 0; i < bounds.count; ++i) {
+    largest = std::max(largest, inverse_square(*bounds.kernels[i].sphere));
+  }
+  return largest;
+}
+
+// A lower bound of the divisor of s over a box, for Gaussian kernels:
+//   |grad L| >= |sum_i w_i grad log f_i| / m over the spheres that add - |grad log(1 + N)| / m.
 ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<float>& body,
                                                       const MetaballList& spheres, const Box& box,
                                                       KernelInterval* scratch) {
   const double b = static_cast<double>(body.m_b) * static_cast<double>(body.inverse_m);
   const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
-  const KernelIntervals& added = bounds.added;
-  // Weights are f_i / (P + floor (1 + N)).
-  const double floor_max = double{kKernelFloor} * bounds.subtracted.sum_max;
-  const double sum_max =
-      bounds.subtractive() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
-  // The component along one direction, of each grad log f_i / m and of their weighted mean.
-  const Vec3d center = box.center(), u = gaussians_outward(body, spheres, center);
-  const double spread = spread_along(box, u);
-  double weighted = 0.0, least = std::numeric_limits<double>::infinity(), sharpest = 0.0;
-  for (std::uint32_t i = 0; i < added.count; ++i) {
-    const KernelInterval& k = added.kernels[i];
-    const double inverse = static_cast<double>(k.sphere->inverse_radius_squared);
-    const Vec3d c{k.sphere->center.x, k.sphere->center.y, k.sphere->center.z};
-    const double component = 2.0 * b * inverse * (dot(center - c, u) - spread);
-    weighted += component * (component > 0.0 ? k.min / (sum_max - k.max + k.min)
-                                             : k.max / (added.sum_min - k.min + k.max));
-    least = std::min(least, component);
-    sharpest = std::max(sharpest, inverse);
-  }
-  if (added.count == 0) least = 0.0;
-  for (std::uint32_t i = 0; i < bounds.subtracted.count; ++i) {
-    sharpest = std::max(sharpest, inverse_square(*bounds.subtracted.kernels[i].sphere));
-  }
-  const double floor_weight = std::min(1.0, floor_max / added.sum_min);  // of what has no gradient
-  const double coordinate = norm(center) + 0.5 * norm(box.extent());
-  const double rounding = 1e-6 * coordinate * 2.0 * b * sharpest;  // how fast a gradient changes with that
-  const double gradient =
-      std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
+  const Vec3d center = box.center(), outward = gaussians_outward(body, spheres, center);
+  const double added_gradient =
+      smallest_added_gradient(bounds, b, {center, outward, spread_along(box, outward)});
+  // grad log f_i / m changes by 2 b / r_i^2 times the rounding of a coordinate.
+  const double sharpest =
+      std::max(largest_inverse_square(bounds.added), largest_inverse_square(bounds.subtracted));
+  const double rounding = coordinate_rounding(box) * 2.0 * b * sharpest;
   return std::max(std::sqrt(static_cast<double>(body.gradient_floor)) * (1.0 - kDistanceSlack),
-                  gradient - rounding - largest_gaussian_gradient(bounds.subtracted));
+                  added_gradient - rounding - largest_gaussian_gradient(bounds.subtracted));
 }
 
 }  // namespace astrolith

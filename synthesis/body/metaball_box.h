@@ -24,11 +24,11 @@ struct SquaredDistances {
 // From a sphere's centre to the box.
 ASTROLITH_HD inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, const Box& box) {
   const Vec3d c{sphere.center.x, sphere.center.y, sphere.center.z};
-  const Vec3d near{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
-                   nearest_offset(c.z, box.min.z, box.max.z)};
-  const Vec3d far{farthest_offset(c.x, box.min.x, box.max.x), farthest_offset(c.y, box.min.y, box.max.y),
-                  farthest_offset(c.z, box.min.z, box.max.z)};
-  return {squared_norm(near), squared_norm(far)};
+  const Vec3d nearest{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
+                      nearest_offset(c.z, box.min.z, box.max.z)};
+  const Vec3d farthest{farthest_offset(c.x, box.min.x, box.max.x), farthest_offset(c.y, box.min.y, box.max.y),
+                       farthest_offset(c.z, box.min.z, box.max.z)};
+  return {squared_norm(nearest), squared_norm(farthest)};
 }
 
 // 1 / r^2 of either kind.

@@ -12,11 +12,11 @@ namespace astrolith {
 // surface. Tighter for what is farther than `height` from it.
 ASTROLITH_HD inline Interval bound_leaf_distance(const MetaballParameters<float>& body,
                                                  const MetaballInterval& all, double height,
-                                                 double gradient_near) {
+                                                 double surface_gradient) {
   const double least = 0.999 * std::sqrt(double{body.gradient_floor});
   Interval s{all.level_min / (all.level_min > 0.0 ? all.gradient_max : least),
              all.level_max / (all.level_max < 0.0 ? all.gradient_max : least)};
-  const double reach = height * gradient_near;
+  const double reach = height * surface_gradient;
   if (all.level_max < -reach) s.high = std::min(s.high, -height);
   if (all.level_min > reach) s.low = std::max(s.low, height);
   return s;
@@ -29,8 +29,8 @@ ASTROLITH_HD inline bool is_off_surface(const MetaballInterval& all, double heig
 // Of (v / reach)^2 for v in an interval.
 ASTROLITH_HD inline Interval reach_squares(const Interval& v, double inverse_reach) {
   const double a = v.low * inverse_reach, b = v.high * inverse_reach;
-  const double near = a > 0.0 ? a : b < 0.0 ? b : 0.0, far = std::max(std::fabs(a), std::fabs(b));
-  return {near * near, far * far};
+  const double nearest = a > 0.0 ? a : b < 0.0 ? b : 0.0, farthest = std::max(std::fabs(a), std::fabs(b));
+  return {nearest * nearest, farthest * farthest};
 }
 
 // super_elliptic with the elementary functions that both machines have.

@@ -183,17 +183,17 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
 
 void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end) {
   const HeldTiles held = whole_tiles(tiles, TileRange(range));
-  Chunks all, near, nearest;
+  Chunks all, cluster_chunks, group_chunks;
   std::vector<ImpulseLane> lanes;
   find_chunks(held, box_of(begin, end), all);
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
-    narrow(all, box_of(cluster, cluster_end), near);
+    narrow(all, box_of(cluster, cluster_end), cluster_chunks);
     for (int group = cluster; group < cluster_end; group += kGroup) {
       const PointBox box = box_of(group, std::min(group + kGroup, end));
-      narrow(near, box, nearest);
+      narrow(cluster_chunks, box, group_chunks);
       lanes.clear();
-      append_reaching(nearest, box, lanes);
+      append_reaching(group_chunks, box, lanes);
       const auto i = static_cast<std::size_t>(group);
       add_to_group(lanes, tiles.band().amplitude, &x_[i], &y_[i], &z_[i], sums_from(group));
     }
@@ -210,14 +210,14 @@ void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, const CellRan
   for (std::size_t t = 0; t < marks.size(); ++t) {
     if (marks[t] != 0) held[t] = tiles.draw(tile_range.index(t), marks[t]);
   }
-  Chunks near, nearest;
+  Chunks cluster_chunks, point_chunks;
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
-    find_chunks(held, box_of(cluster, cluster_end), near);
+    find_chunks(held, box_of(cluster, cluster_end), cluster_chunks);
     for (int i = cluster; i < cluster_end; ++i) {
       const auto p = static_cast<std::size_t>(i);
-      narrow(near, box_of(i, i + 1), nearest);
-      add_at_point(nearest, tiles.band().amplitude, x_[p], y_[p], z_[p], sums_from(i));
+      narrow(cluster_chunks, box_of(i, i + 1), point_chunks);
+      add_at_point(point_chunks, tiles.band().amplitude, x_[p], y_[p], z_[p], sums_from(i));
     }
   }
 }

@@ -69,8 +69,9 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
   return octaves;
 }
 
-std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave> of_origin, const Vec3d& q) {
-  std::vector<NoiseOctave> octaves(of_origin.begin(), of_origin.end());
+std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave> octaves_at_origin,
+                                       const Vec3d& q) {
+  std::vector<NoiseOctave> octaves(octaves_at_origin.begin(), octaves_at_origin.end());
   for (NoiseOctave& o : octaves) {
     const Vec3d at = static_cast<double>(o.frequency) * q;
     Vec3d cell{std::floor(at.x), std::floor(at.y), std::floor(at.z)};

@@ -22,12 +22,12 @@ ASTROLITH_HD inline SpotSquares spot_squares(const SpotKernel& k, const SpotImpu
         lower(along_x, low.x, high.x) + lower(along_y, low.y, high.y) + lower(along_z, low.z, high.z);
     const double most =
         lower(along_x, high.x, low.x) + lower(along_y, high.y, low.y) + lower(along_z, high.z, low.z);
-    const double near = std::max(std::max(0.0, least), -most),
-                 far = std::max(std::fabs(least), std::fabs(most));
-    squares.plain.low += near * near;
-    squares.plain.high += far * far;
-    squares.cut.low += double{inverse_v} * near * near;
-    squares.cut.high += double{inverse_v} * far * far;
+    const double nearest = std::max(std::max(0.0, least), -most),
+                 farthest = std::max(std::fabs(least), std::fabs(most));
+    squares.plain.low += nearest * nearest;
+    squares.plain.high += farthest * farthest;
+    squares.cut.low += double{inverse_v} * nearest * nearest;
+    squares.cut.high += double{inverse_v} * farthest * farthest;
   };
   add(k.xx, k.xy, k.xz, k.inverse_vx);
   add(k.yx, k.yy, k.yz, k.inverse_vy);

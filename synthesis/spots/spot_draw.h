@@ -60,10 +60,12 @@ ASTROLITH_HD inline SpotCells spot_cells_around(const SpotKind& kind, const Box&
 
 // Whether a spot of these half axes touches the box.
 ASTROLITH_HD inline bool spot_reaches(const SpotImpulse& impulse, const Vec3d& half, const Box& box) {
-  const auto near = [](double c, double low, double high, double h) { return c >= low - h && c <= high + h; };
-  return near(double{impulse.x}, box.min.x, box.max.x, half.x) &&
-         near(double{impulse.y}, box.min.y, box.max.y, half.y) &&
-         near(double{impulse.z}, box.min.z, box.max.z, half.z);
+  const auto overlaps = [](double c, double low, double high, double h) {
+    return c >= low - h && c <= high + h;
+  };
+  return overlaps(double{impulse.x}, box.min.x, box.max.x, half.x) &&
+         overlaps(double{impulse.y}, box.min.y, box.max.y, half.y) &&
+         overlaps(double{impulse.z}, box.min.z, box.max.z, half.z);
 }
 
 // For the rounding of float positions.

@@ -29,8 +29,8 @@ ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotIm
   }
 }
 
-std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses, const Vec3d& half,
-                                        const Box& box) {
+std::vector<SpotImpulse> impulses_reaching(const std::vector<SpotImpulse>& impulses, const Vec3d& half,
+                                           const Box& box) {
   const Box wide = spot_box(box);
   std::vector<SpotImpulse> found;
   std::copy_if(impulses.begin(), impulses.end(), std::back_inserter(found),
@@ -161,17 +161,18 @@ double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side) {
 }
 
 std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
-                                                 const Box& box, const SpotImpulses* of_larger) {
+                                                 const Box& box, const SpotImpulses* larger_box_impulses) {
   const Box moved = moved_into(box, noise.low, noise.high);
   const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
   const auto too_many = [&](const SpotKind& kind) {
     return spot_cells_around(kind, moved).count() > kMostSpotCells;
   };
-  if (of_larger == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
+  if (larger_box_impulses == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
   auto impulses = std::make_shared<SpotImpulses>();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
-    impulses->push_back(of_larger != nullptr ? those_reaching((*of_larger)[k], kinds[k].support, moved)
-                                             : draw_spots(kinds[k], arrays[noise.thresholds], moved));
+    impulses->push_back(larger_box_impulses != nullptr
+                            ? impulses_reaching((*larger_box_impulses)[k], kinds[k].support, moved)
+                            : draw_spots(kinds[k], arrays[noise.thresholds], moved));
   }
   return impulses;
 }
@@ -189,7 +190,7 @@ void evaluate_heights(const SpotNoise& noise, const ArrayView& arrays, int n, co
     if (impulses == nullptr) {
       add_sum(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
     } else {
-      const std::vector<SpotImpulse> reaching = those_reaching((*impulses)[k], kind.support, box);
+      const std::vector<SpotImpulse> reaching = impulses_reaching((*impulses)[k], kind.support, box);
       add_spots(kind.kernel, reaching.data(), reaching.size(), n, p.x(), p.y(), p.z(), sum.data());
     }
     for (int i = 0; i < n; ++i)

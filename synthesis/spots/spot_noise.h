@@ -38,7 +38,7 @@ using SpotImpulses = std::vector<std::vector<SpotImpulse>>;
 // The impulses that reach a box, chosen from those of a larger box where these are given; null where there
 // are too many to be drawn at once.
 std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
-                                                 const Box& box, const SpotImpulses* of_larger);
+                                                 const Box& box, const SpotImpulses* larger_box_impulses);
 
 // The impulses of one kind whose spots may reach the box, in the order of their cells (z, then y, then x).
 std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box);

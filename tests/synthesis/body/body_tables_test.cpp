@@ -73,7 +73,7 @@ Recipe two_balls(const BodyOperation& operation) {
   return recipe;
 }
 
-TEST(CombinedBody, RFunctionsAreBooleanOnTheBodies) {
+TEST(BodyTables, RFunctionsAreBooleanOnTheBodies) {
   for (const double alpha : {-0.5, 0.0, 0.7, 1.0}) {
     BodyOperation operation;
     operation.alpha = alpha;
@@ -98,7 +98,7 @@ TEST(CombinedBody, RFunctionsAreBooleanOnTheBodies) {
   }
 }
 
-TEST(CombinedBody, BlendsFillTheCreaseAndNothingElse) {
+TEST(BodyTables, BlendsFillTheCreaseAndNothingElse) {
   BodyOperation operation;
   operation.kind = Operator::kBlend;
   operation.width = 0.3;
@@ -153,7 +153,7 @@ Recipe random_recipe(CounterRandom& random, int k) {
 }
 
 // No box that is called outside or inside holds a point of the other kind, and distances keep their bounds.
-TEST(CombinedBody, BoundsAreNeverWrong) {
+TEST(BodyTables, BoundsAreNeverWrong) {
   CounterRandom random(10);
   int proved = 0;
   for (int k = 0; k < 40; ++k) {
@@ -193,7 +193,7 @@ TEST(CombinedBody, BoundsAreNeverWrong) {
   EXPECT_GT(proved, 250);
 }
 
-TEST(CombinedBody, GradientsAreUnitNormalsOnTheSurface) {
+TEST(BodyTables, GradientsAreUnitNormalsOnTheSurface) {
   BodyOperation operation;
   operation.alpha = 0.0;
   const testing::LoneBody body(*two_balls(operation).body, 1);
@@ -204,7 +204,7 @@ TEST(CombinedBody, GradientsAreUnitNormalsOnTheSurface) {
   EXPECT_LT(norm(Vec3d{gx, gy, gz} - Vec3d{0.6, -0.8, 0.0}), 2e-3);
 }
 
-TEST(CombinedBody, BecomesClosedManifolds) {
+TEST(BodyTables, BecomesClosedManifolds) {
   CounterRandom random(77);
   for (int k = 0; k < 6; ++k) {
     SCOPED_TRACE(k);

@@ -140,17 +140,18 @@ TEST(Kernels, IntervalsHoldEveryValue) {
     box.extend({random.uniform(-0.8, 0.8), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
     const double size = std::pow(10.0, random.uniform(-3.0, -0.3));
     box.extend(box.min + Vec3d{size, size * random.uniform(), size * random.uniform()});
-    const PreparedMetaballs near = metaballs_reaching(metaballs, box);
+    const PreparedMetaballs reaching = metaballs_reaching(metaballs, box);
     const double height = 0.2 * size;
-    const MetaballInterval bound = bound_metaballs(near, box), close = bound_metaballs(near, box, height);
-    const double least = smallest_gradient(near, box);
+    const MetaballInterval bound = bound_metaballs(reaching, box),
+                           close = bound_metaballs(reaching, box, height);
+    const double least = smallest_gradient(reaching, box);
     proved += bound.level_max < 0.0 || bound.level_min > 0.0;
     steep += least > 0.3 * bound.gradient_max;
     for (int i = 0; i < 30; ++i) {
       const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
                     random.uniform(box.min.z, box.max.z)};
       const PointValue v = evaluate_one(metaballs, p);
-      ASSERT_EQ(math::bits_of(v.distance), math::bits_of(evaluate_one(near, p).distance));
+      ASSERT_EQ(math::bits_of(v.distance), math::bits_of(evaluate_one(reaching, p).distance));
       const double divisor = std::sqrt(squared_norm(Vec3d{v.gx, v.gy, v.gz}) +
                                        static_cast<double>(metaballs.parameters.gradient_floor));
       const double level = double{v.distance} * divisor;

@@ -63,7 +63,7 @@ TEST_P(Difference, IsWhatIsLeft) {
 INSTANTIATE_TEST_SUITE_P(Sharpness, Difference,
                          ::testing::Values(0.5, 3.0, 12.0, 60.0 / (1.0 - std::log(0.7))));
 
-TEST(MetaballBody, WhatTakesNothingAwayChangesNoBit) {
+TEST(MetaballBody, SubtractiveSpheresOutOfReachChangeNoBit) {
   MetaballBody body = *potato_recipe(40, 2).body;
   const PreparedMetaballs without = prepare_metaballs(body);
   body.subtract = {{{50, 0, 0}, 1.0}};  // beyond its support
@@ -112,12 +112,12 @@ TEST(MetaballBody, SpheresBeyondTheirSupportChangeNoBit) {
     Box box;
     box.extend({random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)});
     box.extend(box.min + Vec3d{0.05, 0.03, 0.02});
-    const PreparedMetaballs near = metaballs_reaching(all, box);
-    dropped += all.spheres.size() - near.spheres.size();
+    const PreparedMetaballs reaching = metaballs_reaching(all, box);
+    dropped += all.spheres.size() - reaching.spheres.size();
     for (int i = 0; i < 20; ++i) {
       const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
                     random.uniform(box.min.z, box.max.z)};
-      const PointValue a = evaluate_one(all, p), b = evaluate_one(near, p);
+      const PointValue a = evaluate_one(all, p), b = evaluate_one(reaching, p);
       ASSERT_EQ(math::bits_of(a.distance), math::bits_of(b.distance));
       ASSERT_EQ(math::bits_of(a.gx), math::bits_of(b.gx));
     }

@@ -70,7 +70,7 @@ TEST(CoordinateWarp, ImagesOfBoxesHoldTheirPoints) {
   EXPECT_GT(tight, 500);
 }
 
-TEST(CoordinateWarp, StretchesNoMoreThanItSays) {
+TEST(CoordinateWarp, KeepsItsLipschitzBound) {
   const LoneWarp warp({0.5, 1.5, 3, 0.5, 2.0}, 7u);
   CounterRandom random(3);
   for (int i = 0; i < 50000; ++i) {
