@@ -14,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kClip = 2.0;  // of a sum of overlapping spots, in greatest kernels
+constexpr double kClip = 2.0;  // limit of a sum of overlapping spots, in units of the greatest kernel
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotImpulse* impulses,
@@ -38,7 +38,7 @@ std::vector<SpotImpulse> impulses_reaching(const std::vector<SpotImpulse>& impul
   return found;
 }
 
-// The rotation R by the turns of a part of a spot.
+// A rotation by the angles of a part of a spot, in degrees about x, then y, then z.
 using Rotation = std::array<Vec3d, 3>;  // columns
 
 Rotation rotation(const Vec3d& degrees) {
@@ -79,7 +79,7 @@ SpotKernel kernel_of(const SpotLayer& layer, const SpotPart& part, const Rotatio
           static_cast<float>(layer.sigma)};
 }
 
-// Half the sides of the box around the ellipsoid q.V^-1 q = sigma of a part, length units.
+// Half the sides, in length units, of the box around the ellipsoid q.V^-1 q = sigma of a part.
 Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit) {
   const Vec3d &a = part.axes, &v = layer.variances;
   const auto side = [&](double x, double y, double z) {
@@ -89,7 +89,7 @@ Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r
          Vec3d{side(r[0].x, r[1].x, r[2].x), side(r[0].y, r[1].y, r[2].y), side(r[0].z, r[1].z, r[2].z)};
 }
 
-// One part of the spots of one size, `unit` long and `amplitude` high.
+// One part of the spots of one size: `unit` length units long and `amplitude` high.
 SpotKind kind_of(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
                  double amplitude, double clip) {
   const Rotation turn = rotation(part.turn);
@@ -101,8 +101,8 @@ double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
   return kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
 }
 
-// Adds the sums of one kind's spots to heights at points, which are halved while too many cells lie around
-// them.
+// Adds the sum of one kind's spots to the heights at n points. The points are split into halves while too
+// many cells lie around them.
 void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x, const float* y,
              const float* z, float* height) {
   Box box;

@@ -41,7 +41,7 @@ TEST(BodyOperators, AreTheFormulas) {
   }
 }
 
-// Floats keep their digits where one operand is a thousand times the other, deep inside or far outside.
+// Floats keep their digits deep inside or far outside, where one operand is a thousand times the other.
 TEST(BodyOperators, KeepTheirDigitsInFloat) {
   for (const double alpha : {-0.9, 0.0, 0.5, 1.0}) {
     OperatorParameters<float> o;
@@ -94,7 +94,7 @@ TEST(BodyTables, RFunctionsAreBooleanOnTheBodies) {
     }
     EXPECT_NEAR(both.bounds().max.x, 1.9, 0.15);
     EXPECT_NEAR(common.bounds().min.x, 0.3, 0.15);
-    EXPECT_NEAR(rest.value({-1.01, 0, 0}), -0.01, 1e-3);  // still a distance on the first surface alone
+    EXPECT_NEAR(rest.value({-1.01, 0, 0}), -0.01, 1e-3);  // the first surface keeps its distances
   }
 }
 
@@ -152,7 +152,8 @@ Recipe random_recipe(CounterRandom& random, int k) {
   return recipe;
 }
 
-// No box that is called outside or inside holds a point of the other kind, and distances keep their bounds.
+// Boxes that are classified as outside or inside hold no point of the other kind. Distances keep their
+// bounds.
 TEST(BodyTables, BoundsAreNeverWrong) {
   CounterRandom random(10);
   int proved = 0;
