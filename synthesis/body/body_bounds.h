@@ -7,21 +7,6 @@
 
 namespace astrolith {
 
-// A box that holds the points at which the body is evaluated for the points of `box`: their warped images if
-// the body is plain and warped, else the points themselves.
-ASTROLITH_HD inline Box body_box(const BodyTables& body, const ArrayView& arrays, const Box& box) {
-  const BodyLeaf& first = *arrays[body.leaves];
-  return body.plain() && first.warped ? warped_box(first.warp, arrays, box) : box;
-}
-
-// A box that holds the points at which the metaballs of leaf `number` are evaluated. `at` is the body_box()
-// of the original box.
-ASTROLITH_HD inline Box leaf_box(const BodyTables& body, const ArrayView& arrays, std::uint32_t number,
-                                 const Box& at) {
-  const BodyLeaf& leaf = arrays[body.leaves][number];
-  return !body.plain() && leaf.warped ? warped_box(leaf.warp, arrays, at) : at;
-}
-
 // An interval that holds s for every float point of a box, in length units. Expects a body with operations.
 // The interval is tighter if surfaces of operands are farther than `height` from the box.
 // `lists.metaballs(leaf)` holds the metaballs of a leaf that reach the box; `scratch` has room for the

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
-#include "synthesis/body/body_bounds.h"
+#include "synthesis/body/metaball_box.h"
 #include "synthesis/body/surface_projection.h"
 
 namespace astrolith {

@@ -44,6 +44,21 @@ struct BodyTables {
 // The tables of a body. `seed` is the seed of the recipe. Expects a body that validation accepts.
 BodyTables make_body(const MetaballBody& body, std::uint64_t seed, ArrayStore& arrays);
 
+// A box that holds the points at which the body is evaluated for the points of `box`: their warped images if
+// the body is plain and warped, else the points themselves.
+ASTROLITH_HD inline Box body_box(const BodyTables& body, const ArrayView& arrays, const Box& box) {
+  const BodyLeaf& first = *arrays[body.leaves];
+  return body.plain() && first.warped ? warped_box(first.warp, arrays, box) : box;
+}
+
+// A box that holds the points at which the metaballs of leaf `number` are evaluated. `at` is the body_box()
+// of the original box.
+ASTROLITH_HD inline Box leaf_box(const BodyTables& body, const ArrayView& arrays, std::uint32_t number,
+                                 const Box& at) {
+  const BodyLeaf& leaf = arrays[body.leaves][number];
+  return !body.plain() && leaf.warped ? warped_box(leaf.warp, arrays, at) : at;
+}
+
 // Lists of metaballs, one for each leaf: leaf l has spheres[first[l]] to spheres[first[l + 1] - 1].
 struct LeafLists {
   const MetaballSphere<float>* spheres;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "numerics/vec3.h"
-#include "synthesis/body/metaball_body.h"
+#include "synthesis/body/metaballs.h"
 
 namespace astrolith {
 
