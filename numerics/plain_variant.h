@@ -15,6 +15,8 @@ namespace astrolith {
 template <class... Types>
 class PlainVariant {
  public:
+  // Holds a default value of the first type.
+  PlainVariant() : PlainVariant(std::tuple_element_t<0, std::tuple<Types...>>{}) {}
   template <class T>
   explicit PlainVariant(const T& value) : number_(number_of<T>()) {
     std::memcpy(bytes_, &value, sizeof(T));

@@ -38,7 +38,7 @@ void check_diameters(const Population& population, const Place& place) {
 
 void visit_population(FieldVisitor& v, Population& population) {
   v.rule(check_number, population);
-  v.field("count", population.count, range(0, kMaxDrawnFeatures));
+  v.field("count", population.count, range(0, kMaxDrawnLandforms));
   v.field("density", population.density, kNotNegative);
   v.required("least_diameter", population.least_diameter, kPositive);
   v.required("greatest_diameter", population.greatest_diameter, kPositive);

@@ -6,13 +6,14 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "numerics/vec3.h"
 
 namespace astrolith {
 
-inline constexpr int kMaxDrawnFeatures = 1'000'000;  // the most landforms that one layer draws
+inline constexpr int kMaxDrawnLandforms = 1'000'000;  // the most landforms that one layer draws
 
 inline constexpr double kMinAxisRatio = 0.05;  // the least ratio of a boulder's shortest axis to its longest
 
@@ -27,11 +28,18 @@ struct SurfacePlace {
 //   N(> D) ~ D^-exponent
 // between two limits. A population has either a count or a density.
 struct Population {
-  std::optional<int> count;        // exact number, 0 .. kMaxDrawnFeatures
+  std::optional<int> count;        // exact number, 0 .. kMaxDrawnLandforms
   std::optional<double> density;   // mean of a Poisson number, per squared length unit, >= 0
   double least_diameter = 0.0;     // > 0
   double greatest_diameter = 0.0;  // >= least_diameter
   double exponent = 2.0;           // [0.01, 10]
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    least_diameter *= ratio;
+    greatest_diameter *= ratio;
+    if (density) *density /= ratio * ratio;
+  }
 };
 
 // The relief of a crater over x = distance from its centre / radius, above the surroundings:
@@ -75,6 +83,8 @@ struct CraterPopulation {
 // The crater replaces the elevation within its rim and adds to the elevation outside. A crater whose diameter
 // is at least `complex_from` has the profile `complex`, and a smaller one has `simple`.
 struct CraterLayer {
+  static constexpr std::string_view kType = "craters";
+
   std::string name;
   std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h
   CraterProfile simple;
@@ -82,6 +92,18 @@ struct CraterLayer {
   std::optional<double> complex_from;  // length units, > 0; absent: all craters are simple
   std::vector<Crater> craters;
   std::optional<CraterPopulation> population;
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    if (complex_from) *complex_from *= ratio;
+    for (Crater& crater : craters) {
+      crater.place.vector *= ratio;
+      crater.diameter *= ratio;
+      if (crater.depth) *crater.depth *= ratio;
+      if (crater.rim_height) *crater.rim_height *= ratio;
+    }
+    if (population) population->drawn.rescale(ratio);
+  }
 };
 
 // An ellipsoid on the surface that all other layers make. Without a tilt, its axis c lies along the normal of
@@ -105,12 +127,23 @@ struct BoulderPopulation {
 
 // Boulders join the body as a smooth union with the joint k = smoothing * (half the shortest axis).
 struct BoulderLayer {
+  static constexpr std::string_view kType = "boulders";
+
   std::string name;
   std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h
   double smoothing = 0.0;   // width of the joint, in half the shortest axis, [0, 1]
   double roughness = 0.0;   // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
   std::vector<Boulder> boulders;
   std::optional<BoulderPopulation> population;
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    for (Boulder& boulder : boulders) {
+      boulder.place.vector *= ratio;
+      boulder.axes *= ratio;
+    }
+    if (population) population->drawn.rescale(ratio);
+  }
 };
 
 }  // namespace astrolith

@@ -101,6 +101,17 @@ struct FractalLayer {
   double weight = 1.0;
   double gradient_modulation = 0.0;  // >= 0: octaves fade where the sum is steep; 0 for Worley noise
   std::optional<Warp> warp;          // displaces the coordinates before scale and bias
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    amplitude *= ratio;
+    frequency /= ratio;
+    bias *= ratio;
+    if (warp) {
+      warp->amplitude *= ratio;
+      warp->frequency /= ratio;
+    }
+  }
 };
 
 // One symmetric pair of Gaussians in the power spectrum of a texture.
@@ -125,6 +136,8 @@ struct LayerColor {
 // Bandwidth-quantised Gabor noise (thesis eq. 5.7 to 5.11) fitted to an exemplar.
 // Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
 struct GaborLayer {
+  static constexpr std::string_view kType = "gabor";
+
   std::string name;
   LayerSeed seed;
   LayerUse use;
@@ -135,6 +148,12 @@ struct GaborLayer {
   double exemplar_rms = 0.0;     // standard deviation of grey values after the fit's preprocessing, >= 0
   std::optional<LayerColor> color;
   std::vector<GaborLobe> lobes;  // at least one
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    pixel_size *= ratio;
+    height_rms *= ratio;
+  }
 };
 
 // An ellipsoid of a spot (thesis eq. 5.3). It adds
@@ -172,6 +191,8 @@ inline double least_height(const CellEdges& e) {
 // number of spots above a size falls as the size to the power -exponent, since density_j = density *
 // lacunarity^(j (exponent - 2)).
 struct SpotLayer {
+  static constexpr std::string_view kType = "spots";
+
   std::string name;
   LayerSeed seed;
   LayerUse use;
@@ -197,6 +218,13 @@ struct SpotLayer {
   double gain = 0.5;          // [0, 4]
   double exponent = 2.0;      // [0, 6]
   std::vector<SpotPart> parts;  // at most kMaxSpotParts; without parts a spot is K itself
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    amplitude *= ratio;
+    size *= ratio;
+    cell_size *= ratio;
+  }
 };
 
 // How far a spot reaches from its impulse, in units of q.
@@ -215,6 +243,8 @@ inline constexpr double kMaxSpotCells = 4.0;
 //   n(p) = -amplitude sum_l gain^l max(N_l - threshold, 0),    l = 0 .. levels - 1
 // or, merged, n(p) = -amplitude max(sum_l gain^l N_l - threshold, 0). The threshold cuts a crisp border.
 struct SparseLayer {
+  static constexpr std::string_view kType = "sparse";
+
   std::string name;
   LayerSeed seed;
   LayerUse use;
@@ -225,6 +255,12 @@ struct SparseLayer {
   double threshold = 0.2;     // [0, 1]
   double gain = 0.5;          // [0, 4]
   bool merged = false;        // one image for all levels
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    amplitude *= ratio;
+    cell_size *= ratio;
+  }
 };
 
 // Local random phase noise (Gilet et al. 2014; thesis eq. 2.25): each cell of a lattice holds a sum of plane
@@ -234,6 +270,8 @@ struct SparseLayer {
 // randomness of 0 the waves run through all cells in a regular pattern; with 1 only the spectrum of that
 // pattern is left.
 struct RandomPhaseLayer {
+  static constexpr std::string_view kType = "random_phase";
+
   std::string name;
   LayerSeed seed;
   LayerUse use;
@@ -246,6 +284,14 @@ struct RandomPhaseLayer {
   Vec3d direction{0, 0, 1};    // mean direction of the waves; not zero
   double spread = 1.0;         // [0, 1]: the cosine of a wave with `direction` is at least 1 - spread
   double randomness = 1.0;     // [0, 1]
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    height_rms *= ratio;
+    cell_size *= ratio;
+    frequency_min /= ratio;
+    frequency_max /= ratio;
+  }
 };
 
 // The height that a phasor layer draws over a turn of the phase, between -1 and 1.
@@ -260,6 +306,8 @@ constexpr std::string_view profile_word(PhasorProfile profile) {
 // Phasor noise (Tricard et al. 2019; thesis eq. 2.27 to 2.30): a profile drawn over the phase of a sum of
 // Gabor kernels. It makes stripes, ridges, hatches and ripples whose contrast never fades.
 struct PhasorLayer {
+  static constexpr std::string_view kType = "phasor";
+
   std::string name;
   LayerSeed seed;
   LayerUse use;
@@ -270,6 +318,13 @@ struct PhasorLayer {
   Vec3d direction{1, 0, 0};   // across the stripes; not zero
   double spread = 0.1;        // [0, 1]: the cosine of a kernel with `direction` is at least 1 - spread
   PhasorProfile profile = PhasorProfile::kSine;
+
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    amplitude *= ratio;
+    cell_size *= ratio;
+    frequency /= ratio;
+  }
 };
 inline constexpr double kMaxPhasorTurns = 1024.0;
 

@@ -22,8 +22,11 @@ namespace astrolith {
 
 inline constexpr int kRecipeFormatVersion = 1;
 
-using Layer = std::variant<FractalLayer, GaborLayer, SpotLayer, CraterLayer, BoulderLayer, SparseLayer,
-                           RandomPhaseLayer, PhasorLayer>;
+using Layer = std::variant<FractalLayer, SpotLayer, SparseLayer, CraterLayer, BoulderLayer, RandomPhaseLayer,
+                           PhasorLayer, GaborLayer>;
+
+// The layer's `type` in a file: "simplex", "perlin" or "worley" of a fractal layer, kType of the others.
+std::string_view type_word(const Layer& layer);
 
 // The layer's use, or null for craters and boulders.
 inline LayerUse* use_of(Layer& layer) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <type_traits>
 
 #include "recipe/fields_internal.h"
 
@@ -22,17 +23,16 @@ Layer fractal_layer(Noise noise) {
   return layer;
 }
 
+template <class... Kinds>
+std::vector<LayerType> types_of(const std::variant<FractalLayer, Kinds...>&) {
+  return {{"simplex", fractal_layer(Noise::kSimplex)},
+          {"perlin", fractal_layer(Noise::kPerlin)},
+          {"worley", fractal_layer(Noise::kWorleyF1)},
+          {Kinds::kType, Kinds{}}...};
+}
+
 const std::vector<LayerType>& layer_types() {
-  static const std::vector<LayerType> types = {{"simplex", fractal_layer(Noise::kSimplex)},
-                                               {"perlin", fractal_layer(Noise::kPerlin)},
-                                               {"worley", fractal_layer(Noise::kWorleyF1)},
-                                               {"spots", SpotLayer{}},
-                                               {"sparse", SparseLayer{}},
-                                               {"craters", CraterLayer{}},
-                                               {"boulders", BoulderLayer{}},
-                                               {"random_phase", RandomPhaseLayer{}},
-                                               {"phasor", PhasorLayer{}},
-                                               {"gabor", GaborLayer{}}};
+  static const std::vector<LayerType> types = types_of(Layer{});
   return types;
 }
 
@@ -40,14 +40,6 @@ std::string layer_type_list() {
   std::vector<std::string_view> words;
   for (const LayerType& type : layer_types()) words.push_back(type.word);
   return quote_list(words, " and ");
-}
-
-std::string type_word(const Layer& layer) {
-  if (const auto* fractal = std::get_if<FractalLayer>(&layer)) {
-    return is_worley(fractal->noise) ? "worley" : fractal->noise == Noise::kPerlin ? "perlin" : "simplex";
-  }
-  const auto same_kind = [&](const LayerType& type) { return type.defaults.index() == layer.index(); };
-  return std::string(std::find_if(layer_types().begin(), layer_types().end(), same_kind)->word);
 }
 
 // Gives `layer` the type that the file states, with default fields.
@@ -106,6 +98,18 @@ void visit_version(FieldVisitor& v, int& version) {
 
 }  // namespace
 
+std::string_view type_word(const Layer& layer) {
+  return std::visit(
+      []<class Kind>(const Kind& l) -> std::string_view {
+        if constexpr (std::is_same_v<Kind, FractalLayer>) {
+          return is_worley(l.noise) ? "worley" : l.noise == Noise::kPerlin ? "perlin" : "simplex";
+        } else {
+          return Kind::kType;
+        }
+      },
+      layer);
+}
+
 void visit_fields(FieldVisitor& v, Provenance& provenance) {
   using Option = std::pair<std::string, std::string>;
   using Figure = std::pair<std::string, double>;
@@ -129,7 +133,7 @@ void visit_fields(FieldVisitor& v, Erosion& erosion) {
 
 void visit_fields(FieldVisitor& v, Layer& layer) {
   std::optional<std::string> type;
-  if (!v.reading()) type = type_word(layer);
+  if (!v.reading()) type = std::string(type_word(layer));
   v.required("type", type);
   if (v.reading()) choose_type(type, v.place().field("type"), layer);
   const auto visit_kind = [&v](auto& kind) {

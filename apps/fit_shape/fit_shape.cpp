@@ -116,7 +116,7 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
   const SurfaceDistanceReport& d = fit.check.distance;
   char line[240];
   std::snprintf(line, sizeof line,
-                "%zu metaballs (%zu take away)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
+                "%zu metaballs (%zu subtractive)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
                 "diagonal; similarity %.2f %% "
                 "(two samplings of the target: %.2f %%)",
                 fit.body.num_metaballs(), fit.body.subtract.size(), with_details ? " and details" : "",

@@ -118,9 +118,9 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
   details.fitness.recipe_seed = recipe.seed;
   details.log = &log;
   const ChosenDevice chosen = arguments.device.choose(program);
-  const std::unique_ptr<CandidateEvaluator> swarm =
+  const std::unique_ptr<CandidateEvaluator> evaluator =
       chosen ? candidates_on_gpu() : std::unique_ptr<CandidateEvaluator>();
-  details.swarm = swarm.get();
+  details.evaluator = evaluator.get();
   DetailsFitResult result = fit_details(target, in_target_frame(target, *recipe.body), details, progress);
   for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))
     recipe.layers.push_back(layer);

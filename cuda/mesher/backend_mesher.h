@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cuda/mesher/batch_mesher.h"
+#include "cuda/mesher/gathered_lists.h"
 #include "synthesis/field/implicit_field.h"
 
 namespace astrolith {

@@ -2,8 +2,8 @@
 // a launch over all blocks together. The mesh is then copied to the host.
 #pragma once
 
+#include "cuda/backend_lists.h"
 #include "cuda/mesher/evaluation_steps.h"
-#include "cuda/mesher/gathered_lists.h"
 
 namespace astrolith {
 

@@ -1,4 +1,4 @@
-// The bare body at one point, for CPU and GPU: evaluate_body (body_tables.h), bit for bit.
+// The bare body at one point, for CPU and GPU. The results have the bits of evaluate_body (body_tables.h).
 #pragma once
 
 #include "synthesis/body/body_tables.h"
@@ -6,7 +6,7 @@
 
 namespace astrolith {
 
-// s and grad L of a leaf's metaballs, at a point on the metaballs' side of the leaf's warp.
+// s and grad L of the metaballs of leaf `number`. The point p is already warped by the warp of the leaf.
 ASTROLITH_HD inline SurfaceDistance<float> leaf_distance(const BodyLeaf& leaf, const LeafLists& lists,
                                                          std::uint32_t number, const Vec3f& p) {
   std::uint32_t j = lists.first[number];
@@ -21,13 +21,14 @@ ASTROLITH_HD inline SurfaceDistance<float> leaf_distance(const BodyLeaf& leaf, c
   return metaball_distance(leaf.metaballs, totals.net());
 }
 
-// s, the direction of its gradient, and where a plain body was evaluated.
+// The signed distance s, a vector along its gradient, and the warped point at which a plain body was
+// evaluated.
 struct BodyAtPoint {
   float distance;
   Vec3f gradient, at;
 };
 
-// A leaf as an operand: the gradient is divided by its length.
+// A leaf as an operand of operations: its gradient is divided by its length.
 ASTROLITH_HD inline BodySample operand_at(const BodyLeaf& leaf, const ArrayView& arrays,
                                           const LeafLists& lists, std::uint32_t number, const Vec3f& p) {
   const SurfaceDistance<float> d =
@@ -37,7 +38,7 @@ ASTROLITH_HD inline BodySample operand_at(const BodyLeaf& leaf, const ArrayView&
   return {d.distance, g.x / length, g.y / length, g.z / length};
 }
 
-// The body at a point that is on the metaballs' side of a plain body's warp.
+// The body at p. If the body is plain, p is already warped by its warp.
 ASTROLITH_HD inline BodyAtPoint unwarped_body_at(const BodyTables& body, const ArrayView& arrays,
                                                  const LeafLists& lists, const Vec3f& p) {
   const BodyLeaf* leaves = arrays[body.leaves];
@@ -66,7 +67,7 @@ ASTROLITH_HD inline BodyAtPoint body_at(const BodyTables& body, const ArrayView&
   return unwarped_body_at(body, arrays, lists, warps ? warped(first.warp, arrays, p) : p);
 }
 
-// The point's first-order projection on the bare surface, at most `longest_step` away.
+// The first-order projection of the point on the bare surface, at most `longest_step` away.
 ASTROLITH_HD inline Vec3f projected_point(const BodyAtPoint& body, float gradient_floor, float longest_step) {
   const Vec3f &g = body.gradient, &p = body.at;
   const float length = gradient_length(g.x, g.y, g.z, gradient_floor);

@@ -1,4 +1,4 @@
-// What is certain about the bare body over boxes, for CPU and GPU.
+// Bounds of the bare body over boxes, for CPU and GPU.
 #pragma once
 
 #include "synthesis/body/body_tables.h"
@@ -7,22 +7,10 @@
 
 namespace astrolith {
 
-// Where a body is evaluated for the points of a box: a plain body on the other side of its warp.
-ASTROLITH_HD inline Box body_box(const BodyTables& body, const ArrayView& arrays, const Box& box) {
-  const BodyLeaf& first = *arrays[body.leaves];
-  return body.plain() && first.warped ? warped_box(first.warp, arrays, box) : box;
-}
-
-// Where the metaballs of a leaf are evaluated, from the body_box() of a box.
-ASTROLITH_HD inline Box leaf_box(const BodyTables& body, const ArrayView& arrays, std::uint32_t number,
-                                 const Box& at) {
-  const BodyLeaf& leaf = arrays[body.leaves][number];
-  return !body.plain() && leaf.warped ? warped_box(leaf.warp, arrays, at) : at;
-}
-
-// s at every float point of a box, of a body with operations; never wrong. It is tighter for what is farther
-// than `height` from a surface. `lists.metaballs(leaf)` holds the metaballs that reach the box; `scratch`
-// takes as many as the longest of these lists.
+// An interval that holds s for every float point of a box, in length units. Expects a body with operations.
+// The interval is tighter if surfaces of operands are farther than `height` from the box.
+// `lists.metaballs(leaf)` holds the metaballs of a leaf that reach the box; `scratch` has room for the
+// longest of these lists.
 template <class Lists>
 ASTROLITH_HD Interval bound_distance(const BodyTables& body, const ArrayView& arrays, const Lists& lists,
                                      const Box& box, double height, KernelInterval* scratch) {

@@ -1,9 +1,9 @@
-// How two bodies become one (thesis 2.2), on their signed distances f and g, positive inside: plain scalar
-// code for floats and, in bounds, doubles. Every operator grows with both operands, but for the bulge of
-// Pasko's union.
+// Operators that combine two bodies (thesis 2.2), as functions of their signed distances f and g, positive
+// inside. They are plain scalar code for float values and for bounds in double. Every operator is monotone in
+// both operands, except for the bulge of Pasko's union.
 //
-// The R-functions (f + g +- sqrt(f^2 + g^2 - 2 alpha f g)) / (1 + alpha) are exact on the surfaces and, off
-// them, the smoother the smaller alpha is: 1 gives max and min, 0 the clean union (eq. 2.17).
+// The R-functions (f + g +- sqrt(f^2 + g^2 - 2 alpha f g)) / (1 + alpha) have the exact surface. Away from it
+// they are smoother for smaller alpha: alpha = 1 gives max and min, alpha = 0 the clean union (eq. 2.17).
 #pragma once
 
 #include "numerics/host_device.h"
@@ -12,13 +12,13 @@
 
 namespace astrolith {
 
-// An operator's parameters; which ones count depends on the operator.
+// The parameters of an operator. The kind decides which of them are used.
 template <typename T>
 struct OperatorParameters {
   Operator kind = Operator::kUnion;
   T alpha = T(1);
-  T exponent{}, width{};                     // of the super-elliptic blend
-  T bulge{}, inverse_reach[2] = {T(), T()};  // of Pasko's union
+  T exponent{}, width{};                     // super-elliptic blend: n; width in length units
+  T bulge{}, inverse_reach[2] = {T(), T()};  // Pasko's union: a0, 1/a1, 1/a2
 };
 
 template <typename T>
@@ -26,7 +26,7 @@ ASTROLITH_KERNEL T larger(T a, T b) {
   return a > b ? a : b;
 }
 
-// Written without the difference of nearly equal numbers where one operand is far below 0.
+// The R-function of the union. Where f + g < 0 it avoids the difference of nearly equal numbers.
 template <typename T>
 ASTROLITH_KERNEL T r_union(T f, T g, T alpha) {
   const T sum = f + g;
@@ -36,8 +36,9 @@ ASTROLITH_KERNEL T r_union(T f, T g, T alpha) {
   return sum < T(0) ? below : (sum + root) / (T(1) + alpha);
 }
 
-// (f'^n + g'^n)^(1/n) of f' = 1 + f / width where that is positive: a blend that ends `width` outside of
-// either body. Written as what it adds to the union.
+// The super-elliptic blend width ((f'^n + g'^n)^(1/n) - 1) with f' = max(0, 1 + f / width) and n the
+// exponent. It ends `width` outside of either body. The code adds the effect of the blend to the union max(f,
+// g).
 template <typename T>
 ASTROLITH_KERNEL T super_elliptic(T f, T g, T exponent, T width) {
   const T high = larger(f, g), low = f > g ? g : f;
@@ -48,7 +49,7 @@ ASTROLITH_KERNEL T super_elliptic(T f, T g, T exponent, T width) {
   return high + width * a * (factor - T(1));
 }
 
-// a0 / (1 + (f/a1)^2 + (g/a2)^2), eq. 2.16.
+// The bulge of Pasko's union, a0 / (1 + (f/a1)^2 + (g/a2)^2), eq. 2.16.
 template <typename T>
 ASTROLITH_KERNEL T bulge(const OperatorParameters<T>& o, T f, T g) {
   const T u = f * o.inverse_reach[0], v = g * o.inverse_reach[1];
@@ -71,13 +72,14 @@ ASTROLITH_KERNEL T combined(const OperatorParameters<T>& o, T f, T g) {
   }
 }
 
-// A body's signed distance at a point and the gradient of that, of about unit length.
+// The signed distance of a body at a point, and the gradient of this distance, which has about unit length.
 struct BodySample {
   float distance;
   float gx, gy, gz;
 };
 
-// The combination's, whose change each operand has a share of: differences over a step that suits floats.
+// The combination of two samples. Its gradient is the sum of the operands' gradients, weighted by the partial
+// derivatives of the operator. Central differences with a step that suits floats give these derivatives.
 ASTROLITH_HD inline BodySample combined(const OperatorParameters<float>& o, const BodySample& a,
                                         const BodySample& b) {
   const float f = a.distance, g = b.distance;

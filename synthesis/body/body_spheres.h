@@ -1,4 +1,4 @@
-// The spheres of a body and of the bodies that it is combined with.
+// The spheres of a body and of all operands of its operations.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace astrolith {
 
-// Those that take away included.
+// Calls visit(sphere) for all spheres, including subtractive ones.
 template <typename Body, typename Visit>
 void for_each_sphere(Body& body, const Visit& visit) {
   for (auto& sphere : body.spheres) visit(sphere);
@@ -17,13 +17,13 @@ void for_each_sphere(Body& body, const Visit& visit) {
   }
 }
 
-// Without those that take away; operands of differences are not told apart.
+// All spheres except subtractive ones. The operands of differences are included.
 inline std::vector<Sphere> adding_spheres(const MetaballBody& body) {
   std::vector<Sphere> spheres = body.spheres;
   for (const BodyOperation& operation : body.operations) {
     for (const MetaballBody& operand : operation.operand) {
-      const std::vector<Sphere> of_operand = adding_spheres(operand);
-      spheres.insert(spheres.end(), of_operand.begin(), of_operand.end());
+      const std::vector<Sphere> operand_spheres = adding_spheres(operand);
+      spheres.insert(spheres.end(), operand_spheres.begin(), operand_spheres.end());
     }
   }
   return spheres;

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
-#include "synthesis/body/body_bounds.h"
+#include "synthesis/body/metaball_box.h"
 #include "synthesis/body/surface_projection.h"
 
 namespace astrolith {
 namespace {
 
-// The stream of the recipe's seed that warps of bodies count down from; layers have their numbers.
+// The warps of leaves have the streams kBodyStream, kBodyStream - 1, ... of the recipe's seed. The stream of
+// a layer is its number in the recipe.
 constexpr std::uint32_t kBodyStream = 0xffffffffu;
 
 OperatorParameters<double> parameters_of(const BodyOperation& operation) {
@@ -24,7 +25,7 @@ OperatorParameters<float> in_float(const OperatorParameters<double>& o) {
           to(o.width), to(o.bulge), {to(o.inverse_reach[0]), to(o.inverse_reach[1])}};
 }
 
-// The largest sum of |ds/df| and |ds/dg|.
+// The largest sum |ds/df| + |ds/dg| of an operator.
 double slope_of(const OperatorParameters<double>& o) {
   const auto r_function = [](double alpha) { return (2.0 + std::sqrt(2.0 * (1.0 - alpha))) / (1.0 + alpha); };
   switch (o.kind) {
@@ -37,7 +38,7 @@ double slope_of(const OperatorParameters<double>& o) {
   }
 }
 
-// Leaves and steps of a body and its operands, in the order in which the recipe holds them.
+// Builds the leaves and steps of a body and its operands in the order of the recipe.
 class BodyBuilder {
  public:
   BodyBuilder(std::uint64_t seed, ArrayStore& arrays) : seed_(seed), arrays_(arrays) {}
@@ -45,7 +46,7 @@ class BodyBuilder {
   BodyTables build(const MetaballBody& body) {
     const Part whole = add(body);
     if (body.operations.empty()) steps_.clear();
-    // A plain body's points are taken through its warp before they are evaluated.
+    // The points of a plain body are warped before they are evaluated.
     const Box supports = body.operations.empty() ? plain_supports_ : whole.supports;
     return {arrays_.add(leaves_), arrays_.add(steps_), supports, whole.lipschitz_bound};
   }
@@ -91,7 +92,7 @@ class BodyBuilder {
   Box plain_supports_;
 };
 
-// Four arrays of n floats: distances and gradients of points, or coordinates and more.
+// Four arrays of n floats: a distance and a gradient for each point, or coordinates.
 struct Columns {
   std::vector<float> values;
   std::size_t n;
@@ -104,7 +105,7 @@ std::span<const MetaballSphere<float>> spheres_of(const LeafLists& lists, std::u
   return {lists.spheres + lists.first[leaf], lists.first[leaf + 1] - lists.first[leaf]};
 }
 
-// A leaf as an operand: its gradients are divided by their lengths.
+// Evaluates a leaf as an operand of operations: its gradients are divided by their lengths.
 void evaluate_operand(const BodyLeaf& leaf, const ArrayView& arrays,
                       std::span<const MetaballSphere<float>> spheres, int n, const float* x, const float* y,
                       const float* z, Columns& out) {
@@ -125,7 +126,7 @@ void evaluate_operand(const BodyLeaf& leaf, const ArrayView& arrays,
   }
 }
 
-// Replaces a body's distances and gradients by what the operator makes of them and of another body's.
+// Replaces the distances and gradients of `body` by those of its combination with `other`.
 void combine(const OperatorParameters<float>& o, int n, Columns& body, Columns& other) {
   float *distance = body.at(0), *gx = body.at(1), *gy = body.at(2), *gz = body.at(3);
   const float *g = other.at(0), *ox = other.at(1), *oy = other.at(2), *oz = other.at(3);

@@ -11,7 +11,7 @@ CompactKernel<double> scaled_kernel(Kernel kernel, double tension, double surfac
   const auto low_at = [&](double scale) {
     return ends && scale * cutoff_squared >= 1.0 ? 0.0 : unit(scale * cutoff_squared);
   };
-  // K at the surface over K at the centre: falls as the scale grows.
+  // K at the surface over K at the centre. The ratio falls as the scale grows.
   const auto ratio = [&](double scale) {
     const double low = low_at(scale);
     return (unit(scale * surface) - low) / (1.0 - low);

@@ -1,14 +1,16 @@
-// The kernels of thesis 2.1 other than the Gaussian, as functions of the squared distance: plain scalar code
-// for the float evaluation, the GPU and fits in double precision.
+// The kernels of thesis 2.1 other than the Gaussian, as functions of the squared distance. They are plain
+// scalar code for the float evaluation, the GPU and fits in double precision.
 //
 //   K(q) = height (k(scale q) - low) for q below the cut-off, else 0,     q = |p - c|^2 / r^2
 //
-// with k of unit height and, but for Cauchy's, unit support:
+// Here k has unit height and, except for Cauchy's kernel, unit support:
+//
 //   metaball (eq. 2.6)     k(x) = 1 - 3x for x <= 1/9, 3/2 (1 - sqrt x)^2 for x <= 1
 //   soft object (eq. 2.7)  k(x) = (1 - x)^2 (1 - 4x/9) = 1 - 22/9 x + 17/9 x^2 - 4/9 x^3
 //   Wyvill (eq. 2.8)       k(x) = (1 - x)^3
 //   Cauchy (eq. 2.9)       k(x) = 1 / (1 + x)
-// `low` is k at the cut-off, so that K ends there continuously.
+//
+// `low` is the value of k at the cut-off, so that K is continuous there.
 #pragma once
 
 #include "numerics/host_device.h"
@@ -17,7 +19,7 @@
 
 namespace astrolith {
 
-// k and its derivatives: k(x), -k'(x) >= 0 and k''(x).
+// A kernel and its derivatives: k(x), -k'(x) >= 0 and k''(x).
 template <typename T>
 struct KernelDerivatives {
   T value, slope, curvature;
@@ -44,7 +46,7 @@ ASTROLITH_KERNEL KernelDerivatives<T> unit_kernel(T x) {
   }
 }
 
-// Which kernel, and how it is scaled.
+// The kind of a kernel and its scaling.
 template <typename T>
 struct CompactKernel {
   Kernel kernel = Kernel::kGaussian;
@@ -60,7 +62,7 @@ ASTROLITH_KERNEL KernelDerivatives<T> kernel_value(const CompactKernel<T>& compa
           per_q * compact_kernel.scale * k.curvature};
 }
 
-// The same for a kernel that is known at run time only; not the Gaussian.
+// kernel_value() for a kernel that is known at run time only. Expects any kernel but the Gaussian.
 template <typename T>
 ASTROLITH_KERNEL KernelDerivatives<T> kernel_value(const CompactKernel<T>& compact_kernel, T q) {
   switch (compact_kernel.kernel) {
@@ -75,9 +77,9 @@ ASTROLITH_KERNEL KernelDerivatives<T> kernel_value(const CompactKernel<T>& compa
   }
 }
 
-// A kernel that is e^tension at its centre and 1 where q = surface, and ends at `cutoff_squared` or before;
-// that becomes its own end. Expects what validation does: 0 < surface < cutoff_squared and
-// e^-tension < 1 - surface / cutoff_squared, the flattest kernel with that end.
+// Returns a kernel K with K(0) = e^tension and K(surface) = 1 that ends at `cutoff_squared` or before. Sets
+// `cutoff_squared` to its end. Expects 0 < surface < cutoff_squared and e^-tension < 1 - surface /
+// cutoff_squared, as validation does. The latter bound belongs to the flattest kernel with this end.
 CompactKernel<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared);
 
 }  // namespace astrolith

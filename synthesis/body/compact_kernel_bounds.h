@@ -1,9 +1,11 @@
-// What is certain about metaballs over a box, for kernels other than the Gaussian, on CPU and GPU. A kernel
-// and its slope both fall with the distance from its centre, so that the nearest and the farthest point of a
-// box tell.
+// Bounds of metaballs over a box for kernels other than the Gaussian, for CPU and GPU. A kernel and its slope
+// both fall with the distance from the centre. Their values at the nearest and the farthest point of a box
+// are therefore bounds.
 //
-// With w_i = (K_i / M)^(m-1), grad M = sum_i w_i grad K_i; since sum_i (K_i / M)^m = 1 no w_i is above 1.
-// Where spheres take away that holds for P^(1/m) and for (1 + N)^(1/m), whose quotient is M:
+// With w_i = (K_i / M)^(m-1), grad M = sum_i w_i grad K_i. Since sum_i (K_i / M)^m = 1, no w_i exceeds 1. In
+// a body with subtractive metaballs this holds for P^(1/m) and for (1 + N)^(1/m), whose quotient is M
+// (metaballs.h):
+//
 //   |grad M| <= (|grad P^(1/m)| + M |grad (1 + N)^(1/m)|) / (1 + N)^(1/m).
 #pragma once
 
@@ -11,18 +13,19 @@
 
 namespace astrolith {
 
-inline constexpr double kKernelRounding = 4e-6;  // of a kernel in float, over its height at the centre
+inline constexpr double kKernelRounding = 4e-6;  // float error of a kernel, over its height at the centre
 
 ASTROLITH_HD inline CompactKernel<double> kernel_in_double(const MetaballParameters<float>& body) {
   const CompactKernel<float>& k = body.compact_kernel;
   return {k.kernel, double{k.scale}, double{k.low}, double{k.height}};
 }
 
-// K with the rounding of a float evaluation, to the power m and saturated.
+// K^m for a value K that includes float rounding; saturated like the float evaluation.
 ASTROLITH_HD inline double kernel_to_power(double k, double m) {
   return k > 0.0 ? std::min(portable::pow(k, m), portable::exp(double{kLargestExponent})) : 0.0;
 }
 
+// Bounds K_i^m of all spheres that reach the box. `kernels` needs room for all spheres.
 ASTROLITH_HD inline BodyIntervals bound_compact_kernels(const MetaballParameters<float>& body,
                                                         const MetaballList& spheres, const Box& box,
                                                         KernelInterval* kernels) {
@@ -33,25 +36,26 @@ ASTROLITH_HD inline BodyIntervals bound_compact_kernels(const MetaballParameters
     const Interval q = squared_radii(s, box);
     if (q.low >= cutoff) return false;
     const bool inside = q.high < cutoff;
-    const KernelDerivatives<double> near = kernel_value(compact_kernel, q.low);
-    const KernelDerivatives<double> far = kernel_value(compact_kernel, inside ? q.high : cutoff);
-    const double power_max = kernel_to_power(std::max(near.value, 0.0) + rounding, m);
-    const double power_min = inside ? kernel_to_power(far.value - rounding, m) : 0.0;
-    const double slope_max = near.slope * (1.0 + kKernelRounding) + rounding * compact_kernel.scale;
+    const KernelDerivatives<double> nearest = kernel_value(compact_kernel, q.low);
+    const KernelDerivatives<double> farthest = kernel_value(compact_kernel, inside ? q.high : cutoff);
+    const double power_max = kernel_to_power(std::max(nearest.value, 0.0) + rounding, m);
+    const double power_min = inside ? kernel_to_power(farthest.value - rounding, m) : 0.0;
+    const double slope_max = nearest.slope * (1.0 + kKernelRounding) + rounding * compact_kernel.scale;
     const double radii = std::sqrt(std::min(q.high, cutoff) * inverse_square(s));
     kernel = {
-        &s,       power_min, power_max, 2.0 * slope_max * radii, inside ? far.slope * (1.0 - 1e-5) : 0.0,
+        &s,       power_min, power_max, 2.0 * slope_max * radii, inside ? farthest.slope * (1.0 - 1e-5) : 0.0,
         slope_max};
     return true;
   });
 }
 
-// Of w_i, from K_i^m and the sum of all.
+// The weight w_i from K_i^m and the sum of all K^m.
 ASTROLITH_HD inline double compact_weight(double power, double sum, double m) {
   return portable::pow(std::min(1.0, power / sum), 1.0 - 1.0 / m);
 }
 
-// Of |grad M| of one kind where the sum of K^m is at least `sum`; the second bound is Hoelder's inequality.
+// An upper bound of |grad (sum K^m)^(1/m)| over the spheres of one kind, where the sum of K^m is at least
+// `sum`. It is the lesser of two bounds: the sum of the weighted gradients, and Hoelder's inequality.
 ASTROLITH_HD inline double largest_compact_gradient(const KernelIntervals& bounds, double sum, double m) {
   double weighted = 0.0, powers = 0.0, steepest = 0.0;
   for (std::uint32_t i = 0; i < bounds.count; ++i) {
@@ -66,22 +70,19 @@ ASTROLITH_HD inline double largest_compact_gradient(const KernelIntervals& bound
   return std::min(weighted, steepest * portable::pow(powers, 1.0 / m)) * (1.0 + 3.0 * kDistanceSlack);
 }
 
-// Of |grad M| where the sum of K^m of the spheres that add is at least `sum` and M at most `largest`.
+// An upper bound of |grad M| where the sum of K^m over the spheres that add is at least `sum`, and M is at
+// most `largest`.
 ASTROLITH_HD inline double largest_net_gradient(const BodyIntervals& bounds, double sum, double largest,
                                                 double m) {
-  const double of_added = largest_compact_gradient(bounds.added, sum, m);
-  if (!bounds.subtractive()) return of_added;
-  const double of_subtracted = largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
-  return (of_added + largest * of_subtracted) / portable::pow(bounds.subtracted.sum_min, 1.0 / m) *
-         (1.0 + kDistanceSlack);
+  const double added_gradient = largest_compact_gradient(bounds.added, sum, m);
+  if (!bounds.subtractive()) return added_gradient;
+  const double subtracted_gradient =
+      largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
+  return (added_gradient + largest * subtracted_gradient) /
+         portable::pow(bounds.subtracted.sum_min, 1.0 / m) * (1.0 + kDistanceSlack);
 }
 
-// How far a float coordinate may be from what it stands for.
-ASTROLITH_HD inline double coordinate_rounding(const Box& box) {
-  return 1e-6 * (norm(box.center()) + 0.5 * norm(box.extent()));
-}
-
-// bound_gaussian_body with M(p) - 1 and |grad M| in the place of L and |grad L|.
+// bound_gaussian_body() with M(p) - 1 in the place of L, and |grad M| in the place of |grad L|.
 ASTROLITH_HD inline MetaballInterval bound_compact_body(const MetaballParameters<float>& body,
                                                         const MetaballList& spheres, const Box& box,
                                                         double height, KernelInterval* scratch) {
@@ -91,7 +92,7 @@ ASTROLITH_HD inline MetaballInterval bound_compact_body(const MetaballParameters
   const double steepest = largest_net_gradient(bounds, bounds.added.sum_min, largest, m);
   double gradient = steepest;
   if (height < std::numeric_limits<double>::infinity()) {
-    // There M is within height |grad M| of 1.
+    // Points with |s| <= height have |M - 1| <= height |grad M|.
     for (int pass = 0; pass < 3; ++pass) {
       const double change = height * metaball_divisor(body, gradient);
       const double least = 0.999 * (1.0 - change) - 1e-4, most = 1.001 * (1.0 + change) + 1e-4;
@@ -100,14 +101,14 @@ ASTROLITH_HD inline MetaballInterval bound_compact_body(const MetaballParameters
       gradient = std::min(gradient, largest_net_gradient(bounds, sum, std::min(largest, most), m));
     }
   }
-  // Float rounding: of the sums, the powers and the logarithms, and of the coordinates.
+  // The float rounding of the sums, powers and logarithms, and of the coordinates.
   const double kinds = bounds.subtractive() ? 2.0 : 1.0;
   const double slack = 2e-6 + kinds * (1e-5 + 1e-4 / m) * largest + coordinate_rounding(box) * steepest;
   return {portable::pow(bounds.net_min(), 1.0 / m) - 1.0 - slack, largest - 1.0 + slack,
           metaball_divisor(body, gradient)};
 }
 
-// The direction in which P falls fastest at a point.
+// The unit direction in which P falls fastest at p.
 ASTROLITH_HD inline Vec3d compact_outward(const MetaballParameters<float>& body, const MetaballList& spheres,
                                           const Vec3d& p) {
   const CompactKernel<double> compact_kernel = kernel_in_double(body);
@@ -127,17 +128,20 @@ ASTROLITH_HD inline Vec3d compact_outward(const MetaballParameters<float>& body,
   return normalized(sum);
 }
 
-// Of |grad M| where |grad P^(1/m)| is at least `of_added`.
-ASTROLITH_HD inline double least_net_gradient(const BodyIntervals& bounds, double of_added, double m) {
-  const double of_subtracted = portable::pow(bounds.net_max(), 1.0 / m) *
-                               largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
-  // Where next to nothing is left, floor hides the slope of A.
+// A lower bound of |grad M| where |grad P^(1/m)| is at least `added_gradient`.
+ASTROLITH_HD inline double least_net_gradient(const BodyIntervals& bounds, double added_gradient, double m) {
+  const double subtracted_gradient =
+      portable::pow(bounds.net_max(), 1.0 / m) *
+      largest_compact_gradient(bounds.subtracted, bounds.subtracted.sum_min, m);
+  // Where A is not large beside the floor kKernelFloor, the floor reduces the slope of M.
   const double floor_weight =
       std::min(1.0, double{kKernelFloor} * bounds.subtracted.sum_max / bounds.added.sum_min);
-  const double least = of_added * (1.0 - floor_weight) - of_subtracted * (1.0 + kDistanceSlack);
+  const double least = added_gradient * (1.0 - floor_weight) - subtracted_gradient * (1.0 + kDistanceSlack);
   return std::max(0.0, least) / portable::pow(bounds.subtracted.sum_max, 1.0 / m);
 }
 
+// A lower bound of the divisor of s over a box, for kernels other than the Gaussian. It bounds the component
+// of grad P^(1/m) along one direction.
 ASTROLITH_HD inline double smallest_compact_gradient(const MetaballParameters<float>& body,
                                                      const MetaballList& spheres, const Box& box,
                                                      KernelInterval* scratch) {
@@ -145,7 +149,7 @@ ASTROLITH_HD inline double smallest_compact_gradient(const MetaballParameters<fl
   const Box rounded = widened(box, coordinate_rounding(box));
   const BodyIntervals bounds = bound_compact_kernels(body, spheres, rounded, scratch);
   const KernelIntervals& added = bounds.added;
-  // The component along one direction, of each grad K_i and so of their weighted sum.
+  // The sum of the weighted components of grad K_i along one direction, bounded from below.
   const Vec3d center = box.center(), u = compact_outward(body, spheres, center);
   const double spread = spread_along(box, u) + coordinate_rounding(box);
   double component = 0.0;
@@ -164,7 +168,7 @@ ASTROLITH_HD inline double smallest_compact_gradient(const MetaballParameters<fl
   return std::max(std::sqrt(double{body.gradient_floor}), component) * (1.0 - kDistanceSlack);
 }
 
-// Of either kind of kernel.
+// The bounds for any kernel.
 ASTROLITH_HD inline MetaballInterval bound_metaballs(const MetaballParameters<float>& body,
                                                      const MetaballList& spheres, const Box& box,
                                                      double height, KernelInterval* scratch) {

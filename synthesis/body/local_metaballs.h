@@ -1,14 +1,15 @@
-// The metaball body close to an origin of double precision, where float coordinates of the body's frame would
-// not tell neighbouring points apart.
+// Metaballs around an origin of double precision, for points so close together that float coordinates in the
+// frame of the body could not tell them apart.
 #pragma once
 
 #include "synthesis/body/metaball_body.h"
 
 namespace astrolith {
 
-// evaluate_metaballs at the points origin + (x, y, z), in double precision but for its results: they keep
-// their digits however close together the points lie beside the body's size. exp and log are the C library's
-// here, whose last bit is no promise: one result in 10^8 may differ by a bit from library to library.
+// evaluate_metaballs() at the points origin + (x, y, z), computed in double precision and rounded to float.
+// Its digits do not depend on the ratio of the distance between points to the size of the body. exp and log
+// come from the C library, whose last bit is not fixed: one result in 10^8 may differ by one bit between
+// libraries.
 void evaluate_local_metaballs(const MetaballsView& metaballs, const Vec3d& origin, int n, const float* x,
                               const float* y, const float* z, float* distance, float* gradient_x,
                               float* gradient_y, float* gradient_z);

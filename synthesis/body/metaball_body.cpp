@@ -8,10 +8,10 @@
 namespace astrolith {
 namespace {
 
-// Exponent, relative to the surface's, below which a kernel is cut off.
+// The exponent below that of the surface at which a kernel is cut off.
 constexpr double kNegligibleExponent = 20.0;
 
-// Of a kernel other than the Gaussian, all but the gradient's floor.
+// The parameters of a body whose kernel is not the Gaussian, except for the gradient floor.
 MetaballParameters<float> compact_parameters(const MetaballBody& body) {
   double cutoff_squared = body.cutoff_radii * body.cutoff_radii;
   const CompactKernel<double> compact_kernel =

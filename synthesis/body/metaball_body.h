@@ -1,5 +1,5 @@
-// The metaball body of a recipe, ready for evaluation in float: over many points at once, and over a box as
-// an interval that is never wrong.
+// Metaballs of a recipe, prepared for float evaluation over many points at once, and bounds of them over
+// boxes.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,8 @@
 
 namespace astrolith {
 
-// Metaballs under one set of parameters, in arrays that live elsewhere. Spheres keep the recipe's order,
-// subtractive ones after those that add. A sphere adds exactly nothing beyond its support, so a superset
-// gives the same bits.
+// A view of metaballs with one set of parameters. Spheres keep the order of the recipe; subtractive spheres
+// come last. A sphere contributes exactly 0 beyond its support, so that extra spheres change no bit.
 struct MetaballsView {
   const MetaballParameters<float>& parameters;
   std::span<const MetaballSphere<float>> spheres;
@@ -29,8 +28,7 @@ struct MetaballsView {
   }
 };
 
-// Metaballs that own their arrays: those of a recipe's body without its operations, or what of them reaches a
-// box.
+// Metaballs that own their arrays: those of a body without its operations, or the ones that reach a box.
 struct PreparedMetaballs {
   MetaballParameters<float> parameters;
   std::vector<MetaballSphere<float>> spheres;
@@ -38,38 +36,39 @@ struct PreparedMetaballs {
   operator MetaballsView() const { return {parameters, spheres}; }
 };
 
-// The iso-value is folded into the exponents, so that the sum of kernels is 1 on the surface whatever T is.
-// Kernels below e^-20 of that sum are cut off even where the recipe's own cut-off lies farther out: a float
-// sum could not hold them.
+// Converts the metaballs of a body to float. The iso-value T is folded into the exponents, so that the sum of
+// kernels is 1 on the surface for any T. Kernels below e^-20 of this sum are cut off even if the recipe's
+// cut-off lies farther out, since a float sum could not hold them.
 PreparedMetaballs prepare_metaballs(const MetaballBody& body);
 
-// The spheres whose support reaches the box.
+// The metaballs whose supports reach the box.
 PreparedMetaballs metaballs_reaching(const PreparedMetaballs& metaballs, const Box& box);
 
 // A box that holds the supports of all spheres that add.
 Box support_bounds(const MetaballsView& metaballs);
 
-// s(p) and grad L(p) at n points given as three arrays; writes four arrays of n floats, which may not
-// overlap the points.
+// Writes s(p), length units, and grad L(p) (grad M(p) for kernels other than the Gaussian) at n points. The
+// four output arrays of n floats may not overlap the points.
 void evaluate_metaballs(const MetaballsView& metaballs, int n, const float* x, const float* y, const float* z,
                         float* distance, float* gradient_x, float* gradient_y, float* gradient_z);
 
-// What is certain about L(p) - log T for every float point p of a box, and about sqrt(|grad L(p)|^2 + floor),
-// the divisor of s, for those where |s(p)| <= height; float rounding is allowed for.
+// Bounds over a box that allow for float rounding: L(p) - log T (M(p) - 1 for kernels other than the
+// Gaussian) for every float point p, and the divisor sqrt(|grad L(p)|^2 + floor) of s for the points with
+// |s(p)| <= height.
 struct MetaballInterval {
   double level_min = 0.0;
   double level_max = 0.0;
   double gradient_max = 0.0;
 };
-// Expects every sphere that reaches the box.
+// Expects every sphere that reaches the box. `height` is in length units.
 MetaballInterval bound_metaballs(const MetaballsView& metaballs, const Box& box,
                                  double height = std::numeric_limits<double>::infinity());
 
-// A lower bound of the divisor of s.
+// A lower bound of the divisor of s over a box.
 double smallest_gradient(const MetaballsView& metaballs, const Box& box);
 
-// Gradient of s(p) itself in double precision, second derivatives of L included; per length unit, so about a
-// unit vector pointing inwards near the surface.
+// The exact gradient of s(p) in double precision, with the second derivatives of L, per length unit. Near the
+// surface it is about a unit vector that points inwards.
 Vec3d distance_gradient(const MetaballsView& metaballs, const Vec3d& p);
 
 }  // namespace astrolith

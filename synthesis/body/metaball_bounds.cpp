@@ -7,7 +7,7 @@ MetaballList all_of(const MetaballsView& metaballs) {
   return {metaballs.spheres.data(), nullptr, static_cast<std::uint32_t>(metaballs.spheres.size())};
 }
 
-// Reused, since thousands of boxes are bounded.
+// A scratch array of this thread. It is reused, since thousands of boxes are bounded.
 KernelInterval* scratch_for(const MetaballsView& metaballs) {
   thread_local std::vector<KernelInterval> scratch;
   if (scratch.size() < metaballs.spheres.size()) scratch.resize(metaballs.spheres.size());

@@ -1,5 +1,5 @@
-// What is certain about metaballs over a box: plain code for CPU and GPU, which must agree on it bit by bit.
-// Kernels other than the Gaussian: compact_kernel_bounds.h.
+// Bounds of metaballs over a box. The code is plain, so that CPU and GPU give the same bits. Here are the
+// Gaussian kernels f_i = exp(m (a - b q)); compact_kernel_bounds.h has the others.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace astrolith {
 
-// Some of an array's metaballs, by their numbers; all of them where there are no numbers. Those that take
-// away come last.
+// Some metaballs of an array, given by their numbers, or all of them if `numbers` is null. Subtractive
+// metaballs come last.
 struct MetaballList {
   const MetaballSphere<float>* spheres;
   const std::uint32_t* numbers;
@@ -24,16 +24,16 @@ struct MetaballList {
   }
 };
 
-// A kernel over a box, to the power m where it is not the Gaussian.
+// The range of a kernel over a box: of f_i for Gaussian kernels, of K_i^m for all others.
 struct KernelInterval {
   const MetaballSphere<float>* sphere;
   double min, max;
-  double gradient_max;          // of |grad log f_i| / m; not the Gaussian: of |grad K|
-  double slope_min, slope_max;  // of -dK/dq; not the Gaussian
+  double gradient_max;          // bound of |grad log f_i| / m, or of |grad K| for other kernels
+  double slope_min, slope_max;  // bounds of -dK/dq; unused for Gaussian kernels
 };
 
-// Of the spheres of one kind that reach a box, and of the sum of their kernels there and of what is added to
-// it: the kernels' floor to those that add, 1 to those that take away.
+// The kernels of one kind of spheres that reach a box, and bounds of their sum. The sum includes a constant:
+// kKernelFloor for spheres that add, 1 for subtractive spheres.
 struct KernelIntervals {
   KernelInterval* kernels;
   std::uint32_t count;
@@ -46,11 +46,12 @@ struct KernelIntervals {
   }
 };
 
-// Of a body, with A = P / (1 + N) as in metaballs.h: P + floor <= added.sum_max, 1 + N <= subtracted.sum_max.
+// Bounds of a body, with A = P / (1 + N) as in metaballs.h: of P + floor (`added`) and of 1 + N
+// (`subtracted`).
 struct BodyIntervals {
   KernelIntervals added, subtracted;
 
-  // Of A + floor.
+  // Bounds of A + floor.
   ASTROLITH_HD double net_min() const { return added.sum_min / subtracted.sum_max; }
   ASTROLITH_HD double net_max() const {
     if (!subtractive()) return added.sum_max;
@@ -59,8 +60,8 @@ struct BodyIntervals {
   ASTROLITH_HD bool subtractive() const { return subtracted.count != 0; }
 };
 
-// `interval_of(sphere, kernel)` is false for spheres that do not reach the box. Expects those that take away
-// last; `kernels` takes as many as there are spheres.
+// Bounds the kernels of all spheres. interval_of(sphere, kernel) sets `kernel` and returns whether the sphere
+// reaches the box. Expects subtractive spheres last, and room for all spheres in `kernels`.
 template <typename IntervalOf>
 ASTROLITH_HD BodyIntervals bound_kernels(const MetaballList& spheres, KernelInterval* kernels,
                                          const IntervalOf& interval_of) {
@@ -77,23 +78,25 @@ ASTROLITH_HD BodyIntervals bound_kernels(const MetaballList& spheres, KernelInte
   return bounds;
 }
 
-// The divisor of s for a |grad L|, rounded up.
+// The divisor of s for a given |grad L|, rounded up.
 ASTROLITH_HD inline double metaball_divisor(const MetaballParameters<float>& body, double gradient) {
   return std::sqrt(gradient * gradient + static_cast<double>(body.gradient_floor)) * (1.0 + kDistanceSlack);
 }
 
-// The least and the largest |p - c|^2 / r^2 in a box.
+// The least and the largest |p - c|^2 / r^2 over the points p of a box.
 ASTROLITH_HD inline Interval squared_radii(const MetaballSphere<float>& s, const Box& box) {
   const double inverse = inverse_square(s);
   const SquaredDistances d = squared_distances(s, box);
   return {d.nearest * inverse * (1.0 - kDistanceSlack), d.farthest * inverse * (1.0 + kDistanceSlack)};
 }
 
+// The kernel f = exp(m (a - b q)) at the squared distance q, saturated like the float evaluation.
 ASTROLITH_HD inline double gaussian_at(const MetaballParameters<float>& body, double q) {
   return portable::exp(
       std::min(static_cast<double>(body.m_a) - static_cast<double>(body.m_b) * q, double{kLargestExponent}));
 }
 
+// Bounds the Gaussian kernels of all spheres that reach the box. `kernels` needs room for all spheres.
 ASTROLITH_HD inline BodyIntervals bound_gaussians(const MetaballParameters<float>& body,
                                                   const MetaballList& spheres, const Box& box,
                                                   KernelInterval* kernels) {
@@ -110,9 +113,10 @@ ASTROLITH_HD inline BodyIntervals bound_gaussians(const MetaballParameters<float
   });
 }
 
-// Of |sum_i w_i grad log f_i| / m over one kind, with w_i <= f_i,max / (f_i,max + the others' minima) and
-// weights that add up to at most one: f_i / P, or f_i / (1 + N). |grad L| is at most the sum of both kinds'.
-// The bounds of meshes, and so their grids, depend on it.
+// An upper bound of |sum_i w_i grad log f_i| / m over the spheres of one kind. The weights f_i / P or f_i /
+// (1 + N) add up to at most 1, and w_i <= f_i,max / (f_i,max + the minima of the others). |grad L| is at most
+// the sum of the bounds of both kinds. The bounds of meshes, and so their grids, depend on the bits of this
+// function.
 ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& bounds) {
   double weighted = 0.0, steepest = 0.0;
   for (std::uint32_t i = 0; i < bounds.count; ++i) {
@@ -123,8 +127,8 @@ ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& boun
   return std::min(weighted, steepest) * (1.0 + kDistanceSlack);
 }
 
-// The same where the kernels' sum is at least `sum`: the steepest kernels get all the weight they may.
-// Expects those first.
+// An upper bound of the same sum where the kernels' sum is at least `sum`. The steepest kernels get the
+// largest weights that they may have. Expects the kernels sorted steepest first.
 ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& bounds, double sum) {
   double gradient = 0.0, left = 1.0;
   for (std::uint32_t i = 0; i < bounds.count && left > 0.0; ++i) {
@@ -136,11 +140,11 @@ ASTROLITH_HD inline double largest_gaussian_gradient(const KernelIntervals& boun
   return gradient * (1.0 + kDistanceSlack);
 }
 
-// By falling slopes; the order of equal ones follows from the spheres'.
+// The order by falling slopes. Equal slopes keep the order of their spheres.
 ASTROLITH_HD inline bool is_steeper(const KernelInterval& a, const KernelInterval& b) {
   return a.gradient_max != b.gradient_max ? a.gradient_max > b.gradient_max : a.sphere < b.sphere;
 }
-// A heap sort: no recursion, no memory, no luck. Children of i are 2i + 1 and 2i + 2.
+// A heap sort: it needs no recursion and no memory. The children of i are 2i + 1 and 2i + 2.
 ASTROLITH_HD inline void sort_steepest_first(KernelInterval* kernels, std::uint32_t count) {
   const auto sink = [&](std::uint32_t i, std::uint32_t end) {
     for (std::uint32_t child = 2 * i + 1; child < end; i = child, child = 2 * i + 1) {
@@ -160,24 +164,26 @@ ASTROLITH_HD inline void sort_steepest_first(KernelInterval* kernels, std::uint3
   }
 }
 
+// Bounds L - log T over the box, and the divisor of s for points with |s| <= height, which may be infinite;
+// for Gaussian kernels. `scratch` needs room for all spheres.
 ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameters<float>& body,
                                                          const MetaballList& spheres, const Box& box,
                                                          double height, KernelInterval* scratch) {
   const double m = 1.0 / static_cast<double>(body.inverse_m);
   const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
-  const double of_subtracted = largest_gaussian_gradient(bounds.subtracted);
-  const double steepest = largest_gaussian_gradient(bounds.added) + of_subtracted;
+  const double subtracted_gradient = largest_gaussian_gradient(bounds.subtracted);
+  const double steepest = largest_gaussian_gradient(bounds.added) + subtracted_gradient;
   double gradient = steepest;
   if (height < std::numeric_limits<double>::infinity()) {
     sort_steepest_first(bounds.added.kernels, bounds.added.count);
-    // There A is at least e^(-m height |grad L|), and P that times 1 + N.
+    // Points with |s| <= height have A >= e^(-m height |grad L|). P is A (1 + N).
     for (int pass = 0; pass < 3; ++pass) {
       const double net = 0.999 * portable::exp(-m * height * metaball_divisor(body, gradient));
       const double sum = net * bounds.subtracted.sum_min;
-      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + of_subtracted);
+      gradient = std::min(gradient, largest_gaussian_gradient(bounds.added, sum) + subtracted_gradient);
     }
   }
-  // Float rounding: of the exponents and the logarithm, and of the coordinates.
+  // The float rounding of the exponents, of the logarithm and of the coordinates.
   const double kinds = bounds.subtractive() ? 2.0 : 1.0;
   const double slack = kinds * (3e-5 + 1e-6 * std::fabs(static_cast<double>(body.m_a))) / m +
                        1e-6 * largest_coordinate(box) * steepest;
@@ -185,7 +191,7 @@ ASTROLITH_HD inline MetaballInterval bound_gaussian_body(const MetaballParameter
           metaball_divisor(body, gradient)};
 }
 
-// The direction in which the sum of the kernels that add falls fastest at a point.
+// The unit direction in which the sum of the kernels that add falls fastest at p.
 ASTROLITH_HD inline Vec3d gaussians_outward(const MetaballParameters<float>& body,
                                             const MetaballList& spheres, const Vec3d& p) {
   Vec3d sum;
@@ -200,47 +206,79 @@ ASTROLITH_HD inline Vec3d gaussians_outward(const MetaballParameters<float>& bod
   return normalized(sum);
 }
 
-// How far the points of a box reach from its centre along a direction.
+// A bound of the error of a float coordinate of the points of a box, length units.
+ASTROLITH_HD inline double coordinate_rounding(const Box& box) {
+  return 1e-6 * (norm(box.center()) + 0.5 * norm(box.extent()));
+}
+
+// The largest (p - centre).u over the points p of a box.
 ASTROLITH_HD inline double spread_along(const Box& box, const Vec3d& u) {
   const Vec3d half = 0.5 * box.extent();
   return std::fabs(u.x) * half.x + std::fabs(u.y) * half.y + std::fabs(u.z) * half.z;
 }
 
+// A box along a unit vector `direction`: every point p of it has |(p - center).direction| <= spread.
+struct BoxAlong {
+  Vec3d center, direction;
+  double spread;
+};
+
+// The least value over a box of the component -grad log f_i.direction / m = 2 b / r_i^2 (p - c_i).direction.
+ASTROLITH_HD inline double least_component(double b, const MetaballSphere<float>& s, const BoxAlong& box) {
+  const double inverse = static_cast<double>(s.inverse_radius_squared);
+  const Vec3d c{s.center.x, s.center.y, s.center.z};
+  return 2.0 * b * inverse * (dot(box.center - c, box.direction) - box.spread);
+}
+
+// A lower bound of |sum_i w_i grad log f_i| / m over the spheres that add, with the weights
+// w_i = f_i / (P + floor (1 + N)). It is the larger of two bounds of the sum's component along one direction:
+//   - the sum of the least components d_i, each with the least weight if d_i > 0, else with the largest;
+//   - the least d_i times the least sum of the weights, which is 1 minus the floor's own weight.
+ASTROLITH_HD inline double smallest_added_gradient(const BodyIntervals& bounds, double b,
+                                                   const BoxAlong& box) {
+  const KernelIntervals& added = bounds.added;
+  const double floor_max = double{kKernelFloor} * bounds.subtracted.sum_max;
+  const double sum_max =
+      bounds.subtractive() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
+  double weighted = 0.0, least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < added.count; ++i) {
+    const KernelInterval& k = added.kernels[i];
+    const double component = least_component(b, *k.sphere, box);
+    const double weight =
+        component > 0.0 ? k.min / (sum_max - k.max + k.min) : k.max / (added.sum_min - k.min + k.max);
+    weighted += component * weight;
+    least = std::min(least, component);
+  }
+  if (added.count == 0) least = 0.0;
+  const double floor_weight = std::min(1.0, floor_max / added.sum_min);
+  return std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
+}
+
+// The largest 1 / r^2 of the spheres of one kind.
+ASTROLITH_HD inline double largest_inverse_square(const KernelIntervals& bounds) {
+  double largest = 0.0;
+  for (std::uint32_t i = 0; i < bounds.count; ++i) {
+    largest = std::max(largest, inverse_square(*bounds.kernels[i].sphere));
+  }
+  return largest;
+}
+
+// A lower bound of the divisor of s over a box, for Gaussian kernels:
+//   |grad L| >= |sum_i w_i grad log f_i| / m over the spheres that add - |grad log(1 + N)| / m.
 ASTROLITH_HD inline double smallest_gaussian_gradient(const MetaballParameters<float>& body,
                                                       const MetaballList& spheres, const Box& box,
                                                       KernelInterval* scratch) {
   const double b = static_cast<double>(body.m_b) * static_cast<double>(body.inverse_m);
   const BodyIntervals bounds = bound_gaussians(body, spheres, box, scratch);
-  const KernelIntervals& added = bounds.added;
-  // Weights are f_i / (P + floor (1 + N)).
-  const double floor_max = double{kKernelFloor} * bounds.subtracted.sum_max;
-  const double sum_max =
-      bounds.subtractive() ? added.sum_max - double{kKernelFloor} + floor_max : added.sum_max;
-  // The component along one direction, of each grad log f_i / m and of their weighted mean.
-  const Vec3d center = box.center(), u = gaussians_outward(body, spheres, center);
-  const double spread = spread_along(box, u);
-  double weighted = 0.0, least = std::numeric_limits<double>::infinity(), sharpest = 0.0;
-  for (std::uint32_t i = 0; i < added.count; ++i) {
-    const KernelInterval& k = added.kernels[i];
-    const double inverse = static_cast<double>(k.sphere->inverse_radius_squared);
-    const Vec3d c{k.sphere->center.x, k.sphere->center.y, k.sphere->center.z};
-    const double component = 2.0 * b * inverse * (dot(center - c, u) - spread);
-    weighted += component * (component > 0.0 ? k.min / (sum_max - k.max + k.min)
-                                             : k.max / (added.sum_min - k.min + k.max));
-    least = std::min(least, component);
-    sharpest = std::max(sharpest, inverse);
-  }
-  if (added.count == 0) least = 0.0;
-  for (std::uint32_t i = 0; i < bounds.subtracted.count; ++i) {
-    sharpest = std::max(sharpest, inverse_square(*bounds.subtracted.kernels[i].sphere));
-  }
-  const double floor_weight = std::min(1.0, floor_max / added.sum_min);  // of what has no gradient
-  const double coordinate = norm(center) + 0.5 * norm(box.extent());
-  const double rounding = 1e-6 * coordinate * 2.0 * b * sharpest;  // how fast a gradient changes with that
-  const double gradient =
-      std::max(std::max(0.0, weighted), least * (1.0 - floor_weight)) * (1.0 - kDistanceSlack);
+  const Vec3d center = box.center(), outward = gaussians_outward(body, spheres, center);
+  const double added_gradient =
+      smallest_added_gradient(bounds, b, {center, outward, spread_along(box, outward)});
+  // grad log f_i / m changes by 2 b / r_i^2 times the rounding of a coordinate.
+  const double sharpest =
+      std::max(largest_inverse_square(bounds.added), largest_inverse_square(bounds.subtracted));
+  const double rounding = coordinate_rounding(box) * 2.0 * b * sharpest;
   return std::max(std::sqrt(static_cast<double>(body.gradient_floor)) * (1.0 - kDistanceSlack),
-                  gradient - rounding - largest_gaussian_gradient(bounds.subtracted));
+                  added_gradient - rounding - largest_gaussian_gradient(bounds.subtracted));
 }
 
 }  // namespace astrolith

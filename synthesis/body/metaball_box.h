@@ -1,11 +1,11 @@
-// How far the points of a box are from a metaball's centre.
+// The distances from the centre of a metaball to the points of a box.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "numerics/vec3.h"
-#include "synthesis/body/metaball_body.h"
+#include "synthesis/body/metaballs.h"
 
 namespace astrolith {
 
@@ -21,25 +21,25 @@ struct SquaredDistances {
   double farthest;
 };
 
-// From a sphere's centre to the box.
+// The squared distances from the centre of a sphere to the nearest and the farthest point of the box.
 ASTROLITH_HD inline SquaredDistances squared_distances(const MetaballSphere<float>& sphere, const Box& box) {
   const Vec3d c{sphere.center.x, sphere.center.y, sphere.center.z};
-  const Vec3d near{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
-                   nearest_offset(c.z, box.min.z, box.max.z)};
-  const Vec3d far{farthest_offset(c.x, box.min.x, box.max.x), farthest_offset(c.y, box.min.y, box.max.y),
-                  farthest_offset(c.z, box.min.z, box.max.z)};
-  return {squared_norm(near), squared_norm(far)};
+  const Vec3d nearest{nearest_offset(c.x, box.min.x, box.max.x), nearest_offset(c.y, box.min.y, box.max.y),
+                      nearest_offset(c.z, box.min.z, box.max.z)};
+  const Vec3d farthest{farthest_offset(c.x, box.min.x, box.max.x), farthest_offset(c.y, box.min.y, box.max.y),
+                       farthest_offset(c.z, box.min.z, box.max.z)};
+  return {squared_norm(nearest), squared_norm(farthest)};
 }
 
-// 1 / r^2 of either kind.
+// 1 / r^2 of a sphere that adds or of a subtractive one.
 ASTROLITH_HD inline double inverse_square(const MetaballSphere<float>& sphere) {
   return std::fabs(static_cast<double>(sphere.inverse_radius_squared));
 }
 
-// Relative slack on squared distances: float points and float arithmetic differ from ours by less.
+// Relative slack of squared distances. It exceeds the error of float points and of float arithmetic.
 inline constexpr double kDistanceSlack = 1e-5;
 
-// Whether the sphere's support, of so many squared radii, reaches the box.
+// Whether the support of the sphere reaches the box. The support ends at sqrt(cutoff_squared) radii.
 ASTROLITH_HD inline bool reaches_box(const MetaballSphere<float>& sphere, double cutoff_squared,
                                      const Box& box) {
   return !(squared_distances(sphere, box).nearest * inverse_square(sphere) >

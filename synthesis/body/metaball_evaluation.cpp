@@ -7,7 +7,7 @@
 namespace astrolith {
 namespace {
 
-// One loop a kernel: a choice inside it would keep it from vectorising.
+// Each kernel has its own loop: a choice inside the loop would keep it from vectorising.
 #define ASTROLITH_SPHERES_LOOP(name, accumulate)                                                            \
   ASTROLITH_SIMD_CLONES void name(                                                                          \
       const MetaballParameters<float>& body, const MetaballSphere<float>* spheres, std::size_t num_spheres, \
@@ -48,13 +48,14 @@ auto adder_of(Kernel kernel) {
   }
 }
 
-// Four sums at up to this many points: they stay in the first cache over all spheres.
+// The four sums of the subtractive spheres at up to this many points. They stay in the first cache over all
+// spheres.
 constexpr int kPointsAtOnce = 256;
 struct SubtractedSums {
   std::array<float, kPointsAtOnce> kernel{}, wx{}, wy{}, wz{};
 };
 
-// Turns the sums of what is added into the net sums.
+// Replaces the sums of the spheres that add by the net sums.
 ASTROLITH_SIMD_CLONES void subtract_sums(const SubtractedSums& subtracted, int n, float* __restrict kernel,
                                          float* __restrict wx, float* __restrict wy, float* __restrict wz) {
   const float *tk = subtracted.kernel.data(), *tx = subtracted.wx.data(), *ty = subtracted.wy.data(),
@@ -69,7 +70,7 @@ ASTROLITH_SIMD_CLONES void subtract_sums(const SubtractedSums& subtracted, int n
   }
 }
 
-// Turns the sums into s and grad L in place.
+// Replaces the sums by s and grad L.
 #define ASTROLITH_FINISH_LOOP(name, finish)                                                               \
   ASTROLITH_SIMD_CLONES void name(const MetaballParameters<float>& body, int n, float* __restrict kernel, \
                                   float* __restrict wx, float* __restrict wy, float* __restrict wz) {     \

@@ -1,5 +1,7 @@
-// Second derivatives of the metaballs' field. With f_i = K_i^m, u_i = (p - c_i) / r_i^2, P and N the sums of
-// f_i of both kinds, A = P / (1 + N) as in metaballs.h, and H second derivatives,
+// Second derivatives of the field of the metaballs. Let f_i = K_i^m and u_i = (p - c_i) / r_i^2. P and N are
+// the sums of f_i over the spheres that add and over the subtractive ones, and A = P / (1 + N) as in
+// metaballs.h. H are second derivatives, v' is a transposed vector:
+//
 //   grad P = sum_i 2 f_i' u_i,    H_P = sum_i 4 f_i'' u_i u_i' + 2 f_i' / r_i^2 I,    N likewise,
 //   H_A = (H_P - A H_N - grad A grad N' - grad N grad A') / (1 + N),
 //   L = log(A) / m:      grad L = grad A / (m A),      H_L = H_A / (m A) - m grad L grad L',
@@ -24,7 +26,7 @@ struct SumDerivatives {
     xx_ += 4.0 * f.curvature * u.x * u;
     yy_ += 4.0 * f.curvature * Vec3d{u.y * u.y, u.y * u.z, u.z * u.z};
   }
-  // H v.
+  // The product H v of the second derivatives with a vector.
   Vec3d hessian_times(const Vec3d& v) const {
     const Vec3d outer{dot(xx_, v), xx_.y * v.x + yy_.x * v.y + yy_.y * v.z,
                       xx_.z * v.x + yy_.y * v.y + yy_.z * v.z};
@@ -32,7 +34,7 @@ struct SumDerivatives {
   }
 
  private:
-  double curvature_ = 0.0;  // of the isotropic part
+  double curvature_ = 0.0;  // factor of the identity in H
   Vec3d xx_, yy_;           // the products (x x, x y, x z) and (y y, y z, z z)
 };
 
@@ -56,7 +58,7 @@ Vec3d distance_gradient(const MetaballsView& metaballs, const Vec3d& p) {
     return part * (added.hessian_times(v) - net * subtracted.hessian_times(v) -
                    dot(subtracted.gradient, v) * net_gradient - dot(net_gradient, v) * subtracted.gradient);
   };
-  // L and M - 1 differ in what A's second derivatives are joined by.
+  // H_L and H_M have the same form with different factors of grad A grad A'.
   const bool gaussian = body.compact_kernel.kernel == Kernel::kGaussian;
   const double norm = gaussian ? 1.0 : std::pow(total, body.inverse_m);
   const double level = gaussian ? std::log(total) * body.inverse_m : norm - 1.0;

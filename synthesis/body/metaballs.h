@@ -1,23 +1,32 @@
-// The metaball body as a smooth signed distance: plain scalar code shared by the float evaluation in blocks,
-// the GPU, and the double-precision fit.
+// Metaballs as a smooth signed distance. The code is plain and scalar; the float evaluation in blocks, the
+// GPU and the fit in double precision share it.
 //
 // With k_i(p) = m (a - b |p - c_i|^2 / r_i^2) the p-norm blend of thesis eq. 4.5 is a log-sum-exp,
-//   log m(p) = L(p) = (1/m) log(sum_i exp k_i(p)),
-// and the body is L >= log T. Near the surface the first-order distance to it is
-//   s(p) = (L(p) - log T) / |grad L(p)|,     grad L = -2 b sum_i w_i (p - c_i) / r_i^2,  w = softmax(k),
-// positive inside, in length units. Layers add heights to s, which is eq. 5.1 with every n_i multiplied by
-// |grad m|: amplitudes are then lengths, the same beside a large sphere and a small one.
 //
-// The other kernels (compact_kernel.h) end where their supports do, so that log m has no slope worth the name
-// there. With them s is subtracted from the p-norm itself,
+//   log m(p) = L(p) = (1/m) log(sum_i exp k_i(p)),
+//
+// and the body is the set L >= log T. Near the surface the first-order distance to it is
+//
+//   s(p) = (L(p) - log T) / |grad L(p)|,     grad L = -2 b sum_i w_i (p - c_i) / r_i^2,  w = softmax(k),
+//
+// positive inside, in length units. Layers add heights to s. This is eq. 5.1 with every n_i multiplied by
+// |grad m|. Amplitudes are then lengths, and they do not depend on the size of the nearby spheres.
+//
+// The other kernels (compact_kernel.h) have finite supports. At their ends log m has no useful slope. For
+// these kernels s is based on the p-norm itself:
+//
 //   M(p) = (sum_i K_i^m)^(1/m) / T,    s(p) = (M(p) - 1) / |grad M(p)|,
 //   grad M = -2 M / (sum_i K_i^m) sum_i K_i^m (-K_i'/K_i) (p - c_i) / r_i^2,     K_i' = dK_i/dq.
 //
-// Spheres may also take away. With P the sum over those that add and N over those that take away,
+// Metaballs may be subtractive. Let P be the sum over the spheres that add, and N the sum over the
+// subtractive ones. Then
+//
 //   A = P / (1 + N),    grad A = (grad P - A grad N) / (1 + N)
-// stands for the sum in all of the above. A = 1 is the surface P - N = 1 of the difference, but A is nowhere
-// negative and as smooth as P, so that its logarithm and its roots exist. Without such spheres A = P, bit for
-// bit. Validation keeps P and N below where exponents saturate: A would be 1 where both do.
+//
+// replaces the sum in all equations above. A = 1 is the surface P - N = 1 of the difference. Unlike P - N, A
+// is never negative, so that its logarithm and its roots exist, and it is as smooth as P. Without subtractive
+// spheres A = P, bit for bit. Validation keeps P and N below the values where exponents saturate: A would be
+// 1 where both saturate.
 #pragma once
 
 #include <algorithm>
@@ -29,27 +38,28 @@
 
 namespace astrolith {
 
-// Added to the sum of kernels so that its logarithm stays finite where no kernel reaches: there s is a large
-// negative number. e^-30 changes nothing where any kernel within its support contributes.
+// A constant added to the sum of kernels, so that its logarithm is finite where no kernel reaches. There s is
+// a large negative number. The constant e^-30 changes no sum that includes a kernel within its support.
 inline constexpr float kKernelFloor = 9.3576e-14f;
 
-// Largest exponent of a kernel: deep inside sharp bodies the field saturates, so that float sums stay finite.
+// The largest exponent of a kernel. Deep inside sharp bodies the field saturates, so that float sums stay
+// finite.
 inline constexpr float kLargestExponent = 60.0f;
 
-// The least kernel that a logarithm is subtracted of.
+// The least kernel value of which a logarithm is computed.
 inline constexpr float kLeastKernel = 1e-30f;
 
-// Parameters of a body, ready for evaluation in scalar type T.
+// The parameters of a body, ready for evaluation in the scalar type T.
 template <typename T>
 struct MetaballParameters {
-  T m_a{};             // m a, of Gaussians alone
-  T m_b{};             // m b, of Gaussians alone
-  T inverse_m{};       // 1 / m
-  T log_iso{};         // log T, of Gaussians alone
-  T cutoff_squared{};  // squared support in radii
-  T gradient_floor{};  // squared; keeps s finite where its divisor vanishes: (1e-3 / largest radius)^2
-  CompactKernel<T> compact_kernel{};  // of the other kernels, 1/T included in its height
-  T m{};                              // of the other kernels
+  T m_a{};                            // m a; Gaussian kernels only
+  T m_b{};                            // m b; Gaussian kernels only
+  T inverse_m{};                      // 1 / m
+  T log_iso{};                        // log T; Gaussian kernels only
+  T cutoff_squared{};                 // squared support in radii
+  T gradient_floor{};                 // (1e-3 / largest radius)^2, added to |grad|^2 to keep s finite
+  CompactKernel<T> compact_kernel{};  // other kernels only; its height includes 1/T
+  T m{};                              // other kernels only
 };
 
 inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) {
@@ -67,10 +77,10 @@ inline MetaballParameters<double> in_double(const MetaballParameters<float>& b) 
 template <typename T>
 struct MetaballSphere {
   Vec3<T> center{};
-  T inverse_radius_squared{};  // with a minus where the sphere takes away
+  T inverse_radius_squared{};  // negative for subtractive spheres
 
   ASTROLITH_HD bool subtractive() const { return inverse_radius_squared < T(0); }
-  // The same sphere, adding.
+  // This sphere as one that adds.
   ASTROLITH_HD MetaballSphere as_adding() const {
     return {center, subtractive() ? -inverse_radius_squared : inverse_radius_squared};
   }
@@ -79,7 +89,7 @@ struct MetaballSphere {
 // Running sums over spheres at one point.
 template <typename T>
 struct MetaballSums {
-  T kernel{};          // sum_i exp k_i; sum_i K_i^m
+  T kernel{};          // sum_i exp k_i, or sum_i K_i^m for other kernels
   Vec3<T> weighted{};  // sum_i exp(k_i) (p - c_i) / r_i^2; sum_i K_i^m (-K_i'/K_i) (p - c_i) / r_i^2
 };
 
@@ -101,7 +111,7 @@ ASTROLITH_KERNEL void accumulate_gaussian(const MetaballParameters<T>& body, con
   sums.weighted.z = math::fma(weight, dz, sums.weighted.z);
 }
 
-// `kernel` is body.compact_kernel.kernel, not the Gaussian.
+// Expects kernel == body.compact_kernel.kernel, not the Gaussian.
 template <Kernel kernel, typename T>
 ASTROLITH_KERNEL void accumulate_compact(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                          const Vec3<T>& p, MetaballSums<T>& sums) {
@@ -123,7 +133,7 @@ ASTROLITH_KERNEL void accumulate_compact(const MetaballParameters<T>& body, cons
   sums.weighted.z = math::fma(weight, dz, sums.weighted.z);
 }
 
-// Whichever kernel the body has.
+// Adds a sphere to the sums, for any kernel.
 template <typename T>
 ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                           const Vec3<T>& p, MetaballSums<T>& sums) {
@@ -141,7 +151,7 @@ ASTROLITH_KERNEL void accumulate_metaball(const MetaballParameters<T>& body, con
   }
 }
 
-// The sum A, and what its gradient is made of, from those of P and of N.
+// The sum A and the sum that gives its gradient, from the sums P and N.
 template <typename T>
 ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const MetaballSums<T>& subtracted) {
   const T part = T(1) / (T(1) + subtracted.kernel);
@@ -154,7 +164,7 @@ ASTROLITH_KERNEL MetaballSums<T> net_sums(const MetaballSums<T>& added, const Me
            net(added.weighted.z, subtracted.weighted.z)}};
 }
 
-// Running sums over spheres of both kinds.
+// Running sums over the spheres that add and over the subtractive ones.
 template <typename T>
 struct MetaballTotals {
   MetaballSums<T> added, subtracted;
@@ -189,7 +199,7 @@ ASTROLITH_KERNEL SurfaceDistance<T> gaussian_distance(const MetaballParameters<T
   return {log_field / math::sqrt(g2 + body.gradient_floor), g};
 }
 
-// Of every kernel but the Gaussian.
+// s and grad M for every kernel but the Gaussian.
 template <typename T>
 ASTROLITH_KERNEL SurfaceDistance<T> compact_distance(const MetaballParameters<T>& body,
                                                      const MetaballSums<T>& sums) {
@@ -208,8 +218,9 @@ ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T
                                                          : compact_distance(body, sums);
 }
 
-// f(q) = K(q)^m of one sphere for derivatives by its centre, its radius and the point: f, -df/dq and
-// d^2f/dq^2 in double precision. Where the Gaussian's value saturates they go on in proportion to it.
+// f(q) = K(q)^m of one sphere: f, -df/dq and d^2f/dq^2 in double precision, for derivatives by the centre,
+// the radius and the point. Where the value of the Gaussian saturates, its derivatives are m b and (m b)^2
+// times the saturated value.
 inline KernelDerivatives<double> kernel_power(const MetaballParameters<double>& body, double q) {
   if (!(q < body.cutoff_squared)) return {0.0, 0.0, 0.0};
   if (body.compact_kernel.kernel == Kernel::kGaussian) {

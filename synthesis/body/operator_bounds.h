@@ -1,4 +1,4 @@
-// What is certain about combined bodies over a box, for CPU and GPU.
+// Bounds of combined bodies over a box, for CPU and GPU.
 #pragma once
 
 #include "numerics/interval.h"
@@ -8,32 +8,33 @@
 
 namespace astrolith {
 
-// s of metaballs from what is certain about their level and divisor; `near` is what is certain near the
-// surface. Tighter for what is farther than `height` from it.
+// An interval that holds s of metaballs over a box, from the bounds `all` of their level and divisor.
+// `surface_gradient` is an upper bound of the divisor at the points with |s| <= height. It makes the interval
+// tighter if the box is farther than `height` from the surface.
 ASTROLITH_HD inline Interval bound_leaf_distance(const MetaballParameters<float>& body,
                                                  const MetaballInterval& all, double height,
-                                                 double gradient_near) {
+                                                 double surface_gradient) {
   const double least = 0.999 * std::sqrt(double{body.gradient_floor});
   Interval s{all.level_min / (all.level_min > 0.0 ? all.gradient_max : least),
              all.level_max / (all.level_max < 0.0 ? all.gradient_max : least)};
-  const double reach = height * gradient_near;
+  const double reach = height * surface_gradient;
   if (all.level_max < -reach) s.high = std::min(s.high, -height);
   if (all.level_min > reach) s.low = std::max(s.low, height);
   return s;
 }
-// Whether the second bound can tell more.
+// Whether a bound of the divisor near the surface can make bound_leaf_distance() tighter.
 ASTROLITH_HD inline bool is_off_surface(const MetaballInterval& all, double height) {
   return height != 0.0 && (all.level_min > 0.0 || all.level_max < 0.0);
 }
 
-// Of (v / reach)^2 for v in an interval.
+// The range of (v / reach)^2 for v in an interval.
 ASTROLITH_HD inline Interval reach_squares(const Interval& v, double inverse_reach) {
   const double a = v.low * inverse_reach, b = v.high * inverse_reach;
-  const double near = a > 0.0 ? a : b < 0.0 ? b : 0.0, far = std::max(std::fabs(a), std::fabs(b));
-  return {near * near, far * far};
+  const double nearest = a > 0.0 ? a : b < 0.0 ? b : 0.0, farthest = std::max(std::fabs(a), std::fabs(b));
+  return {nearest * nearest, farthest * farthest};
 }
 
-// super_elliptic with the elementary functions that both machines have.
+// super_elliptic() with the portable elementary functions, which give the same bits on CPU and GPU.
 ASTROLITH_HD inline double blended_distance(double f, double g, double exponent, double width) {
   const double high = larger(f, g), low = f > g ? g : f;
   const double a = larger(1.0 + high / width, 0.0), b = larger(1.0 + low / width, 0.0);
@@ -43,7 +44,7 @@ ASTROLITH_HD inline double blended_distance(double f, double g, double exponent,
   return high + width * a * (factor - 1.0);
 }
 
-// Without the bulge, which is the only part that may fall with an operand.
+// The operator without the bulge, which is the only part that is not monotone in its operands.
 ASTROLITH_HD inline double monotone_combined(const OperatorParameters<double>& o, double f, double g) {
   switch (o.kind) {
     case Operator::kIntersection:
@@ -59,6 +60,7 @@ ASTROLITH_HD inline double monotone_combined(const OperatorParameters<double>& o
   }
 }
 
+// An interval that holds the combined distance for all operands in f and g, with float rounding.
 ASTROLITH_HD inline Interval bound_combined(const OperatorParameters<double>& o, const Interval& f,
                                             const Interval& g) {
   const bool difference = o.kind == Operator::kDifference;

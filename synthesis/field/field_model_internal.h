@@ -8,6 +8,7 @@
 #include "numerics/box_tree.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/gabor/gabor_tiles.h"
 
 namespace astrolith {
 

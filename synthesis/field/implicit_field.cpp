@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "numerics/errors.h"
-#include "synthesis/body/body_bounds.h"
+#include "synthesis/body/body_tables.h"
 #include "synthesis/field/field_batch_internal.h"
 
 namespace astrolith {

@@ -30,21 +30,10 @@ std::vector<std::size_t> order_of_layers(const Recipe& recipe) {
 // other layers depend on their place.
 Layer idle() { return BoulderLayer{}; }
 
-std::string kind_of(const FractalLayer& layer) {
-  return layer.noise == Noise::kSimplex ? "simplex" : layer.noise == Noise::kPerlin ? "perlin" : "worley";
-}
-std::string kind_of(const GaborLayer&) { return "gabor"; }
-std::string kind_of(const SpotLayer&) { return "spots"; }
-std::string kind_of(const CraterLayer&) { return "craters"; }
-std::string kind_of(const BoulderLayer&) { return "boulders"; }
-std::string kind_of(const SparseLayer&) { return "sparse"; }
-std::string kind_of(const RandomPhaseLayer&) { return "random_phase"; }
-std::string kind_of(const PhasorLayer&) { return "phasor"; }
-
 std::string meaning(std::size_t label, const Layer& layer) {
   return std::visit(
       [&](const auto& l) {
-        return "label " + std::to_string(label) + ": " + kind_of(l) +
+        return "label " + std::to_string(label) + ": " + std::string(type_word(layer)) +
                (l.name.empty() ? "" : " \"" + l.name + "\"");
       },
       layer);

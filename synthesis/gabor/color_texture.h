@@ -1,4 +1,4 @@
-// The colours that a recipe's layers paint on a plane.
+// The colours that the layers of a recipe paint on a plane.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,14 @@ namespace astrolith {
 // The layers that state a colour, in the recipe's order.
 std::vector<GaborLayer> colored_layers(const Recipe& recipe);
 
-// RGB at pixel centres, row-major (height x width x 3), full scale = 1, not cut to [0, 1]:
+// RGB at pixel centres, row-major (height x width x 3), full scale = 1, not clamped to [0, 1]:
+//
 //   color(x) = sum over the layers of (mean + axis * exemplar_rms * noise of unit variance)
-// Layer k is drawn from stream options.stream + k. Every layer states a color; their noises are independent,
-// so the colours have the exemplar's covariance at each pixel, and each principal axis its own spectrum.
-// Throws InputError as synthesize_texture does. When `progress` asks to stop, what is not yet made is
-// missing.
+//
+// Layer k is drawn from stream options.stream + k, so that the noises of the layers are independent. The
+// colours therefore have the covariance of the exemplar at each pixel, and each principal axis has its own
+// spectrum. Every layer must have a colour. Throws InputError as synthesize_texture does. When `progress`
+// asks to stop, the noise not yet made is 0.
 std::vector<float> synthesize_color_texture(const std::vector<GaborLayer>& layers, int width, int height,
                                             const TextureOptions& options = {},
                                             const Progress& progress = {});

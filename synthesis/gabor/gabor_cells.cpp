@@ -7,7 +7,7 @@
 namespace astrolith {
 namespace {
 
-// Centres of cells, and the body's field there.
+// The centres of cells, and the distance and gradient of the body there.
 struct Centers {
   std::vector<float> x, y, z, distance, gx, gy, gz;
 

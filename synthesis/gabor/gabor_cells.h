@@ -1,4 +1,4 @@
-// Draws the impulses of cells of one bandwidth of surface noise (gabor_surface_noise.h). They follow from the
+// Draws the impulses of surface noise (gabor_surface_noise.h) in cells of one bandwidth. They depend on the
 // seed, the cell and the body alone.
 #pragma once
 
@@ -11,22 +11,23 @@
 
 namespace astrolith {
 
-// One bandwidth of a layer at the body's scale.
+// One bandwidth of a layer, scaled to length units of the body.
 struct SurfaceBand : GaborDraw {
   ArrayRange<GaborLobeShare> lobes;
 };
 
-// The body whose level sets give cells their tangent frames, and the arrays that it and the bands lie in.
+// The body whose level sets give the tangent frames of cells, and the arrays that hold the body and the
+// bands.
 struct GaborGround {
   const BodyTables& body;
   ArrayView arrays;
-  LeafLists metaballs;  // all of the body's
+  LeafLists metaballs;  // all metaballs of the body
 };
 
 using GaborCell = std::array<int, 3>;
 
-// The impulses of cells, one cell after another. A cell has the tangent frame of the body's level set through
-// its centre.
+// The impulses of the given cells, in the order of the cells. The tangent frame of a cell is that of the
+// level set of the body through the centre of the cell.
 std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
                                      std::span<const GaborCell> cells);
 

@@ -8,10 +8,11 @@
 namespace astrolith {
 namespace {
 
-// Far beyond all bodies along all its axes.
+// An impulse so far away that its kernel is 0 at every point of any body.
 GaborImpulse nowhere() { return {1e18f, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0}; }
 
-// Half the extents along x, y and z of a kernel's support, a box along its frame.
+// Half the extents along x, y and z of the support of a kernel. The support is a box along the frame of the
+// impulse.
 std::array<double, 3> half_extents(const GaborImpulse& k, double a) {
   const auto along = [a](float u, float v, float n) {
     const double tangential = std::fabs(double{u}) + std::fabs(double{v});
@@ -30,7 +31,7 @@ void extend(const GaborImpulse& impulse, double a, ImpulseChunk& chunk) {
   }
 }
 
-// reaches[i] = 1 where the kernel of lane i may reach the box about a center, else 0.
+// Writes reaches[i] = 1 if the kernel of lane i may reach the box about `center`, else 0.
 ASTROLITH_KERNEL void find_reaching(const ImpulseChunk& chunk, const float* center, const float* half,
                                     int* reaches) {
 #pragma omp simd
@@ -40,7 +41,8 @@ ASTROLITH_KERNEL void find_reaching(const ImpulseChunk& chunk, const float* cent
   }
 }
 
-// Writes at most kLanes lanes for each chunk; returns how many.
+// Writes the lanes whose kernels may reach the box; at most kLanes lanes for each chunk. Returns their
+// number.
 ASTROLITH_SIMD_CLONES std::size_t write_reaching(const ImpulseChunk* const* chunks, std::size_t num_chunks,
                                                  const float* center, const float* half, ImpulseLane* lanes) {
   std::size_t count = 0;
@@ -84,7 +86,7 @@ ASTROLITH_SIMD_CLONES void add_slopes(const ImpulseLane* lanes, std::size_t num_
   }
 }
 
-// The kernels of a chunk at one point.
+// The values of the kernels of a chunk at one point.
 ASTROLITH_SIMD_CLONES void values_at_point(const ImpulseChunk& chunk, float x, float y, float z,
                                            float* __restrict value) {
 #pragma omp simd
@@ -106,8 +108,8 @@ ASTROLITH_SIMD_CLONES void slopes_at_point(const ImpulseChunk& chunk, float x, f
   }
 }
 
-// One after the other, as a loop over impulses adds them; zeros change nothing and are left out first, since
-// each addition waits for the one before.
+// Adds the kernels one after another, in the order of a loop over impulses. Zeros do not change the sum. They
+// are removed first, since each addition waits for the one before.
 ASTROLITH_SIMD_CLONES float sum_of(const float* kernel, float amplitude, float sum) {
   std::array<float, kLanes> nonzero;
   std::size_t count = 0;
@@ -147,7 +149,7 @@ void append_reaching(std::span<const ImpulseChunk* const> chunks, const PointBox
     half[axis] = std::max(box.high[axis] - center[axis], center[axis] - box.low[axis]);
   }
   const std::size_t before = lanes.size();
-  lanes.resize(before + chunks.size() * kLanes + 1);  // the last is written, and not kept
+  lanes.resize(before + chunks.size() * kLanes + 1);  // the last element is written, not kept
   const std::size_t count =
       write_reaching(chunks.data(), chunks.size(), center.data(), half.data(), &lanes[before]);
   lanes.resize(before + count);

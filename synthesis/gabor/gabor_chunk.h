@@ -1,6 +1,6 @@
-// Impulses of surface noise sixteen by sixteen, and the loops that add their kernels to heights. A chunk is a
-// vector of the widest machine in each of an impulse's members: one point sees sixteen impulses at once, and
-// sixteen points take one impulse after another from it.
+// Impulses of surface noise in chunks of sixteen, and the loops that add their kernels to heights. Each
+// member of the impulses of a chunk is one vector of the widest machine. A single point evaluates sixteen
+// impulses at once; a group of sixteen points evaluates one impulse after another.
 #pragma once
 
 #include <array>
@@ -17,17 +17,17 @@ inline constexpr std::size_t kLanes = 16;
 struct ImpulseChunk {
   static constexpr std::size_t kMembers = sizeof(GaborImpulse) / sizeof(float);
 
-  // Member k of impulse i at k * kLanes + i, members in the order of GaborImpulse. Lanes without an impulse
-  // hold one whose kernel is 0 wherever points may be.
+  // Member k of impulse i is at k * kLanes + i; members have the order of GaborImpulse. Empty lanes hold an
+  // impulse whose kernel is 0 at every possible point.
   std::array<float, kMembers * kLanes> members;
-  // Holds the support of every impulse.
+  // A box that holds the supports of all impulses.
   std::array<float, 3> low, high;
 };
 
-// The impulses in their order; `a` is their bandwidth, cycles per length unit.
+// The impulses in chunks, in the given order. `a` is their bandwidth, cycles per length unit.
 std::vector<ImpulseChunk> make_chunks(std::span<const GaborImpulse> impulses, double a);
 
-// Float points low .. high along each axis.
+// The float points between low and high along each axis.
 struct PointBox {
   std::array<float, 3> low, high;
 };
@@ -37,7 +37,7 @@ inline bool overlap(const PointBox& box, const std::array<float, 3>& low, const 
          low[1] <= box.high[1] && low[2] <= box.high[2];
 }
 
-// One impulse of a chunk: its first member, the others follow kLanes apart.
+// A pointer to the first member of one impulse in a chunk. Its other members follow at steps of kLanes.
 using ImpulseLane = const float*;
 ASTROLITH_KERNEL GaborImpulse impulse_at(ImpulseLane lane) {
   constexpr std::size_t k = kLanes;
@@ -46,21 +46,22 @@ ASTROLITH_KERNEL GaborImpulse impulse_at(ImpulseLane lane) {
           lane[10 * k], lane[11 * k], lane[12 * k], lane[13 * k], lane[14 * k]};
 }
 
-// Appends the impulses of some chunks whose kernels may reach the box, in their order; never leaves one out
-// that does.
+// Appends the impulses of the chunks whose kernels may reach the box, in their order. An impulse whose kernel
+// reaches the box is never left out.
 void append_reaching(std::span<const ImpulseChunk* const> chunks, const PointBox& box,
                      std::vector<ImpulseLane>& lanes);
 
-// Where heights are summed, and their slopes where these are wanted: null where not.
+// The arrays that heights and slopes are added to. The slopes are null if they are not wanted.
 struct HeightSums {
   float *height, *slope_x, *slope_y, *slope_z;
 };
 
-// Adds amplitude times each kernel, one after another, to the sums at kLanes points.
+// Adds amplitude times each kernel to the sums at kLanes points, one kernel after another.
 void add_to_group(std::span<const ImpulseLane> lanes, float amplitude, const float* x, const float* y,
                   const float* z, const HeightSums& sums);
 
-// Adds those of whole chunks to the sums at one point: the same bits.
+// Adds amplitude times each kernel of whole chunks to the sums at one point. The bits are those of
+// add_to_group().
 void add_at_point(std::span<const ImpulseChunk* const> chunks, float amplitude, float x, float y, float z,
                   const HeightSums& sums);
 

@@ -1,5 +1,5 @@
-// Draws the impulses of surface noise (gabor_surface_noise.h) cell by cell, and tells which reach a box:
-// plain code for CPU and GPU.
+// Draws the impulses of surface noise (gabor_surface_noise.h) cell by cell, and decides which impulses reach
+// a box. The code is plain, for CPU and GPU.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,31 @@
 
 namespace astrolith {
 
-// A lobe of a band: share of the band's variance in lobes up to this one, the last's being 1, and where it
-// is.
+// A lobe of a band: the share of all lobes up to this one in the variance of the band, and the frequency of
+// the lobe. The share of the last lobe is 1.
 struct GaborLobeShare {
   float cumulative;
-  float frequency_x, frequency_y;  // over a
+  float frequency_x, frequency_y;  // in units of a
 };
 
-// What impulses of one bandwidth are drawn from.
+// The parameters that the impulses of one bandwidth are drawn with.
 struct GaborDraw {
   std::uint32_t seed;
-  float a;      // cycles per length unit
+  float a;      // bandwidth, cycles per length unit
   float cell;   // side, length units
-  float reach;  // of a kernel from its impulse, length units
+  float reach;  // from an impulse to the corner of its support, length units
   int impulses_per_cell;
-  float amplitude;  // of a kernel, length units
-  float farthest;   // impulses farther than this from the surface, to first order, are left out; length units
+  float amplitude;  // amplitude of a kernel, length units
+  float farthest;   // greatest first-order distance of an impulse from the surface, length units
 };
 
+// Two unit tangent vectors and the outward unit normal.
 struct TangentFrame {
   Vec3f u, v, n;
 };
 
-// East, south and outward for a body whose field grows along `inward`; where the normal is within a degree of
-// the z axis, x takes the place of east. Any unit vectors do where there is no gradient.
+// The axes east, south and outward of a body whose field grows along `inward`. If the normal is within a
+// degree of the z axis, x replaces east. If `inward` is 0, the normal is +z.
 ASTROLITH_HD inline TangentFrame tangent_frame(const Vec3f& inward) {
   const float length = math::sqrt(dot(inward, inward));
   const Vec3f n = length > 1e-18f ? inward * (-1.0f / length) : Vec3f{0.0f, 0.0f, 1.0f};
@@ -47,7 +48,8 @@ ASTROLITH_HD inline Vec3f gabor_cell_center(int cx, int cy, int cz, float cell) 
           (static_cast<float>(cz) + 0.5f) * cell};
 }
 
-// Ten bits of a hash place an impulse along each axis, to a thousandth of a cell.
+// The position of an impulse in its cell. Ten bits of the hash choose each coordinate, to a thousandth of a
+// cell.
 ASTROLITH_HD inline Vec3f point_in_gabor_cell(std::uint32_t hash, int cx, int cy, int cz, float cell) {
   const auto at = [&](int c, int shift) {
     const std::uint32_t bits = (hash >> shift) & 1023u;
@@ -56,7 +58,7 @@ ASTROLITH_HD inline Vec3f point_in_gabor_cell(std::uint32_t hash, int cx, int cy
   return {at(cx, 2), at(cy, 12), at(cz, 22)};
 }
 
-// The lobe for a uniform number in [0, 1): the first whose share is above it.
+// The lobe that a uniform number in [0, 1) selects: the first one whose cumulative share exceeds the number.
 ASTROLITH_HD inline const GaborLobeShare& drawn_lobe(const GaborLobeShare* lobes, std::uint32_t count,
                                                      float uniform) {
   std::uint32_t first = 0, last = count - 1;
@@ -78,8 +80,8 @@ ASTROLITH_HD inline GaborImpulse gabor_impulse(float a, const Vec3f& p, const Ta
           phase};
 }
 
-// Calls visit(impulse) for those of one cell, whose centre is `height` outside the surface of a body that
-// grows along `inward` there.
+// Calls visit(impulse) for the impulses of one cell. The centre of the cell lies `height` length units
+// outside the surface of a body whose field grows along `inward` there.
 template <typename Visit>
 ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeShare* lobes,
                                          std::uint32_t num_lobes, int cx, int cy, int cz, float height,
@@ -93,17 +95,19 @@ ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeS
     const Vec3f p = point_in_gabor_cell(hash, cx, cy, cz, band.cell);
     const float above = height + dot(frame.n, p - center);
     if (math::abs(above) > band.farthest) continue;
-    // Sixteen bits choose the lobe, sixteen the phase.
+    // Sixteen bits choose the lobe, the other sixteen the phase.
     const std::uint32_t bits = hash_append(hash, 0);
     const GaborLobeShare& lobe = drawn_lobe(lobes, num_lobes, static_cast<float>(bits >> 16) * 0x1p-16f);
     visit(gabor_impulse(band.a, p, frame, lobe, static_cast<float>(bits & 0xffffu) * 0x1p-16f));
   }
 }
 
-// For the rounding of positions and frames to float.
+// Slack factor for the rounding of positions and frames to float.
 inline constexpr float kGaborSlack = 1.0f + 1e-3f;
 
-// How far along an axis of a kernel the nearest point of a box lies, the box's extent being `half`.
+// A lower bound of the distance along one axis of a kernel from its impulse to the points of a box, in units
+// of 1/a. It is negative if the range of the box along the axis holds the impulse. (dx, dy, dz) is the offset
+// of the centre of the box from the impulse, `half` half its extents.
 ASTROLITH_KERNEL float nearest_along(float ax, float ay, float az, float dx, float dy, float dz,
                                      const float* half) {
   const float center = math::abs(math::fma(ax, dx, math::fma(ay, dy, az * dz)));
@@ -112,7 +116,8 @@ ASTROLITH_KERNEL float nearest_along(float ax, float ay, float az, float dx, flo
   return center - spread;
 }
 
-// How far beyond a kernel's reach a box about `center` lies: not at all where it is not above 0.
+// The distance of a box beyond the reach of a kernel, in units of 1/a. The kernel cannot reach the box if it
+// is above 0.
 ASTROLITH_KERNEL float beyond_gabor_reach(const GaborImpulse& k, const float* center, const float* half) {
   const float dx = center[0] - k.x, dy = center[1] - k.y, dz = center[2] - k.z;
   const float u = nearest_along(k.ux, k.uy, k.uz, dx, dy, dz, half);
@@ -121,7 +126,7 @@ ASTROLITH_KERNEL float beyond_gabor_reach(const GaborImpulse& k, const float* ce
   return math::max(math::max(u, v) - kGaborSlack * kGaborReach, n - kGaborSlack * kGaborSlabReach);
 }
 
-// The cells whose impulses may reach float points low .. high along an axis.
+// The cells, along one axis, whose impulses may reach float points between low and high.
 struct GaborCellSpan {
   int first, last;
 };
@@ -131,7 +136,7 @@ ASTROLITH_HD inline GaborCellSpan gabor_cells_around(const GaborDraw& band, floa
           static_cast<int>(std::floor((static_cast<double>(high) + reach) / cell))};
 }
 
-// Cells along a side of the tiles in whose order impulses are added.
+// The number of cells along a side of a tile. Impulses are added in the order of tiles.
 inline constexpr int kTileCells = 4;
 ASTROLITH_HD inline int gabor_tile_of(int cell) {
   return cell >= 0 ? cell / kTileCells : -((-cell + kTileCells - 1) / kTileCells);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "synthesis/gabor/gabor_bands.h"
+#include "synthesis/gabor/gabor_surface_points.h"
 #include "synthesis/noise/points_in_domain.h"
 
 #include "numerics/interval.h"
@@ -13,13 +14,13 @@
 namespace astrolith {
 namespace {
 
-// On a flat patch an impulse beyond 1/a from the surface reaches none of it. Kernels that are small beside
-// the body, to which it is nearly flat, leave out those beyond 1.25/a; s is true to first order only, so that
-// large ones keep all.
+// On a flat patch an impulse farther than 1/a from the surface reaches no point of the surface. A body is
+// nearly flat beside small kernels, which leave out impulses farther than 1.25/a. For large kernels s is too
+// inaccurate, since it is a distance to first order only. They keep all impulses.
 constexpr double kSmallKernel = 1.0 / 128.0;  // 1/a over the domain's longest side
 constexpr double kFarthestReach = 1.25;       // in units of 1/a
 
-// From an impulse to the corner of its support, in units of 1/a.
+// The distance from an impulse to the corner of its support, in units of 1/a.
 const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborReach} +
                                       double{kGaborSlabReach} * double{kGaborSlabReach});
 
@@ -28,8 +29,8 @@ double longest_side(const Box& box) {
   return std::max({e.x, e.y, e.z});
 }
 
-// One bandwidth at the scale of a domain. Variance = density K^2/2 (integral of e^2)^2 (integral of W^2): a
-// uniform phase contributes the 1/2.
+// One bandwidth at the scale of a domain. The variance is density K^2/2 (integral of e^2)^2 (integral of
+// W^2); the factor 1/2 comes from the uniform phase.
 SurfaceBand surface_band(const GaborLayer& layer, const GaborBand& band, std::uint32_t seed,
                          const Box& domain, ArrayStore& arrays) {
   const double a = band.a / layer.pixel_size;

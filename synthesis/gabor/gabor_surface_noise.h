@@ -1,10 +1,11 @@
-// A Gabor layer as surface noise on a body, at one point and over many points at once.
+// A Gabor layer as noise on the surface of a body, at one point and over many points at once.
 //
-// Impulses lie in a grid of cells in space, so many in each cell. Every cell has the tangent frame of the
-// body's level set through its centre, and a kernel fades with the distance along its cell's normal
-// (gabor_kernel.h): the noise is C1 wherever points move, whatever the frames do from cell to cell. On
-// a flat patch it has the spectrum of the lobes, and the layer's variance exactly. First tangent axis: east,
-// about +z; second: south, so that a patch seen from outside with north up shows the texture upright.
+// Impulses lie in the cells of a grid in space, the same number in each cell. Every cell has the tangent
+// frame of the level set of the body through its centre. A kernel fades with the distance along the normal of
+// its cell (gabor_kernel.h). The noise is therefore C1 everywhere, even if the frames of neighbouring cells
+// differ. On a flat patch it has the spectrum of the lobes, and exactly the variance of the layer. The first
+// tangent axis points east about +z, the second south. A patch seen from outside with north up therefore
+// shows the texture upright.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +13,14 @@
 #include "numerics/arrays.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
-#include "synthesis/gabor/gabor_surface_points.h"
+#include "synthesis/gabor/gabor_cells.h"
+#include "synthesis/gabor/gabor_kernel.h"
 
 namespace astrolith {
 
-// The noise and its slope at a point, with one more impulse.
+struct GaborTileCache;  // synthesis/gabor/gabor_tiles.h
+
+// The noise and its slope at a point, with one more impulse added.
 ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amplitude, const Vec3f& p,
                                           const GaborSample& sum) {
   const GaborSample k = gabor_kernel_with_slope(impulse, p.x, p.y, p.z);
@@ -24,11 +28,11 @@ ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amp
           {math::fma(amplitude, k.slope.x, sum.slope.x), math::fma(amplitude, k.slope.y, sum.slope.y),
            math::fma(amplitude, k.slope.z, sum.slope.z)}};
 }
-// A coordinate of a tetrahedron's centre, from those of the four corners.
+// One coordinate of the centre of a tetrahedron, from those of its four corners.
 ASTROLITH_KERNEL float tetrahedron_center(float a, float b, float c, float d) {
   return 0.25f * ((a + b) + (c + d));
 }
-// The height at a corner, to first order about the centre.
+// The height at the offset (dx, dy, dz) from the centre, to first order, clamped to +- clip.
 ASTROLITH_KERNEL float height_beside(const GaborSample& center, float dx, float dy, float dz, float clip) {
   const float rise = math::fma(dx, center.slope.x, math::fma(dy, center.slope.y, dz * center.slope.z));
   return math::clamp(center.value + rise, -clip, clip);
@@ -36,18 +40,20 @@ ASTROLITH_KERNEL float height_beside(const GaborSample& center, float dx, float 
 
 struct GaborSurfaceNoise {
   Vec3f low, high;            // points outside are moved to the border
-  float clip = 0.0f;          // heights are cut at 6 times the standard deviation
-  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
+  float clip = 0.0f;          // heights are clamped to +- clip: 6 standard deviations, length units
+  double height_bound = 0.0;  // bound of |n(p)|, length units
   ArrayRange<SurfaceBand> bands;
 };
 
-// Points outside `domain` are moved to its border. Bands so fine that float coordinates within it could not
-// tell neighbouring cells apart (above 2^20 cells from the origin) are left out. Heights are 0 on average,
-// with standard deviation layer.height_rms.
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
+// surface; points outside it are moved to its border. Bands whose grids reach beyond 2^20 cells from the
+// origin are left out, since float coordinates could not tell neighbouring cells apart. Heights have mean 0
+// and the standard deviation layer.height_rms.
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                              ArrayStore& arrays);
 
-// The cells that the impulses of all bands are drawn from, for a box with sides so long.
+// The number of cells that the impulses of all bands are drawn from for a cubic box; `side` is in length
+// units.
 double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side);
 
 // The height at a point of the bare surface, length units, from lists of impulses: band b has
@@ -66,7 +72,7 @@ ASTROLITH_HD inline float height_at(const GaborSurfaceNoise& n, const ArrayView&
   return math::clamp(height, -n.clip, n.clip);
 }
 
-// The heights at the four corners p of a small tetrahedron, to first order about their centre.
+// The heights at the four corners p of a small tetrahedron, length units, to first order about its centre.
 ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const ArrayView& arrays,
                                              const GaborImpulse* impulses, const std::uint32_t* first,
                                              const Vec3f* p, float* heights) {
@@ -86,17 +92,19 @@ ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const A
   }
 }
 
-// height[i] = n(p_i) at points of the bare surface: the bits of height_at, vectorised. `caches` has one
-// element a band.
+// Writes height[i] = n(p_i) at points of the bare surface. The loop is vectorised and gives the same bits as
+// height_at. `caches` has one element for each band.
 void evaluate_heights(const GaborSurfaceNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height);
 
-// height[i] at the corners of small tetrahedra, four after four, to first order about their centres: for
-// differences, and about as dear as one point each.
+// Writes the heights at the corners of small tetrahedra, to first order about their centres. Points 4 t to 4
+// t + 3 are the corners of tetrahedron t. Differences of these heights give gradients; a tetrahedron costs
+// about as much as one point.
 void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const GaborGround& ground,
                                   const GaborTileCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height);
 
+// An interval that holds n(p) for every point, length units. It does not depend on the box.
 ASTROLITH_HD inline Interval bound_heights(const GaborSurfaceNoise& n, const ArrayView&, const Box&) {
   return {-n.height_bound, n.height_bound};
 }

@@ -8,13 +8,13 @@ namespace astrolith {
 namespace {
 
 constexpr int kGroup = static_cast<int>(kLanes);
-// Groups narrow down the impulses together before each does for itself.
+// Four groups form a cluster. The impulses are narrowed down for a cluster first, then for each group.
 constexpr int kCluster = 4 * kGroup;
 
-// Cells around so many points are drawn at once: memory is bounded.
+// Points whose boxes have more cells than this are split, so that memory is bounded.
 constexpr std::int64_t kMostCells = 1 << 17;
-// If a group of points has at most this many cells per point, the impulses of all these cells are drawn once,
-// by tiles that others can use too, and shared. Otherwise each point draws the cells around it.
+// If a range of points has at most this many cells per point, the impulses of all these cells are drawn once,
+// in tiles that are kept and shared. Otherwise only the cells around each point are drawn.
 constexpr std::int64_t kCellsPerPoint = 300;
 
 // The cells whose impulses may reach a point of the box.
@@ -28,7 +28,7 @@ CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
   return range;
 }
 
-// Tiles in their order (z, then y, then x), numbered.
+// A range of tiles, numbered in the order z, then y, then x.
 struct TileRange {
   explicit TileRange(const CellRange& cells) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -73,7 +73,7 @@ void mark(const CellRange& cells, const TileRange& range, std::vector<TileCells>
 
 using Chunks = std::vector<const ImpulseChunk*>;
 
-// Keeps the chunks that overlap a box.
+// Writes the chunks that overlap a box to `kept`.
 void narrow(const Chunks& chunks, const PointBox& box, Chunks& kept) {
   kept.clear();
   for (const ImpulseChunk* chunk : chunks) {
@@ -81,7 +81,7 @@ void narrow(const Chunks& chunks, const PointBox& box, Chunks& kept) {
   }
 }
 
-// The chunks of the tiles that overlap a box.
+// Writes the chunks of the tiles that overlap a box to `chunks`.
 void find_chunks(const HeldTiles& tiles, const PointBox& box, Chunks& chunks) {
   chunks.clear();
   for (const auto& tile : tiles) {
@@ -113,8 +113,8 @@ GaborSurfacePoints::GaborSurfacePoints(int n, const float* x, const float* y, co
   }
 }
 
-// Halves the points along their longest axis until a group is left. `begin` is a multiple of a group's size,
-// and of a cluster's where both halves hold clusters.
+// Splits the points into halves along their longest axis until groups are left. `begin` is a multiple of the
+// size of a group. It is a multiple of the size of a cluster if both halves hold clusters.
 void GaborSurfacePoints::sort(int begin, int end) {
   if (end - begin <= kGroup) return;
   std::array<float, 3> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
@@ -162,7 +162,8 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles) {
   if (size() > 0) add_band(tiles, 0, size());
 }
 
-// A group is added to as a whole: one that was split belongs to more than one range.
+// Whether the range holds whole groups only. add_to_dense() adds to whole groups, and a split group belongs
+// to more than one range.
 bool GaborSurfacePoints::whole_groups(int begin, int end) const {
   return begin % kGroup == 0 && (end % kGroup == 0 || end == size());
 }
@@ -183,17 +184,17 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
 
 void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end) {
   const HeldTiles held = whole_tiles(tiles, TileRange(range));
-  Chunks all, near, nearest;
+  Chunks all, cluster_chunks, group_chunks;
   std::vector<ImpulseLane> lanes;
   find_chunks(held, box_of(begin, end), all);
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
-    narrow(all, box_of(cluster, cluster_end), near);
+    narrow(all, box_of(cluster, cluster_end), cluster_chunks);
     for (int group = cluster; group < cluster_end; group += kGroup) {
       const PointBox box = box_of(group, std::min(group + kGroup, end));
-      narrow(near, box, nearest);
+      narrow(cluster_chunks, box, group_chunks);
       lanes.clear();
-      append_reaching(nearest, box, lanes);
+      append_reaching(group_chunks, box, lanes);
       const auto i = static_cast<std::size_t>(group);
       add_to_group(lanes, tiles.band().amplitude, &x_[i], &y_[i], &z_[i], sums_from(group));
     }
@@ -210,14 +211,14 @@ void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, const CellRan
   for (std::size_t t = 0; t < marks.size(); ++t) {
     if (marks[t] != 0) held[t] = tiles.draw(tile_range.index(t), marks[t]);
   }
-  Chunks near, nearest;
+  Chunks cluster_chunks, point_chunks;
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
-    find_chunks(held, box_of(cluster, cluster_end), near);
+    find_chunks(held, box_of(cluster, cluster_end), cluster_chunks);
     for (int i = cluster; i < cluster_end; ++i) {
       const auto p = static_cast<std::size_t>(i);
-      narrow(near, box_of(i, i + 1), nearest);
-      add_at_point(nearest, tiles.band().amplitude, x_[p], y_[p], z_[p], sums_from(i));
+      narrow(cluster_chunks, box_of(i, i + 1), point_chunks);
+      add_at_point(point_chunks, tiles.band().amplitude, x_[p], y_[p], z_[p], sums_from(i));
     }
   }
 }

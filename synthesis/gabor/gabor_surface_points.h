@@ -1,5 +1,5 @@
-// Points at which surface noise is evaluated, put in an order in which neighbours in number are neighbours in
-// space, and what of a bandwidth's impulses reaches them.
+// The points at which surface noise is evaluated. They are sorted so that points with neighbouring numbers
+// lie close together, which makes it cheap to find the impulses that reach them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace astrolith {
 
-// Cells first .. last along x, y, z.
+// The cells first to last along x, y and z.
 struct CellRange {
   std::array<int, 3> first, last;
 
@@ -21,13 +21,13 @@ struct CellRange {
 
 class GaborSurfacePoints {
  public:
-  // Copies the points; `with_slopes` asks for slopes as well.
+  // Copies n points. The slopes of the noise are computed only if `with_slopes` is set.
   GaborSurfacePoints(int n, const float* x, const float* y, const float* z, bool with_slopes);
 
-  // Adds the noise of one bandwidth. The bits of a point's sums depend on the point alone.
+  // Adds the noise of one bandwidth. The bits of the sums at a point depend on this point alone.
   void add_band(const GaborTiles& tiles);
 
-  // The sums of the points in their order of the constructor, as arrays of n floats.
+  // Writes the sums as arrays of n floats, in the order in which the points were given.
   void store_heights(float* height) const;
   void store_slopes(float* x, float* y, float* z) const;
 
@@ -41,9 +41,9 @@ class GaborSurfacePoints {
   void add_to_scattered(const GaborTiles& tiles, const CellRange& range, int begin, int end);
   void add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end);
 
-  std::vector<int> index_;                    // where each point was
-  std::vector<float> x_, y_, z_;              // whole groups: the last is filled up with its last point
-  std::vector<float> height_, sx_, sy_, sz_;  // sums; slopes are empty where not wanted
+  std::vector<int> index_;                    // number of each point before sorting
+  std::vector<float> x_, y_, z_;              // whole groups; the last point fills up the last group
+  std::vector<float> height_, sx_, sy_, sz_;  // sums; slopes are empty if not wanted
 };
 
 }  // namespace astrolith

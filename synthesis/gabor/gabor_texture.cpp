@@ -1,6 +1,9 @@
-// On a grid of pixels the kernel separates: with A = 2 pi f_x dx + phase and B = 2 pi f_y dy,
-//   e(dx) e(dy) cos(A + B) = [e(dx) cos A] [e(dy) cos B] - [e(dx) sin A] [e(dy) sin B],
-// so an impulse costs a few profile values for each column and row of a tile, and then two fma a pixel.
+// The kernel is separable on a grid of pixels: with A = 2 pi f_x dx + phase and B = 2 pi f_y dy,
+//
+//   e(dx) e(dy) cos(A + B) = [e(dx) cos A] [e(dy) cos B] - [e(dx) sin A] [e(dy) sin B].
+//
+// An impulse therefore costs a few profile values for each column and row of a tile, and two fma for each
+// pixel.
 #include "synthesis/gabor/gabor_texture.h"
 
 #include <algorithm>
@@ -18,24 +21,24 @@
 namespace astrolith {
 namespace {
 
-// Pixels along a side of the square that one task makes: its heights stay in the first cache.
+// The side, in pixels, of the square tile that one task makes. The heights of a tile stay in the first cache.
 constexpr int kTile = 64;
 
-// A band on the plane. Lengths in pixels.
+// A band on the plane. Lengths are in pixels.
 struct PlaneBand {
   GaborBand band;
   std::uint32_t seed;
-  double cell_x, cell_y;  // sides
-  int wrap_x, wrap_y;     // cells in a period; 0 = endless
+  double cell_x, cell_y;  // sides of a cell
+  int wrap_x, wrap_y;     // cells in a period; 0: no period
   double reach;
   int impulses_per_cell;
   float amplitude;
 };
 
-// What brings the noise on a torus to the variance of the endless noise.
+// The factor that gives the periodic noise the variance of the endless noise.
 double tiling_gain(const GaborLayer& layer, const TextureOptions& options) {
   if (options.period_width == 0 && options.period_height == 0) return 1.0;
-  // Far below the size of a kernel every pixel would take thousands of its copies.
+  // A period far below the size of a kernel would need thousands of copies of the kernel at each pixel.
   constexpr double kCopies = 16.0;
   double largest = 0.0;
   for (const GaborBand& band : gabor_bands(layer)) largest = std::max(largest, 2.0 * kGaborReach / band.a);
@@ -55,7 +58,7 @@ struct Tile {
   std::array<float, kTile * kTile> height;
 };
 
-// Cosine and sine parts of the kernel along one axis of a tile, for pixels [begin, end).
+// The cosine and sine parts of the kernel along one axis of a tile, for the pixels begin .. end - 1.
 struct AxisProfile {
   std::array<float, kTile> cosine, sine;
   int begin, end;
@@ -74,7 +77,7 @@ ASTROLITH_SIMD_CLONES void fill_profile(float offset, float a, float frequency, 
   }
 }
 
-// height += column profile x row profile.
+// Adds the kernel to the heights: the real part of the product of the column and row profiles.
 ASTROLITH_SIMD_CLONES void add_product(const AxisProfile& columns, const AxisProfile& rows,
                                        float* __restrict height) {
   for (int y = rows.begin; y < rows.end; ++y) {
@@ -90,8 +93,8 @@ ASTROLITH_SIMD_CLONES void add_product(const AxisProfile& columns, const AxisPro
   }
 }
 
-// Pixels of the tile, counted from `first`, whose centres a kernel at `center` reaches; widened to whole
-// vectors, since the profile is exactly 0 beyond its reach and full vectors cost less than remainders.
+// The range of pixels, counted from `first`, whose centres a kernel at `center` reaches. The range is widened
+// to whole vectors: the profile is exactly 0 beyond its reach, and whole vectors cost less than remainders.
 void set_range(const PlaneBand& band, double center, int first, AxisProfile& axis) {
   constexpr int kVector = 16;
   const double relative = center - 0.5 - first;
@@ -135,7 +138,7 @@ void add_band(const PlaneBand& band, Tile& tile) {
   }
 }
 
-// Cells of about the ideal side, and as many of them as fit into the period exactly.
+// Sets the side of the cells near its ideal value, such that a whole number of cells fits into the period.
 void set_cells(const TextureOptions& options, PlaneBand& band) {
   const double ideal = kGaborPlaneCell / band.band.a;
   const auto set = [ideal](int period, double& side, int& wrap) {
@@ -146,8 +149,8 @@ void set_cells(const TextureOptions& options, PlaneBand& band) {
   set(options.period_height, band.cell_y, band.wrap_y);
 }
 
-// Impulses in a cell. On a torus smaller than a kernel there are as many as elsewhere under a kernel: with
-// fewer the noise would be no Gaussian.
+// The number of impulses in a cell. A period smaller than a kernel has as many impulses as there are
+// elsewhere under one kernel: with fewer the noise would not be Gaussian.
 int count_impulses(const GaborLayer& layer, const PlaneBand& band) {
   const double area = band.cell_x * band.cell_y * band.band.a * band.band.a;  // in units of 1/a^2
   const double wanted = layer.impulses_per_kernel * area / kGaborKernelArea;
@@ -166,7 +169,7 @@ std::vector<PlaneBand> plane_bands(const GaborLayer& layer, const TextureOptions
     plane.reach = static_cast<double>(kGaborReach) / b.a;
     set_cells(options, plane);
     plane.impulses_per_cell = count_impulses(layer, plane);
-    // Variance = density K^2/2 (integral of e^2)^2: the phase is uniform, so the cosine contributes 1/2.
+    // The variance is density K^2/2 (integral of e^2)^2; the factor 1/2 comes from the uniform phase.
     const double energy = kGaborProfileEnergy / b.a;
     const double density = plane.impulses_per_cell / (plane.cell_x * plane.cell_y);
     plane.amplitude =

@@ -1,4 +1,4 @@
-// A Gabor layer on a plane: the texture that the layer was fitted to, of any size.
+// A Gabor layer on a plane: a texture like the photo that the layer was fitted to, of any size.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,20 @@ namespace astrolith {
 struct TextureOptions {
   std::uint64_t seed = 1;
   int stream = 0;  // textures of one seed and different streams are independent
-  // The texture repeats after so many pixels, to float rounding and without a seam; 0 = never. Both or none.
+  // The texture repeats after this many pixels without a seam, up to float rounding; 0: never. Set both or
+  // none.
   int period_width = 0;
   int period_height = 0;
 };
 
 // Heights at pixel centres, row-major (height x width), x to the right, y down; length units, mean 0,
-// standard deviation layer.height_rms. Stationary: the top left part of a larger texture is the smaller
-// texture. Each band takes layer.impulses_per_kernel impulses under a kernel, rounded to whole impulses in a
-// cell. Throws InputError for a size below 1 x 1, and for periods too small for the layer: where its lobes
-// are so narrow that the frequencies which repeat hold less than half of their variance, or more than twice.
-// When `progress` asks to stop, the rows not yet made are 0.
+// standard deviation layer.height_rms. The noise is stationary: a smaller texture is the top left part of a
+// larger one. Each band has layer.impulses_per_kernel impulses under a kernel, rounded to a whole number of
+// impulses in a cell.
+//
+// Throws InputError for a size below 1 x 1, and for a period that is too small for the layer. A period is too
+// small if the lobes are so narrow that the frequencies which repeat hold less than half or more than twice
+// of their variance. When `progress` asks to stop, the rows not yet made are 0.
 std::vector<float> synthesize_texture(const GaborLayer& layer, int width, int height,
                                       const TextureOptions& options = {}, const Progress& progress = {});
 

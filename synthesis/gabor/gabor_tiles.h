@@ -1,5 +1,5 @@
-// The impulses of one bandwidth of surface noise in tiles of cells, kept while there is room: neighbouring
-// blocks of a mesh, and its samples and its normals, need the same ones.
+// The impulses of one bandwidth of surface noise, in tiles of cells. Tiles are kept while there is room,
+// since neighbouring blocks of a mesh, and the samples and normals of one block, need the same impulses.
 #pragma once
 
 #include <array>
@@ -14,17 +14,18 @@
 
 namespace astrolith {
 
-// Impulses in the order of their cells (z, then y, then x), and a box that holds their supports.
+// The impulses of a tile in the order of their cells (z, then y, then x), and a box that holds their
+// supports.
 struct GaborTile {
   std::vector<ImpulseChunk> chunks;
   std::array<float, 3> low, high;
 };
 
-// Some of a tile's cells: bit (z * kTileCells + y) * kTileCells + x.
+// A set of cells of a tile: bit (z * kTileCells + y) * kTileCells + x stands for the cell (x, y, z).
 using TileCells = std::uint64_t;
 inline constexpr TileCells kWholeTile = ~TileCells{0};
 
-// The tiles of one band that are kept. They are locked one by one, so that threads seldom wait for each
+// The kept tiles of one band. They lie on shelves with a lock each, so that threads seldom wait for each
 // other.
 struct GaborTileCache {
   struct Shelf {
@@ -38,19 +39,19 @@ struct GaborTileCache {
   std::unique_ptr<std::array<Shelf, kShelves>> shelves = std::make_unique<std::array<Shelf, kShelves>>();
 };
 
-// The tiles of one band on a body. Members may be called from many threads.
+// The tiles of one band on a body. The members may be called from many threads.
 class GaborTiles {
  public:
-  // `cache` holds tiles of this band on this body alone. All three must outlive the object.
+  // `cache` must belong to this band on this body. All three arguments must outlive the object.
   GaborTiles(const SurfaceBand& band, const GaborGround& ground, const GaborTileCache& cache)
       : band_(band), ground_(ground), cache_(cache) {}
 
   const SurfaceBand& band() const { return band_; }
 
-  // The tile whose first cell is kTileCells times the index.
+  // The tile whose first cell is kTileCells times the index. It is drawn unless the cache holds it.
   std::shared_ptr<const GaborTile> tile(const std::array<int, 3>& index) const;
 
-  // The tile with the impulses of some cells alone, drawn anew.
+  // The tile with the impulses of the given cells only. It is drawn anew, and not kept.
   std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index, TileCells cells) const;
 
  private:

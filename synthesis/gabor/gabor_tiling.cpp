@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-// c(n, f) of the header; frequency is f over a, period is n in units of 1/a.
+// c(n, f) of the header. `frequency` is f / a, and `period` is n in units of 1/a.
 double periodic_sum(double period, double frequency) {
   double sum = 1.0;
   for (int j = 1; j * period < 2.0 * static_cast<double>(kGaborReach); ++j) {
@@ -24,10 +24,10 @@ double periodic_sum(double period, double frequency) {
 double gabor_profile_correlation(double tau) {
   constexpr int kSteps = 256;
   const double reach = static_cast<double>(kGaborReach);
-  const double begin = tau - reach;  // where both profiles live: begin .. reach
+  const double begin = tau - reach;  // both profiles are nonzero between begin and reach
   if (!(begin < reach)) return 0.0;
   const double step = (reach - begin) / kSteps;
-  double sum = 0.0;  // trapezoidal; both ends are 0, slopes too
+  double sum = 0.0;  // trapezoidal rule; values and slopes are 0 at both ends
   for (int i = 1; i < kSteps; ++i) {
     const double u = begin + i * step;
     sum += static_cast<double>(gabor_profile(static_cast<float>(u))) *

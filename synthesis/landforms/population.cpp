@@ -28,7 +28,7 @@ int number_of(const Population& population, const BareSurface& surface, const Co
               const std::string& where) {
   if (population.count) return *population.count;
   const double mean = *population.density * surface.area();
-  if (mean > 0.9 * kMaxDrawnFeatures) {  // far beyond chance
+  if (mean > 0.9 * kMaxDrawnLandforms) {  // far beyond chance
     char text[160];
     std::snprintf(
         text, sizeof text,

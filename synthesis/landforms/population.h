@@ -20,7 +20,7 @@ struct DrawnLandform {
 double power_law_diameter(const Population& population, double u);
 
 // The landforms of a population. Landform i does not depend on the count. Throws InputError, naming `where`,
-// when a density would draw more than about kMaxDrawnFeatures.
+// when a density would draw more than about kMaxDrawnLandforms.
 std::vector<DrawnLandform> draw_population(const Population& population, const BareSurface& surface,
                                            std::uint64_t seed, int layer_index, const std::string& where);
 

@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::uint32_t kWarpStream = 0x77617270u;  // far from the numbers of layers' octaves
+constexpr std::uint32_t kWarpStream = 0x77617270u;  // far from the stream numbers of the octaves of layers
 constexpr int kChunk = 256;
 
 ASTROLITH_SIMD_CLONES void clamp_all(int n, const float* __restrict p, float low, float high,
@@ -36,7 +36,7 @@ CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const 
     made.octaves[axis] = arrays.add(octaves);
     if (axis != 0) continue;
     made.bound = sum_bound(octaves) * (1.0 + 1e-5) + 1e-6 * farthest;
-    // The three displacements' gradients are the rows of the derivative.
+    // The gradients of the three displacements are the rows of the derivative of warp(p).
     made.lipschitz_bound = 1.0 + std::sqrt(3.0) * slope_bound(Noise::kSimplex, octaves);
   }
   return made;

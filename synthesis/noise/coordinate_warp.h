@@ -1,5 +1,5 @@
-// Coordinates displaced by fractal noise (thesis eq. 4.6): p + warp(p), each axis by a sum of simplex noise
-// of its own.
+// Coordinates displaced by fractal noise (thesis eq. 4.6): p + warp(p). Each axis is displaced by its own sum
+// of octaves of simplex noise.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,23 @@
 
 namespace astrolith {
 
-// Octaves too fine for float coordinates of points that may come to lie in the domain are left out.
+// The displacement of one body or layer. Octaves too fine for the float coordinates of displaced points are
+// left out.
 struct CoordinateWarp {
-  ArrayRange<NoiseOctave> octaves[3];  // of the displacement along x, y, z, length units
-  Vec3f low, high;                     // points outside are displaced as the nearest one inside
-  double bound = 0.0;                  // no coordinate is displaced by more, length units
+  ArrayRange<NoiseOctave> octaves[3];  // displacements along x, y and z, length units
+  Vec3f low, high;                     // a point outside is displaced as the nearest point inside
+  double bound = 0.0;                  // largest displacement of a coordinate, length units
   // |p + warp(p) - q - warp(q)| <= lipschitz_bound |p - q|, in exact arithmetic.
   double lipschitz_bound = 1.0;
 };
 
-// `seed` belongs to what is warped; the warp's noises are independent of the noises made from it. Displaced
-// points of interest lie in `domain`.
+// `seed` is the seed of the layer or body whose coordinates are warped. The noises of the warp are
+// independent of the noises made from that seed. `domain` holds the displaced points p + warp(p) of interest.
+// The octaves are stored in `arrays`.
 CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const Box& domain,
                                     ArrayStore& arrays);
 
-// p + warp(p).
+// The displaced point p + warp(p), length units.
 ASTROLITH_HD inline Vec3f warped(const CoordinateWarp& warp, const ArrayView& arrays, const Vec3f& p) {
   const Vec3f q{math::clamp(p.x, warp.low.x, warp.high.x), math::clamp(p.y, warp.low.y, warp.high.y),
                 math::clamp(p.z, warp.low.z, warp.high.z)};
@@ -38,7 +40,7 @@ ASTROLITH_HD inline Vec3f warped(const CoordinateWarp& warp, const ArrayView& ar
   return {along(warp.octaves[0], p.x), along(warp.octaves[1], p.y), along(warp.octaves[2], p.z)};
 }
 
-// (wx, wy, wz)[i] = p_i + warp(p_i); the outputs overlap no other array.
+// Writes (wx, wy, wz)[i] = p_i + warp(p_i) for n points. The output arrays overlap no other array.
 void warp_points(const CoordinateWarp& warp, const ArrayView& arrays, int n, const float* x, const float* y,
                  const float* z, float* wx, float* wy, float* wz);
 

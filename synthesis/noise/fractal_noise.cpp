@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-constexpr int kChunk = 256;  // ten arrays of so many floats stay in the first cache over all octaves
+constexpr int kChunk = 256;  // ten arrays of this many floats stay in the first cache
 using Chunk = std::array<float, kChunk>;
 
 ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, float high, float scale,
@@ -24,7 +24,7 @@ double farthest_coordinate(double low, double high, double scale, double bias) {
   return std::max(std::fabs(scale * low + bias), std::fabs(scale * high + bias));
 }
 
-// The sum over octaves at coordinates of the noise, of kChunk points at most.
+// Writes the sum of the octaves at n <= kChunk arguments of the noise.
 void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves, int n, const float* x,
                  const float* y, const float* z, float* height) {
   std::fill(height, height + n, 0.0f);

@@ -1,5 +1,5 @@
-// A fractal layer of the recipe (thesis algorithms 4 and 5): a sum of octaves of noise, at one point, over
-// many points at once, and over boxes.
+// A fractal layer of the recipe (thesis algorithms 4 and 5): a sum of octaves of noise. It is evaluated at
+// one point, over many points at once, and as bounds over boxes.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace astrolith {
 
-// A coordinate of the noise from one of space.
+// The argument of the noise along one axis, from the coordinate p of a point: scale clamp(p, low, high) +
+// bias.
 ASTROLITH_KERNEL float placed_coordinate(float p, float low, float high, float scale, float bias) {
   return math::fma(math::clamp(p, low, high), scale, bias);
 }
@@ -25,19 +26,19 @@ struct FractalNoise {
   Vec3f scale, bias;
   ArrayRange<NoiseOctave> octaves;
   float gradient_modulation = 0.0f;
-  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
+  double height_bound = 0.0;  // bound of |n(p)|, length units
 
-  // Whether the noise can be evaluated to the digits of coordinates local to an origin.
+  // Whether evaluate_local_heights() accepts this noise.
   bool has_local_form() const { return !warped; }
 };
 
-// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-// `domain`, where no surface is, are moved to its border. Octaves too fine for float coordinates within it
-// are left out (noise_octaves.h).
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
+// surface; points outside it are moved to its border. Octaves too fine for float coordinates within the
+// domain are left out (noise_octaves.h).
 FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                         ArrayStore& arrays);
 
-// n(p), length units.
+// The height n(p), length units.
 ASTROLITH_HD inline float height_at(const FractalNoise& n, const ArrayView& arrays, const Vec3f& at) {
   const Vec3f p = n.warped ? warped(n.warp, arrays, at) : at;
   const Vec3f q{placed_coordinate(p.x, n.low.x, n.high.x, n.scale.x, n.bias.x),
@@ -55,16 +56,17 @@ ASTROLITH_HD inline float height_at(const FractalNoise& n, const ArrayView& arra
   return sum.value;
 }
 
-// height[i] = n(p_i): the bits of height_at, vectorised.
+// Writes height[i] = n(p_i), length units. The loop is vectorised and gives the same bits as height_at.
 void evaluate_heights(const FractalNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
 
-// height[i] = n(origin + (x, y, z)) to the digits of x, y and z: cells of the lattices are counted from the
-// origin's. Expects points within the domain, and a noise that has_local_form().
+// Writes height[i] = n(origin + (x, y, z)[i]). Lattice cells are counted from the cell of the origin, so that
+// the heights resolve the float steps of x, y and z. The points must lie within the domain, and
+// has_local_form() must hold.
 void evaluate_local_heights(const FractalNoise& n, const ArrayView& arrays, const Vec3d& origin, int count,
                             const float* x, const float* y, const float* z, float* height);
 
-// n(p) at every float point of a box.
+// An interval that holds n(p) for every float point p of the box, length units.
 ASTROLITH_HD inline Interval bound_heights(const FractalNoise& n, const ArrayView& arrays, const Box& box) {
   const Box p = n.warped ? warped_box(n.warp, arrays, box) : box;
   return bound_octaves(n.noise, arrays[n.octaves], n.octaves.count,

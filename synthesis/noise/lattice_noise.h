@@ -1,6 +1,6 @@
-// What lattice noises share: hashes of lattice points, and gradients chosen by them. No branches and no
-// tables, so that compilers vectorise over points. Selections are made by sign bits with integer logic: the
-// compiler tangles conditions on one hash with each other.
+// Hashes of lattice points, and gradients chosen by these hashes, for all lattice noises. The code has
+// neither branches nor tables, so that compilers vectorise it over points. Selections use sign bits and
+// integer logic, since compilers entangle several conditions on one hash.
 #pragma once
 
 #include <cstdint>
@@ -11,46 +11,47 @@
 
 namespace astrolith {
 
-// A noise and its gradient per unit of its argument.
+// The value of a noise, and its gradient per unit of the argument.
 struct NoiseSample {
   float value;
   Vec3f gradient;
 };
 
-// A lattice point (i, j, k) as an integer: seed + i kLatticeX + j kLatticeY + k kLatticeZ, modulo 2^32.
+// The lattice point (i, j, k) is identified by seed + i kLatticeX + j kLatticeY + k kLatticeZ, modulo 2^32.
 inline constexpr std::uint32_t kLatticeX = 0x8da6b343u, kLatticeY = 0xd8163841u, kLatticeZ = 0xcb1ab31fu;
 
-// i, j, k: whole numbers, at most 2^24 in magnitude.
+// Expects whole numbers i, j, k of at most 2^24 in magnitude.
 ASTROLITH_KERNEL std::uint32_t lattice_point(float i, float j, float k, std::uint32_t seed) {
   return seed + static_cast<std::uint32_t>(static_cast<std::int32_t>(i)) * kLatticeX +
          static_cast<std::uint32_t>(static_cast<std::int32_t>(j)) * kLatticeY +
          static_cast<std::uint32_t>(static_cast<std::int32_t>(k)) * kLatticeZ;
 }
 
-// Enough mixing for the top bits to choose a gradient. Simplex noise takes two rounds, as its recipes do
-// since the first of them; one does as well for the cubic lattices, and is faster.
+// Hashes of a lattice point whose top bits choose a gradient. Simplex noise keeps two rounds of mixing, so
+// that its recipes keep their shapes. One round is enough for the cubic lattices, and faster.
 ASTROLITH_KERNEL std::uint32_t lattice_hash(std::uint32_t point) {
   point = (point ^ (point >> 16)) * 0x7feb352du;
   return (point ^ (point >> 15)) * 0x846ca68bu;
 }
 ASTROLITH_KERNEL std::uint32_t short_lattice_hash(std::uint32_t point) {
   point ^= point >> 15;
-  return point * (point + 0x7feb352du);  // by itself: a constant factor would leave neighbours correlated
+  return point * (point + 0x7feb352du);  // a constant factor would leave neighbours correlated
 }
 
-// a where the top bit of `sign` is set, else b.
+// Returns a if the top bit of `sign` is set, else b.
 ASTROLITH_KERNEL float choose_by_sign(std::uint32_t sign, float a, float b) {
   const std::int32_t mask = static_cast<std::int32_t>(sign) >> 31;
   return math::float_of((math::bits_of(a) & mask) | (math::bits_of(b) & ~mask));
 }
 
-// v with its sign changed where the top bit of `sign` is set.
+// Returns v, with its sign changed if the top bit of `sign` is set.
 ASTROLITH_KERNEL float flip_sign(float v, std::uint32_t sign) {
   return math::float_of(math::bits_of(v) ^ static_cast<std::int32_t>(sign & 0x80000000u));
 }
 
-// The product of (x, y, z) with one of the twelve edge directions of a cube, chosen by the top four bits g of
-// the hash (Perlin 2002): u = x, or y where g >= 8; v = y where g < 4, x where g is 12 or 14, else z.
+// The dot product of (x, y, z) with one of the twelve edge directions of a cube. The top four bits g of the
+// hash choose the direction (Perlin 2002): u = y if g >= 8, else x; v = y if g < 4, x if g is 12 or 14, else
+// z; the product is +-u +-v.
 ASTROLITH_KERNEL float gradient_product(std::uint32_t hash, float x, float y, float z) {
   const float u = choose_by_sign(hash, y, x);
   const float x_or_z = choose_by_sign(hash & (hash << 1) & ~(hash << 3), x, z);

@@ -1,4 +1,4 @@
-// A noise of the recipe by itself, with arrays of its own, for whoever needs no field.
+// A noise layer of the recipe together with its own arrays, for users who need no field.
 //
 //   const LoneNoise<FractalNoise> noise(layer, seed, layer_index, domain);
 //   noise.evaluate(n, x, y, z, height);
@@ -12,18 +12,18 @@ namespace astrolith {
 template <class Noise>
 class LoneNoise {
  public:
-  // The arguments of make_noise for the layer.
+  // Takes the arguments of the make_noise() of this kind of layer.
   template <class AnyLayer>
   LoneNoise(const AnyLayer& layer, std::uint64_t seed, int layer_index, const Box& domain)
       : noise_(make_noise(layer, seed, layer_index, domain, arrays_)) {}
 
-  // height[i] = n(p_i), length units.
+  // Writes height[i] = n(p_i), length units.
   void evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
     evaluate_heights(noise_, arrays_.view(), n, x, y, z, height);
   }
-  // |n(p)| never exceeds this, length units.
+  // A bound of |n(p)|, length units.
   double height_bound() const { return noise_.height_bound; }
-  // n(p) at every float point of a box.
+  // An interval that holds n(p) for every float point p of the box, length units.
   Interval bound_heights(const Box& box) const {
     return astrolith::bound_heights(noise_, arrays_.view(), box);
   }

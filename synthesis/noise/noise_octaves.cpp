@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSteepestOctave = 1e12;  // keeps the squares of slopes finite in a float
 
-// One loop a noise: a choice inside it would keep it from vectorising.
+// Each noise has its own loop: a choice inside the loop would keep it from vectorising.
 #define ASTROLITH_OCTAVE_LOOP(name, noise)                                                     \
   ASTROLITH_SIMD_CLONES void name(const NoiseOctave& octave, int n, const float* __restrict x, \
                                   const float* __restrict y, const float* __restrict z,        \
@@ -69,14 +69,16 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
   return octaves;
 }
 
-std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave> of_origin, const Vec3d& q) {
-  std::vector<NoiseOctave> octaves(of_origin.begin(), of_origin.end());
+std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave> octaves_at_origin,
+                                       const Vec3d& q) {
+  std::vector<NoiseOctave> octaves(octaves_at_origin.begin(), octaves_at_origin.end());
   for (NoiseOctave& o : octaves) {
     const Vec3d at = static_cast<double>(o.frequency) * q;
     Vec3d cell{std::floor(at.x), std::floor(at.y), std::floor(at.z)};
     Vec3d lattice = cell;
     if (noise == Noise::kSimplex) {
-      // Its lattice is skewed by a third of the coordinates' sum, which is to stay whole.
+      // The simplex lattice is skewed by a third of the sum of the coordinates. This third must be a whole
+      // number.
       cell.z -= std::fmod(std::fmod(cell.x + cell.y + cell.z, 3.0) + 3.0, 3.0);
       const double skew = (cell.x + cell.y + cell.z) / 3.0;
       lattice = cell + Vec3d{skew, skew, skew};

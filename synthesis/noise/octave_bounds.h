@@ -1,4 +1,4 @@
-// What is certain about fractal sums over a box, for CPU and GPU.
+// Bounds of fractal sums of noise over boxes, for CPU and GPU.
 #pragma once
 
 #include <span>
@@ -8,8 +8,9 @@
 
 namespace astrolith {
 
-// A noise's values and its greatest slope: 6.960 and 3.619 for simplex and Perlin noise (by search over all
-// positions and gradients), and a distance changes by no more than the way gone.
+// The range of a noise and its Lipschitz bound, per unit of the argument. A search over all positions and
+// gradients found the largest slopes 6.960 (simplex) and 3.619 (Perlin). A distance, as in Worley noise, has
+// the Lipschitz constant 1.
 struct NoiseRange {
   double low, high, slope;
 };
@@ -29,12 +30,13 @@ ASTROLITH_HD inline NoiseRange range_of(Noise noise) {
   }
 }
 
-// One octave's noise over a box: its value at the centre and its greatest slope tell more than its range
-// where the box is small beside the noise's landforms.
+// An interval that holds one octave's noise, without its amplitude, for every point of the box. If the box is
+// small beside the features of the noise, the value at the centre and the Lipschitz bound are tighter than
+// the range.
 ASTROLITH_HD inline Interval bound_noise(Noise noise, const NoiseOctave& octave, const Box& box) {
   const NoiseRange range = range_of(noise);
   const double f = static_cast<double>(octave.frequency);
-  const double rounding = 1e-6 * f * largest_coordinate(box);  // of coordinates, in cells
+  const double rounding = 1e-6 * f * largest_coordinate(box);  // error of a float coordinate, cells
   const double spread = range.slope * (0.5 * f * norm(box.extent()) + rounding) + 1e-5;
   if (spread >= 1.0) return {range.low, range.high};
   const Vec3d c = f * box.center();
@@ -44,7 +46,7 @@ ASTROLITH_HD inline Interval bound_noise(Noise noise, const NoiseOctave& octave,
   return {std::max(range.low, value - spread), std::min(range.high, value + spread)};
 }
 
-// The sum at every float point of the box, modulated or not.
+// An interval that holds the sum, modulated or not, for every float point of the box; length units.
 ASTROLITH_HD inline Interval bound_octaves(Noise noise, const NoiseOctave* octaves, std::uint32_t count,
                                            const Box& box, bool modulated) {
   Interval sum;
@@ -57,7 +59,7 @@ ASTROLITH_HD inline Interval bound_octaves(Noise noise, const NoiseOctave* octav
   return sum;
 }
 
-// What placing a fractal layer's points makes of a box's values low .. high along an axis.
+// The image of the coordinates low .. high under placed_coordinate() (fractal_noise.h), and of a box.
 ASTROLITH_HD inline Interval bound_placed(double low, double high, float domain_low, float domain_high,
                                           float scale, float bias) {
   const double a = clamped(low, double{domain_low}, double{domain_high}),
@@ -73,8 +75,8 @@ ASTROLITH_HD inline Box bound_placed(const Box& p, const Vec3f& low, const Vec3f
   return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
 }
 
-// Where a warp takes the points of a box, from what it displaces them by along each axis; `farthest` is its
-// greatest displacement.
+// A box that holds the displaced points of `box`. The intervals bound the displacements along each axis;
+// `farthest` bounds the displacement of every coordinate. All in length units.
 ASTROLITH_HD inline Box displaced_box(const Box& box, const Interval& dx, const Interval& dy,
                                       const Interval& dz, double farthest) {
   const double rounding = 1e-6 * (largest_coordinate(box) + farthest);

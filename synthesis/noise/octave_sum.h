@@ -1,4 +1,5 @@
-// One octave of a fractal sum at one point: what loops over points run, and a GPU's threads.
+// One octave of a fractal sum at one point. The loops over points and the threads of a GPU call these
+// functions.
 #pragma once
 
 #include "synthesis/noise/noise_octaves.h"
@@ -8,7 +9,7 @@
 
 namespace astrolith {
 
-// sum + amplitude noise(frequency p + offset), of a noise known at compile time.
+// Returns sum + amplitude noise(frequency p + offset), for a noise known at compile time.
 template <auto noise>
 ASTROLITH_KERNEL float with_octave(const NoiseOctave& o, float x, float y, float z, float sum) {
   return math::fma(o.amplitude,
@@ -17,13 +18,14 @@ ASTROLITH_KERNEL float with_octave(const NoiseOctave& o, float x, float y, float
                    sum);
 }
 
-// A sum and its slope so far.
+// A sum of octaves and its slope.
 struct ModulatedSum {
   float value;
   Vec3f slope;
 };
 
-// The same divided by 1 + modulation |slope|^2, to which this octave adds first.
+// Adds amplitude noise / (1 + modulation |slope|^2) to the value of the sum. `slope` is the slope of the sum
+// with this octave included.
 template <auto noise>
 ASTROLITH_KERNEL ModulatedSum with_modulated_octave(const NoiseOctave& o, float modulation, float x, float y,
                                                     float z, const ModulatedSum& sum) {
@@ -35,7 +37,7 @@ ASTROLITH_KERNEL ModulatedSum with_modulated_octave(const NoiseOctave& o, float 
   return {sum.value + o.amplitude * s.value / math::fma(modulation, steepness, 1.0f), d};
 }
 
-// Of a noise known at run time.
+// The functions above for a noise known at run time. Only simplex and Perlin noise can be modulated.
 ASTROLITH_HD inline float with_octave(Noise noise, const NoiseOctave& o, const Vec3f& p, float sum) {
   switch (noise) {
     case Noise::kSimplex:

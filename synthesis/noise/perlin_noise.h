@@ -6,11 +6,11 @@
 
 namespace astrolith {
 
-// The largest blend of gradients is 1.03635 (by search over all positions and gradients); its reciprocal,
-// rounded down, keeps the noise within [-1, 1].
+// A search over all positions and gradients found the largest blend of gradients, 1.03635. The scale is its
+// reciprocal, rounded down, so that the noise lies in [-1, 1].
 inline constexpr float kPerlinScale = 0.9649f;
 
-// 6 t^5 - 15 t^4 + 10 t^3: from 0 to 1 with two derivatives that vanish at both ends.
+// The fade 6 t^5 - 15 t^4 + 10 t^3 rises from 0 to 1; its first two derivatives vanish at both ends.
 ASTROLITH_KERNEL float quintic_fade(float t) {
   return t * t * t * math::fma(t, math::fma(t, 6.0f, -15.0f), 10.0f);
 }
@@ -18,7 +18,7 @@ ASTROLITH_KERNEL float quintic_slope(float t) { return 30.0f * t * t * math::fma
 
 ASTROLITH_KERNEL float lerp(float a, float b, float t) { return math::fma(t, b - a, a); }
 
-// The products of gradient and offset at the cube's corners, x fastest; or anything else at its corners.
+// Eight values at the corners of a cube, x fastest: for example the products of gradient and offset.
 struct CubeCorners {
   float at[8];
 };
@@ -27,7 +27,7 @@ ASTROLITH_KERNEL float blend(const CubeCorners& c, float u, float v, float w) {
               lerp(lerp(c.at[4], c.at[5], u), lerp(c.at[6], c.at[7], u), v), w);
 }
 
-// A point in its cube, and the cube's first corner.
+// A point in its lattice cube, and the lattice point of the first corner of the cube.
 struct PerlinCell {
   float x, y, z;  // [0, 1)
   std::uint32_t first;
@@ -43,6 +43,7 @@ ASTROLITH_KERNEL std::uint32_t corner_hash(const PerlinCell& cell, unsigned corn
   return short_lattice_hash(cell.first + steps);
 }
 
+// The dot product of gradient and offset at each corner of the cell.
 ASTROLITH_KERNEL CubeCorners perlin_corners(const PerlinCell& c) {
   const float x1 = c.x - 1.0f, y1 = c.y - 1.0f, z1 = c.z - 1.0f;
   return {
@@ -52,14 +53,15 @@ ASTROLITH_KERNEL CubeCorners perlin_corners(const PerlinCell& c) {
        gradient_product(corner_hash(c, 6), c.x, y1, z1), gradient_product(corner_hash(c, 7), x1, y1, z1)}};
 }
 
-// In [-1, 1], zero mean, standard deviation 0.260, about one landform a unit length; |x|, |y|, |z| <= 2^20.
+// Perlin noise at (x, y, z), where |x|, |y|, |z| <= 2^20. Range [-1, 1], mean 0, standard deviation 0.260,
+// about one feature per unit length.
 ASTROLITH_KERNEL float perlin_noise(float x, float y, float z, std::uint32_t seed) {
   const PerlinCell cell = perlin_cell(x, y, z, seed);
   return kPerlinScale *
          blend(perlin_corners(cell), quintic_fade(cell.x), quintic_fade(cell.y), quintic_fade(cell.z));
 }
 
-// The blend of the corners' gradients along one axis, whose direction is (x, y, z).
+// The components of the eight gradients along one axis, whose direction is (x, y, z).
 ASTROLITH_KERNEL CubeCorners gradient_parts(const PerlinCell& c, float x, float y, float z) {
   return {{gradient_product(corner_hash(c, 0), x, y, z), gradient_product(corner_hash(c, 1), x, y, z),
            gradient_product(corner_hash(c, 2), x, y, z), gradient_product(corner_hash(c, 3), x, y, z),
@@ -67,7 +69,8 @@ ASTROLITH_KERNEL CubeCorners gradient_parts(const PerlinCell& c, float x, float 
            gradient_product(corner_hash(c, 6), x, y, z), gradient_product(corner_hash(c, 7), x, y, z)}};
 }
 
-// The same bits, with the noise's gradient: the blended gradients, and what the blend itself changes by.
+// perlin_noise(), bit for bit, with its gradient. The gradient has two terms: the blended gradients of the
+// corners, and the corner values times the derivative of the blend.
 ASTROLITH_KERNEL NoiseSample perlin_with_gradient(float x, float y, float z, std::uint32_t seed) {
   const PerlinCell cell = perlin_cell(x, y, z, seed);
   const CubeCorners c = perlin_corners(cell);

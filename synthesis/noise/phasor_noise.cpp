@@ -12,7 +12,8 @@ namespace {
 constexpr int kChunk = 128;
 using Chunk = std::array<float, kChunk>;
 
-// real, imaginary += the k-th impulse of the cell (dx, dy, dz) away from each point's; points in cells.
+// Adds one impulse to the sums at n points, in cells. The impulse lies (dx, dy, dz) cells away from the cell
+// of each point.
 ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, float dy, float dz,
                                        std::uint32_t seed, int n, const float* __restrict x,
                                        const float* __restrict y, const float* __restrict z,

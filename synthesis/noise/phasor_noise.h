@@ -1,10 +1,12 @@
 // Phasor noise (Tricard et al. 2019; thesis eq. 2.27 to 2.30), at one point and over many points at once.
 //
-//   height(p) = amplitude profile(phi(p)),      phi(p) = arg sum_j a(|p - p_j|) exp(2 pi i (F u_j.(p - p_j) +
-//   psi_j))
-// Impulses p_j are as many in each cell of a lattice, uniform in it, with directions u_j about the layer's
-// and uniform phases psi_j, so that phi is uniform too. a(d) = (1 - (d / cell)^2)^3, nearly a Gaussian, is 0
-// beyond a cell. The profile is a wave of one turn between -1 and 1 with no mean: contrast never fades.
+//   height(p) = amplitude profile(phi(p)),
+//   phi(p) = arg sum_j a(|p - p_j|) exp(2 pi i (F u_j.(p - p_j) + psi_j))
+//
+// Every cell of a lattice holds the same number of impulses p_j, uniformly distributed. Their directions u_j
+// lie in a cone about the layer's direction. Their phases psi_j are uniform, and so phi is uniform too. The
+// kernel a(d) = (1 - (d / cell)^2)^3 is nearly a Gaussian, and 0 beyond one cell. The profile is a periodic
+// wave between -1 and 1 with mean 0. Unlike a sum of waves, the noise never loses contrast.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +21,19 @@
 
 namespace astrolith {
 
-// What all kernels of a layer share; lengths in cells.
+// The parameters that all kernels of a layer share. Lengths are in cells.
 struct PhasorKernels {
   Vec3f direction;
   float spread, turns_per_cell;
 };
 
-// A sum of kernels.
+// A complex sum of kernels.
 struct PhasorSum {
   float real, imaginary;
 };
 
-// The sum and the impulse of the cell (dx, dy, dz) away from a point's that a seed draws; the point in cells.
+// Adds one impulse to the sum at the point (x, y, z), in cells. The impulse lies (dx, dy, dz) cells away from
+// the point's cell; `seed` draws it.
 ASTROLITH_KERNEL PhasorSum with_phasor_impulse(const PhasorKernels& k, float dx, float dy, float dz,
                                                std::uint32_t seed, float x, float y, float z,
                                                const PhasorSum& sum) {
@@ -41,8 +44,8 @@ ASTROLITH_KERNEL PhasorSum with_phasor_impulse(const PhasorKernels& k, float dx,
   const float px = (x - cx) - unit_float(h), py = (y - cy) - unit_float(h1), pz = (z - cz) - unit_float(h2);
   const float rest = math::max(0.0f, 1.0f - math::fma(px, px, math::fma(py, py, pz * pz)));
   const float weight = rest * rest * rest;
-  // Sixteen bits place the direction's height in the cap, as many its azimuth; the phase has a hash of its
-  // own.
+  // Sixteen bits of one hash choose the height of the direction in the cone, the other sixteen its azimuth.
+  // The phase has its own hash.
   const float height = static_cast<float>(h3 >> 16) * 0x1p-16f,
               azimuth = static_cast<float>(h3 & 0xffffu) * 0x1p-16f;
   const Vec3f u = direction_in_cone(k.direction, k.spread, height, azimuth);
@@ -52,7 +55,7 @@ ASTROLITH_KERNEL PhasorSum with_phasor_impulse(const PhasorKernels& k, float dx,
           math::fma(weight, math::sin_turns(turns), sum.imaginary)};
 }
 
-// The seed of impulse j, and the number of cell c of the 27 around a point, counted along x first.
+// The seed of impulse j of a cell; and the offset of cell c of the 27 cells around a point, x fastest.
 ASTROLITH_KERNEL std::uint32_t phasor_seed(std::uint32_t seed, int j) {
   return hash_append(seed, static_cast<std::uint32_t>(j));
 }
@@ -60,7 +63,7 @@ ASTROLITH_KERNEL Vec3f phasor_cell(int c) {
   return {static_cast<float>(c % 3 - 1), static_cast<float>(c / 3 % 3 - 1), static_cast<float>(c / 9 - 1)};
 }
 
-// The profile at a phase in turns, [-1/2, 1/2].
+// The profile at a phase in turns, [-1/2, 1/2]; values in [-1, 1].
 ASTROLITH_HD inline float phasor_profile(PhasorProfile profile, float turns) {
   switch (profile) {
     case PhasorProfile::kTriangle:
@@ -79,20 +82,20 @@ struct PhasorNoise {
   PhasorKernels kernels{};
   float inverse_cell = 0.0f, amplitude = 0.0f;
   PhasorProfile profile = PhasorProfile::kSine;
-  int impulses = 0;  // a cell
+  int impulses = 0;  // number of impulses in each cell
   std::uint32_t seed = 0;
-  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
+  double height_bound = 0.0;  // bound of |n(p)|, length units
 };
 
-// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-// `domain`, where no surface is, are moved to its border. Where the domain reaches beyond 2^20 cells from the
-// origin, where float coordinates could not tell cells apart, there is no noise. Heights are 0 on average;
-// their standard deviation over the amplitude is 1/sqrt 2 for a sine, 1/sqrt 3 for a triangle and a sawtooth,
-// 1 for a square.
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
+// surface; points outside it are moved to its border. If the domain reaches farther than 2^20 cells from the
+// origin, the amplitude is 0, since float coordinates could not tell cells apart. Heights have mean 0. Their
+// standard deviation over the amplitude is 1/sqrt 2 for a sine, 1/sqrt 3 for a triangle and a sawtooth, and 1
+// for a square.
 PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                        ArrayStore& arrays);
 
-// n(p), length units.
+// The height n(p), length units.
 ASTROLITH_HD inline float height_at(const PhasorNoise& n, const ArrayView&, const Vec3f& at) {
   const Vec3f p = moved_into(at, n.low, n.high);
   const float x = p.x * n.inverse_cell, y = p.y * n.inverse_cell, z = p.z * n.inverse_cell;
@@ -106,14 +109,15 @@ ASTROLITH_HD inline float height_at(const PhasorNoise& n, const ArrayView&, cons
   return n.amplitude * phasor_profile(n.profile, math::atan2_turns(sum.imaginary, sum.real));
 }
 
-// height[i] = n(p_i): the bits of height_at, vectorised.
+// Writes height[i] = n(p_i), length units. The loop is vectorised and gives the same bits as height_at.
 void evaluate_heights(const PhasorNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
 
-// The phase phi(p_i) in turns, [-1/2, 1/2].
+// Writes turns[i] = phi(p_i) in turns, [-1/2, 1/2].
 void evaluate_phases(const PhasorNoise& n, int count, const float* x, const float* y, const float* z,
                      float* turns);
 
+// An interval that holds n(p) for every point, length units. It does not depend on the box.
 ASTROLITH_HD inline Interval bound_heights(const PhasorNoise& n, const ArrayView&, const Box&) {
   return {-n.height_bound, n.height_bound};
 }

@@ -1,5 +1,4 @@
-// Where noise in space is evaluated: within the domain that holds the surface, and no farther from the origin
-// than float coordinates can tell the cells of its lattice apart.
+// Copies of points, moved into the domain within which float coordinates resolve the cells of a noise.
 #pragma once
 
 #include <vector>
@@ -8,7 +7,7 @@
 
 namespace astrolith {
 
-// Points moved into the box low .. high, as three arrays of n floats.
+// Points moved into the box low .. high, stored as three arrays of n floats.
 class PointsInDomain {
  public:
   PointsInDomain(const Vec3f& low, const Vec3f& high, int n, const float* x, const float* y, const float* z)
@@ -24,7 +23,7 @@ class PointsInDomain {
   const float* x() const { return coordinates_.data(); }
   const float* y() const { return x() + size_; }
   const float* z() const { return y() + size_; }
-  // Holds the points.
+  // The bounding box of the moved points.
   Box box() const {
     Box box;
     for (int i = 0; i < size_; ++i) box.extend({x()[i], y()[i], z()[i]});

@@ -15,14 +15,14 @@
 namespace astrolith {
 namespace {
 
-constexpr int kChunk = 128;  // an array a corner's windows stays in the first cache
+constexpr int kChunk = 128;  // the windows of eight corners stay in the first cache
 using Chunk = std::array<float, kChunk>;
 
-constexpr double kMostTurns = 262144.0;  // 2^18: floats hold five bits of a turn
+constexpr double kMostTurns = 262144.0;  // 2^18, where a float holds five bits of a turn
 constexpr double kClip = 6.0;
 constexpr std::uint32_t kWaveStream = 0x77617665u;
 
-// Where the points of a chunk are in their cells, and the windows of the cells' corners.
+// The windows and hashes of the eight corners around each point of a chunk.
 struct Windows {
   std::array<Chunk, 8> weight;
   std::array<std::array<std::uint32_t, kChunk>, 8> corner;
@@ -52,7 +52,7 @@ ASTROLITH_SIMD_CLONES void find_windows(int n, const float* __restrict x, const 
   }
 }
 
-// height[i] += one wave as the cells around the points see it.
+// Adds one wave to the heights, with the phases of the eight corners around each point.
 ASTROLITH_SIMD_CLONES void add_wave(const Wave& wave, float randomness, int n, const float* __restrict x,
                                     const float* __restrict y, const float* __restrict z,
                                     const Windows& windows, float* __restrict height) {
@@ -72,7 +72,7 @@ double coherence_of(double randomness) {
   return x > 0.0 ? std::pow(std::sin(x) / x, 2) : 1.0;
 }
 
-// The frequencies of all waves, one in each of equal shares of the band, cycles per length unit.
+// The frequencies of all waves, in cycles per length unit. Each lies in its own equal share of the band.
 std::vector<double> wave_frequencies(const RandomPhaseLayer& layer, std::uint32_t seed) {
   std::vector<double> frequencies;
   for (int j = 0; j < layer.waves; ++j) {

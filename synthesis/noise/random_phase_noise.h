@@ -1,9 +1,12 @@
 // Local random phase noise (Gilet et al. 2014; thesis eq. 2.25), at one point and over many points at once.
 //
 //   n(p) = rms / norm(p) sum_i w_i(p) sum_j A_j cos(2 pi f_j.p + phi_ij)
-// with i over the eight lattice points around p. Each window w_i is a product of cos(pi/2 fade(t)) along the
-// axes, t in cells: its squares add up to 1 over the lattice, so that waves of independent phases have the
-// same variance everywhere. Phases that the cells share in part add up coherently; norm(p) makes up for it:
+//
+// Here i runs over the eight lattice points around p. Each window w_i is a product of cos(pi/2 fade(t)) along
+// the axes, t in cells. The squares of the windows add up to 1 over the lattice, so that waves of independent
+// phases have the same variance everywhere. The part of the phases that cells share adds up coherently;
+// norm(p) compensates for it:
+//
 //   norm^2 = (1 - c) + c (sum_i w_i)^2,      c = (sin(pi r) / (pi r))^2,     r the layer's randomness.
 #pragma once
 
@@ -17,7 +20,7 @@
 
 namespace astrolith {
 
-// One wave: turns at p are frequency . p + phase.
+// One wave. Its angle at p is frequency . p + phase, in turns.
 struct Wave {
   Vec3f frequency;
   float phase;
@@ -27,7 +30,8 @@ struct Wave {
 
 ASTROLITH_KERNEL float phase_window(float t) { return math::cos_turns(0.25f * quintic_fade(t)); }
 
-// How much the c-th lattice point around a point counts there, and its hash; coordinates in cells.
+// The weight of the c-th lattice point around the point (x, y, z), in cells, and the hash of the lattice
+// point.
 struct PhaseCorner {
   float weight;
   std::uint32_t hash;
@@ -42,12 +46,12 @@ ASTROLITH_KERNEL PhaseCorner phase_corner(unsigned c, float x, float y, float z,
   return {wx * wy * wz, cell.first + step};
 }
 
-// 1 / norm, from the sum of the weights.
+// The factor 1 / norm, from the sum of the weights.
 ASTROLITH_KERNEL float phase_scale(float coherence, float sum) {
   return 1.0f / math::sqrt(math::fma(coherence, math::fma(sum, sum, -1.0f), 1.0f));
 }
 
-// The height and one wave as a corner sees it.
+// Adds one wave to the height, with the weight and the phase of one corner.
 ASTROLITH_KERNEL float with_wave(const Wave& w, float randomness, const PhaseCorner& corner, float x, float y,
                                  float z, float height) {
   const float turns = math::fma(w.frequency.x, x, math::fma(w.frequency.y, y, w.frequency.z * z));
@@ -60,19 +64,19 @@ struct RandomPhaseNoise {
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<Wave> waves;
   float inverse_cell = 0.0f, randomness = 0.0f, coherence = 0.0f;
-  float clip = 0.0f;  // heights are cut at 6 times the standard deviation
+  float clip = 0.0f;  // heights are clamped to +- clip: 6 standard deviations, length units
   std::uint32_t seed = 0;
-  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
+  double height_bound = 0.0;  // bound of |n(p)|, length units
 };
 
-// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-// `domain`, where no surface is, are moved to its border. Waves of more than 2^18 turns within the domain,
-// whose phases float coordinates could not hold, are left out. Heights are 0 on average, their standard
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
+// surface; points outside it are moved to its border. Waves of more than 2^18 turns within the domain are
+// left out, since float coordinates could not hold their phases. Heights have mean 0; their standard
 // deviation over seeds is height_rms.
 RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index,
                             const Box& domain, ArrayStore& arrays);
 
-// n(p), length units.
+// The height n(p), length units.
 ASTROLITH_HD inline float height_at(const RandomPhaseNoise& n, const ArrayView& arrays, const Vec3f& at) {
   const Vec3f p = moved_into(at, n.low, n.high);
   PhaseCorner corners[8];
@@ -91,10 +95,11 @@ ASTROLITH_HD inline float height_at(const RandomPhaseNoise& n, const ArrayView& 
   return math::clamp(height * phase_scale(n.coherence, weights), -n.clip, n.clip);
 }
 
-// height[i] = n(p_i): the bits of height_at, vectorised.
+// Writes height[i] = n(p_i), length units. The loop is vectorised and gives the same bits as height_at.
 void evaluate_heights(const RandomPhaseNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
 
+// An interval that holds n(p) for every point, length units. It does not depend on the box.
 ASTROLITH_HD inline Interval bound_heights(const RandomPhaseNoise& n, const ArrayView&, const Box&) {
   return {-n.height_bound, n.height_bound};
 }

@@ -1,16 +1,16 @@
-// Three-dimensional simplex noise (Perlin 2001, after Gustavson's exposition 2005): gradients at the corners
-// of a lattice of tetrahedra, each fading out inside its neighbours.
+// Three-dimensional simplex noise (Perlin 2001, in the form of Gustavson 2005). Each corner of a tetrahedral
+// lattice has a gradient, whose contribution fades to 0 within the neighbouring cells.
 #pragma once
 
 #include "synthesis/noise/lattice_noise.h"
 
 namespace astrolith {
 
-// The largest sum of corner contributions is 0.013007 (by search over all positions and gradients); its
-// reciprocal, rounded down, keeps the noise within [-1, 1].
+// A search over all positions and gradients found the largest sum of corner contributions, 0.013007. The
+// scale is its reciprocal, rounded down, so that the noise lies in [-1, 1].
 inline constexpr float kSimplexScale = 76.8f;
 
-// A point in its tetrahedron: seen from each of the four corners, whose lattice points are given too.
+// A point in its tetrahedron: its offsets from the four corners, and the lattice points of the corners.
 struct SimplexCell {
   Vec3f from[4];
   std::uint32_t corner[4];
@@ -45,20 +45,21 @@ ASTROLITH_KERNEL SimplexCell simplex_cell(float x, float y, float z, std::uint32
            first + (kLatticeX + kLatticeY + kLatticeZ)}};
 }
 
-// 1/2 - r^2, zero beyond r^2 = 1/2, where neighbouring cells begin: a larger radius would make the noise
-// jump.
+// The fade 1/2 - r^2, and 0 beyond r^2 = 1/2, where neighbouring cells begin. A larger radius would make the
+// noise discontinuous.
 ASTROLITH_KERNEL float simplex_fade(const Vec3f& d) {
   return math::max(0.5f - math::fma(d.x, d.x, math::fma(d.y, d.y, d.z * d.z)), 0.0f);
 }
 
-// fade^4 gradient.d
+// The contribution of one corner, fade^4 gradient.d.
 ASTROLITH_KERNEL float simplex_corner(std::uint32_t corner, const Vec3f& d) {
   const float fade = simplex_fade(d);
   const float fade2 = fade * fade;
   return fade2 * fade2 * gradient_product(lattice_hash(corner), d.x, d.y, d.z);
 }
 
-// In [-1, 1], zero mean, standard deviation 0.389, about one landform a unit length; |x|, |y|, |z| <= 2^20.
+// Simplex noise at (x, y, z), where |x|, |y|, |z| <= 2^20. Range [-1, 1], mean 0, standard deviation 0.389,
+// about one feature per unit length.
 ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t seed) {
   const SimplexCell cell = simplex_cell(x, y, z, seed);
   const float n0 = simplex_corner(cell.corner[0], cell.from[0]);
@@ -68,7 +69,7 @@ ASTROLITH_KERNEL float simplex_noise(float x, float y, float z, std::uint32_t se
   return kSimplexScale * ((n0 + n1) + (n2 + n3));
 }
 
-// Adds a corner's contribution and its gradient, fade^4 g - 8 fade^3 (g.d) d.
+// Adds the contribution of one corner, and its gradient fade^4 g - 8 fade^3 (g.d) d.
 ASTROLITH_KERNEL void add_simplex_corner(std::uint32_t corner, const Vec3f& d, NoiseSample& sum) {
   const std::uint32_t hash = lattice_hash(corner);
   const Vec3f g = gradient_of(hash);
@@ -82,7 +83,7 @@ ASTROLITH_KERNEL void add_simplex_corner(std::uint32_t corner, const Vec3f& d, N
   sum.gradient.z += math::fma(radial, d.z, fade4 * g.z);
 }
 
-// The same noise, but for the last bits of its sum, with its gradient.
+// simplex_noise() with its gradient. The last bits of the value differ, since the sum has another order.
 ASTROLITH_KERNEL NoiseSample simplex_with_gradient(float x, float y, float z, std::uint32_t seed) {
   const SimplexCell cell = simplex_cell(x, y, z, seed);
   NoiseSample sum{};

@@ -1,8 +1,8 @@
-// A sparse layer of the recipe: white noise, mostly zero, upscaled level by level and clamped; at one point,
-// over many points at once, and over boxes.
+// A sparse layer of the recipe: white noise that is mostly zero, upscaled level by level and clamped. It is
+// evaluated at one point, over many points at once, and as bounds over boxes.
 //
-// Upscaling an image again and again by quadratic interpolation makes of one pixel a quadratic B-spline in
-// each direction: each level is the sum of such bumps, evaluated where it is needed and never stored.
+// Repeated upscaling of an image by quadratic interpolation turns one pixel into a quadratic B-spline along
+// each axis. Each level is the sum of such bumps. They are evaluated directly, and no image is stored.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace astrolith {
 
-// The inverse of the height of a lone bump of value 1.
+// The inverse of the height of one bump of value 1 without neighbours.
 inline constexpr float kInverseBumpHeight = 64.0f / 27.0f;  // (4/3)^3
 
-// A cell's value: zero, or with the probability uniform in [0, 1).
+// The value of a cell: with the given probability uniform in [0, 1), else zero.
 ASTROLITH_KERNEL float sparse_value(float i, float j, float k, std::uint32_t seed, float probability,
                                     float inverse_probability) {
   const std::uint32_t hash = lattice_hash(lattice_point(i, j, k, seed));
@@ -25,7 +25,8 @@ ASTROLITH_KERNEL float sparse_value(float i, float j, float k, std::uint32_t see
   return u < probability ? u * inverse_probability : 0.0f;
 }
 
-// The quadratic B-splines of the three cells nearest to a coordinate, d from the middle one's centre.
+// The quadratic B-spline weights of the three nearest cells along one axis. d in [-1/2, 1/2] is the distance
+// from the centre of the middle cell.
 struct BumpWeights {
   float below, at, above;
 };
@@ -34,7 +35,8 @@ ASTROLITH_KERNEL BumpWeights bump_weights(float d) {
   return {0.5f * below * below, 0.75f - d * d, 0.5f * above * above};
 }
 
-// Upscaled noise of unit cells centred at whole coordinates; from 0 to 64/27, and 1 on a lone value of 1.
+// Upscaled noise of unit cells with centres at whole coordinates. Range [0, 64/27]; a value of 1 without
+// neighbours gives 1 at its centre.
 ASTROLITH_KERNEL float upscaled_noise(float x, float y, float z, std::uint32_t seed, float probability,
                                       float inverse_probability) {
   const float i = math::floor(x + 0.5f), j = math::floor(y + 0.5f), k = math::floor(z + 0.5f);
@@ -53,13 +55,14 @@ ASTROLITH_KERNEL float upscaled_noise(float x, float y, float z, std::uint32_t s
          math::fma(wz.below, plane(k - 1.0f), math::fma(wz.above, plane(k + 1.0f), wz.at * plane(k)));
 }
 
+// One level of upscaled noise.
 struct SparseLevel {
   float frequency;  // cells per length unit
-  float gain;       // of this level over the first
+  float gain;       // amplitude over that of the first level
   std::uint32_t seed;
 };
 
-// A level's part of the sum at a value of its noise, and the height from the whole sum.
+// Adds one level to the sum; and the height from the complete sum.
 ASTROLITH_KERNEL float with_sparse_level(float gain, float noise, float cut, float sum) {
   return sum + gain * math::max(noise - cut, 0.0f);
 }
@@ -67,20 +70,23 @@ ASTROLITH_KERNEL float sparse_height(float amplitude, float sum, float cut) {
   return -amplitude * math::max(sum - cut, 0.0f);
 }
 
-// What is cut off is either every level or the sum of all levels; the other cut is 0.
+// The thresholds cut either each level (level_cut) or the sum of all levels (sum_cut). The other threshold is
+// 0.
 struct SparseNoise {
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<SparseLevel> levels;
   float amplitude = 0.0f, level_cut = 0.0f, sum_cut = 0.0f;
   float probability = 0.0f, inverse_probability = 0.0f;
-  double height_bound = 0.0;  // |n(p)| never exceeds it, length units
+  double height_bound = 0.0;  // bound of |n(p)|, length units
 };
 
-// Levels too fine for float coordinates within the domain are left out.
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
+// surface; points outside it are moved to its border. Levels too fine for float coordinates within the domain
+// are left out.
 SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                        ArrayStore& arrays);
 
-// n(p), length units.
+// The height n(p), length units.
 ASTROLITH_HD inline float height_at(const SparseNoise& n, const ArrayView& arrays, const Vec3f& at) {
   const Vec3f p = moved_into(at, n.low, n.high);
   const SparseLevel* levels = arrays[n.levels];
@@ -94,20 +100,20 @@ ASTROLITH_HD inline float height_at(const SparseNoise& n, const ArrayView& array
   return sparse_height(n.amplitude, sum, n.sum_cut);
 }
 
-// height[i] = n(p_i): the bits of height_at, vectorised.
+// Writes height[i] = n(p_i), length units. The loop is vectorised and gives the same bits as height_at.
 void evaluate_heights(const SparseNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
 
-inline constexpr double kMostSparseCells = 512.0;  // looked at one by one
-inline constexpr double kSparseSlack = 1e-5;       // relative, for the rounding of positions and sums
+inline constexpr double kMostSparseCells = 512.0;  // largest number of cells that a bound visits
+inline constexpr double kSparseSlack = 1e-5;       // relative slack for the rounding of positions and sums
 
-// The greatest weight that a cell's bump has from low to high, in cells from its centre.
+// The greatest weight of a bump between low and high, in cells from its centre.
 ASTROLITH_HD inline double greatest_bump(double low, double high) {
   const double d = std::max(std::max(0.0, low), -high);
   return d <= 0.5 ? 0.75 - d * d : d < 1.5 ? 0.5 * (1.5 - d) * (1.5 - d) : 0.0;
 }
 
-// The greatest noise of one level over a box.
+// An upper bound of one level over a box, before its threshold.
 ASTROLITH_HD inline double greatest_sparse_noise(const SparseLevel& level, float probability,
                                                  float inverse_probability, const Box& box) {
   const double f = double{level.frequency};
@@ -134,7 +140,7 @@ ASTROLITH_HD inline double greatest_sparse_noise(const SparseLevel& level, float
   return std::min(sum * (1.0 + kSparseSlack), 1.0) * double{kInverseBumpHeight};  // the weights add up to 1
 }
 
-// n(p) at every float point of a box.
+// An interval that holds n(p) for every float point p of the box, length units.
 ASTROLITH_HD inline Interval bound_heights(const SparseNoise& n, const ArrayView& arrays, const Box& box) {
   const Box inside = moved_into(box, n.low, n.high);
   const SparseLevel* levels = arrays[n.levels];

@@ -1,9 +1,10 @@
 // Three-dimensional Worley noise (Worley 1996): the distances from a point to the nearest and the second
-// nearest of random landform points, one in each cell of a cubic lattice.
+// nearest of random feature points. Each cell of a cubic lattice has one feature point.
 //
-// Feature points keep to the inner 80 % of their cells' sides, and distances are cut at 1.1 cells: what is
-// nearer than that lies in the 27 cells around the point, so the noise is exact and continuous. The nearest
-// point is farther in less than one place of 10^5, the second nearest in one of 2000.
+// Feature points keep to the inner 80 % of the sides of their cells, and distances are clamped at 1.1 cells.
+// Every feature point nearer than that lies in the 27 cells around the point, so that the noise is exact and
+// continuous. The nearest feature point is farther than 1.1 cells at less than one place in 10^5, the second
+// nearest at one place in 2000.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +13,10 @@
 
 namespace astrolith {
 
-inline constexpr float kWorleyJitter = 0.8f;           // side of a landform point's range, in cells
-inline constexpr float kWorleyFarthest = 1.1f;         // 3/2 - jitter/2 cells
-inline constexpr float kWorleyScale = 1.0f / 1.1001f;  // to [0, 1]; rounded down
-inline constexpr float kWorleyMeanF1 = 0.4629f;        // of distances in units of kWorleyFarthest, measured
+inline constexpr float kWorleyJitter = 0.8f;           // side of the range of a feature point, in cells
+inline constexpr float kWorleyFarthest = 1.1f;         // 3/2 - jitter/2, in cells
+inline constexpr float kWorleyScale = 1.0f / 1.1001f;  // scales distances to [0, 1]; rounded down
+inline constexpr float kWorleyMeanF1 = 0.4629f;        // mean distances in units of kWorleyFarthest, measured
 inline constexpr float kWorleyMeanF2 = 0.6499f;
 
 // Squared distances in cells, at most kWorleyFarthest^2.
@@ -23,32 +24,33 @@ struct WorleyDistances {
   float nearest, second;
 };
 
-// 23 bits as a float in [1, 2).
+// A float in [1, 2) from 23 bits.
 ASTROLITH_KERNEL float one_to_two(std::uint32_t bits) {
   return math::float_of(static_cast<std::int32_t>((bits & 0x007fffffu) | 0x3f800000u));
 }
 
-// Squared distance to a cell's landform point, which lies at jitter (m - 3/2) + 1/2 in the cell, m in [1,
-// 2)^3 by its hash; (x, y, z) is the point in that cell plus 3/2 jitter - 1/2, so that one fma makes each
-// difference.
+// The squared distance from a point to the feature point of a cell. The hash of the cell gives m in [1, 2)^3,
+// and the feature point lies at jitter (m - 3/2) + 1/2 in the cell. (x, y, z) is the point's offset in the
+// cell plus 3/2 jitter - 1/2, so that one fma makes each difference.
 ASTROLITH_KERNEL float feature_distance(std::uint32_t cell, float x, float y, float z) {
   std::uint32_t h = short_lattice_hash(cell);
   h ^= h >> 15;
-  // Overlapping fields: the nine high bits of each are its own.
+  // The bit fields of the three axes overlap, but the nine high bits of each field belong to one axis alone.
   const float dx = math::fma(-kWorleyJitter, one_to_two(h >> 9), x);
   const float dy = math::fma(-kWorleyJitter, one_to_two(h), y);
   const float dz = math::fma(-kWorleyJitter, one_to_two(h << 10), z);
   return math::fma(dx, dx, math::fma(dy, dy, dz * dz));
 }
 
-// kSecond: whether the second distance is wanted; without it it stays at its largest.
+// The two squared distances at a point, in squared cells. Without kSecond, `second` stays at its largest
+// value.
 template <bool kSecond>
 ASTROLITH_KERNEL WorleyDistances worley_distances(float x, float y, float z, std::uint32_t seed) {
   const float i = math::floor(x), j = math::floor(y), k = math::floor(z);
   constexpr float kOffset = 1.5f * kWorleyJitter - 0.5f;
   const float fx = x - i + kOffset, fy = y - j + kOffset, fz = z - k + kOffset;
   const std::uint32_t cell = lattice_point(i, j, k, seed);
-  // Positive floats have the order of their bits, whose minima compilers vectorise well.
+  // The bits of positive floats, as integers, have the same order. Compilers vectorise integer minima well.
   std::int32_t nearest = math::bits_of(kWorleyFarthest * kWorleyFarthest), second = nearest;
   ASTROLITH_UNROLL
   for (int c = -1; c <= 1; ++c) {
@@ -69,8 +71,8 @@ ASTROLITH_KERNEL WorleyDistances worley_distances(float x, float y, float z, std
   return {math::float_of(nearest), math::float_of(second)};
 }
 
-// Each has zero mean and lies in [-mean, 1 - mean], where 1 stands for kWorleyFarthest cells; standard
-// deviations 0.149, 0.119 and 0.148. |x|, |y|, |z| <= 2^20.
+// The three noises at (x, y, z), where |x|, |y|, |z| <= 2^20, in units of kWorleyFarthest cells. Each has
+// mean 0; F1 and F2 lie in [-mean, 1 - mean]. The standard deviations are 0.149, 0.119 and 0.148.
 ASTROLITH_KERNEL float worley_f1(float x, float y, float z, std::uint32_t seed) {
   return math::fma(kWorleyScale, math::sqrt(worley_distances<false>(x, y, z, seed).nearest), -kWorleyMeanF1);
 }

@@ -1,4 +1,4 @@
-// What is certain about spots over a box, for CPU and GPU.
+// Bounds of spot noise over a box, for CPU and GPU.
 #pragma once
 
 #include "numerics/portable_double.h"
@@ -6,10 +6,10 @@
 
 namespace astrolith {
 
-inline constexpr double kMostSpotCells = 4096.0;  // drawn at once
-inline constexpr double kSpotSlack = 1e-5;        // relative, for the rounding of positions and kernels
+inline constexpr double kMostSpotCells = 4096.0;  // largest number of cells whose impulses are drawn at once
+inline constexpr double kSpotSlack = 1e-5;        // relative slack for the rounding of positions and kernels
 
-// Of q^2 weighted along the kernel's axes, over a box: q.q and q.V^-1 q.
+// The ranges over a box of two squares in the axes of the kernel: q.q, and q.V^-1 q, which decides the cut.
 struct SpotSquares {
   Interval plain, cut;
 };
@@ -22,12 +22,12 @@ ASTROLITH_HD inline SpotSquares spot_squares(const SpotKernel& k, const SpotImpu
         lower(along_x, low.x, high.x) + lower(along_y, low.y, high.y) + lower(along_z, low.z, high.z);
     const double most =
         lower(along_x, high.x, low.x) + lower(along_y, high.y, low.y) + lower(along_z, high.z, low.z);
-    const double near = std::max(std::max(0.0, least), -most),
-                 far = std::max(std::fabs(least), std::fabs(most));
-    squares.plain.low += near * near;
-    squares.plain.high += far * far;
-    squares.cut.low += double{inverse_v} * near * near;
-    squares.cut.high += double{inverse_v} * far * far;
+    const double nearest = std::max(std::max(0.0, least), -most),
+                 farthest = std::max(std::fabs(least), std::fabs(most));
+    squares.plain.low += nearest * nearest;
+    squares.plain.high += farthest * farthest;
+    squares.cut.low += double{inverse_v} * nearest * nearest;
+    squares.cut.high += double{inverse_v} * farthest * farthest;
   };
   add(k.xx, k.xy, k.xz, k.inverse_vx);
   add(k.yx, k.yy, k.yz, k.inverse_vy);
@@ -35,7 +35,8 @@ ASTROLITH_HD inline SpotSquares spot_squares(const SpotKernel& k, const SpotImpu
   return squares;
 }
 
-// K over squared distances, as spot_profile: one part falls, the other rises to its ring and falls.
+// The range of spot_profile() over squared distances. One term falls with the distance; the other rises up to
+// its ring and falls beyond.
 ASTROLITH_HD inline Interval bound_spot_profile(const SpotKernel& k, const Interval& q2) {
   const auto bowl = [&](double q) { return portable::exp(-double{k.alpha} * q); };
   const auto ring = [&](double q) {
@@ -48,7 +49,7 @@ ASTROLITH_HD inline Interval bound_spot_profile(const SpotKernel& k, const Inter
   return plus(fall, scaled(double{k.kappa}, {std::min(ring(q2.low), ring(q2.high)), ring(at_ring)}));
 }
 
-// The sum of some spots of one kind over a box, one by one.
+// Bounds the sum of spots of one kind over a box. Spots are added one at a time.
 struct SpotSumBound {
   const SpotKind& kind;
   const Box& box;
@@ -73,7 +74,8 @@ struct SpotSumBound {
   }
 };
 
-// Of all that reach the box; where they are too many to be drawn, what is certain without.
+// An interval that holds the clipped sum of all spots of a kind over the box. If too many cells lie around
+// the box, the impulses are not drawn, and the interval is the range of the clip.
 ASTROLITH_HD inline Interval bound_drawn_spots(const SpotKind& kind, const std::uint32_t* thresholds,
                                                const Box& box) {
   const double clip = double{kind.clip};

@@ -10,29 +10,31 @@
 
 namespace astrolith {
 
-// Where the spots of one size lie: cells of a lattice (thesis 5.3.1, figure 5.5).
+// The lattice in whose cells the impulses of one size lie (thesis 5.3.1, figure 5.5).
 struct SpotLattice {
   Vec3f a, b, c;       // edges of a cell, length units
-  Vec3d cells_per[3];  // their inverse: position to cells, per length unit
+  Vec3d cells_per[3];  // rows of the inverse matrix: position to cells, per length unit
   std::uint32_t seed;
-  double probability;  // of a cell to hold any
-  double reach;        // of an impulse beyond its cell, in cells, and more than rounding
-  float width;         // of where a cell's impulses lie, in cells
+  double probability;  // probability of a cell to hold impulses
+  double reach;        // distance of an impulse beyond its cell and a margin for rounding, in cells
+  float width;         // side of the range of a cell's impulses, in cells
   float least_weight;
-  // Of an array of thresholds: a cell whose hash is at least the l-th of its own has l + 1 impulses.
+  // The thresholds of this lattice in a shared array. A cell has l + 1 impulses if its hash reaches the l-th
+  // threshold and not the next.
   std::uint32_t first_threshold, num_thresholds;
 };
 
-// One part of the spots of one size; all parts of a size have the same impulses, each moved by its own
+// One part of the spots of one size. All parts of a size share their impulses; each part moves them by its
 // offset.
 struct SpotKind {
   SpotKernel kernel;
   SpotLattice lattice;
-  Vec3d offset;   // from an impulse, length units
-  Vec3d support;  // half axes, length units
-  float clip;     // of |sum|, length units
+  Vec3d offset;   // from the impulse to the centre of the part, length units
+  Vec3d support;  // half the sides of the box around a spot, length units
+  float clip;     // limit of |sum|, length units
 };
 
+// The cells first to last along each edge of the lattice.
 struct SpotCells {
   int first[3], last[3];
 
@@ -42,7 +44,7 @@ struct SpotCells {
   }
 };
 
-// Those whose impulses may reach a box.
+// The cells whose impulses may reach a box.
 ASTROLITH_HD inline SpotCells spot_cells_around(const SpotKind& kind, const Box& box) {
   const Vec3d low = box.min - kind.offset - kind.support, high = box.max - kind.offset + kind.support;
   SpotCells cells;
@@ -58,18 +60,20 @@ ASTROLITH_HD inline SpotCells spot_cells_around(const SpotKind& kind, const Box&
   return cells;
 }
 
-// Whether a spot of these half axes touches the box.
+// Whether a spot, with a box of these half sides around it, touches the box.
 ASTROLITH_HD inline bool spot_reaches(const SpotImpulse& impulse, const Vec3d& half, const Box& box) {
-  const auto near = [](double c, double low, double high, double h) { return c >= low - h && c <= high + h; };
-  return near(double{impulse.x}, box.min.x, box.max.x, half.x) &&
-         near(double{impulse.y}, box.min.y, box.max.y, half.y) &&
-         near(double{impulse.z}, box.min.z, box.max.z, half.z);
+  const auto overlaps = [](double c, double low, double high, double h) {
+    return c >= low - h && c <= high + h;
+  };
+  return overlaps(double{impulse.x}, box.min.x, box.max.x, half.x) &&
+         overlaps(double{impulse.y}, box.min.y, box.max.y, half.y) &&
+         overlaps(double{impulse.z}, box.min.z, box.max.z, half.z);
 }
 
-// For the rounding of float positions.
+// The box, widened by the rounding of float positions.
 ASTROLITH_HD inline Box spot_box(const Box& box) { return widened(box, 2e-6 * largest_coordinate(box)); }
 
-// Calls visit(impulse) for those of one cell, before any offset.
+// Calls visit(impulse) for the impulses of one cell, without any offset.
 template <typename Visit>
 ASTROLITH_HD void for_each_spot_of_cell(const SpotLattice& lattice, const std::uint32_t* thresholds, int a,
                                         int b, int c, Visit&& visit) {
@@ -91,7 +95,8 @@ ASTROLITH_HD void for_each_spot_of_cell(const SpotLattice& lattice, const std::u
   }
 }
 
-// Of all cells, in their order (z, then y, then x), those whose spots may reach points of the box.
+// Calls visit(impulse) for the impulses whose spots may reach points of the box, with the offset added. The
+// order is that of their cells (z, then y, then x).
 template <typename Visit>
 ASTROLITH_HD void for_each_spot(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box,
                                 Visit&& visit) {

@@ -6,7 +6,8 @@
 namespace astrolith {
 namespace {
 
-// For l = 0, 1, ..: the share of hashes below P(count <= l), as an integer threshold; up to where 2^-32 ends.
+// The thresholds of Poisson counts: a share P(count <= l) of the hashes is below the l-th threshold. The list
+// ends where a share of 2^-32 is left.
 std::vector<std::uint32_t> poisson_thresholds(double mean) {
   std::vector<std::uint32_t> thresholds;
   double probability = std::exp(-mean), sum = probability;
@@ -19,7 +20,8 @@ std::vector<std::uint32_t> poisson_thresholds(double mean) {
   return thresholds;
 }
 
-// As many in each cell; of a fraction one more by chance.
+// The thresholds of equal counts: each cell has floor(mean) impulses, and one more with the probability mean
+// - floor(mean).
 std::vector<std::uint32_t> even_thresholds(double mean) {
   std::vector<std::uint32_t> thresholds(static_cast<std::size_t>(mean), 0);
   const double more = (mean - std::floor(mean)) * 0x1p32;
@@ -27,7 +29,7 @@ std::vector<std::uint32_t> even_thresholds(double mean) {
   return thresholds;
 }
 
-// The row of an inverse: zero along the other two edges, 1 along this.
+// One row of the inverse matrix of the edges: its product is 1 with `edge`, and 0 with the other two.
 Vec3d across(const Vec3d& edge, const Vec3d& other, const Vec3d& another) {
   const Vec3d normal = cross(other, another);
   return normal * (1.0 / dot(edge, normal));

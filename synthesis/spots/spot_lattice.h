@@ -8,8 +8,8 @@
 
 namespace astrolith {
 
-// Cells of `cell_size` length units to an edge of 1, `density` impulses in an occupied one. Appends to the
-// thresholds that the lattice points into.
+// The lattice of a layer, scaled so that an edge of length 1 becomes `cell_size` length units long. An
+// occupied cell holds `density` impulses on average. Appends the thresholds of the lattice to `thresholds`.
 SpotLattice make_spot_lattice(const SpotLayer& layer, double cell_size, double density, std::uint32_t seed,
                               std::vector<std::uint32_t>& thresholds);
 

@@ -14,7 +14,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kClip = 2.0;  // of a sum of overlapping spots, in greatest kernels
+constexpr double kClip = 2.0;  // limit of a sum of overlapping spots, in units of the greatest kernel
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotImpulse* impulses,
@@ -29,8 +29,8 @@ ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotIm
   }
 }
 
-std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses, const Vec3d& half,
-                                        const Box& box) {
+std::vector<SpotImpulse> impulses_reaching(const std::vector<SpotImpulse>& impulses, const Vec3d& half,
+                                           const Box& box) {
   const Box wide = spot_box(box);
   std::vector<SpotImpulse> found;
   std::copy_if(impulses.begin(), impulses.end(), std::back_inserter(found),
@@ -38,7 +38,7 @@ std::vector<SpotImpulse> those_reaching(const std::vector<SpotImpulse>& impulses
   return found;
 }
 
-// The rotation R by the turns of a part of a spot.
+// A rotation by the angles of a part of a spot, in degrees about x, then y, then z.
 using Rotation = std::array<Vec3d, 3>;  // columns
 
 Rotation rotation(const Vec3d& degrees) {
@@ -79,7 +79,7 @@ SpotKernel kernel_of(const SpotLayer& layer, const SpotPart& part, const Rotatio
           static_cast<float>(layer.sigma)};
 }
 
-// Half the sides of the box around the ellipsoid q.V^-1 q = sigma of a part, length units.
+// Half the sides, in length units, of the box around the ellipsoid q.V^-1 q = sigma of a part.
 Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r, double unit) {
   const Vec3d &a = part.axes, &v = layer.variances;
   const auto side = [&](double x, double y, double z) {
@@ -89,7 +89,7 @@ Vec3d support_of(const SpotLayer& layer, const SpotPart& part, const Rotation& r
          Vec3d{side(r[0].x, r[1].x, r[2].x), side(r[0].y, r[1].y, r[2].y), side(r[0].z, r[1].z, r[2].z)};
 }
 
-// One part of the spots of one size, `unit` long and `amplitude` high.
+// One part of the spots of one size: `unit` length units long and `amplitude` high.
 SpotKind kind_of(const SpotLayer& layer, const SpotPart& part, const SpotLattice& lattice, double unit,
                  double amplitude, double clip) {
   const Rotation turn = rotation(part.turn);
@@ -101,8 +101,8 @@ double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
   return kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
 }
 
-// Adds the sums of one kind's spots to heights at points, which are halved while too many cells lie around
-// them.
+// Adds the sum of one kind's spots to the heights at n points. The points are split into halves while too
+// many cells lie around them.
 void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x, const float* y,
              const float* z, float* height) {
   Box box;
@@ -161,17 +161,18 @@ double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side) {
 }
 
 std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
-                                                 const Box& box, const SpotImpulses* of_larger) {
+                                                 const Box& box, const SpotImpulses* larger_box_impulses) {
   const Box moved = moved_into(box, noise.low, noise.high);
   const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
   const auto too_many = [&](const SpotKind& kind) {
     return spot_cells_around(kind, moved).count() > kMostSpotCells;
   };
-  if (of_larger == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
+  if (larger_box_impulses == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
   auto impulses = std::make_shared<SpotImpulses>();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
-    impulses->push_back(of_larger != nullptr ? those_reaching((*of_larger)[k], kinds[k].support, moved)
-                                             : draw_spots(kinds[k], arrays[noise.thresholds], moved));
+    impulses->push_back(larger_box_impulses != nullptr
+                            ? impulses_reaching((*larger_box_impulses)[k], kinds[k].support, moved)
+                            : draw_spots(kinds[k], arrays[noise.thresholds], moved));
   }
   return impulses;
 }
@@ -189,7 +190,7 @@ void evaluate_heights(const SpotNoise& noise, const ArrayView& arrays, int n, co
     if (impulses == nullptr) {
       add_sum(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
     } else {
-      const std::vector<SpotImpulse> reaching = those_reaching((*impulses)[k], kind.support, box);
+      const std::vector<SpotImpulse> reaching = impulses_reaching((*impulses)[k], kind.support, box);
       add_spots(kind.kernel, reaching.data(), reaching.size(), n, p.x(), p.y(), p.z(), sum.data());
     }
     for (int i = 0; i < n; ++i)

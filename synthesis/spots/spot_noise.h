@@ -1,9 +1,9 @@
-// A spot layer of the recipe (thesis eq. 5.3 to 5.6): its heights at one point, over many points, and over
-// boxes.
+// A spot layer of the recipe (thesis eq. 5.3 to 5.6): its heights at one point, over many points, and as
+// bounds over boxes.
 //
-// Impulses are hashes of their cells: whoever needs some points' heights draws the impulses whose spots reach
-// them, in the order of cells, and a spot adds exactly nothing beyond its support. The bits of a height do
-// not depend on what else was drawn.
+// The impulses of a cell are hashes of the cell. To evaluate points, the impulses whose spots reach them are
+// drawn in the order of the cells. A spot contributes exactly 0 beyond its support. The bits of a height
+// therefore do not depend on other impulses that were drawn.
 #pragma once
 
 #include <cstdint>
@@ -22,33 +22,32 @@ namespace astrolith {
 struct SpotNoise {
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<SpotKind> kinds;
-  ArrayRange<std::uint32_t> thresholds;  // the kinds' lattices point into them
-  double height_bound = 0.0;             // |n(p)| never exceeds it, length units
+  ArrayRange<std::uint32_t> thresholds;  // shared by the lattices of all kinds
+  double height_bound = 0.0;             // bound of |n(p)|, length units
 };
 
-// `layer_index` is the layer's number in the recipe: layers of one seed are independent. Points outside
-// `domain`, where no surface is, are moved to its border. Sizes so fine that float coordinates within it
-// could not tell neighbouring cells apart (above 2^20 cells from the origin) are left out.
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
+// surface; points outside it are moved to its border. Sizes whose lattices reach beyond 2^20 cells from the
+// origin are left out, since float coordinates could not tell neighbouring cells apart.
 SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                      ArrayStore& arrays);
 
-// Drawn impulses, by kind.
+// The drawn impulses of each kind.
 using SpotImpulses = std::vector<std::vector<SpotImpulse>>;
 
-// The impulses that reach a box, chosen from those of a larger box where these are given; null where there
-// are too many to be drawn at once.
+// The impulses whose spots reach a box, for each kind. They are chosen from `larger_box_impulses`, which hold
+// those of a larger box, or drawn if that is null. Returns null if there are too many to be drawn at once.
 std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
-                                                 const Box& box, const SpotImpulses* of_larger);
+                                                 const Box& box, const SpotImpulses* larger_box_impulses);
 
 // The impulses of one kind whose spots may reach the box, in the order of their cells (z, then y, then x).
 std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* thresholds, const Box& box);
 
-// The cells that impulses are drawn from, for a box with sides so long.
+// The number of cells that impulses are drawn from for a cubic box; `side` is in length units.
 double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side);
 
-// n(p), length units, from lists of the impulses that reach p: kind k has impulses[first[k]] to
-// impulses[first[k + 1]
-// - 1].
+// The height n(p), length units, from lists of the impulses that reach p: kind k has impulses[first[k]] to
+// impulses[first[k + 1] - 1].
 ASTROLITH_HD inline float height_at(const SpotNoise& n, const ArrayView& arrays, const SpotImpulse* impulses,
                                     const std::uint32_t* first, const Vec3f& at) {
   const Vec3f p = moved_into(at, n.low, n.high);
@@ -64,11 +63,12 @@ ASTROLITH_HD inline float height_at(const SpotNoise& n, const ArrayView& arrays,
   return height;
 }
 
-// height[i] = n(p_i). `impulses`, unless null, must hold all that reach the points.
+// Writes height[i] = n(p_i), length units. `impulses` must hold all impulses that reach the points, or be
+// null.
 void evaluate_heights(const SpotNoise& n, const ArrayView& arrays, int count, const float* x, const float* y,
                       const float* z, float* height, const SpotImpulses* impulses = nullptr);
 
-// n(p) at every float point of a box.
+// An interval that holds n(p) for every float point p of a box, length units.
 ASTROLITH_HD inline Interval bound_heights(const SpotNoise& n, const ArrayView& arrays, const Box& box) {
   const Box moved = moved_into(box, n.low, n.high);
   const double slack = 3.0 * kSpotSlack * n.height_bound;
@@ -78,8 +78,8 @@ ASTROLITH_HD inline Interval bound_heights(const SpotNoise& n, const ArrayView& 
   }
   return sum;
 }
-// Finds the same bound from `impulses` that hold all spots which reach the box, and draws where they are
-// null.
+// Finds this interval from `impulses`, which must hold all impulses whose spots reach the box. If `impulses`
+// is null, the impulses are drawn.
 Interval bound_heights(const SpotNoise& n, const ArrayView& arrays, const Box& box,
                        const SpotImpulses* impulses);
 

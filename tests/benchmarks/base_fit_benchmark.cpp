@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   app.add_option_function<std::string>("--kernel",
                                        [&](const std::string& word) { options.kernel = kernel_of(word); })
       ->type_name("WORD");
-  app.add_option("--subtract", options.subtract, "share of the spheres that may take away");
+  app.add_option("--subtract", options.subtract, "share of the metaballs that may be subtractive");
   app.add_option("--points", options.points, "0 = as fit_shape");
   app.add_option("--generations", options.generations);
   app.add_option("--seed", options.seed, "of the first fit");

@@ -46,7 +46,7 @@ double rate(const LoneNoise<FractalNoise>& noise, int nx, int ny, int nz, int bo
 }
 
 void print(const char* name, Noise noise, int octaves) {
-  const FractalNoise fractal = noise_of(noise, octaves);
+  const LoneNoise<FractalNoise> fractal = noise_of(noise, octaves);
   std::printf("{\"noise\": \"%s\", \"rows\": %.1f, \"blocks\": %.1f}\n", name,
               rate(fractal, kSide, 1, 1, kSide * kSide), rate(fractal, 9, 9, 9, kSide * kSide * kSide / 729));
 }

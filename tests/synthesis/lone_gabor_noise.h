@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "synthesis/gabor/gabor_surface_noise.h"
+#include "synthesis/gabor/gabor_tiles.h"
 
 namespace astrolith::testing {
 

@@ -23,7 +23,7 @@ struct DetailsFitOptions {
   // The log of the search, or null. A search with a log that holds values continues where the log ends.
   EvaluationLog* log = nullptr;
   // Evaluates whole generations of the search, or null. Without it the CPU does, with the same bits.
-  CandidateEvaluator* swarm = nullptr;
+  CandidateEvaluator* evaluator = nullptr;
 };
 
 struct DetailsFitResult {

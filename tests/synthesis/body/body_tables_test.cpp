@@ -41,7 +41,7 @@ TEST(BodyOperators, AreTheFormulas) {
   }
 }
 
-// Floats keep their digits where one operand is a thousand times the other, deep inside or far outside.
+// Floats keep their digits deep inside or far outside, where one operand is a thousand times the other.
 TEST(BodyOperators, KeepTheirDigitsInFloat) {
   for (const double alpha : {-0.9, 0.0, 0.5, 1.0}) {
     OperatorParameters<float> o;
@@ -73,7 +73,7 @@ Recipe two_balls(const BodyOperation& operation) {
   return recipe;
 }
 
-TEST(CombinedBody, RFunctionsAreBooleanOnTheBodies) {
+TEST(BodyTables, RFunctionsAreBooleanOnTheBodies) {
   for (const double alpha : {-0.5, 0.0, 0.7, 1.0}) {
     BodyOperation operation;
     operation.alpha = alpha;
@@ -94,11 +94,11 @@ TEST(CombinedBody, RFunctionsAreBooleanOnTheBodies) {
     }
     EXPECT_NEAR(both.bounds().max.x, 1.9, 0.15);
     EXPECT_NEAR(common.bounds().min.x, 0.3, 0.15);
-    EXPECT_NEAR(rest.value({-1.01, 0, 0}), -0.01, 1e-3);  // still a distance on the first surface alone
+    EXPECT_NEAR(rest.value({-1.01, 0, 0}), -0.01, 1e-3);  // the first surface keeps its distances
   }
 }
 
-TEST(CombinedBody, BlendsFillTheCreaseAndNothingElse) {
+TEST(BodyTables, BlendsFillTheCreaseAndNothingElse) {
   BodyOperation operation;
   operation.kind = Operator::kBlend;
   operation.width = 0.3;
@@ -152,8 +152,9 @@ Recipe random_recipe(CounterRandom& random, int k) {
   return recipe;
 }
 
-// No box that is called outside or inside holds a point of the other kind, and distances keep their bounds.
-TEST(CombinedBody, BoundsAreNeverWrong) {
+// Boxes that are classified as outside or inside hold no point of the other kind. Distances keep their
+// bounds.
+TEST(BodyTables, BoundsAreNeverWrong) {
   CounterRandom random(10);
   int proved = 0;
   for (int k = 0; k < 40; ++k) {
@@ -193,7 +194,7 @@ TEST(CombinedBody, BoundsAreNeverWrong) {
   EXPECT_GT(proved, 250);
 }
 
-TEST(CombinedBody, GradientsAreUnitNormalsOnTheSurface) {
+TEST(BodyTables, GradientsAreUnitNormalsOnTheSurface) {
   BodyOperation operation;
   operation.alpha = 0.0;
   const testing::LoneBody body(*two_balls(operation).body, 1);
@@ -204,7 +205,7 @@ TEST(CombinedBody, GradientsAreUnitNormalsOnTheSurface) {
   EXPECT_LT(norm(Vec3d{gx, gy, gz} - Vec3d{0.6, -0.8, 0.0}), 2e-3);
 }
 
-TEST(CombinedBody, BecomesClosedManifolds) {
+TEST(BodyTables, BecomesClosedManifolds) {
   CounterRandom random(77);
   for (int k = 0; k < 6; ++k) {
     SCOPED_TRACE(k);

@@ -1,4 +1,4 @@
-// The five kernels: what they are, where they end, what is certain about them over boxes.
+// Tests of the five kernels: their values, their ends and their bounds over boxes.
 #include "synthesis/body/compact_kernel.h"
 
 #include "geometry/mesh_topology.h"
@@ -19,7 +19,7 @@ constexpr Kernel kCompactKernels[] = {Kernel::kMetaball, Kernel::kSoftObject, Ke
 
 double unit_value(Kernel kernel, double x) { return kernel_value<double>({kernel, 1.0, 0.0, 1.0}, x).value; }
 
-// The thesis's formulas, a = b = 1, at d = 1/4 and d = 1/2.
+// The thesis's formulas for a = b = 1 at d = 1/4 and d = 1/2.
 TEST(Kernels, AreTheThesisFormulas) {
   const auto at = [](Kernel kernel, double d) { return unit_value(kernel, d * d); };
   EXPECT_DOUBLE_EQ(at(Kernel::kMetaball, 0.25), 1.0 - 3.0 / 16.0);
@@ -41,7 +41,7 @@ TEST(Kernels, SlopesAndCurvaturesAreDerivatives) {
                                       less = kernel_value(compact_kernel, q - h);
       EXPECT_NEAR(k.slope, (less.value - more.value) / (2 * h), 1e-7);
       EXPECT_NEAR(k.curvature, (less.slope - more.slope) / (2 * h), 1e-4);
-      EXPECT_LE(k.slope, slope_before);  // the bounds over boxes rest on it
+      EXPECT_LE(k.slope, slope_before);  // the bounds over boxes need slopes that fall
       slope_before = k.slope;
     }
   }
@@ -68,7 +68,7 @@ TEST(Kernels, ALoneSphereKeepsItsRadiusForAnyTension) {
   }
 }
 
-// e^tension at the centre, 1 at the surface, 0 at the end, whether that is the kernel's own or the cut-off.
+// A kernel is e^tension at its centre, 1 at the surface and 0 at its end. Its end is its own or the cut-off.
 TEST(Kernels, EndContinuously) {
   for (const Kernel kernel : kCompactKernels) {
     for (const double cutoff : {1.7, 3.0, 25.0, 1e6}) {
@@ -112,7 +112,7 @@ TEST(Kernels, DistanceGradientIsTheDerivativeOfTheDistance) {
              (2 * h);
     };
     const Vec3d expected{slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
-    // Curvature jumps at a metaball kernel's knee and at the ends of supports.
+    // The curvature jumps at the knee of the metaball kernel and at the ends of supports.
     checked += norm(distance_gradient(metaballs, p) - expected) < 0.05 * norm(expected);
     ASSERT_LT(norm(distance_gradient(metaballs, p) - expected), 0.5 * (1.0 + norm(expected))) << k;
   }
@@ -130,7 +130,7 @@ TEST(Kernels, PowersHaveTheDerivativesOfACentreAndARadius) {
   }
 }
 
-// Levels and divisors, by the float evaluation, keep within their bounds.
+// The levels and divisors of the float evaluation keep within their bounds.
 TEST(Kernels, IntervalsHoldEveryValue) {
   CounterRandom random(4);
   int proved = 0, steep = 0;
@@ -140,17 +140,18 @@ TEST(Kernels, IntervalsHoldEveryValue) {
     box.extend({random.uniform(-0.8, 0.8), random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
     const double size = std::pow(10.0, random.uniform(-3.0, -0.3));
     box.extend(box.min + Vec3d{size, size * random.uniform(), size * random.uniform()});
-    const PreparedMetaballs near = metaballs_reaching(metaballs, box);
+    const PreparedMetaballs reaching = metaballs_reaching(metaballs, box);
     const double height = 0.2 * size;
-    const MetaballInterval bound = bound_metaballs(near, box), close = bound_metaballs(near, box, height);
-    const double least = smallest_gradient(near, box);
+    const MetaballInterval bound = bound_metaballs(reaching, box),
+                           close = bound_metaballs(reaching, box, height);
+    const double least = smallest_gradient(reaching, box);
     proved += bound.level_max < 0.0 || bound.level_min > 0.0;
     steep += least > 0.3 * bound.gradient_max;
     for (int i = 0; i < 30; ++i) {
       const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
                     random.uniform(box.min.z, box.max.z)};
       const PointValue v = evaluate_one(metaballs, p);
-      ASSERT_EQ(math::bits_of(v.distance), math::bits_of(evaluate_one(near, p).distance));
+      ASSERT_EQ(math::bits_of(v.distance), math::bits_of(evaluate_one(reaching, p).distance));
       const double divisor = std::sqrt(squared_norm(Vec3d{v.gx, v.gy, v.gz}) +
                                        static_cast<double>(metaballs.parameters.gradient_floor));
       const double level = double{v.distance} * divisor;

@@ -13,7 +13,7 @@ using testing::PointValue;
 using testing::potato_recipe;
 
 TEST(MetaballBody, IsoValueOnlyScalesTheField) {
-  // m >= T is the same body as m/T >= 1: for one kernel T = e^-c moves the surface to q = 1 + c/b.
+  // m >= T is the same body as m/T >= 1. For one kernel T = e^-c moves the surface to q = 1 + c/b.
   MetaballBody body = *testing::sphere_recipe(2.0).body;
   body.blend_exponent = 4.0;
   body.iso_value = std::exp(-3.0);
@@ -22,7 +22,7 @@ TEST(MetaballBody, IsoValueOnlyScalesTheField) {
   EXPECT_LT(v.gx, 0.0f);
 }
 
-// A potato with a third as many spheres that take away, or with none.
+// A potato. If dented, it has a third as many subtractive spheres as others.
 MetaballBody potato(int num_spheres, std::uint64_t seed, double sharpness, bool dented) {
   MetaballBody body = *potato_recipe(num_spheres, seed, sharpness).body;
   CounterRandom random(seed, 1);
@@ -43,7 +43,7 @@ TEST_P(Difference, IsWhatIsLeft) {
     return std::exp(body.blend_exponent * (1.0 - squared_norm(p - s.center) / (s.radius * s.radius)));
   };
   for (const double angle : {0.0, 0.4, 0.9, 1.5, 3.0}) {
-    // Where sum f^m - sum g^m = T^m along a ray from the middle.
+    // Finds the point with sum f^m - sum g^m = T^m on a ray from the middle.
     const Vec3d ray{std::cos(angle), std::sin(angle), 0.0};
     double low = 0.0, high = 1.5;
     for (int i = 0; i < 60; ++i) {
@@ -59,14 +59,14 @@ TEST_P(Difference, IsWhatIsLeft) {
   EXPECT_GT(evaluate_one(metaballs, {-1.0, 0, 0}).distance, 0.0f) << "and none on the other side";
 }
 
-// The last is the sharpest that validation lets through.
+// The last value is the sharpest blend that validation accepts.
 INSTANTIATE_TEST_SUITE_P(Sharpness, Difference,
                          ::testing::Values(0.5, 3.0, 12.0, 60.0 / (1.0 - std::log(0.7))));
 
-TEST(MetaballBody, WhatTakesNothingAwayChangesNoBit) {
+TEST(MetaballBody, SubtractiveSpheresOutOfReachChangeNoBit) {
   MetaballBody body = *potato_recipe(40, 2).body;
   const PreparedMetaballs without = prepare_metaballs(body);
-  body.subtract = {{{50, 0, 0}, 1.0}};  // beyond its support
+  body.subtract = {{{50, 0, 0}, 1.0}};  // its support does not reach the potato
   const PreparedMetaballs with = prepare_metaballs(body);
   CounterRandom random(3);
   for (int i = 0; i < 500; ++i) {
@@ -112,12 +112,12 @@ TEST(MetaballBody, SpheresBeyondTheirSupportChangeNoBit) {
     Box box;
     box.extend({random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)});
     box.extend(box.min + Vec3d{0.05, 0.03, 0.02});
-    const PreparedMetaballs near = metaballs_reaching(all, box);
-    dropped += all.spheres.size() - near.spheres.size();
+    const PreparedMetaballs reaching = metaballs_reaching(all, box);
+    dropped += all.spheres.size() - reaching.spheres.size();
     for (int i = 0; i < 20; ++i) {
       const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
                     random.uniform(box.min.z, box.max.z)};
-      const PointValue a = evaluate_one(all, p), b = evaluate_one(near, p);
+      const PointValue a = evaluate_one(all, p), b = evaluate_one(reaching, p);
       ASSERT_EQ(math::bits_of(a.distance), math::bits_of(b.distance));
       ASSERT_EQ(math::bits_of(a.gx), math::bits_of(b.gx));
     }
@@ -180,7 +180,7 @@ TEST(MetaballBody, IntervalsHoldEveryValue) {
   }
 }
 
-// |grad L| from the double evaluation: at points of a box near the surface it keeps within the bounds.
+// At points of a box near the surface |grad L|, evaluated in double, keeps within its bounds.
 TEST(MetaballBody, BoundsOfTheGradientHoldNearTheSurface) {
   CounterRandom random(12);
   int tighter = 0, steep = 0;

@@ -14,7 +14,7 @@ GaborLayer colored(Vec3d axis, Vec3d mean, double rms) {
   return layer;
 }
 
-// Covariance of the colours = sum over the layers of rms^2 axis axis'.
+// The covariance of the colours is the sum over the layers of rms^2 axis axis'.
 TEST(ColorTexture, HasTheStatedMeanAndCovariance) {
   const std::vector<GaborLayer> layers{colored({0.6, 0.8, 0}, {0.5, 0.4, 0.3}, 0.2),
                                        colored({-0.8, 0.6, 0}, {}, 0.05), colored({0, 0, 1}, {}, 0.1)};

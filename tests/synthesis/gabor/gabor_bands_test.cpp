@@ -17,7 +17,7 @@ TEST(GaborBands, GroupLobesByBandwidth) {
   EXPECT_EQ(bands[0].bandwidth, 2);
   EXPECT_NEAR(bands[0].variance_share, 0.6, 1e-12);
   EXPECT_NEAR(bands[1].variance_share, 0.4, 1e-12);
-  // A lobe's standard deviation 2^-b / (2 sqrt(2 ln 2)) is a / (2 sqrt(pi)).
+  // The standard deviation of a lobe, 2^-b / (2 sqrt(2 ln 2)), equals a / (2 sqrt(pi)).
   EXPECT_NEAR(bands[1].a / (2 * std::sqrt(M_PI)), std::pow(2.0, -4) / (2 * std::sqrt(2 * std::log(2.0))),
               1e-9);
 }

@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-// Simpson's rule with n (even) steps.
+// An integral by Simpson's rule with n (even) steps.
 double integral(const std::function<double(double)>& f, double low, double high, int n = 2000) {
   const double h = (high - low) / n;
   double sum = f(low) + f(high);
@@ -29,7 +29,7 @@ TEST(GaborKernel, ConstantsAreTheirIntegrals) {
   EXPECT_NEAR(std::exp(-kGaborKernelArea), 0.05, 1e-8);
 }
 
-// At the stated cell sides the mean over a cell of k^2, squared, is on average half of k^4.
+// At the stated cell sides, the squared mean of k^2 over a cell is on average half of k^4.
 TEST(GaborKernel, CellsMakeTheFourthCumulantVanish) {
   const auto same_cell = [](const std::function<double(double)>& square, double reach, double side) {
     const auto correlation = [&](double t) {
@@ -46,7 +46,8 @@ TEST(GaborKernel, CellsMakeTheFourthCumulantVanish) {
 }
 
 TEST(GaborKernel, SpectrumIsTheGaussiansWithinOnePercent) {
-  // Separable: |E(x)|^2 |E(y)|^2 against exp(-2 pi (x^2 + y^2)), both scaled to unit variance.
+  // The spectrum is separable. Compares |E(x)|^2 |E(y)|^2 with exp(-2 pi (x^2 + y^2)), both scaled to unit
+  // variance.
   constexpr int n = 61;
   double spectrum[n], ideal[n], sum = 0, ideal_sum = 0;
   for (int i = 0; i < n; ++i) {

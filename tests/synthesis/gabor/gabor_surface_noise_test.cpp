@@ -21,7 +21,7 @@ GaborLayer layer_of(std::vector<GaborLobe> lobes, double pixel_size, double rms)
   return layer;
 }
 
-// A square grid of points, `step` apart, on a sphere so large that it is flat there: columns to the east,
+// A square grid of points, `step` apart, on a sphere so large that the grid is flat. Columns run to the east,
 // rows to the south.
 struct FlatPatch {
   FlatPatch(int size, double step, double longitude, double latitude) : n(size) {
@@ -51,7 +51,7 @@ struct FlatPatch {
 };
 
 TEST(GaborSurfaceNoise, FlatPatchHasTheVarianceAndTheSpectrumOfTheLobes) {
-  // A pixel is 1/2000 of the radius. Many patches far apart, each with a kernel or two.
+  // A pixel is 1/2000 of the radius. The many patches lie far apart; each has one or two kernels.
   const std::vector<GaborLobe> lobes = {{3, 0.12, 0.04, 3.0}, {2, -0.05, 0.2, 1.0}};
   const GaborLayer layer = layer_of(lobes, 5e-4, 0.002);
   constexpr int n = 16, kPatches = 900, kLag = 3;
@@ -97,7 +97,7 @@ TEST(GaborSurfaceNoise, HowPointsAreGroupedChangesNoBit) {
   CounterRandom random(3);
   const Box bounds = field.bounds();
   std::vector<float> x, y, z, value(400);
-  for (std::size_t i = 0; i < value.size(); ++i) {  // all over the body: many groups
+  for (std::size_t i = 0; i < value.size(); ++i) {  // points all over the body form many groups
     x.push_back(static_cast<float>(random.uniform(bounds.min.x, bounds.max.x)));
     y.push_back(static_cast<float>(random.uniform(bounds.min.y, bounds.max.y)));
     z.push_back(static_cast<float>(random.uniform(bounds.min.z, bounds.max.z)));
@@ -114,8 +114,8 @@ TEST(GaborSurfaceNoise, HowPointsAreGroupedChangesNoBit) {
 }
 
 TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
-  // Half of the points lie close together, so that many share an impulse; kernels from 1/400 to 1/10 of the
-  // body.
+  // Half of the points lie close together, so that many share an impulse. Kernels measure 1/400 to 1/10 of
+  // the body.
   Recipe recipe = potato_recipe(60, 5);
   recipe.layers = {layer_of({{1, 0.1, 0.2, 1.0}, {3, 0.1, 0.1, 1.0}, {6, -0.01, 0.02, 2.0}}, 0.002, 0.004)};
   const ImplicitField field(recipe);
@@ -134,7 +134,7 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
   }
 }
 
-// Few points in two places so far apart that the cells between them are not drawn: a group is split.
+// The points lie in two places so far apart that the cells between them are not drawn. Their group is split.
 TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
   const testing::LoneGaborNoise noise(layer_of({{1, 0.1, 0.2, 1.0}}, 0.002, 1.0), 7, 0,
                                       *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
@@ -153,7 +153,8 @@ TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
   EXPECT_NE(height[0], 0.0f);
 }
 
-// The error falls as the square of the size, whether corners share their impulses or each draws its own.
+// The error falls as the square of the size, whether corners share their impulses or each corner draws its
+// own.
 TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
   const testing::LoneGaborNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
                                       *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
@@ -202,7 +203,7 @@ TEST(GaborSurfaceNoise, IsSmoothEverywhereEvenAtThePoles) {
   Recipe recipe = sphere_recipe(1.0);
   recipe.layers = {layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
   const ImplicitField field(recipe);
-  // Along an arc across the pole: steps of 1e-3, a fortieth of the wavelength.
+  // An arc across the pole, in steps of 1e-3, which is a fortieth of the wavelength.
   double before = field.value({std::sin(-0.2), 0.001, std::cos(-0.2)});
   for (double angle = -0.2; angle < 0.2; angle += 1e-3) {
     const double here = field.value({std::sin(angle), 0.001, std::cos(angle)});

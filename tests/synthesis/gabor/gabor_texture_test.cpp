@@ -45,7 +45,7 @@ TEST(GaborTexture, HasTheStatedVarianceAndIsGaussian) {
   }
 }
 
-// One band alone, where neither the other bands nor many impulses help.
+// A single band, since more bands or more impulses would bring the noise closer to a Gaussian.
 TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
   GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}});
   layer.impulses_per_kernel = 4;
@@ -54,12 +54,12 @@ TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
   EXPECT_NEAR(m.excess_kurtosis, 0.0, 0.05);
 }
 
-// Every band alone at the default number of impulses, over several seeds.
+// Each band alone, at the default number of impulses, over several seeds.
 TEST(GaborTexture, EveryBandHasTheStatedDeviationAndIsGaussian) {
   constexpr int kSeeds = 6;
   for (int bandwidth = 1; bandwidth <= 4; ++bandwidth) {
     const GaborLayer layer = layer_of({{bandwidth, 0.21, -0.13, 1.0}}, 0.5);
-    const int side = 64 << bandwidth;  // as many kernels whatever the band
+    const int side = 64 << bandwidth;  // the same number of kernels for every band
     double second = 0, fourth = 0;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       const Moments m = moments(synthesize_texture(layer, side, side, {seed}));
@@ -72,7 +72,8 @@ TEST(GaborTexture, EveryBandHasTheStatedDeviationAndIsGaussian) {
 }
 
 // The autocovariance of lobes is known in closed form: sum of variance exp(-pi a^2 r^2 / 2) cos(2 pi f.r).
-// Averaged over a large texture it must be that, at every lag: this is the spectrum, sign and axes included.
+// The average over a large texture must equal it at every lag. This checks the spectrum with its signs and
+// axes.
 TEST(GaborTexture, AutocovarianceIsTheLobes) {
   const std::vector<GaborLobe> lobes = {{3, 0.18, 0.05, 2.0}, {2, -0.1, 0.2, 1.0}, {3, 0.0, 0.0, 1.0}};
   constexpr int n = 1536;
@@ -97,7 +98,7 @@ TEST(GaborTexture, AutocovarianceIsTheLobes) {
   }
 }
 
-// Average periodogram on a coarse set of frequencies against the sum of Gaussians.
+// Compares the average periodogram at a coarse set of frequencies with the sum of Gaussians.
 TEST(GaborTexture, PeriodogramIsTheLobes) {
   const std::vector<GaborLobe> lobes = {{3, 0.2, 0.1, 1.0}};
   constexpr int n = 64, kRealisations = 300;
@@ -146,7 +147,8 @@ TEST(GaborTexture, DependsOnLayerAndSeedAlone) {
   }
 }
 
-// No seams: where tiles meet (every 64 pixels) second differences are as large as elsewhere.
+// The texture has no seams: second differences at the borders of tiles (every 64 pixels) are as large as
+// elsewhere.
 TEST(GaborTexture, HasNoSeams) {
   const std::vector<float> t = synthesize_texture(layer_of({{5, 0.02, 0.03, 1.0}}), 1024, 1024, {2});
   double at_seams = 0, elsewhere = 0;

@@ -21,7 +21,7 @@ double mean_square(const std::vector<float>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// The ideal Gaussian's correlation is exp(-pi tau^2 / 2), and the window changes it little.
+// The correlation of the ideal Gaussian is exp(-pi tau^2 / 2). The window changes it little.
 TEST(GaborTiling, CorrelationIsTheGaussians) {
   EXPECT_NEAR(gabor_profile_correlation(0.0), 1.0, 1e-6);
   for (const double tau : {0.3, 0.7, 1.0, 1.5}) {
@@ -32,13 +32,14 @@ TEST(GaborTiling, CorrelationIsTheGaussians) {
 
 TEST(GaborTiling, WideLobesKeepTheirVarianceAndNarrowOnesDependOnTheirFrequency) {
   EXPECT_NEAR(tiled_variance(layer_of({{4, 0.11, 0.23, 1.0}}), 256, 300), 1.0, 1e-12);
-  // A lobe of half the width of the steps: all its variance on one frequency, or little on none.
+  // Lobes narrower than the steps between frequencies: one has all its variance on one frequency, the other
+  // lies between two.
   EXPECT_GT(tiled_variance(layer_of({{7, 4.0 / 64, 0.0, 1.0}}), 64, 256), 1.5);
   EXPECT_LT(tiled_variance(layer_of({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
 }
 
-// Every pixel equals the one a period away: twice the period in each direction shows it, wherever the inner
-// tiles of 64 pixels fall.
+// Every pixel equals the one a period away. A texture of twice the period in each direction shows this for
+// any position of the inner tiles of 64 pixels.
 TEST(GaborTiling, TheTextureRepeatsExactly) {
   const GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}, {5, -0.03, 0.04, 2.0}, {6, 0.1, 0.02, 1.0}});
   TextureOptions options{7};
@@ -56,7 +57,8 @@ TEST(GaborTiling, TheTextureRepeatsExactly) {
   EXPECT_GT(mean_square(t), 0.5);
 }
 
-// Across the border second differences are what they are inside, and a texture that does not repeat fails so.
+// Second differences across the border are as large as inside. A texture that does not repeat fails this
+// test.
 TEST(GaborTiling, TheBorderIsNoSeam) {
   const GaborLayer layer = layer_of({{4, 0.05, 0.03, 1.0}});
   constexpr std::size_t n = 128;
@@ -91,7 +93,7 @@ TEST(GaborTiling, VarianceIsStatedWhateverThePeriod) {
       sum +=
           mean_square(synthesize_texture(layer, n, n, {static_cast<std::uint64_t>(seed), 0, n, n})) / kSeeds;
     }
-    EXPECT_NEAR(sum, 1.0, 0.06) << n;  // 3 standard deviations: few frequencies make a lobe
+    EXPECT_NEAR(sum, 1.0, 0.06) << n;  // 3 standard deviations, since few frequencies make a lobe
   }
 }
 

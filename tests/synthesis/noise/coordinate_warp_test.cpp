@@ -55,7 +55,7 @@ TEST(CoordinateWarp, ImagesOfBoxesHoldTheirPoints) {
     const LoneWarp warp({random.uniform(-1, 1), random.uniform(0.1, 3), 1 + k % 4, 0.5, 2.0},
                         static_cast<std::uint32_t>(random.next()));
     const double size = std::pow(10.0, random.uniform(-3.0, 0.3));
-    const Vec3d corner = to_double(testing::random_place(random, 6.0));  // beyond the domain too
+    const Vec3d corner = to_double(testing::random_place(random, 6.0));  // some lie outside
     const Box box{corner, corner + Vec3d{size, size, size}};
     const Box image = warped_box(warp.tables, warp.arrays.view(), box);
     for (int i = 0; i < 50; ++i) {
@@ -70,7 +70,7 @@ TEST(CoordinateWarp, ImagesOfBoxesHoldTheirPoints) {
   EXPECT_GT(tight, 500);
 }
 
-TEST(CoordinateWarp, StretchesNoMoreThanItSays) {
+TEST(CoordinateWarp, KeepsItsLipschitzBound) {
   const LoneWarp warp({0.5, 1.5, 3, 0.5, 2.0}, 7u);
   CounterRandom random(3);
   for (int i = 0; i < 50000; ++i) {

@@ -53,7 +53,8 @@ TEST(FractalNoise, OneOctaveOfSimplexNoiseKeepsItsBits) {
   EXPECT_EQ(checksum, 2811787874u);
 }
 
-// The loops that this machine's widest vectors run, against calls that the compiler leaves scalar.
+// Compares the loops, which use the widest vectors of this machine, with calls that the compiler leaves
+// scalar.
 TEST(FractalNoise, VectorsGiveTheBitsOfSinglePoints) {
   using Function = float (*)(float, float, float, std::uint32_t);
   constexpr std::pair<Noise, Function> kFunctions[] = {{Noise::kSimplex, simplex_noise},

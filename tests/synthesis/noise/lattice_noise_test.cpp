@@ -7,7 +7,8 @@
 namespace astrolith {
 namespace {
 
-// chi^2 of the joint histogram of four bits at neighbouring lattice points, in its standard deviations.
+// chi^2 of the joint histogram of four bits at neighbouring lattice points, minus its mean, in its standard
+// deviations.
 template <typename Hash>
 double neighbour_dependence(const Hash& hash, int dx, int dy, int dz, int shift) {
   std::array<double, 256> count{};
@@ -39,7 +40,7 @@ double worst_dependence(const Hash& hash, int shift) {
 TEST(LatticeNoise, NeighboursHashesAreIndependent) {
   EXPECT_LT(worst_dependence(lattice_hash, 28), 5.0);
   EXPECT_LT(worst_dependence(short_lattice_hash, 28), 5.0);
-  // A landform point's fields: bits 9 to 31, 0 to 22 and 0 to 12.
+  // The bit fields of the three coordinates of a feature point: bits 9 to 31, 0 to 22 and 0 to 12.
   const auto mixed = [](std::uint32_t point) {
     const std::uint32_t h = short_lattice_hash(point);
     return h ^ (h >> 15);

@@ -69,7 +69,7 @@ TEST(PhasorNoise, ProfilesHaveTheirMeanVarianceAndRange) {
   }
 }
 
-// Along its direction the phase gains `frequency` turns a length unit; across it none.
+// The phase gains `frequency` turns per length unit along the direction of the kernels, and none across it.
 TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
   PhasorLayer layer = layer_of(PhasorProfile::kSine);
   layer.direction = {0, 3, 4};
@@ -96,7 +96,7 @@ TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
   EXPECT_NEAR(gain({1, 0, 0}), 0.0, 0.1);
 }
 
-// What sets it apart from Gabor noise: a sine reaches its full height in every wavelength.
+// Phasor noise with a sine profile reaches its full height in every wavelength. Gabor noise does not.
 TEST(PhasorNoise, ContrastNeverFades) {
   const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kSine), 6, 0, kDomain);
   int full = 0, stretches = 0;

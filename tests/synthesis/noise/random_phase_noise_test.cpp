@@ -35,7 +35,8 @@ float height_at(const LoneNoise<RandomPhaseNoise>& noise, const Vec3d& p) {
   return height;
 }
 
-// At a lattice point, in the middle of a cell and anywhere, whatever the cells share.
+// Mean and variance are as stated at a lattice point, in the middle of a cell and elsewhere, for any
+// randomness.
 TEST(RandomPhaseNoise, HasItsMeanAndVarianceEverywhere) {
   for (const double randomness : {0.0, 0.6, 1.0}) {
     for (const Vec3d& p : {Vec3d{2, 4, -6}, Vec3d{1, 3, 5}, Vec3d{0.3, 7.7, -1.2}}) {
@@ -58,7 +59,7 @@ TEST(RandomPhaseNoise, HasItsMeanAndVarianceEverywhere) {
   }
 }
 
-// All waves along x: a line along x shows the spectrum, the band widened by the windows' own spectrum.
+// All waves run along x. A line along x shows their spectrum, widened by the spectrum of the windows.
 TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
   RandomPhaseLayer layer = layer_of(1.0);
   layer.waves = 48;
@@ -106,7 +107,7 @@ TEST(RandomPhaseNoise, WithoutRandomnessWavesRunThroughAllCells) {
   const LoneNoise<RandomPhaseNoise> noise(layer, 5, 0, kDomain);
   const Wave& wave = waves_of(noise)[0];
   CounterRandom random(2);
-  // Only the sum of the windows, between 1 and sqrt 8, divides out exactly.
+  // Dividing by the sum of the windows, between 1 and sqrt 8, leaves exactly the wave.
   for (int i = 0; i < 200; ++i) {
     const Vec3d p{random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
     const double turns =

@@ -24,7 +24,7 @@ TEST(SimplexNoise, StaysWithinOneAndHasNoMean) {
     largest = std::max(largest, std::fabs(v));
   }
   EXPECT_LE(largest, 1.0);
-  EXPECT_GT(largest, 0.9);  // the bound is no looser than it need be
+  EXPECT_GT(largest, 0.9);  // the scale uses most of the range
   EXPECT_NEAR(sum / n, 0.0, 4 * 0.4 / std::sqrt(n / 20.0));
   EXPECT_NEAR(std::sqrt(sum_squares / n), 0.39, 0.01);
 }
@@ -37,7 +37,7 @@ TEST(SimplexNoise, IsZeroAtLatticeCorners) {
 }
 
 TEST(SimplexNoise, IsContinuousWithItsSlope) {
-  // Across cell borders too: random short steps change value and slope little.
+  // Short random steps, also across cell borders, change the value and the slope little.
   CounterRandom random(2);
   const float h = 1e-3f;
   for (int i = 0; i < 200000; ++i) {

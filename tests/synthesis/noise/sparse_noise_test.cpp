@@ -25,12 +25,12 @@ float height_at(const LoneNoise<SparseNoise>& noise, float x, float y, float z) 
   return h;
 }
 
-// The method itself, in one dimension: an image doubled eight times by quadratic interpolation (the
-// corner-cutting rule 3/4, 1/4) becomes the bump that is evaluated directly.
+// The method in one dimension: doubling an image eight times by quadratic interpolation (the corner-cutting
+// rule 3/4, 1/4) gives the bump that the noise evaluates directly.
 TEST(SparseNoise, RepeatedUpscalingConvergesToTheBump) {
   std::vector<double> image(9, 0.0);
   image[4] = 1.0;
-  double first = 0.0, step = 1.0;  // position of the first pixel from the lone one, and between pixels
+  double first = 0.0, step = 1.0;  // position of the first pixel relative to the lone one; pixel spacing
   first = -4.0;
   for (int doubling = 0; doubling < 8; ++doubling) {
     std::vector<double> finer;
@@ -74,7 +74,7 @@ TEST(SparseNoise, ShareOfCellsIsTheProbability) {
   EXPECT_NEAR(sum / hit, 0.5, 4.0 / std::sqrt(12.0 * hit));
 }
 
-// All cells occupied by u in [0, 1): the mean of n is that of the values, as bumps add up to one.
+// All cells are occupied by u in [0, 1). The mean of n is the mean of the values, since bumps add up to one.
 TEST(SparseNoise, BumpsAddUpToOne) {
   const LoneNoise<SparseNoise> noise(one_level(1.0), 5, 0, kDomain);
   CounterRandom random(2);

@@ -10,7 +10,7 @@ namespace {
 
 using testing::random_place;
 
-// The two smallest squared distances over 5^3 cells.
+// The two smallest squared distances to feature points, searched in 5^3 cells.
 WorleyDistances searched_widely(const Vec3f& p, std::uint32_t seed) {
   const float i = std::floor(p.x), j = std::floor(p.y), k = std::floor(p.z);
   constexpr float kOffset = 1.5f * kWorleyJitter - 0.5f, kLimit = kWorleyFarthest * kWorleyFarthest;
@@ -62,7 +62,8 @@ TEST(WorleyNoise, ChangesNoFasterThanDistances) {
   }
 }
 
-// Feature points of neighbouring cells lie independently: the noise has no axes but its grid's.
+// Feature points of neighbouring cells are independent, so that the noise prefers no direction but the axes
+// of its grid.
 TEST(WorleyNoise, HasNoPreferredAxis) {
   CounterRandom random(6);
   Vec3d slopes;

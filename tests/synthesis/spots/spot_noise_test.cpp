@@ -25,7 +25,7 @@ float height_at(const LoneNoise<SpotNoise>& noise, float x, float y, float z) {
   return h;
 }
 
-// Unit cells whose impulses stay at home, and spots of a tenth of one.
+// Spots with a tenth of the size of a cell, in unit cells whose impulses stay within their cells.
 SpotLayer small_spots(double density) {
   SpotLayer layer;
   layer.amplitude = 1.0;
@@ -102,7 +102,7 @@ TEST(SpotNoise, ProbabilityThinsCellsAndReachSpreadsImpulses) {
   EXPECT_NEAR(weight / total, 0.75, 0.02);
 }
 
-// A lone impulse and the kernel of the thesis.
+// The height of one impulse equals the kernel of the thesis.
 TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
   SpotLayer layer = small_spots(0.05);
   layer.size = 0.1;
@@ -133,7 +133,7 @@ TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
   EXPECT_GT(within, 100);
 }
 
-// Spots that a plane cuts, by size: their number above a size falls with the exponent.
+// The sizes of spots that a plane cuts: the number above a size falls with the exponent.
 TEST(SpotNoise, SizesOnASurfaceFollowTheExponent) {
   for (const double exponent : {1.5, 2.0, 2.9}) {
     SpotLayer layer = small_spots(2.0);
@@ -218,7 +218,7 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
   EXPECT_GT(tight, 200);
 }
 
-// A group of points of any size gives each point the bits it has alone.
+// A point has the same bits alone and in a group of any size.
 TEST(SpotNoise, GroupsDoNotMatter) {
   CounterRandom random(9);
   for (int k = 0; k < 20; ++k) {
@@ -235,7 +235,7 @@ TEST(SpotNoise, GroupsDoNotMatter) {
   }
 }
 
-// A lone impulse: each part is the kernel, moved, stretched and turned.
+// One impulse: each of its parts is the kernel, moved, scaled and rotated.
 TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
   SpotLayer layer = small_spots(0.02);
   layer.size = 0.1;
@@ -268,7 +268,7 @@ TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
   }
 }
 
-// One spot in the middle of every cell of an oblique lattice: the height repeats along each of its edges.
+// Each cell of an oblique lattice has one spot in its middle. The height repeats along each edge of a cell.
 TEST(SpotNoise, AnEvenLatticeRepeats) {
   SpotLayer layer = small_spots(1.0);
   layer.size = 0.3;
@@ -295,7 +295,7 @@ TEST(SpotNoise, EvenCellsHoldTheFractionByChance) {
   SpotLayer layer = small_spots(2.25);
   layer.even = true;
   double total = 0.0;
-  int others = 0;  // whose impulse is rounded onto the side of the next cell
+  int others = 0;  // cells that lose or gain an impulse by rounding at a side
   for (const int count : counts_by_cell(layer)) {
     others += count != 2 && count != 3;
     total += count;

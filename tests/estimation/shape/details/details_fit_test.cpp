@@ -67,7 +67,7 @@ TEST(DetailsFit, SameLayersByAnotherBackend) {
     options.fitness.samples = 300;
     const DetailsFitResult by_cpu = fit_details(target, base, options);
     CandidateEvaluatorOn<HostBackend> twin{HostBackend()};
-    options.swarm = &twin;
+    options.evaluator = &twin;
     const DetailsFitResult by_twin = fit_details(target, base, options);
     EXPECT_EQ(by_twin.optimization.x, by_cpu.optimization.x);
     EXPECT_EQ(by_twin.optimization.history, by_cpu.optimization.history);
