@@ -1,9 +1,8 @@
 // Arrays of plain values of many types in one piece of memory. Whoever needs them on a GPU copies that piece.
 //
 //   ArrayStore store;
-//   const ArrayRange<Wave> waves = store.add(std::span<const Wave>(list));   // a range is plain, and no
-//   pointer const Wave* first = store.view()[waves];                                 // until the store grows
-//   again
+//   const ArrayRange<Wave> waves = store.add(list);   // a range is plain, and no pointer
+//   const Wave* first = store.view()[waves];          // until the store grows again
 #pragma once
 
 #include <cstddef>

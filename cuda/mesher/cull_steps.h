@@ -66,13 +66,20 @@ struct NarrowLists {
   CullNodes parents;
   std::uint32_t nodes_a_parent;
 
+  // Where the cells of Gabor impulses that may reach a block have their centres. Gabor noise moves its points
+  // into the supports of the body's kernels.
+  ASTROLITH_HD Box cells_around(const Box& box) const {
+    const Box& supports = field.body.supports;
+    const Box inside =
+        moved_into(projected_block(field, box), to_float(supports.min), to_float(supports.max));
+    return widened(inside, wide_margin);
+  }
   // The box that the elements of a list must reach.
   ASTROLITH_HD Box box_of(const CullNode& node, std::uint32_t list) const {
     const Box box = grid.box(node.x, node.y, node.z, node.size);
     if (lists.is_boulders(list)) return box;
     if (lists.is_craters(list)) return projected_block(field, box);
-    const Box at = list < lists.leaves ? body_box(field.body, field.arrays, box)
-                                       : widened(projected_block(field, box), wide_margin);
+    const Box at = list < lists.leaves ? body_box(field.body, field.arrays, box) : cells_around(box);
     return leaf_box(field.body, field.arrays, lists.leaf(list), at);
   }
   ASTROLITH_HD bool reaches(std::uint32_t list, std::uint32_t number, const Box& box) const {

@@ -21,7 +21,7 @@ struct FieldState {
 
 // The projection of a point on the bare surface.
 ASTROLITH_HD inline Vec3f projected_point(const FieldView& f, const BodyAtPoint& body) {
-  return projected_point(body, f.leaf(0).metaballs.gradient_floor, static_cast<float>(f.height_bound));
+  return projected_point(body, f.leaf(0).metaballs.gradient_floor, f.longest_step);
 }
 
 // Joins a layer's height with the elevation that the layers before it made.
@@ -116,8 +116,7 @@ ASTROLITH_HD inline float with_boulders(const FieldView& f, const BlockLists& li
 // F(p) with the bits of FieldBlock::evaluate for the same band (length units). `lists` must hold all elements
 // that reach p.
 ASTROLITH_HD inline float field_at(const FieldView& f, const BlockLists& lists, const Vec3f& p, float band) {
-  const float steepest = static_cast<float>(f.body.lipschitz_bound);
-  return with_boulders(f, lists, p, terrain_at(f, lists, p, band * steepest));
+  return with_boulders(f, lists, p, terrain_at(f, lists, p, band * f.steepest));
 }
 
 // Visits a layer's noise: applies the layer at the four corners of a tetrahedron.

@@ -111,7 +111,7 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   const BodyLeaf& first = f.leaf(0);
   const bool plain = f.body.plain();
   // The band is a distance, and s may change faster than a distance by this factor.
-  const float band = accuracy.band * static_cast<float>(f.body.lipschitz_bound);
+  const float band = accuracy.band * f.steepest;
   Batch b;
   b.n = n;
   b.tetrahedra = accuracy.tetrahedra;

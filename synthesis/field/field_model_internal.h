@@ -22,7 +22,7 @@ struct FieldModel {
   std::vector<FieldBoulder> boulders;  // boulders on the surface that the layers make
   double height_bound = 0.0;           // bound of the |elevation| that all layers make, length units
   std::uint32_t num_kept_heights = 0;
-  FieldView tables{};  // a view of the members above, made by finish()
+  FieldView tables{};  // a view of the members above, made by update()
 
   // Search structures of the CPU.
   ReachingMetaballs metaballs;               // all metaballs of the body
@@ -37,7 +37,9 @@ struct FieldModel {
   Box bounds;  // holds the whole surface
 
   // Makes `tables` a view of the model as it is now. Adding to `arrays` or `layers` later makes the view
-  // invalid, until finish() is called again.
+  // invalid, until update() is called again.
+  void update();
+  // Adds the lists to the arrays and updates `tables`. Expects to be called once, when the model is complete.
   void finish();
 };
 

@@ -52,6 +52,8 @@ struct FieldView {
   ArrayRange<FieldBoulder> boulders;        // boulders on the surface that the layers make
   double height_bound;                      // bound of the |elevation| that all layers make, length units
   float height_reach;                       // height_bound with a margin for rounding, length units
+  float longest_step;                       // height_bound as a float: how far points are projected
+  float steepest;                           // the body's lipschitz_bound as a float
 
   // Every block has one list of craters for each layer of craters, and after these one list of boulders.
   ASTROLITH_HD std::uint32_t num_landform_lists() const { return crater_layers.count + 1; }

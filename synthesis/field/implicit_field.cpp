@@ -88,7 +88,7 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
   }
   auto model = std::make_shared<FieldModel>();
   model->body = make_body(*recipe.body, recipe.seed, model->arrays);
-  model->finish();
+  model->update();
   model->metaballs = all_metaballs(model->body, model->tables.arrays);
   add_layers(recipe, name, *model);
   model->finish();

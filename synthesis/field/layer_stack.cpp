@@ -39,7 +39,7 @@ class LayerStack {
       std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
     }
     sum_changes();
-    model_.finish();
+    model_.update();
     add_boulders();
   }
 
@@ -65,7 +65,7 @@ class LayerStack {
     std::vector<Vec3d> centers;
     for (const PlacedCrater& crater : craters) centers.push_back(crater.position);
     sum_changes();
-    model_.finish();
+    model_.update();
     const std::vector<float> elevations = elevations_at(model_, centers);
     CraterRelief relief =
         make_crater_relief(layer, craters, unwarped(centers), elevations, model_.height_bound, model_.arrays);
@@ -215,6 +215,10 @@ void FieldModel::finish() {
   tables.gabor_lists = arrays.add(gabor_lists);
   tables.crater_layers = arrays.add(crater_layers);
   tables.boulders = arrays.add(boulders);
+  update();
+}
+
+void FieldModel::update() {
   tables.arrays = arrays.view();
   tables.layers = layers.data();
   tables.num_layers = static_cast<std::uint32_t>(layers.size());
@@ -222,6 +226,8 @@ void FieldModel::finish() {
   tables.body = body;
   tables.height_bound = height_bound;
   tables.height_reach = static_cast<float>(height_bound * (1.0 + 1e-5));
+  tables.longest_step = static_cast<float>(height_bound);
+  tables.steepest = static_cast<float>(body.lipschitz_bound);
 }
 
 void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model) {

@@ -69,7 +69,8 @@ void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrate
   }
   if (covered <= kMostOverlaps) return;
   throw InputError(where + ": its craters would cover every place " + std::to_string(covered) +
-                   " times, above 2000; use fewer or smaller ones");
+                   " times, above " + std::to_string(static_cast<int>(kMostOverlaps)) +
+                   "; use fewer or smaller ones");
 }
 
 CraterKernel kernel_of(const CraterProfile& profile, const PlacedCrater& crater, const Vec3d& center) {

@@ -18,6 +18,7 @@
 #include "cuda/mesher/mesh_field.h"
 #include "cuda/pair_count.h"
 #include "cuda/pair_tiles.h"
+#include "synthesis/field/field_at_point.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {

@@ -83,6 +83,17 @@ TEST(BlockCuller, FindsTheBlocksAndListsOfTheCpu) {
   }
 }
 
+// Blocks outside the supports of all kernels, kept because a boulder reaches them, still get the metaballs
+// that the frames of their Gabor impulses follow from.
+TEST(BlockCuller, FindsTheListsBeyondTheSupports) {
+  Recipe recipe = testing::sphere_recipe(1.0);
+  recipe.body->cutoff_radii = 1.3;
+  BoulderLayer boulders;
+  boulders.boulders.push_back({{{1, 0, 0}, true}, {1.8, 1.8, 1.8}, 0.0, 0.0, 0.05});
+  recipe.layers = {testing::gabor_layer(0.06, 0.003), boulders};
+  expect_same_blocks(recipe, 24, {});
+}
+
 TEST(BlockCuller, TakesThreadsInAnyOrder) {
   for (const std::size_t order : {1, 7}) expect_same_blocks(random_recipe(3), 30, {order});
 }
