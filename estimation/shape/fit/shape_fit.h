@@ -51,7 +51,7 @@ struct ShapeFitResult {
 // Makes a progress callback for a stage: "pack", "search" or "refine".
 using StageProgress = std::function<Progress(const std::string& stage)>;
 
-// The same target, options and seed give the same body for every number of threads. Throws InputError
+// Equal targets, options and seeds give the same body for every number of threads. Throws InputError
 // "parameter: range" for an option out of range, and InputError for a body in which no sphere fits.
 ShapeFitResult fit_shape(
     const TargetBody& target, const ShapeFitOptions& options,
