@@ -13,7 +13,7 @@
 
 #include "numerics/parallel_for.h"
 #include "synthesis/mesh/manifold_check.h"
-#include "synthesis/mesh/volume_mesher.h"
+#include "tests/benchmarks/volume/volume_mesher.h"
 #include "tests/benchmarks/processor_seconds.h"
 
 namespace astrolith {

@@ -1,4 +1,4 @@
-#include "synthesis/mesh/volume_mesher.h"
+#include "tests/benchmarks/volume/volume_mesher.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "synthesis/mesh/volume_mesher.h"
+#include "tests/benchmarks/volume/volume_mesher.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/mesh/volume_rows_internal.h"
+#include "tests/benchmarks/volume/volume_rows_internal.h"
 
 namespace astrolith {
 namespace {

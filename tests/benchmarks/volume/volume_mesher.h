@@ -1,13 +1,6 @@
-// Meshes a field that is given as samples on a grid, such as a tomogram or the output of another program. No
-// program of Astrolith calls mesh_volume; it is a function of the library, and isosurface_benchmark in
-// tests/benchmarks/ compares it with other packages. A field that can be evaluated anywhere is meshed by
-// mesh_field (mesher.h).
-//
-//   const SampleGrid grid{{-1, -1, -1}, 2.0 / 64, {64, 64, 64}};     // 65^3 samples of the cube [-1, 1]^3
-//   std::vector<float> values(65 * 65 * 65);                         // F > 0 inside, x fastest
-//   MeshCollector collector;
-//   const VolumeMeshSize size = mesh_volume(grid, values, collector);
-//   write_mesh(collector.mesh, "tomogram.ply", {});
+// Meshes a field that is given as samples on a grid, such as a tomogram or the output of another program:
+// isosurface_benchmark compares it with other packages that do so. No program of Astrolith needs it, since a
+// field that can be evaluated anywhere is meshed by mesh_field (synthesis/mesh/mesher.h).
 //
 // Signs of samples are bits, so that the edges of 64 samples are compared at once. The number of a vertex is
 // counted from these bits wherever a triangle needs it and is not stored. Triangles and positions of vertices

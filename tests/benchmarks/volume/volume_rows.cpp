@@ -7,7 +7,7 @@
 #include "numerics/scalar_math.h"
 #include "synthesis/mesh/block_polygons.h"
 #include "synthesis/mesh/marching_cubes_table.h"
-#include "synthesis/mesh/volume_rows_internal.h"
+#include "tests/benchmarks/volume/volume_rows_internal.h"
 
 namespace astrolith {
 namespace {
