@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """All figures of docs/performance.md in one run: ours, a peer's beside it, and the ratio.
 
-    speed_table.py BUILD [--full]      BUILD: a build folder made with -DASTROLITH_BENCHMARKS=ON
+    speed_table.py BUILD [--full] [--fastnoise2 SOURCES]
 
-Peers are left out, with a word, where their packages are not installed: pip install numpy vtk, then
-pip install --no-build-isolation pyfastnoisesimd. --full adds meshes of up to 30 million triangles (minutes).
+BUILD is a build folder made with -DASTROLITH_BENCHMARKS=ON. Peers are left out, with a word, where their packages are not
+installed: pip install numpy vtk. FastNoise2 comes in no package: SOURCES is a folder that holds FastNoise2 and FastSIMD side
+by side. --full adds meshes of up to 30 million triangles (minutes).
 """
 import argparse
 import json
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from statistics import median
 
 HERE = pathlib.Path(__file__).parent
 
@@ -40,13 +42,23 @@ def peer(script, *arguments):
         return None
 
 
-def noise(tools):
-    print("Noise, Mpoint/s/core on 256^3: rows, blocks of 9^3, FastNoiseSIMD, ratios")
-    theirs = peer("noise_peers.py")
-    for row in json_lines(run(tools / "noise_benchmark")[0]):
-        best = theirs[row["noise"]] if theirs else float("nan")
-        print(f"  {row['noise']:10} {row['rows']:7.1f} {row['blocks']:7.1f} {best:7.1f} "
-              f"{row['rows'] / best:6.2f} {row['blocks'] / best:6.2f}")
+def noise(tools, sources, turns=5):
+    """Runs ours and FastNoise2 in turns; each figure is a median over the turns, the ratio that of a turn's pair."""
+    print(f"Noise, Mpoint/s/core on 256^3, medians of {turns} turns: rows, blocks of 9^3, FastNoise2, ratios")
+    ours, theirs = [], []
+    for _ in range(turns):
+        ours.append({row["noise"]: row for row in json_lines(run(tools / "noise_benchmark")[0])})
+        if sources:
+            theirs.append({row["noise"]: row["rows"]
+                           for row in json_lines(run(sys.executable, HERE / "noise_peers.py", sources)[0])})
+    for name in ours[0]:
+        rows, blocks = ([turn[name][kind] for turn in ours] for kind in ("rows", "blocks"))
+        line = f"  {name:10} {median(rows):7.1f} {median(blocks):7.1f}"
+        if sources:
+            peers = [turn[name] for turn in theirs]
+            ratios = [median([mine / peer for mine, peer in zip(of_kind, peers)]) for of_kind in (rows, blocks)]
+            line += f" {median(peers):7.1f} {ratios[0]:6.2f} {ratios[1]:6.2f}"
+        print(line)
 
 
 def gabor(tools):
@@ -105,11 +117,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--full", action="store_true")
+    parser.add_argument("--fastnoise2", type=pathlib.Path, metavar="SOURCES")
     arguments = parser.parse_args()
     tools = arguments.build / "tests/benchmarks"
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        noise(tools)
+        noise(tools, arguments.fastnoise2)
         gabor(tools)
         isosurface(tools, folder)
         together(tools, folder)
