@@ -45,11 +45,8 @@ std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle) {
 PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info,
                                  VertexLabeller labeller)
     : target_(file), info_(info), labeller_(std::move(labeller)), out_(file) {
-  const std::string spill_name = out_.temporary_name() + ".faces";
-  spill_.reset(std::fopen(spill_name.c_str(), "w+b"));
+  spill_ = open_nameless_file(file);
   if (!spill_) fail_spill();
-  // A file without a name is gone when the process ends, however it ends.
-  std::remove(spill_name.c_str());
   const std::string text = header();
   out_.write(text.data(), text.size());
 }

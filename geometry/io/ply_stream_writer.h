@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 
@@ -50,9 +48,6 @@ class PlyStreamWriter : public MeshSink {
   std::uint64_t num_triangles() const { return num_triangles_; }
 
  private:
-  struct FileCloser {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
   [[noreturn]] void fail_spill() const;
   void append_spill();
   std::string header() const;
@@ -62,7 +57,7 @@ class PlyStreamWriter : public MeshSink {
   MeshFileInfo info_;
   VertexLabeller labeller_;  // null where no labels are written
   OutputFile out_;
-  std::unique_ptr<std::FILE, FileCloser> spill_;
+  FileHandle spill_;
   std::uint64_t num_vertices_ = 0;
   std::uint64_t num_triangles_ = 0;
 };

@@ -1,16 +1,14 @@
-// Files that are whole or absent: each is written under a temporary name beside its target and then renamed.
+// Files that are whole or absent: each is written without a name and gets its name at the end.
 #pragma once
-
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
-#include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
+#include <memory>
 #include <string>
-#include <system_error>
 
 #include "numerics/errors.h"
 
@@ -18,125 +16,87 @@ namespace astrolith {
 
 // Names of the temporary files that exist now, so that a signal handler can remove them. At most 64 are
 // recorded; further ones are not removed by the handler.
-inline std::array<std::atomic<const char*>, 64>& temporary_files() {
-  static std::array<std::atomic<const char*>, 64> names{};
-  return names;
-}
+std::array<std::atomic<const char*>, 64>& temporary_files();
 
 // Removes the recorded temporary files. It may be called in a signal handler that ends the program.
-inline void remove_temporary_files() {
-  for (const std::atomic<const char*>& name : temporary_files()) {
-    if (const char* file = name.load()) ::unlink(file);
-  }
-}
+void remove_temporary_files();
 
-//   OutputFile file("rock.json");
-//   file.write(text.data(), text.size());
-//   file.commit();                      // without this the destructor leaves nothing behind
-class OutputFile {
+// The name of a temporary file. The file is removed with this object, or by remove_temporary_files().
+class TemporaryName {
  public:
-  // Throws InputError when the folder does not exist or cannot be written, or when the target exists and is
-  // no regular file.
-  explicit OutputFile(const std::filesystem::path& target)
-      : target_(target), temporary_(target.string() + ".tmp" + std::to_string(::getpid())) {
-    std::error_code unused;  // a file without a status cannot be opened either, which is reported below
-    const std::filesystem::file_status status = std::filesystem::status(target_, unused);
-    if (std::filesystem::is_directory(status)) {
-      throw InputError(target_.string() + ": is a folder; give the name of a file");
-    }
-    // Renaming would replace the device itself by a file.
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-      throw InputError(target_.string() + ": is a device or pipe; give the name of a file");
-    }
-    file_ = std::fopen(temporary_.c_str(), "wb");
-    if (file_ == nullptr) {
-      throw InputError(target_.string() + ": cannot write (" + std::strerror(errno) +
-                       "); choose a folder that exists and is writable");
-    }
-    for (std::atomic<const char*>& name : temporary_files()) {
-      const char* nobody = nullptr;
-      if (name.compare_exchange_strong(nobody, temporary_.c_str())) {
-        known_as_ = &name;
-        break;
-      }
-    }
-  }
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-  ~OutputFile() {
-    if (file_ != nullptr) std::fclose(file_);
-    if (!committed_) std::remove(temporary_.c_str());
-    forget();
-  }
+  // Chooses a random name in the folder of `target`.
+  explicit TemporaryName(const std::filesystem::path& target);
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
+  ~TemporaryName();
 
-  // Appends bytes. Throws WorkError when the disk is full.
-  void write(const void* data, std::size_t bytes) {
-    if (bytes != 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail();
-  }
-  // Moves to `offset` bytes from the start, for formats whose header states counts that are known only at the
-  // end.
-  void seek(std::int64_t offset) {
-    if (fseeko(file_, offset, SEEK_SET) != 0) fail();
-  }
-  // The name that a library which opens the file itself writes to; commit() then renames it.
-  const std::string& temporary_name() const { return temporary_; }
-
-  // Gives the file its name. Throws WorkError when the disk is full.
-  void commit() {
-    const bool flushed = std::fflush(file_) == 0;
-    const bool closed = std::fclose(file_) == 0;
-    file_ = nullptr;
-    if (!flushed || !closed || std::rename(temporary_.c_str(), target_.c_str()) != 0) fail();
-    committed_ = true;
-    forget();
-  }
+  const char* c_str() const { return name_.c_str(); }
 
  private:
-  void forget() {
-    if (known_as_ != nullptr) known_as_->store(nullptr);
-    known_as_ = nullptr;
-  }
-  [[noreturn]] void fail() {
-    throw WorkError(target_.string() + ": writing failed (" + std::strerror(errno) + "); is the disk full?");
-  }
-
-  std::filesystem::path target_;
-  std::string temporary_;
-  std::FILE* file_ = nullptr;
-  bool committed_ = false;
+  std::string name_;
   std::atomic<const char*>* known_as_ = nullptr;
 };
 
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
+
+// Opens a file without a name in the folder of `target`, to be written and read back. It is gone when it is
+// closed or when the process ends, however it ends. Null, with errno set, where the folder cannot be written.
+FileHandle open_nameless_file(const std::filesystem::path& target);
+
+//   OutputFile file("rock.json");
+//   file.write(text.data(), text.size());
+//   file.commit();                      // without this call nothing is left behind
+//
+// The file has no name until commit(), so that a killed program leaves nothing (O_TMPFILE). There are two
+// exceptions. Where the file system knows no such files, the file has a temporary name beside its target from
+// the start. Where the target exists, the whole file has a temporary name for the moment between two system
+// calls, because Linux can replace a name only by another name.
+class OutputFile {
+ public:
+  // kNameless becomes kNamed where the file system knows no nameless files.
+  enum class Start { kNameless, kNamed };
+
+  // Throws InputError when the folder does not exist or cannot be written, or when the target exists and is
+  // no regular file.
+  explicit OutputFile(const std::filesystem::path& target, Start start = Start::kNameless);
+
+  // Appends bytes. Throws WorkError when the disk is full.
+  void write(const void* data, std::size_t bytes);
+  // Moves to `offset` bytes from the start, for formats whose header states counts that are known only at the
+  // end.
+  void seek(std::int64_t offset);
+  // A new descriptor of this file, for a library that writes through a descriptor and closes it. Throws
+  // WorkError when there is none left.
+  int duplicate_descriptor();
+
+  // Gives the file its name. Throws WorkError when the disk is full.
+  void commit();
+
+ private:
+  [[noreturn]] void fail() const;
+  // These return false, with errno set, where they fail.
+  bool name_it(int descriptor);
+  bool replace_target(const std::string& nameless);
+
+  std::filesystem::path target_;
+  std::unique_ptr<TemporaryName> temporary_;  // null while the file has no name
+  FileHandle file_;
+};
+
 // Throws InputError when the file cannot be written. Programs call it before long work.
-inline void require_writable(const std::filesystem::path& target) { const OutputFile probe(target); }
+void require_writable(const std::filesystem::path& target);
 
 // Throws InputError when writing the output would destroy the input.
-inline void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input) {
-  std::error_code none;  // files that do not exist are not the same
-  if (std::filesystem::equivalent(output, input, none)) {
-    throw InputError(output.string() + ": is the input itself; give the output another name");
-  }
-}
+void require_other_file(const std::filesystem::path& output, const std::filesystem::path& input);
 
 // Throws InputError when two outputs have one name.
-inline void require_two_files(const std::filesystem::path& output, const std::filesystem::path& other) {
-  const auto place = [](const std::filesystem::path& file) {
-    return std::filesystem::absolute(file).lexically_normal();
-  };
-  if (place(output) == place(other)) {
-    throw InputError(output.string() + ": is the name of two outputs; give each its own");
-  }
-  require_other_file(output, other);
-}
+void require_two_files(const std::filesystem::path& output, const std::filesystem::path& other);
 
 // Makes the folder for an output of several files. Throws InputError when it does not exist and cannot be
 // made.
-inline void make_output_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw InputError(folder.string() + ": cannot make this folder; choose a place that is writable");
-  }
-}
+void make_output_folder(const std::filesystem::path& folder);
 
 }  // namespace astrolith

@@ -2,6 +2,7 @@
 
 #include <png.h>
 #include <tiffio.h>
+#include <unistd.h>
 
 #include <bit>
 #include <csetjmp>
@@ -125,7 +126,9 @@ void write_tiff_float(std::span<const float> values, int width, int height, cons
   OutputFile target(file);
   TIFFSetErrorHandler(nullptr);  // libraries never print; failures are returned as statuses
   TIFFSetWarningHandler(nullptr);
-  std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(target.temporary_name().c_str(), "w"));
+  const int descriptor = target.duplicate_descriptor();
+  std::unique_ptr<TIFF, CloseTiff> tiff(TIFFFdOpen(descriptor, file.c_str(), "w"));
+  if (tiff == nullptr) ::close(descriptor);
   if (tiff == nullptr || !write_tiff_rows(tiff.get(), values, width, height, channels)) {
     throw WorkError(file.string() + ": writing failed; is the disk full?");
   }

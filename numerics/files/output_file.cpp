@@ -1,0 +1,187 @@
+#include "numerics/files/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <random>
+#include <system_error>
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t kMode = 0666;  // less the umask
+
+fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : "."; }
+
+// The name under which the system lists an open file.
+std::string listed_name(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
+
+FileHandle stream_of(int descriptor) {
+  FileHandle file(::fdopen(descriptor, "w+b"));
+  if (!file) ::close(descriptor);
+  return file;
+}
+
+// Null where the file system or the system knows no nameless files.
+FileHandle open_linkable_file(const fs::path& target) {
+#ifdef O_TMPFILE
+  const int descriptor = ::open(folder_of(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
+  if (descriptor < 0) return nullptr;
+  if (::access(listed_name(descriptor).c_str(), F_OK) == 0) return stream_of(descriptor);
+  ::close(descriptor);
+#else
+  static_cast<void>(target);
+#endif
+  return nullptr;
+}
+
+FileHandle create(const char* name) {
+  const int descriptor = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  return descriptor < 0 ? nullptr : stream_of(descriptor);
+}
+
+// Renaming would replace a device by a file, or take away the name under which a program sees its own output.
+void require_replaceable(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (fs::is_directory(status)) throw InputError(target.string() + ": is a folder; give the name of a file");
+  const fs::path link = fs::read_symlink(target, error);
+  const bool to_a_process = !error && link.native().rfind("/proc/", 0) == 0;
+  if (to_a_process || (fs::exists(status) && !fs::is_regular_file(status))) {
+    throw InputError(target.string() + ": is a device or pipe; give the name of a file");
+  }
+}
+
+void require_creatable(const fs::path& target) {
+  struct stat status;
+  if (::lstat(target.c_str(), &status) != 0 && errno == ENAMETOOLONG) {
+    throw InputError(target.string() + ": cannot write (" + std::strerror(errno) +
+                     "); choose a shorter name");
+  }
+}
+
+}  // namespace
+
+std::array<std::atomic<const char*>, 64>& temporary_files() {
+  static std::array<std::atomic<const char*>, 64> names{};
+  return names;
+}
+
+void remove_temporary_files() {
+  for (const std::atomic<const char*>& name : temporary_files()) {
+    if (const char* file = name.load()) ::unlink(file);
+  }
+}
+
+TemporaryName::TemporaryName(const fs::path& target) {
+  // Process numbers would not do: programs in two containers may share both the number and the folder.
+  std::random_device random;
+  const std::string own = std::to_string(random()) + "_" + std::to_string(random());
+  name_ = (folder_of(target) / (".astrolith_" + own + ".tmp")).string();
+  for (std::atomic<const char*>& name : temporary_files()) {
+    const char* nobody = nullptr;
+    if (name.compare_exchange_strong(nobody, name_.c_str())) {
+      known_as_ = &name;
+      break;
+    }
+  }
+}
+
+TemporaryName::~TemporaryName() {
+  const int error = errno;  // the caller's, which it may be about to report
+  ::unlink(name_.c_str());
+  errno = error;
+  if (known_as_ != nullptr) known_as_->store(nullptr);
+}
+
+FileHandle open_nameless_file(const fs::path& target) {
+  if (FileHandle file = open_linkable_file(target)) return file;
+  const TemporaryName name(target);
+  return create(name.c_str());
+}
+
+OutputFile::OutputFile(const fs::path& target, Start start) : target_(target) {
+  require_replaceable(target);
+  require_creatable(target);
+  if (start == Start::kNameless) file_ = open_linkable_file(target);
+  if (file_) return;
+  temporary_ = std::make_unique<TemporaryName>(target);
+  file_ = create(temporary_->c_str());
+  if (!file_) {
+    throw InputError(target_.string() + ": cannot write (" + std::strerror(errno) +
+                     "); choose a folder that exists and is writable");
+  }
+}
+
+void OutputFile::write(const void* data, std::size_t bytes) {
+  if (bytes != 0 && std::fwrite(data, 1, bytes, file_.get()) != bytes) fail();
+}
+
+void OutputFile::seek(std::int64_t offset) {
+  if (::fseeko(file_.get(), offset, SEEK_SET) != 0) fail();
+}
+
+int OutputFile::duplicate_descriptor() {
+  const int descriptor = std::fflush(file_.get()) == 0 ? ::dup(::fileno(file_.get())) : -1;
+  if (descriptor < 0) fail();
+  return descriptor;
+}
+
+void OutputFile::commit() {
+  const int descriptor = duplicate_descriptor();
+  bool done = std::fclose(file_.release()) == 0;
+  done = done && name_it(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  if (!done) fail();
+}
+
+bool OutputFile::name_it(int descriptor) {
+  if (temporary_) return std::rename(temporary_->c_str(), target_.c_str()) == 0;
+  const std::string nameless = listed_name(descriptor);
+  if (::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+  return errno == EEXIST && replace_target(nameless);
+}
+
+bool OutputFile::replace_target(const std::string& nameless) {
+  const TemporaryName name(target_);
+  return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0 &&
+         ::rename(name.c_str(), target_.c_str()) == 0;
+}
+
+void OutputFile::fail() const {
+  throw WorkError(target_.string() + ": writing failed (" + std::strerror(errno) + "); is the disk full?");
+}
+
+void require_writable(const fs::path& target) { const OutputFile probe(target); }
+
+void require_other_file(const fs::path& output, const fs::path& input) {
+  std::error_code none;  // files that do not exist are not the same
+  if (fs::equivalent(output, input, none)) {
+    throw InputError(output.string() + ": is the input itself; give the output another name");
+  }
+}
+
+void require_two_files(const fs::path& output, const fs::path& other) {
+  const auto place = [](const fs::path& file) { return fs::absolute(file).lexically_normal(); };
+  if (place(output) == place(other)) {
+    throw InputError(output.string() + ": is the name of two outputs; give each its own");
+  }
+  require_other_file(output, other);
+}
+
+void make_output_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    throw InputError(folder.string() + ": cannot make this folder; choose a place that is writable");
+  }
+}
+
+}  // namespace astrolith
