@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "numerics/errors.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 namespace {
@@ -36,7 +37,7 @@ double squared_distance(std::span<const double> f, std::span<const double> g) {
 }
 
 // x log2(x / mean), which tends to 0 with x.
-double entropy_term(double x, double mean) { return x > 0 ? x * std::log2(x / mean) : 0; }
+double entropy_term(double x, double mean) { return x > 0 ? x * portable::log2(x / mean) : 0; }
 
 // The differences F_k - G_k of the cumulative sums.
 std::vector<double> cumulative_differences(std::span<const double> f, std::span<const double> g) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/portable_angles.h"
+
 namespace astrolith {
 namespace {
 
@@ -17,7 +19,7 @@ std::int32_t bin_of(double fraction, int bins) {
 double normal_perturbation(const Vec3d& point, const Vec3d& unit_normal, const Vec3d& center) {
   const Vec3d position = point - center;
   if (squared_norm(position) == 0) return std::numbers::pi / 2;
-  return std::atan2(norm(cross(position, unit_normal)), dot(position, unit_normal));
+  return portable::atan2(norm(cross(position, unit_normal)), dot(position, unit_normal));
 }
 
 double bounded_curvature(double scale_free_curvature) {

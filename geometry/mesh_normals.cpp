@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "numerics/portable_angles.h"
+
 namespace astrolith {
 namespace {
 
 // The angle between two vectors in [0, pi]. It is accurate near 0 and pi, unlike the arc cosine.
-double angle_between(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+double angle_between(const Vec3d& a, const Vec3d& b) { return portable::atan2(norm(cross(a, b)), dot(a, b)); }
 
 }  // namespace
 

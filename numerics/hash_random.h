@@ -7,6 +7,8 @@
 #include <cstdint>
 
 #include "numerics/host_device.h"
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 
@@ -59,8 +61,8 @@ class CounterRandom {
   }
   // Standard normal (Box and Muller, the cosine half only: one output a call keeps the stream simple).
   double normal() {
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(6.283185307179586 * uniform());
+    const double radius = std::sqrt(-2.0 * portable::log(1.0 - uniform()));
+    return radius * portable::cos(6.283185307179586 * uniform());
   }
 
  private:

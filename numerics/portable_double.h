@@ -1,7 +1,8 @@
-// Exponential, logarithm and power of doubles with the same bits on every CPU and every GPU, for bounds that
-// the CPU and the GPU must agree upon. They are polynomials of products and sums, of which nothing is
-// contracted. fma is avoided because it is a function call in programs built for every x86-64. Points are
-// evaluated in float (scalar_math.h).
+// Exponential, logarithms, powers and the cube root of doubles with the same bits on every CPU and every GPU.
+// The last bits of the C library's functions differ between its versions and between processors. These
+// functions are polynomials of products and sums, of which nothing is contracted. fma is avoided because it
+// is a function call in programs built for every x86-64. Points are evaluated in float (scalar_math.h);
+// angles have portable_angles.h.
 #pragma once
 
 #include <bit>
@@ -58,12 +59,14 @@ ASTROLITH_HD inline double exp(double x) {
   return x < -708.0 ? 0.0 : scaled;
 }
 
-// Natural logarithm of a normal positive x, with an error of at most 2e-15, absolute near 1 and relative
-// elsewhere. Smaller x, zero and negative x give about -708.4.
-ASTROLITH_HD inline double log(double x) {
+// A normal positive number is 2^exponent * mantissa with a mantissa in [sqrt(1/2), sqrt(2)).
+struct BinaryParts {
+  double exponent, log_mantissa;  // the natural logarithm of the mantissa
+};
+
+ASTROLITH_HD inline BinaryParts binary_parts(double x) {
   const double normal = x > 2.2250738585072014e-308 ? x : 2.2250738585072014e-308;
   const std::int64_t i = bits_of(normal);
-  // Exponent such that the mantissa lies in [sqrt(1/2), sqrt(2)).
   const std::int64_t e = (i - 0x3fe6a09e667f3bcd) >> 52;
   const double m = double_of(i - e * (std::int64_t{1} << 52));
   // log(m) = 2 atanh(s), |s| <= 0.172; the series leaves a remainder below 1e-18.
@@ -79,15 +82,50 @@ ASTROLITH_HD inline double log(double x) {
   p = p * z + 1.0 / 7.0;
   p = p * z + 1.0 / 5.0;
   p = p * z + 1.0 / 3.0;
-  const double k = static_cast<double>(e);
-  const double tail = 2.0 * s * z * p;
-  return k * kLn2High + (k * kLn2Low + (tail + 2.0 * s));
+  return {static_cast<double>(e), 2.0 * s * z * p + 2.0 * s};
+}
+
+// Natural logarithm of a normal positive x, with an error of at most 2e-15, absolute near 1 and relative
+// elsewhere. Smaller x, zero and negative x give about -708.4.
+ASTROLITH_HD inline double log(double x) {
+  const BinaryParts parts = binary_parts(x);
+  return parts.exponent * kLn2High + (parts.exponent * kLn2Low + parts.log_mantissa);
+}
+
+// Binary logarithm with the same limits as log; exact for powers of two.
+ASTROLITH_HD inline double log2(double x) {
+  const BinaryParts parts = binary_parts(x);
+  return parts.exponent + parts.log_mantissa * 1.44269504088896340736;
+}
+
+// log(1 + x) for x > -1, within 1e-15 of itself.
+ASTROLITH_HD inline double log1p(double x) {
+  // The rounding of 1 + x is made good by the slope of the logarithm (Kahan); only where the sum is 1 does
+  // nothing else than x remain.
+  const double sum = 1.0 + x;
+  return sum == 1.0 ? x : log(sum) - ((sum - 1.0) - x) / sum;
 }
 
 // x^y for x >= 0 and finite y, within |y log x| * 1e-15 of itself; x^0 is 1.
 ASTROLITH_HD inline double pow(double x, double y) {
   if (y == 0.0) return 1.0;
   return x > 0.0 ? exp(y * log(x)) : 0.0;
+}
+
+// x^n for any x and n >= 0, within n ulp.
+ASTROLITH_HD inline double whole_power(double x, int n) {
+  double power = 1.0;
+  for (int i = 0; i < n; ++i) power *= x;
+  return power;
+}
+
+// The cube root within 4e-16 of itself, of any sign; 0 for subnormal x.
+ASTROLITH_HD inline double cbrt(double x) {
+  const double size = std::fabs(x);
+  if (size < 2.2250738585072014e-308) return 0.0;
+  const double root = exp(log(size) / 3.0);
+  const double better = root - (root - size / (root * root)) / 3.0;  // one step of Newton
+  return x < 0.0 ? -better : better;
 }
 
 }  // namespace astrolith::portable

@@ -1,6 +1,6 @@
 // Elementary functions of one float with the same bits on every CPU, every vector width and every GPU. They
 // are our own polynomials with explicit fma and without branches or tables, so that compilers vectorise loops
-// over them. The double overloads are those of the standard library; they serve as references and in fits.
+// over them. The double overloads are those of portable_double.h and portable_angles.h.
 #pragma once
 
 #include <bit>
@@ -8,6 +8,8 @@
 #include <cstdint>
 
 #include "numerics/host_device.h"
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith::math {
 
@@ -86,7 +88,7 @@ ASTROLITH_HD inline float exp(float x) {
   const float scale = float_of((static_cast<std::int32_t>(n) + 127) << 23);
   return x < -87.0f ? 0.0f : p * scale;
 }
-ASTROLITH_HD inline double exp(double x) { return std::exp(x); }
+ASTROLITH_HD inline double exp(double x) { return portable::exp(x); }
 
 // Natural logarithm within 2 ulp for normal positive x; about -87.3 for zero and subnormals.
 ASTROLITH_HD inline float log(float x) {
@@ -109,7 +111,7 @@ ASTROLITH_HD inline float log(float x) {
   const float log_m = f - (s * f - tail);
   return fma(k, 0.693145751953125f, fma(k, 1.42860677e-6f, log_m));
 }
-ASTROLITH_HD inline double log(double x) { return std::log(x); }
+ASTROLITH_HD inline double log(double x) { return portable::log(x); }
 
 // sin(2 pi x) for |x| < 2^22, with an absolute error below 2e-7. Arguments in turns need no
 // multiple-precision reduction.
@@ -129,7 +131,7 @@ ASTROLITH_HD inline float sin_turns(float x) {
   return fma(t * z, p, t);
 }
 ASTROLITH_HD inline double sin_turns(double x) {
-  return std::sin(6.283185307179586476925 * (x - std::round(x)));
+  return portable::sin(6.283185307179586476925 * (x - std::round(x)));
 }
 
 // cos(2 pi x) = 1 - 2 sin^2(pi x) for |x| < 2^22, with an absolute error below 7e-7. This form has no
@@ -146,7 +148,7 @@ ASTROLITH_HD inline float cos_turns(float x) {
   return fma(-2.0f * s, s, 1.0f);
 }
 ASTROLITH_HD inline double cos_turns(double x) {
-  return std::cos(6.283185307179586476925 * (x - std::round(x)));
+  return portable::cos(6.283185307179586476925 * (x - std::round(x)));
 }
 
 // atan2(y, x) / (2 pi), in [-1/2, 1/2], for finite arguments; 0 where both are 0. Absolute error < 5e-8.

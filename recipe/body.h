@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "numerics/portable_double.h"
 #include "numerics/vec3.h"
 
 namespace astrolith {
@@ -127,7 +128,7 @@ struct MetaballBody {
 inline double least_tension(const MetaballBody& body) {
   const double surface = body.a / body.b, end = body.cutoff_radii * body.cutoff_radii;
   if (body.kernel == Kernel::kGaussian) return 0.0;
-  return surface < end ? -std::log1p(-surface / end) : std::numeric_limits<double>::infinity();
+  return surface < end ? -portable::log1p(-surface / end) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace astrolith

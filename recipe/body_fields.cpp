@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/portable_double.h"
 #include "recipe/fields_internal.h"
 
 namespace astrolith {
@@ -70,7 +71,7 @@ void check_compact_kernel(const MetaballBody& body, const Place& place) {
 
 void check_spheres(const MetaballBody& body, const Place& place) {
   if (body.spheres.empty()) place.field("spheres").fail("must hold at least one [x, y, z, radius]");
-  const double exponent = body.blend_exponent * (body.a - std::log(body.iso_value));
+  const double exponent = body.blend_exponent * (body.a - portable::log(body.iso_value));
   if (body.subtract.empty() || exponent <= kMaxNetExponent) return;
   place.field("subtract")
       .fail(fmt::format("asks for blend_exponent * (a - log(iso_value)) of at most {}, is {}; lower one "
@@ -116,7 +117,7 @@ void visit_octaves(FieldVisitor& v, double frequency, int& octaves, double& gain
   v.field("octaves", octaves, range(1, 24));
   v.field("gain", gain, range(0.0, 4.0));
   v.field("lacunarity", lacunarity, above_one(16.0));
-  const double finest = frequency * std::pow(lacunarity, octaves - 1);
+  const double finest = frequency * portable::whole_power(lacunarity, octaves - 1);
   if (v.checking() && finest > kMaxNumber) {
     v.place().field("octaves").fail(fmt::format(
         "the last octave's frequency is {:.3g}, above {:g}; use fewer octaves", finest, kMaxNumber));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/portable_double.h"
 #include "recipe/fields_internal.h"
 
 namespace astrolith {
@@ -61,7 +62,7 @@ void check_spot_reach(const SpotLayer& layer, const Place& place) {
 
 void check_spot_density(const SpotLayer& layer, const Place& place) {
   const double finest =
-      layer.density * std::pow(layer.lacunarity, (layer.layers - 1) * (layer.exponent - 2.0));
+      layer.density * portable::pow(layer.lacunarity, (layer.layers - 1) * (layer.exponent - 2.0));
   const double densest = std::max(layer.density, finest);
   if (densest <= kMaxSpotDensity) return;
   place.field("density").fail(fmt::format(

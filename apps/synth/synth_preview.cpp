@@ -1,7 +1,5 @@
 #include "apps/synth/synth_preview.h"
 
-#include <cmath>
-
 #include "apps/output_names.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -16,7 +14,7 @@ Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), st
 // North is up, or +y where the view is along the pole.
 PreviewView view_from(const Direction& direction) {
   const Vec3d from = normalized(vector_of(direction));
-  const bool polar = std::hypot(from.x, from.y) < 1e-3;
+  const bool polar = from.x * from.x + from.y * from.y < 1e-6;
   return {from, polar ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}};
 }
 

@@ -6,6 +6,7 @@
 
 #include "geometry/surface/half_edge_mesh_internal.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_angles.h"
 
 namespace astrolith {
 namespace {
@@ -15,7 +16,7 @@ Vec3d position(const HalfEdges& mesh, OpenMesh::VertexHandle v) {
   return {p[0], p[1], p[2]};
 }
 
-double angle(const Vec3d& a, const Vec3d& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+double angle(const Vec3d& a, const Vec3d& b) { return portable::atan2(norm(cross(a, b)), dot(a, b)); }
 double cotangent(const Vec3d& a, const Vec3d& b) { return dot(a, b) / norm(cross(a, b)); }
 
 // Sums over the triangles (p, q, r) around a vertex p.

@@ -12,6 +12,7 @@
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 namespace {
@@ -142,7 +143,7 @@ SurfaceSamples sample_poisson_disk(const TriangleMesh& mesh, std::int64_t n, std
   const SurfaceSamples candidates = sample_surface(mesh, kCandidatesPerSample * n, seed, kind);
   const double max_radius = poisson_disk_radius(surface_area(mesh), n);
   const double min_radius =
-      max_radius * 0.65 * (1 - std::pow(1.0 / static_cast<double>(kCandidatesPerSample), 1.5));
+      max_radius * 0.65 * (1 - portable::pow(1.0 / static_cast<double>(kCandidatesPerSample), 1.5));
   return only(candidates, eliminate(candidates.points, n, Crowding(max_radius, min_radius)));
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/portable_angles.h"
+
 namespace astrolith {
 
 double winding_number(const TriangleMesh& mesh, const Vec3d& p) {
@@ -11,7 +13,7 @@ double winding_number(const TriangleMesh& mesh, const Vec3d& p) {
     const Vec3d a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
     const double la = norm(a), lb = norm(b), lc = norm(c);
     const double away = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    half_angles += std::atan2(dot(a, cross(b, c)), away);
+    half_angles += portable::atan2(dot(a, cross(b, c)), away);
   }
   return half_angles / (2.0 * std::numbers::pi);
 }

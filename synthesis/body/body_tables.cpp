@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 #include "synthesis/body/metaball_box.h"
 #include "synthesis/body/surface_projection.h"
 
@@ -30,7 +31,7 @@ double slope_of(const OperatorParameters<double>& o) {
   const auto r_function = [](double alpha) { return (2.0 + std::sqrt(2.0 * (1.0 - alpha))) / (1.0 + alpha); };
   switch (o.kind) {
     case Operator::kBlend:
-      return std::pow(2.0, 1.0 / o.exponent);
+      return portable::pow(2.0, 1.0 / o.exponent);
     case Operator::kCleanUnion:  // 3 sqrt(3) / 8 is the steepest slope of 1 / (1 + x^2)
       return r_function(0.0) + 0.6496 * std::fabs(o.bulge) * (o.inverse_reach[0] + o.inverse_reach[1]);
     default:

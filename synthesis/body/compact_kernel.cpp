@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/portable_double.h"
+
 namespace astrolith {
 
 CompactKernel<double> scaled_kernel(Kernel kernel, double tension, double surface, double& cutoff_squared) {
@@ -16,15 +18,15 @@ CompactKernel<double> scaled_kernel(Kernel kernel, double tension, double surfac
     const double low = low_at(scale);
     return (unit(scale * surface) - low) / (1.0 - low);
   };
-  const double wanted = std::exp(-tension);
-  double flat = 1e-6 / cutoff_squared, steep = (ends ? 1.0 : 2.0 * std::exp(tension)) / surface;
+  const double wanted = portable::exp(-tension);
+  double flat = 1e-6 / cutoff_squared, steep = (ends ? 1.0 : 2.0 * portable::exp(tension)) / surface;
   for (int i = 0; i < 100; ++i) {
     const double middle = std::sqrt(flat * steep);
     (ratio(middle) > wanted ? flat : steep) = middle;
   }
   const double low = low_at(flat);
   if (ends) cutoff_squared = std::min(cutoff_squared, 1.0 / flat);
-  return {kernel, flat, low, std::exp(tension) / (1.0 - low)};
+  return {kernel, flat, low, portable::exp(tension) / (1.0 - low)};
 }
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/portable_double.h"
 #include "synthesis/body/metaball_box.h"
 
 namespace astrolith {
@@ -34,7 +35,7 @@ MetaballSphere<float> in_float(const Sphere& s) {
 
 PreparedMetaballs prepare_metaballs(const MetaballBody& body) {
   const double m = body.blend_exponent;
-  const double log_iso = std::log(body.iso_value);
+  const double log_iso = portable::log(body.iso_value);
   double largest_radius = 0.0;
   PreparedMetaballs prepared;
   for (const Sphere& s : body.spheres) {

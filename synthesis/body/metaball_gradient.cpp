@@ -6,6 +6,7 @@
 //   H_A = (H_P - A H_N - grad A grad N' - grad N grad A') / (1 + N),
 //   L = log(A) / m:      grad L = grad A / (m A),      H_L = H_A / (m A) - m grad L grad L',
 //   M = A^(1/m):         grad M = M grad A / (m A),    H_M = M / (m A) (H_A + (1/m - 1) grad A grad A' / A).
+#include "numerics/portable_double.h"
 #include "synthesis/body/metaball_body.h"
 
 namespace astrolith {
@@ -60,8 +61,8 @@ Vec3d distance_gradient(const MetaballsView& metaballs, const Vec3d& p) {
   };
   // H_L and H_M have the same form with different factors of grad A grad A'.
   const bool gaussian = body.compact_kernel.kernel == Kernel::kGaussian;
-  const double norm = gaussian ? 1.0 : std::pow(total, body.inverse_m);
-  const double level = gaussian ? std::log(total) * body.inverse_m : norm - 1.0;
+  const double norm = gaussian ? 1.0 : portable::pow(total, body.inverse_m);
+  const double level = gaussian ? portable::log(total) * body.inverse_m : norm - 1.0;
   const double factor = norm * body.inverse_m / total,
                joined = (gaussian ? -1.0 : body.inverse_m - 1.0) / total;
   const Vec3d g = factor * net_gradient;

@@ -32,6 +32,7 @@
 #include <algorithm>
 
 #include "numerics/host_device.h"
+#include "numerics/portable_double.h"
 #include "numerics/scalar_math.h"
 #include "numerics/vec3.h"
 #include "synthesis/body/compact_kernel.h"
@@ -224,12 +225,12 @@ ASTROLITH_KERNEL SurfaceDistance<T> metaball_distance(const MetaballParameters<T
 inline KernelDerivatives<double> kernel_power(const MetaballParameters<double>& body, double q) {
   if (!(q < body.cutoff_squared)) return {0.0, 0.0, 0.0};
   if (body.compact_kernel.kernel == Kernel::kGaussian) {
-    const double f = std::exp(std::min(body.m_a - body.m_b * q, double{kLargestExponent}));
+    const double f = portable::exp(std::min(body.m_a - body.m_b * q, double{kLargestExponent}));
     return {f, body.m_b * f, body.m_b * body.m_b * f};
   }
   const KernelDerivatives<double> k = kernel_value(body.compact_kernel, q);
   if (!(k.value > double{kLeastKernel})) return {0.0, 0.0, 0.0};
-  const double lower = std::pow(k.value, body.m - 1.0);
+  const double lower = portable::pow(k.value, body.m - 1.0);
   return {lower * k.value, body.m * lower * k.slope,
           body.m * lower * ((body.m - 1.0) * k.slope * k.slope / k.value + k.curvature)};
 }

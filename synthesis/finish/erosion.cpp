@@ -11,6 +11,7 @@
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
+#include "numerics/portable_angles.h"
 #include "synthesis/finish/active_edges_internal.h"
 
 namespace astrolith {
@@ -119,7 +120,7 @@ double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, const Verti
   double slope = 0.0;
   for_each_edge_between_movable(mesh, vertices, [&](std::uint32_t a, std::uint32_t b) {
     const Incline i = incline(mesh, up, a, b);
-    slope = std::max(slope, std::atan2(std::fabs(i.drop), i.length));
+    slope = std::max(slope, portable::atan2(std::fabs(i.drop), i.length));
   });
   return slope * kDegrees;
 }
@@ -199,7 +200,7 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
   ErosionStatistics statistics;
   statistics.rock_vertices = std::count(vertices.area.begin(), vertices.area.end(), 0.0);
   statistics.steepest_before = steepest(mesh, up, vertices);
-  const double slope = kAim * std::tan(talus_degrees / kDegrees), volume_before = volume(mesh);
+  const double slope = kAim * portable::tan(talus_degrees / kDegrees), volume_before = volume(mesh);
   // Verticals converge downwards. After far slides everything is therefore measured anew, until nothing moves
   // in the first sweep.
   while (statistics.sweeps < most_sweeps && !statistics.settled) {

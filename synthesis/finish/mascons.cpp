@@ -8,6 +8,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_double.h"
 #include "numerics/scalar_math.h"
 
 namespace astrolith {
@@ -110,7 +111,7 @@ std::vector<Mascon> mascons_of(const ImplicitField& field, std::span<const Spher
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (counts[i] == 0.0) continue;
     const double volume = counts[i] * step * step * step;
-    mascons.push_back({sums[i] * (1.0 / counts[i]), std::cbrt(volume * 0.75 / std::numbers::pi)});
+    mascons.push_back({sums[i] * (1.0 / counts[i]), portable::cbrt(volume * 0.75 / std::numbers::pi)});
   }
   if (mascons.empty()) throw InputError("gravity: the body is too thin to find its mass; check its spheres");
   return mascons;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/body/body_spheres.h"
 #include "synthesis/noise/coordinate_warp.h"
@@ -45,7 +46,7 @@ class Deformation {
         warp_(make_coordinate_warp(bend(body, strength), bend_seed(seed), body, arrays_)) {
     CounterRandom random(seed, kAxesStream);
     const auto factor = [&] {
-      return std::exp(kAxisStretch * strength * std::clamp(random.normal(), -2.0, 2.0));
+      return portable::exp(kAxisStretch * strength * std::clamp(random.normal(), -2.0, 2.0));
     };
     stretch_ = {factor(), factor(), factor()};
   }
@@ -64,7 +65,7 @@ class Deformation {
   double growth(const Vec3d& p) const {
     const auto slope = [&](const Vec3d& d) { return (0.5 / step_) * ((*this)(p + d) - (*this)(p - d)); };
     const Vec3d a = slope({step_, 0, 0}), b = slope({0, step_, 0}), c = slope({0, 0, step_});
-    return std::cbrt(std::clamp(dot(a, cross(b, c)), 0.2, 5.0));
+    return portable::cbrt(std::clamp(dot(a, cross(b, c)), 0.2, 5.0));
   }
 
  private:
@@ -87,10 +88,10 @@ class Deformation {
 
 // Varies amplitude and frequency. Returns the factor by which the heights of the layer have grown.
 double vary(FractalLayer& layer, double strength, CounterRandom random) {
-  const double growth = std::exp(kAmplitudeChange * strength * random.normal());
+  const double growth = portable::exp(kAmplitudeChange * strength * random.normal());
   layer.amplitude = round_to_seven_digits(layer.amplitude * growth);
   layer.frequency =
-      round_to_seven_digits(layer.frequency * std::exp(kFrequencyChange * strength * random.normal()));
+      round_to_seven_digits(layer.frequency * portable::exp(kFrequencyChange * strength * random.normal()));
   return growth;
 }
 

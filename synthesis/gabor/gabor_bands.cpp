@@ -5,12 +5,13 @@
 #include <map>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 namespace {
 
 double kernel_bandwidth(int bandwidth) {
-  return std::ldexp(std::sqrt(3.14159265358979324 / (2.0 * std::log(2.0))), -bandwidth);
+  return std::ldexp(std::sqrt(3.14159265358979324 / (2.0 * portable::log(2.0))), -bandwidth);
 }
 
 GaborBand band_of(int bandwidth, const std::vector<GaborLobe>& lobes, double total_variance) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "numerics/portable_double.h"
 #include "synthesis/gabor/gabor_bands.h"
 #include "synthesis/gabor/gabor_surface_points.h"
 #include "synthesis/noise/points_in_domain.h"
@@ -34,11 +35,12 @@ double longest_side(const Box& box) {
 SurfaceBand surface_band(const GaborLayer& layer, const GaborBand& band, std::uint32_t seed,
                          const Box& domain, ArrayStore& arrays) {
   const double a = band.a / layer.pixel_size;
-  const double cells_under_kernel = kGaborKernelArea * kGaborSlabThickness / std::pow(kGaborSpaceCell, 3);
+  const double cells_under_kernel =
+      kGaborKernelArea * kGaborSlabThickness / portable::whole_power(kGaborSpaceCell, 3);
   const int count =
       std::max(1, static_cast<int>(std::lround(layer.impulses_per_kernel / cells_under_kernel)));
   const double energy = kGaborProfileEnergy * kGaborProfileEnergy * kGaborSlabEnergy;
-  const double density = count / std::pow(kGaborSpaceCell, 3);
+  const double density = count / portable::whole_power(kGaborSpaceCell, 3);
   const double amplitude = layer.height_rms * std::sqrt(2.0 * band.variance_share / (density * energy));
   const double farthest_impulse = 1.0 / a < kSmallKernel * longest_side(domain)
                                       ? kFarthestReach / a
@@ -82,7 +84,7 @@ GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int la
 double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side) {
   double cells = 0.0;
   for (const SurfaceBand& band : arrays.span(noise.bands)) {
-    cells += std::pow((side + 2.0 * double{band.reach}) / double{band.cell} + 1.0, 3);
+    cells += portable::whole_power((side + 2.0 * double{band.reach}) / double{band.cell} + 1.0, 3);
   }
   return cells;
 }

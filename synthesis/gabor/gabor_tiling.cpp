@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/portable_angles.h"
 #include "synthesis/gabor/gabor_bands.h"
 #include "synthesis/gabor/gabor_kernel.h"
 
@@ -14,7 +15,7 @@ double periodic_sum(double period, double frequency) {
   double sum = 1.0;
   for (int j = 1; j * period < 2.0 * static_cast<double>(kGaborReach); ++j) {
     const double tau = j * period;
-    sum += 2.0 * gabor_profile_correlation(tau) * std::cos(2.0 * std::numbers::pi * frequency * tau);
+    sum += 2.0 * gabor_profile_correlation(tau) * portable::cos(2.0 * std::numbers::pi * frequency * tau);
   }
   return sum;
 }

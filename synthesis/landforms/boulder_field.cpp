@@ -8,6 +8,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/interval.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_angles.h"
 #include "synthesis/landforms/population.h"
 
 namespace astrolith {
@@ -40,10 +41,10 @@ void turn(const Vec3d& normal, PlacedBoulder& boulder) {
   const Vec3d north = cross(normal, east);
   const double heading = boulder.heading * kDegree, tilt = boulder.tilt * kDegree;
   Vec3d(&axis)[3] = boulder.directions;
-  axis[0] = std::cos(heading) * east + std::sin(heading) * north;
+  axis[0] = portable::cos(heading) * east + portable::sin(heading) * north;
   const Vec3d level = cross(normal, axis[0]);
-  axis[1] = std::cos(tilt) * level + std::sin(tilt) * normal;
-  axis[2] = std::cos(tilt) * normal - std::sin(tilt) * level;
+  axis[1] = portable::cos(tilt) * level + portable::sin(tilt) * normal;
+  axis[2] = portable::cos(tilt) * normal - portable::sin(tilt) * level;
 }
 
 struct Placement {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "numerics/errors.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 namespace {
@@ -18,8 +19,8 @@ CounterRandom stream_of(std::uint64_t seed, int layer_index, std::uint64_t landf
 // A Poisson number, from the exponential waiting times between events.
 int poisson_number(double mean, CounterRandom random) {
   int number = 0;
-  for (double waited = -std::log(1.0 - random.uniform()); waited < mean; ++number) {
-    waited -= std::log(1.0 - random.uniform());
+  for (double waited = -portable::log(1.0 - random.uniform()); waited < mean; ++number) {
+    waited -= portable::log(1.0 - random.uniform());
   }
   return number;
 }
@@ -43,8 +44,8 @@ int number_of(const Population& population, const BareSurface& surface, const Co
 
 double power_law_diameter(const Population& population, double u) {
   const double ratio = population.greatest_diameter / population.least_diameter;
-  const double left_out = 1.0 - std::pow(ratio, -population.exponent);
-  return population.least_diameter * std::pow(1.0 - u * left_out, -1.0 / population.exponent);
+  const double left_out = 1.0 - portable::pow(ratio, -population.exponent);
+  return population.least_diameter * portable::pow(1.0 - u * left_out, -1.0 / population.exponent);
 }
 
 std::vector<DrawnLandform> draw_population(const Population& population, const BareSurface& surface,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "numerics/errors.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith {
 namespace {
@@ -23,8 +24,8 @@ MeshPrediction measured(const MeshStatistics& s, int resolution) {
 // (a volume).
 double continued(double a, double b, double step, double ratio) {
   if (a <= 0.0 || b <= 0.0) return b * ratio * ratio;
-  const double exponent = std::clamp(std::log(b / a) / std::log(step), 1.0, 3.0);
-  return b * std::pow(ratio, exponent);
+  const double exponent = std::clamp(portable::log(b / a) / portable::log(step), 1.0, 3.0);
+  return b * portable::pow(ratio, exponent);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "numerics/interval.h"
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
 #include "numerics/random_direction.h"
 #include "numerics/scalar_math.h"
 #include "synthesis/noise/points_in_domain.h"
@@ -69,7 +71,7 @@ ASTROLITH_SIMD_CLONES void add_wave(const Wave& wave, float randomness, int n, c
 
 double coherence_of(double randomness) {
   const double x = std::numbers::pi * randomness;
-  return x > 0.0 ? std::pow(std::sin(x) / x, 2) : 1.0;
+  return x > 0.0 ? portable::whole_power(portable::sin(x) / x, 2) : 1.0;
 }
 
 // The frequencies of all waves, in cycles per length unit. Each lies in its own equal share of the band.
@@ -86,7 +88,7 @@ std::vector<double> wave_frequencies(const RandomPhaseLayer& layer, std::uint32_
 std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, double farthest) {
   const std::vector<double> frequencies = wave_frequencies(layer, seed);
   double power = 0.0;
-  for (const double f : frequencies) power += std::pow(f / layer.frequency_max, -layer.exponent);
+  for (const double f : frequencies) power += portable::pow(f / layer.frequency_max, -layer.exponent);
   std::vector<Wave> waves;
   for (std::size_t j = 0; j < frequencies.size(); ++j) {
     const double f = frequencies[j];
@@ -95,7 +97,7 @@ std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, 
     const Vec3f u = direction_in_cone(to_float(normalized(layer.direction)), static_cast<float>(layer.spread),
                                       unit_float(hash_append(h, 1)), unit_float(hash_append(h, 2)));
     const double amplitude =
-        layer.height_rms * std::sqrt(2.0 * std::pow(f / layer.frequency_max, -layer.exponent) / power);
+        layer.height_rms * std::sqrt(2.0 * portable::pow(f / layer.frequency_max, -layer.exponent) / power);
     waves.push_back({u * static_cast<float>(f), unit_float(hash_append(h, 3)), static_cast<float>(amplitude),
                      hash_append(h, 4)});
   }

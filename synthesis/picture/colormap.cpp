@@ -4,14 +4,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
+
 namespace astrolith {
 namespace {
 
 // OKLab to linear sRGB, matrices of Ottosson, "A perceptual color space for image processing", 2020.
 Vec3<float> oklab_to_linear(double lightness, double a, double b) {
-  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
-  const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
-  const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  const double l = portable::whole_power(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = portable::whole_power(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = portable::whole_power(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
   return {static_cast<float>(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
           static_cast<float>(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
           static_cast<float>(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
@@ -31,10 +34,11 @@ Vec3<float> sequential_color(double t) {
   double low = 0.0, high = 0.15;
   for (int i = 0; i < 20; ++i) {
     const double chroma = 0.5 * (low + high);
-    (in_gamut(oklab_to_linear(lightness, chroma * std::cos(hue), chroma * std::sin(hue))) ? low : high) =
+    (in_gamut(oklab_to_linear(lightness, chroma * portable::cos(hue), chroma * portable::sin(hue))) ? low
+                                                                                                    : high) =
         chroma;
   }
-  return oklab_to_linear(lightness, low * std::cos(hue), low * std::sin(hue));
+  return oklab_to_linear(lightness, low * portable::cos(hue), low * portable::sin(hue));
 }
 
 std::vector<Vec3<float>> sequential_colors(std::span<const double> values, double low, double high) {
@@ -49,7 +53,9 @@ std::vector<Vec3<float>> sequential_colors(std::span<const double> values, doubl
 
 unsigned char srgb_byte(float linear) {
   const float v = std::clamp(linear, 0.0f, 1.0f);
-  const float encoded = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+  const float encoded =
+      v <= 0.0031308f ? 12.92f * v
+                      : 1.055f * static_cast<float>(portable::pow(double{v}, double{1.0f / 2.4f})) - 0.055f;
   return static_cast<unsigned char>(255.0f * encoded + 0.5f);
 }
 

@@ -8,6 +8,7 @@
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_angles.h"
 #include "numerics/scalar_math.h"
 #include "numerics/tangent_frame.h"
 #include "synthesis/picture/colormap.h"
@@ -44,7 +45,8 @@ struct Camera {
 void light(Camera& camera, const PreviewOptions& options) {
   const Vec3d sun = normalized(options.sun);
   camera.sun = to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from);
-  const auto radius = static_cast<float>(std::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
+  const auto radius =
+      static_cast<float>(portable::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
   const Tangents<float> tangents = tangents_about(camera.sun);
   camera.sun_first = radius * tangents.first;
   camera.sun_second = radius * tangents.second;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/portable_double.h"
+
 namespace astrolith {
 namespace {
 
@@ -10,7 +12,7 @@ namespace {
 // ends where a share of 2^-32 is left.
 std::vector<std::uint32_t> poisson_thresholds(double mean) {
   std::vector<std::uint32_t> thresholds;
-  double probability = std::exp(-mean), sum = probability;
+  double probability = portable::exp(-mean), sum = probability;
   for (int l = 1; sum < 1.0 - 0x1p-32 && l < 1000; ++l) {
     thresholds.push_back(static_cast<std::uint32_t>(std::min(sum * 0x1p32, 0x1p32 - 1.0)));
     probability *= mean / l;

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
 #include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
@@ -43,7 +45,7 @@ using Rotation = std::array<Vec3d, 3>;  // columns
 
 Rotation rotation(const Vec3d& degrees) {
   const auto turned = [](double angle, double& u, double& v) {
-    const double c = std::cos(angle * kDegree), s = std::sin(angle * kDegree);
+    const double c = portable::cos(angle * kDegree), s = portable::sin(angle * kDegree);
     std::tie(u, v) = std::pair{c * u - s * v, s * u + c * v};
   };
   Rotation columns{Vec3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -129,13 +131,14 @@ SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index
   const std::vector<SpotPart> parts = layer.parts.empty() ? std::vector<SpotPart>(1) : layer.parts;
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   for (int j = 0; j < layer.layers; ++j) {
-    const double shrink = std::pow(layer.lacunarity, j);
+    const double shrink = portable::whole_power(layer.lacunarity, j);
     const double cell = layer.cell_size / shrink, unit = layer.size / shrink;
     if (!(largest_coordinate(domain) / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
     const SpotLattice lattice =
-        make_spot_lattice(layer, cell, layer.density * std::pow(shrink, layer.exponent - 2.0),
+        make_spot_lattice(layer, cell, layer.density * portable::pow(shrink, layer.exponent - 2.0),
                           hash_append(layer_seed, static_cast<std::uint32_t>(j)), thresholds);
-    const double amplitude = (layer.inverted ? 1.0 : -1.0) * layer.amplitude * std::pow(layer.gain, j);
+    const double amplitude =
+        (layer.inverted ? 1.0 : -1.0) * layer.amplitude * portable::whole_power(layer.gain, j);
     for (const SpotPart& part : parts) {
       const double clip = clip_of(layer, part, amplitude);
       kinds.push_back(kind_of(layer, part, lattice, unit, amplitude, clip));

@@ -24,6 +24,11 @@ const std::string kTwoSpheres = R"({"format_version": 1, "length_unit": "km",
 const std::string kTexture = R"({"format_version": 1, "length_unit": "m",
   "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.002, "lobes": [[4, 0.125, -0.25, 1]]}]})";
 
+const std::string kDrawnCraters = R"({"format_version": 1, "length_unit": "m",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100]]},
+  "layers": [{"type": "simplex", "amplitude": 3, "frequency": 0.02, "octaves": 3},
+    {"type": "craters", "population": {"count": 2000, "exponent": 1.7, "least_diameter": 6, "greatest_diameter": 60}}]})";
+
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
@@ -48,6 +53,26 @@ class Synth : public ::testing::Test {
 
   WorkFolder folder_;
 };
+
+// The C library has other code, with other last bits, for processors without fma. Its tunables choose that
+// code here.
+TEST_F(Synth, TheCLibrarysCodeForTheProcessorChangesNothing) {
+  const std::string recipe = folder_.write("r.json", kDrawnCraters), ply = (folder_ / "mesh.ply").string(),
+                    list = (folder_ / "list.csv").string();
+  const auto run = [&](const std::string& tunables, std::vector<std::string> more) {
+    more.insert(more.begin(), {recipe, "-o", ply, "--resolution", "32"});
+    ::setenv("GLIBC_TUNABLES", tunables.c_str(), 1);
+    const testing::Outcome outcome = run_program(kSynth, more);
+    ::unsetenv("GLIBC_TUNABLES");
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return text_of(ply) + text_of(list);
+  };
+  const std::vector<std::vector<std::string>> requests{
+      {"--feature-list", list}, {"--patch", "100", "0", "0", "20"}, {"--vary", "0.2", "--seed", "3"}};
+  for (const std::vector<std::string>& more : requests) {
+    EXPECT_EQ(run("", more), run("glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4", more)) << more.front();
+  }
+}
 
 // The recipe's Gabor or fractal layers, by a GPU or without one.
 TEST_F(Synth, TheDeviceChangesNothing) {
