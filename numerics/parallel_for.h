@@ -9,6 +9,10 @@
 #include <cstdint>
 #include <thread>
 
+#ifdef __SANITIZE_THREAD__
+#include "numerics/plain_threads.h"
+#endif
+
 namespace astrolith {
 
 // Limits all parallel loops to num_threads threads while it lives; 0 stands for all hardware threads.
@@ -29,10 +33,14 @@ class ThreadLimit {
 // exception that a body throws is rethrown here.
 template <typename Body>
 void parallel_for(std::int64_t begin, std::int64_t end, const Body& body, std::int64_t grain = 1) {
+#ifdef __SANITIZE_THREAD__
+  plain_parallel_for(begin, end, body, grain);
+#else
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(begin, end, static_cast<std::size_t>(grain)),
                     [&](const tbb::blocked_range<std::int64_t>& range) {
                       for (std::int64_t i = range.begin(); i != range.end(); ++i) body(i);
                     });
+#endif
 }
 
 }  // namespace astrolith
