@@ -32,6 +32,8 @@ foreach(folder IN LISTS header_folders)
     FILES_MATCHING PATTERN "*.h" PATTERN "*_internal.h" EXCLUDE)
 endforeach()
 install(FILES LICENSE recipe/recipe.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/astrolith)
+include(AstrolithManPages)
+include(AstrolithPackage)
 
 configure_package_config_file(cmake/astrolithConfig.cmake.in ${PROJECT_BINARY_DIR}/astrolithConfig.cmake
   INSTALL_DESTINATION ${package_folder})

@@ -73,7 +73,8 @@ function(astrolith_program name)
   add_executable(${name} ${name}.cpp ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINK} astrolith_program_common astrolith_warnings)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+  set_property(GLOBAL APPEND PROPERTY ASTROLITH_PROGRAMS ${name})
 endfunction()
 
 # astrolith_test(NAME [ROOMS] [OPTIMISED] SOURCES x_test.cpp ... LINK link ...)  one executable of GoogleTest cases

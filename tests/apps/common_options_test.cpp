@@ -23,6 +23,28 @@ TEST_P(EveryProgram, HelpStatesTheOptions) {
   }
 }
 
+// help2man makes man pages from this layout: two spaces or a new line before each description.
+TEST_P(EveryProgram, HelpCanBecomeAManPage) {
+  std::istringstream help(run_program(GetParam(), {"--help"}).output);
+  const std::regex names(R"(  (-\w, )?--[a-z-]+( .*)?)"), description(R"( {30}.*)");
+  std::size_t options = 0;
+  for (std::string line; std::getline(help, line);) {
+    if (line.rfind("  -", 0) != 0) continue;
+    ++options;
+    EXPECT_TRUE(std::regex_match(line, names)) << line;
+    const std::size_t gap = line.find("  ", 3);
+    EXPECT_EQ(line.find("[]"), std::string::npos) << line;
+    // A description on the same line begins behind two spaces at least.
+    if (gap != std::string::npos) EXPECT_GE(line.find_first_not_of(' ', gap), 30u) << line;
+    if (gap == std::string::npos) {
+      std::string next;
+      ASSERT_TRUE(std::getline(help, next));
+      EXPECT_TRUE(std::regex_match(next, description)) << line << "\n" << next;
+    }
+  }
+  EXPECT_GE(options, 6u);
+}
+
 TEST_P(EveryProgram, VersionIsOneLine) {
   const Outcome outcome = run_program(GetParam(), {"--version"});
   EXPECT_EQ(outcome.status, 0);

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Makes build/package/astrolith_VERSION_ARCHITECTURE.deb: the programs without GPU code, and their man pages.
+#   scripts/package.sh && sudo apt install ./build/package/astrolith_*.deb
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/setup.sh --package
+launcher=()
+command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+cmake --preset release -B build/package -DCMAKE_INSTALL_PREFIX=/usr -DASTROLITH_TESTS=OFF -DASTROLITH_CUDA=OFF "${launcher[@]}" >/dev/null
+cmake --build build/package
+cd build/package
+cpack -G DEB
