@@ -155,7 +155,8 @@ ASTROLITH_KERNEL std::int32_t surflet_code(const Surflet& i, const Surflet& j) {
   constexpr float kGamma = kBins, kBeta = kGamma * kBins, kAlpha = kBeta * kBins;
   const SurfletPair pair = surflet_pair(i, j);
   // Floats hold whole numbers below 2^24 exactly, and the sign of a float costs nothing.
-  float code = kBins / 2 * (kAlpha + kBeta + kGamma);
+  constexpr int kMiddleBin = kBins / 2;
+  float code = kMiddleBin * (kAlpha + kBeta + kGamma);
   ASTROLITH_UNROLL
   for (int k = 0; k + 1 < kBins; ++k) {
     add_if(pair.length2 > borders.length[static_cast<std::size_t>(k)], 1.0f, code);

@@ -60,7 +60,8 @@ ASTROLITH_KERNEL std::uint32_t phasor_seed(std::uint32_t seed, int j) {
   return hash_append(seed, static_cast<std::uint32_t>(j));
 }
 ASTROLITH_KERNEL Vec3f phasor_cell(int c) {
-  return {static_cast<float>(c % 3 - 1), static_cast<float>(c / 3 % 3 - 1), static_cast<float>(c / 9 - 1)};
+  const int x = c % 3, y = c / 3 % 3, z = c / 9;
+  return {static_cast<float>(x - 1), static_cast<float>(y - 1), static_cast<float>(z - 1)};
 }
 
 // The profile at a phase in turns, [-1/2, 1/2]; values in [-1, 1].

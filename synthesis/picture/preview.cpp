@@ -117,9 +117,10 @@ class Painter {
     for (int k = 0; k < rays; ++k) {
       // The rays at two opposite corners come first. Where both miss the body, the whole pixel is background.
       const int ray = k == 1 ? rays - 1 : k > 1 ? k - 1 : 0;
+      const int column = ray % n, row = ray / n;
       RayRandom random(options_.seed, x, y, ray);
-      const double px = x + (ray % n + double(random.next())) / n;
-      const double py = y + (ray / n + double(random.next())) / n;
+      const double px = x + (column + double(random.next())) / n;
+      const double py = y + (row + double(random.next())) / n;
       sum += radiance(px, py, random, is_hit);
       if (k == 1 && !is_hit)
         return {srgb_byte(kBackground.x), srgb_byte(kBackground.y), srgb_byte(kBackground.z)};
