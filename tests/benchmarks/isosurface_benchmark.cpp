@@ -13,8 +13,8 @@
 
 #include "numerics/parallel_for.h"
 #include "synthesis/mesh/manifold_check.h"
-#include "tests/benchmarks/volume/volume_mesher.h"
 #include "tests/benchmarks/processor_seconds.h"
+#include "tests/benchmarks/volume/volume_mesher.h"
 
 namespace astrolith {
 namespace {
