@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -101,6 +102,46 @@ double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
   return kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
 }
 
+// Counts the cells of a lattice from the one that holds the origin of a frame. Returns the vector from the
+// origin to that cell, length units.
+Vec3d count_cells_from(const Vec3d& origin, SpotLattice& lattice) {
+  const Vec3d* per = lattice.cells_per;
+  const OriginCell cell = origin_cell({dot(per[0], origin), dot(per[1], origin), dot(per[2], origin)});
+  lattice.first_cell[0] = cell.x;
+  lattice.first_cell[1] = cell.y;
+  lattice.first_cell[2] = cell.z;
+  const auto along = [&](const Vec3f& edge, double cells) {
+    return Vec3d{cells * double{edge.x}, cells * double{edge.y}, cells * double{edge.z}};
+  };
+  return -1.0 *
+         (along(lattice.a, cell.rest.x) + along(lattice.b, cell.rest.y) + along(lattice.c, cell.rest.z));
+}
+
+// The share of the variance of the sizes from number `kept` on. The variance of a size goes as the square of
+// its amplitude and as its number of spots in a cell.
+double share_left_out(const SpotLayer& layer, int kept) {
+  double left = 0.0, total = 0.0;
+  for (int j = 0; j < layer.layers; ++j) {
+    const double density = std::pow(layer.lacunarity, j * (layer.exponent - 2.0));
+    const double power = whole_power(layer.gain * layer.gain, j) * density;
+    total += power;
+    if (j >= kept) left += power;
+  }
+  return left / total;
+}
+
+// The narrowest cell or axis of a spot, length units.
+double finest_length(const SpotLayer& layer, std::span<const SpotPart> parts) {
+  const Vec3d& v = layer.variances;
+  double finest = layer.cell_size * least_height(layer.lattice);
+  for (const SpotPart& part : parts) {
+    const Vec3d& a = part.axes;
+    const double cut = std::sqrt(layer.sigma * std::min({v.x, v.y, v.z}));
+    finest = std::min(finest, layer.size * std::min({a.x, a.y, a.z}) * std::min(cut, 1.0));
+  }
+  return finest / whole_power(layer.lacunarity, layer.layers - 1);
+}
+
 // Adds the sum of one kind's spots to the heights at n points. The points are split into halves while too
 // many cells lie around them.
 void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x, const float* y,
@@ -119,29 +160,34 @@ void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const
 
 }  // namespace
 
-SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                      ArrayStore& arrays) {
   SpotNoise noise;
-  noise.low = to_float(domain.min);
-  noise.high = to_float(domain.max);
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   std::vector<SpotKind> kinds;
   std::vector<std::uint32_t> thresholds;
   const std::vector<SpotPart> parts = layer.parts.empty() ? std::vector<SpotPart>(1) : layer.parts;
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
+  int sizes = 0;
   for (int j = 0; j < layer.layers; ++j) {
     const double shrink = std::pow(layer.lacunarity, j);
     const double cell = layer.cell_size / shrink, unit = layer.size / shrink;
-    if (!(largest_coordinate(domain) / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
-    const SpotLattice lattice =
+    if (!(frame.farthest() / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
+    SpotLattice lattice =
         make_spot_lattice(layer, cell, layer.density * std::pow(shrink, layer.exponent - 2.0),
                           hash_append(layer_seed, static_cast<std::uint32_t>(j)), thresholds);
+    const Vec3d first = count_cells_from(frame.origin, lattice);
+    ++sizes;
     const double amplitude = (layer.inverted ? 1.0 : -1.0) * layer.amplitude * std::pow(layer.gain, j);
     for (const SpotPart& part : parts) {
       const double clip = clip_of(layer, part, amplitude);
       kinds.push_back(kind_of(layer, part, lattice, unit, amplitude, clip));
+      kinds.back().offset += first;
       noise.height_bound += clip * (1.0 + kSpotSlack);
     }
   }
+  noise.detail = {finest_length(layer, parts), share_left_out(layer, sizes)};
   noise.kinds = arrays.add(kinds);
   noise.thresholds = arrays.add(thresholds);
   return noise;
