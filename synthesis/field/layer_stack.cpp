@@ -27,6 +27,9 @@ std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d>
   return elevations;
 }
 
+// A point takes about 0.1 ms where the spots of all layers take as many draws.
+constexpr double kMostSpotDraws = 8192.0;
+
 // Adds a recipe's layers to the field model in the recipe's order.
 class LayerStack {
  public:
@@ -55,6 +58,7 @@ class LayerStack {
   }
   void add(const SpotLayer& layer) {
     const SpotNoise noise = make_noise(layer, recipe_.seed, number_of(layer), domain_, model_.arrays);
+    check_work(layer);
     push(layer, noise, add_lists(noise.kinds.count, model_.spot_lists));
   }
   void add(const GaborLayer& layer) {
@@ -134,6 +138,20 @@ class LayerStack {
     return *bare_;
   }
   std::string place_of(int layer) const { return name_ + ": layers[" + std::to_string(layer) + "]"; }
+
+  // Throws InputError where the spots so far take too long to compute, with all sizes of this layer.
+  void check_work(const SpotLayer& layer) {
+    ArrayStore discarded;
+    const NoiseFrame whole(Box{{}, {}});
+    const SpotNoise noise = make_noise(layer, recipe_.seed, number_of(layer), whole, discarded);
+    spot_draws_ += draws_at_a_point(noise, discarded.view());
+    if (spot_draws_ <= kMostSpotDraws) return;
+    const auto whole_number = [](double v) { return std::to_string(std::llround(v)); };
+    throw InputError(place_of(index_) + ".density: these spots, with those of earlier layers, take " +
+                     whole_number(spot_draws_) + " random draws at each point, at most " +
+                     whole_number(kMostSpotDraws) +
+                     " are allowed; lower density, layers or size, or use larger cells or fewer parts");
+  }
 
   // The noise of a layer in a frame with an origin of its own.
   template <class AnyLayer>
@@ -304,6 +322,7 @@ class LayerStack {
   Vec3d displaced_;           // bound of the displacement of later layers along each axis, length units
   std::map<int, int> slots_;  // slot of the kept heights of each masking layer
   std::vector<PatchLayer> patch_layers_;
+  double spot_draws_ = 0.0;          // by draws_at_a_point()
   std::optional<BareSurface> bare_;  // made for the first layer that needs it
   int index_ = 0;
 };

@@ -16,6 +16,7 @@ struct SpotLattice {
   Vec3d cells_per[3];  // rows of the inverse matrix: position to cells, per length unit
   std::uint32_t seed;
   double probability;  // probability of a cell to hold impulses
+  double density;      // impulses of a cell that holds some, on average
   double reach;        // distance of an impulse beyond its cell and a margin for rounding, in cells
   float width;         // side of the range of a cell's impulses, in cells
   float least_weight;

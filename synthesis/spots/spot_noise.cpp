@@ -142,20 +142,47 @@ double finest_length(const SpotLayer& layer, std::span<const SpotPart> parts) {
   return finest / whole_power(layer.lacunarity, layer.layers - 1);
 }
 
-// Adds the sum of one kind's spots to the heights at n points. The points are split into halves while too
-// many cells lie around them.
-void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x, const float* y,
-             const float* z, float* height) {
+Box box_of(int n, const float* x, const float* y, const float* z) {
   Box box;
   for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  if (n > 1 && spot_cells_around(kind, box).count() > kMostSpotCells) {
-    const int half = n / 2;
-    add_sum(kind, thresholds, half, x, y, z, height);
-    add_sum(kind, thresholds, n - half, x + half, y + half, z + half, height + half);
+  return box;
+}
+
+// So few points or impulses are not split any more.
+constexpr int kFewPoints = 16;
+constexpr std::size_t kFewImpulses = 64;
+
+// Adds the sum of one kind's spots to the heights at n points. `impulses` hold all whose spots reach them.
+// The points are split into halves while many impulses reach some of them only. An impulse that does not
+// reach a point would add exactly 0 there.
+void add_reaching(const SpotKind& kind, const std::vector<SpotImpulse>& impulses, int n, const float* x,
+                  const float* y, const float* z, float* height) {
+  if (n <= kFewPoints || impulses.size() <= kFewImpulses) {
+    add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
     return;
   }
-  const std::vector<SpotImpulse> impulses = draw_spots(kind, thresholds, box);
-  add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
+  const int half = n / 2;
+  for (const auto& [first, count] : {std::pair{0, half}, {half, n - half}}) {
+    const Box box = box_of(count, x + first, y + first, z + first);
+    add_reaching(kind, impulses_reaching(impulses, kind.support, box), count, x + first, y + first, z + first,
+                 height + first);
+  }
+}
+
+// Draws the impulses and adds the sum of one kind's spots to the heights at n points. The points are split
+// into halves while too many lie around them, or more cells than around each point by itself.
+void draw_and_add(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x,
+                  const float* y, const float* z, float* height) {
+  const Box box = box_of(n, x, y, z);
+  const double cells = spot_cells_around(kind, box).count();
+  if (n > 1 &&
+      (too_many_spots(kind, box) || cells > n * spot_cells_around(kind, box_of(1, x, y, z)).count())) {
+    const int half = n / 2;
+    draw_and_add(kind, thresholds, half, x, y, z, height);
+    draw_and_add(kind, thresholds, n - half, x + half, y + half, z + half, height + half);
+    return;
+  }
+  add_reaching(kind, draw_spots(kind, thresholds, box), n, x, y, z, height);
 }
 
 }  // namespace
@@ -206,13 +233,25 @@ double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side) {
   return cells;
 }
 
+double draws_at_a_point(const SpotNoise& noise, const ArrayView& arrays) {
+  double draws = 0.0;
+  for (const SpotKind& kind : arrays.span(noise.kinds)) {
+    const Vec3d& half = kind.support;
+    double cells = 1.0;
+    for (const Vec3d& per : kind.lattice.cells_per) {
+      const double reach = std::fabs(per.x) * half.x + std::fabs(per.y) * half.y + std::fabs(per.z) * half.z;
+      cells *= 2.0 * (reach + double{kind.lattice.reach}) + 1.0;
+    }
+    draws += cells * (1.0 + kind.lattice.probability * kind.lattice.density);
+  }
+  return draws;
+}
+
 std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
                                                  const Box& box, const SpotImpulses* larger_box_impulses) {
   const Box moved = moved_into(box, noise.low, noise.high);
   const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
-  const auto too_many = [&](const SpotKind& kind) {
-    return spot_cells_around(kind, moved).count() > kMostSpotCells;
-  };
+  const auto too_many = [&](const SpotKind& kind) { return too_many_spots(kind, moved); };
   if (larger_box_impulses == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
   auto impulses = std::make_shared<SpotImpulses>();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -234,10 +273,10 @@ void evaluate_heights(const SpotNoise& noise, const ArrayView& arrays, int n, co
     const SpotKind& kind = kinds[k];
     std::fill(sum.begin(), sum.end(), 0.0f);
     if (impulses == nullptr) {
-      add_sum(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
+      draw_and_add(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
     } else {
-      const std::vector<SpotImpulse> reaching = impulses_reaching((*impulses)[k], kind.support, box);
-      add_spots(kind.kernel, reaching.data(), reaching.size(), n, p.x(), p.y(), p.z(), sum.data());
+      add_reaching(kind, impulses_reaching((*impulses)[k], kind.support, box), n, p.x(), p.y(), p.z(),
+                   sum.data());
     }
     for (int i = 0; i < n; ++i)
       height[i] += math::clamp(sum[static_cast<std::size_t>(i)], -kind.clip, kind.clip);

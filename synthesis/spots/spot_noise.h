@@ -49,6 +49,9 @@ std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* t
 // The number of cells that impulses are drawn from for a cubic box; `side` is in length units.
 double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side);
 
+// The number of cells and impulses that are drawn on average for a point by itself.
+double draws_at_a_point(const SpotNoise& noise, const ArrayView& arrays);
+
 // The height n(p), length units, from lists of the impulses that reach p: kind k has impulses[first[k]] to
 // impulses[first[k + 1] - 1].
 ASTROLITH_HD inline float height_at(const SpotNoise& n, const ArrayView& arrays, const SpotImpulse* impulses,

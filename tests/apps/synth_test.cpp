@@ -296,6 +296,13 @@ TEST_F(Synth, APatchOfALargeBodyKeepsFineLayers) {
   EXPECT_NEAR(std::sqrt(squares / n - sum * sum / (n * n)), 0.004, 0.001);
 }
 
+TEST_F(Synth, SpotsThatTakeTooLongAreRefused) {
+  expect_recipe_refused(R"({"format_version": 1, "length_unit": "m", "body": {"type": "metaballs",
+    "spheres": [[0, 0, 0, 100]]}, "layers": [{"type": "spots", "amplitude": 0.5, "size": 40, "cell_size": 40,
+    "density": 60, "layers": 12, "gain": 4}]})",
+                        "layers[0].density: these spots");
+}
+
 TEST_F(Synth, PredictionWritesNothing) {
   const std::string summary = (folder_ / "s.json").string();
   const testing::Outcome outcome =
