@@ -39,6 +39,18 @@ ASTROLITH_HD inline std::uint32_t hash_cell(std::uint32_t h, std::int32_t x, std
   return hash_append(h, static_cast<std::uint32_t>(z));
 }
 
+// hash_cell() for cell numbers of 64 bits. Numbers that fit into 32 bits give the bits of hash_cell().
+ASTROLITH_HD inline std::uint32_t hash_append_wide(std::uint32_t h, std::int64_t value) {
+  h = hash_append(h, static_cast<std::uint32_t>(value));
+  return value == static_cast<std::int32_t>(value)
+             ? h
+             : hash_append(h, static_cast<std::uint32_t>(static_cast<std::uint64_t>(value) >> 32));
+}
+ASTROLITH_HD inline std::uint32_t hash_wide_cell(std::uint32_t h, std::int64_t x, std::int64_t y,
+                                                 std::int64_t z) {
+  return hash_append_wide(hash_append_wide(hash_append_wide(h, x), y), z);
+}
+
 // Uniform in [0, 1) with 24 random bits: exact in a float.
 ASTROLITH_HD inline float unit_float(std::uint32_t h) {
   return static_cast<float>(h >> 8) * 5.9604644775390625e-8f;

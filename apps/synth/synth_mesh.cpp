@@ -8,6 +8,7 @@
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/synth/synth_erosion.h"
+#include "apps/synth/synth_left_out.h"
 #include "apps/synth/synth_region.h"
 #include "apps/synth/synth_sinks.h"
 #include "geometry/io/mesh_io.h"
@@ -131,7 +132,7 @@ MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field,
 // Cells along the longest side of the region that was asked for.
 int resolution_of(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
                   const Region& region, const fs::path& output) {
-  const ImplicitField coarse_field(without_gabor(recipe), file.string());
+  const ImplicitField coarse_field(without_gabor(recipe), file.string(), region.cube());
   const auto discarded = [&](int resolution) {
     MeshDiscard sink;
     const Region uncut = region.is_patch ? region : Region{};
@@ -151,7 +152,7 @@ class MeshOutput {
       : output_(output), info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
     if (region.is_patch) info_.origin = region.center;
     if (request.labels) {
-      labels_.emplace(recipe, file.string());
+      labels_.emplace(recipe, file.string(), region.cube());
       info_.notes = labels_->legend();
     }
     sinks_.add(check_);
@@ -246,11 +247,12 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   check_outputs(program, request, output);
   const Region region = parse_region(request.tile, request.patch);
   check_request(request, region, recipe, file);
-  const ImplicitField field(recipe, file.string());
+  const ImplicitField field(recipe, file.string(), region.cube());
   if (field.bounds().empty()) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }
   const int resolution = resolution_of(program, request, recipe, file, region, output);
+  report_layers_left_out(program, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
   const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ struct Region {
   double size = 0.0;  // side of a patch, length units
 
   bool is_cut() const { return is_patch || tile.count > 1; }
+  // The cube of a patch; none for the whole surface and for tiles.
+  std::optional<PatchCube> cube() const {
+    return is_patch ? std::optional(PatchCube{center, size}) : std::nullopt;
+  }
 };
 
 // Reads a tile such as "3/16", the third of sixteen, or a patch's centre and side. Empty arguments stand for

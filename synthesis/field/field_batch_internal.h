@@ -23,11 +23,14 @@ struct Batch {
   bool is_projected = false;                       // whether px, py and pz are there
   const SpotImpulses* spots = nullptr;   // spots of the current layer that reach the points; null: not drawn
   std::array<float, kBatch> lx, ly, lz;  // coordinates local to `origin`
-  const Vec3d* origin = nullptr;         // origin of local coordinates; null: there are none
-  std::array<float, kBatch> weight;      // weight of the current layer
-  bool is_displaced = false;             // whether a layer so far warps the coordinates of later layers
-  std::array<float, kBatch> dx, dy, dz;  // displacements by the layers that warp later layers
-  std::array<float, kBatch> qx, qy, qz;  // displaced coordinates
+  std::array<float, kBatch> lmx, lmy, lmz;  // the same for (mx, my, mz); set for a plain body only
+  std::array<float, kBatch> lpx, lpy, lpz;  // the same for (px, py, pz)
+  bool is_locally_projected = false;        // whether lpx, lpy and lpz are there
+  const Vec3d* origin = nullptr;            // origin of local coordinates; null: there are none
+  std::array<float, kBatch> weight;         // weight of the current layer
+  bool is_displaced = false;                // whether a layer so far warps the coordinates of later layers
+  std::array<float, kBatch> dx, dy, dz;     // displacements by the layers that warp later layers
+  std::array<float, kBatch> qx, qy, qz;     // displaced coordinates
   std::vector<std::array<float, kBatch>> kept;  // heights kept for masks, by slot
   bool tetrahedra = false;  // whether the points are corners of tetrahedra, of which none may be left out
 };

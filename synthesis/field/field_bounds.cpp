@@ -91,6 +91,10 @@ void extend_bounds(const FieldModel& model, const LeafLists& metaballs, const Bo
 
 }  // namespace
 
+const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer) {
+  return layer.in_patch < 0 ? layer.noise : model.patch_noises[static_cast<std::size_t>(layer.in_patch)];
+}
+
 BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
                         const Box& box) {
   return field_content(model.tables, ModelLists{model, metaballs, spots}, box, scratch_for(model, metaballs));
@@ -100,10 +104,13 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
   DrawnSpots spots;
   for (std::size_t i = 0; i < model.layers.size(); ++i) {
     const FieldLayer& layer = model.layers[i];
-    const SpotNoise* noise = layer.noise.get_if<SpotNoise>();
+    const bool in_patch = layer.in_patch >= 0;
+    const SpotNoise* noise = noise_of(model, layer).get_if<SpotNoise>();
     if (noise == nullptr) continue;
+    const Vec3d& origin = model.tables.patch_origin;
+    const Box at = in_patch ? Box{box.min - origin, box.max - origin} : box;
     spots.resize(model.layers.size());
-    spots[i] = gather_spots(*noise, model.tables.arrays, displaced_layer_box(box, layer.join.displaced),
+    spots[i] = gather_spots(*noise, model.tables.arrays, displaced_layer_box(at, layer.join.displaced),
                             spots_of(of_larger, i));
   }
   return spots;

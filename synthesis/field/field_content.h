@@ -31,6 +31,7 @@ struct LayerOverBox {
   const Box& projected;  // holds the projections of the points of the box on the bare surface
   Interval before;
   Interval* kept;  // bounds of the heights kept for masks, by slot
+  bool in_patch;   // whether the noise is that in the frame of the field's patch
 
   ASTROLITH_HD Interval operator()(const CraterRelief& relief) const {
     const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
@@ -46,7 +47,10 @@ struct LayerOverBox {
 
  private:
   ASTROLITH_HD const LayerJoin& join() const { return f.layers[number].join; }
-  ASTROLITH_HD Box displaced_box_of_layer() const { return displaced_layer_box(box, join().displaced); }
+  ASTROLITH_HD Box displaced_box_of_layer() const {
+    return displaced_layer_box(in_patch ? Box{box.min - f.patch_origin, box.max - f.patch_origin} : box,
+                               join().displaced);
+  }
   ASTROLITH_HD Interval joined(const Interval& heights) const {
     const double slack = kHeightSlack * join().height_bound;
     if (join().keeps >= 0) kept[join().keeps] = plus(heights, {-slack, slack});
@@ -61,7 +65,9 @@ ASTROLITH_HD Interval bound_elevations(const FieldView& f, const Lists& lists, c
                                        const Box& projected, Interval* kept) {
   Interval elevation;
   for (std::uint32_t i = 0; i < f.num_layers; ++i) {
-    elevation = f.layers[i].noise.visit(LayerOverBox<Lists>{f, lists, i, box, projected, elevation, kept});
+    const bool in_patch = f.layers[i].in_patch >= 0;
+    const LayerNoise& noise = in_patch ? f.patch_noises[f.layers[i].in_patch] : f.layers[i].noise;
+    elevation = noise.visit(LayerOverBox<Lists>{f, lists, i, box, projected, elevation, kept, in_patch});
   }
   const double slack = kHeightSlack * f.height_bound;
   return {elevation.low - slack, elevation.high + slack};

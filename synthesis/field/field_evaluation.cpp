@@ -22,6 +22,7 @@ int keep_near_surface(int n, float reach, const Reach& boulders_reach, const Poi
     for (auto* a : {&b.distance, &b.gx, &b.gy, &b.gz}) (*a)[to] = (*a)[from];
     if (local != nullptr) {
       b.lx[to] = local->local.x[i], b.ly[to] = local->local.y[i], b.lz[to] = local->local.z[i];
+      for (auto* a : {&b.lmx, &b.lmy, &b.lmz}) (*a)[to] = (*a)[from];
     }
     origin[to] = i;
     ++kept;
@@ -43,8 +44,9 @@ void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::arr
     }
     const auto to = static_cast<std::size_t>(kept++);
     if (to == from) continue;
-    for (auto* a : {&b.x, &b.y, &b.z, &b.mx, &b.my, &b.mz, &b.lx, &b.ly, &b.lz, &b.distance, &b.gx, &b.gy,
-                    &b.gz, &b.elevation, &b.px, &b.py, &b.pz}) {
+    for (auto* a :
+         {&b.x,        &b.y,  &b.z,  &b.mx, &b.my,        &b.mz, &b.lx, &b.ly, &b.lz,  &b.lmx, &b.lmy, &b.lmz,
+          &b.distance, &b.gx, &b.gy, &b.gz, &b.elevation, &b.px, &b.py, &b.pz, &b.lpx, &b.lpy, &b.lpz}) {
       (*a)[to] = (*a)[from];
     }
     if (b.is_displaced) {
@@ -56,18 +58,22 @@ void keep_undecided(float reach, const Reach& boulders_reach, Batch& b, std::arr
   b.n = kept;
 }
 
-// s and grad L of a plain body to the digits of local coordinates. `metaballs_at` holds the points `at`
-// displaced by the body's warp.
-void evaluate_local_body(const MetaballsView& metaballs, int n, const LocalPoints& local,
-                         const PointArrays& at, const PointArrays& metaballs_at, Batch& b) {
-  const auto displaced = [n](const float* p, const float* from, const float* to, float* out) {
-    for (int i = 0; i < n; ++i) out[i] = p[i] + (to[i] - from[i]);
+// Writes the points, displaced by the body's warp, to (lmx, lmy, lmz) of the batch. `metaballs_at` holds the
+// displaced points `at` in the body's frame. Fine layers need the displacement in the frame of the patch.
+void displace_locally(const FieldModel& model, int n, const LocalPoints& local, const PointArrays& at,
+                      const PointArrays& metaballs_at, Batch& b) {
+  const PointArrays& p = local.local;
+  if (model.patch_warp) {
+    warp_points(*model.patch_warp, model.tables.arrays, n, p.x, p.y, p.z, b.lmx.data(), b.lmy.data(),
+                b.lmz.data());
+    return;
+  }
+  const auto displaced = [n](const float* c, const float* from, const float* to, float* out) {
+    for (int i = 0; i < n; ++i) out[i] = c[i] + (to[i] - from[i]);
   };
-  displaced(local.local.x, at.x, metaballs_at.x, b.lx.data());
-  displaced(local.local.y, at.y, metaballs_at.y, b.ly.data());
-  displaced(local.local.z, at.z, metaballs_at.z, b.lz.data());
-  evaluate_local_metaballs(metaballs, local.origin, n, b.lx.data(), b.ly.data(), b.lz.data(),
-                           b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
+  displaced(p.x, at.x, metaballs_at.x, b.lmx.data());
+  displaced(p.y, at.y, metaballs_at.y, b.lmy.data());
+  displaced(p.z, at.z, metaballs_at.z, b.lmz.data());
 }
 
 // Numbers of the boulders that may change F at the points.
@@ -122,9 +128,10 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   }
   if (local != nullptr) b.origin = &local->origin;
   if (local != nullptr && plain) {
-    const std::uint32_t* list = lists.metaballs.first;
-    const MetaballsView metaballs{first.metaballs, {lists.metaballs.spheres + list[0], list[1] - list[0]}};
-    evaluate_local_body(metaballs, n, *local, at, metaballs_at, b);
+    displace_locally(model, n, *local, at, metaballs_at, b);
+    evaluate_local_metaballs(metaballs_of_plain(f.body, f.arrays, lists.metaballs), local->origin, n,
+                             b.lmx.data(), b.lmy.data(), b.lmz.data(), b.distance.data(), b.gx.data(),
+                             b.gy.data(), b.gz.data());
   } else {
     evaluate_body(f.body, f.arrays, lists.metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z,
                   b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());

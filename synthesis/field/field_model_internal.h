@@ -2,6 +2,7 @@
 // which the CPU finds elements of the tables.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,15 @@ struct FieldModel {
   std::vector<LayerCraters> placed_craters;
   std::vector<LayerBoulders> placed_boulders;
 
+  // For a field made for a patch: the patch, the noise of its fine layers in the frame of the patch, and
+  // their impulses. The body's warp is there if any layer is. The bounds of layers hold in both frames.
+  std::optional<PatchCube> patch;
+  std::vector<LayerNoise> patch_noises;
+  std::vector<std::vector<GaborTileCache>> patch_caches;  // by noise and band
+  std::optional<CoordinateWarp> patch_warp;
+
+  std::vector<LayerLeftOut> left_out;
+
   Box bounds;  // holds the whole surface
 
   // Makes `tables` a view of the model as it is now. Adding to `arrays` or `layers` later makes the view
@@ -48,6 +58,9 @@ void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model
 
 // F at a point.
 float value_at(const FieldModel& model, const Vec3d& p);
+
+// The noise of a layer in the frame of the field's patch, if it has one there, else in the body's frame.
+const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer);
 
 // The spots that reach a box. They are chosen from the spots of a larger box, or drawn where `of_larger` is
 // empty.

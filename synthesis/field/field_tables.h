@@ -32,6 +32,7 @@ struct FieldLayer {
   LayerNoise noise;
   LayerJoin join;
   std::uint32_t first_list = 0;  // number of the layer's first list of impulses, for spots and Gabor noise
+  std::int32_t in_patch = -1;    // number of the layer's noise in the frame of a patch; -1: it has none
 };
 
 // Every block has one list of impulses for each kind of spots, and one for each band of Gabor noise.
@@ -54,6 +55,9 @@ struct FieldView {
   float height_reach;                       // height_bound with a margin for rounding, length units
   float longest_step;                       // height_bound as a float: how far points are projected
   float steepest;                           // the body's lipschitz_bound as a float
+  // Noise in the frame of the patch that the field was made for. A GPU does not read it.
+  const LayerNoise* patch_noises = nullptr;
+  Vec3d patch_origin;
 
   // Every block has one list of craters for each layer of craters, and after these one list of boulders.
   ASTROLITH_HD std::uint32_t num_landform_lists() const { return crater_layers.count + 1; }

@@ -74,7 +74,7 @@ template <class Visit>
 ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box, const Visit& visit) {
   GaborCellSpan cells[3], tiles[3];
   for (int a = 0; a < 3; ++a) {
-    cells[a] = gabor_cells_around(band, box.low[a], box.high[a]);
+    cells[a] = gabor_cells_around(band, a, box.low[a], box.high[a]);
     tiles[a] = {gabor_tile_of(cells[a].first), gabor_tile_of(cells[a].last)};
   }
   const auto visit_tile = [&](int tx, int ty, int tz) {
@@ -110,8 +110,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
     if (beyond_gabor_reach(impulse, at.center, at.half) <= 0.0f) write(impulse);
   };
   for_each_gabor_cell(band, at, [&](int x, int y, int z) {
-    const BodyAtPoint s =
-        unwarped_body_at(f.body, f.arrays, metaballs, gabor_cell_center(x, y, z, band.cell));
+    const BodyAtPoint s = unwarped_body_at(f.body, f.arrays, metaballs, gabor_cell_center(band, x, y, z));
     for_each_gabor_impulse(band, f.arrays[band.lobes], band.lobes.count, x, y, z, -s.distance, s.gradient,
                            write_reaching);
   });

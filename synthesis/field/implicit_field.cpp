@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "numerics/errors.h"
 #include "synthesis/body/body_tables.h"
@@ -43,6 +44,15 @@ struct BodyPoints {
   PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
 };
 
+// A field for a patch holds its fine layers relative to the centre of the patch.
+void check_origin(const FieldModel& model, const Vec3d& origin) {
+  if (!model.patch) return;
+  const Vec3d& center = model.patch->center;
+  if (origin.x != center.x || origin.y != center.y || origin.z != center.z) {
+    throw std::invalid_argument("FieldBlock: the origin is not the centre of the patch of the field");
+  }
+}
+
 }  // namespace
 
 void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
@@ -63,6 +73,7 @@ void FieldBlock::evaluate_tetrahedra(std::span<const float> x, std::span<const f
 
 void FieldBlock::evaluate_local(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                                 std::span<const float> z, std::span<float> value, float band) const {
+  check_origin(*model_, origin);
   for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
     const LocalPoints local{origin, {&x[i], &y[i], &z[i]}};
     const BodyPoints at(local, n);
@@ -74,6 +85,7 @@ void FieldBlock::evaluate_local(const Vec3d& origin, std::span<const float> x, s
 void FieldBlock::evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x,
                                            std::span<const float> y, std::span<const float> z,
                                            std::span<float> value) const {
+  check_origin(*model_, origin);
   for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
     const LocalPoints local{origin, {&x[i], &y[i], &z[i]}};
     const BodyPoints at(local, n);
@@ -82,11 +94,13 @@ void FieldBlock::evaluate_local_tetrahedra(const Vec3d& origin, std::span<const 
   });
 }
 
-ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name) {
+ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
+                             const std::optional<PatchCube>& patch) {
   if (!recipe.body || recipe.body->spheres.empty()) {
     throw InputError(name + ": body: is missing; give a body, or lay these layers on one");
   }
   auto model = std::make_shared<FieldModel>();
+  model->patch = patch;
   model->body = make_body(*recipe.body, recipe.seed, model->arrays);
   model->update();
   model->metaballs = all_metaballs(model->body, model->tables.arrays);
@@ -117,6 +131,10 @@ double ImplicitField::gradient_step() const {
 Box ImplicitField::bounds() const { return model_->bounds; }
 
 bool ImplicitField::has_local_form() const { return model_->body.plain(); }
+
+std::span<const LayerLeftOut> ImplicitField::left_out() const { return model_->left_out; }
+
+bool ImplicitField::has_patch_layers() const { return !model_->patch_noises.empty(); }
 
 double ImplicitField::height_bound() const { return model_->height_bound; }
 

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,19 @@ struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
 struct LayerBoulders;  // synthesis/landforms/boulder_field.h
+
+// A cube that a field is evaluated in, in coordinates relative to its centre; length units.
+struct PatchCube {
+  Vec3d center;
+  double side = 0.0;
+};
+
+// A part of a layer that is too fine for the coordinates that the field is evaluated in.
+struct LayerLeftOut {
+  int layer = 0;                // the layer's place in the recipe; -1: the body's warp
+  double variance_share = 0.0;  // share in the variance that the whole layer would have, (0, 1]
+  double finest = 0.0;          // shortest wave or narrowest cell of the layer, length units
+};
 
 // The spots that reach a box, one pointer for each layer; null where nothing was drawn. The vector is empty
 // for a field without layers of spots.
@@ -55,7 +69,8 @@ class FieldBlock {
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                            std::span<float> value) const;
 
-  // value[i] = F(origin + (x, y, z)). The points must lie within the box, but for the rounding of its
+  // value[i] = F(origin + (x, y, z)). If the field was made for a patch, the origin must be its centre;
+  // throws std::invalid_argument otherwise. The points must lie within the box, but for the rounding of its
   // coordinates to float. A body that has_local_form() and fractal layers are evaluated to the digits of x, y
   // and z; other bodies and layers are evaluated to the digits of float coordinates in the body's frame.
   void evaluate_local(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
@@ -80,7 +95,12 @@ class ImplicitField {
  public:
   // Expects a recipe that validation accepts; `name` begins the messages of errors. Throws InputError for a
   // recipe without a body, and for craters and boulders that have no place on it or are wider than it.
-  explicit ImplicitField(const Recipe& recipe, const std::string& name = "recipe");
+  //
+  // Layers too fine for float coordinates of the body's frame are left out. With `patch`, evaluate_local()
+  // has them within the cube, if the body has_local_form(). Blocks of such a field must lie in the cube or
+  // within its side of it. The functions that take points of the body's frame never have the fine layers.
+  explicit ImplicitField(const Recipe& recipe, const std::string& name = "recipe",
+                         const std::optional<PatchCube>& patch = {});
 
   double value(const Vec3d& p) const;
   bool inside(const Vec3d& p) const { return value(p) > 0.0; }
@@ -99,6 +119,12 @@ class ImplicitField {
   Box bounds() const;
   // The |elevation| never exceeds this, in length units.
   double height_bound() const;
+
+  // What coordinates cannot resolve of the layers: of a field for a patch in the patch, else in the body's
+  // frame. In the order of the layers.
+  std::span<const LayerLeftOut> left_out() const;
+  // Whether layers have another form in the field's patch than in the body's frame.
+  bool has_patch_layers() const;
 
   // The craters of each layer, listed and drawn, from the oldest to the youngest.
   std::span<const LayerCraters> craters() const;

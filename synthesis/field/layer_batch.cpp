@@ -25,19 +25,30 @@ ASTROLITH_SIMD_CLONES void gradient_lengths(int n, const float* __restrict gx, c
   }
 }
 
-void project(const FieldModel& model, Batch& b) {
-  if (b.is_projected) return;
-  b.is_projected = true;
+// Writes the projections of the points (x, y, z), given where the metaballs are evaluated for them.
+void project(const FieldModel& model, const Batch& b, const PointArrays& p, float* px, float* py, float* pz) {
   std::array<float, kBatch> length;
   gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
                    length.data());
   const float longest_step = static_cast<float>(model.height_bound);
-  const auto along = [&](const std::array<float, kBatch>& p, const std::array<float, kBatch>& g, float* out) {
-    project(b.n, p.data(), g.data(), length.data(), b.distance.data(), longest_step, out);
+  const auto along = [&](const float* c, const std::array<float, kBatch>& g, float* out) {
+    project(b.n, c, g.data(), length.data(), b.distance.data(), longest_step, out);
   };
-  along(b.mx, b.gx, b.px.data());
-  along(b.my, b.gy, b.py.data());
-  along(b.mz, b.gz, b.pz.data());
+  along(p.x, b.gx, px);
+  along(p.y, b.gy, py);
+  along(p.z, b.gz, pz);
+}
+
+void project(const FieldModel& model, Batch& b) {
+  if (b.is_projected) return;
+  b.is_projected = true;
+  project(model, b, {b.mx.data(), b.my.data(), b.mz.data()}, b.px.data(), b.py.data(), b.pz.data());
+}
+
+void project_locally(const FieldModel& model, Batch& b) {
+  if (b.is_locally_projected) return;
+  b.is_locally_projected = true;
+  project(model, b, {b.lmx.data(), b.lmy.data(), b.lmz.data()}, b.lpx.data(), b.lpy.data(), b.lpz.data());
 }
 
 // The points p, displaced by the layers so far that warp later layers.
@@ -50,32 +61,35 @@ PointArrays displaced(Batch& b, const PointArrays& p) {
   }
   return {b.qx.data(), b.qy.data(), b.qz.data()};
 }
-PointArrays layer_points(Batch& b) { return displaced(b, {b.x.data(), b.y.data(), b.z.data()}); }
+PointArrays local_points(Batch& b) { return displaced(b, {b.lx.data(), b.ly.data(), b.lz.data()}); }
 
 // Visits a layer's noise: evaluates its heights at the points of a batch.
 struct LayerHeights {
   const FieldModel& model;
   const FieldLayer& layer;
   Batch& b;
+  bool in_patch;  // whether the noise is that in the frame of the field's patch
 
   void operator()(const FractalNoise& noise) const {
-    if (b.origin == nullptr || !noise.has_local_form()) return evaluate(noise);
-    const PointArrays p = displaced(b, {b.lx.data(), b.ly.data(), b.lz.data()});
+    if (in_patch || b.origin == nullptr || !noise.has_local_form()) return evaluate(noise);
+    const PointArrays p = local_points(b);
     evaluate_local_heights(noise, arrays(), *b.origin, b.n, p.x, p.y, p.z, b.height.data());
   }
   void operator()(const SpotNoise& noise) const {
-    const PointArrays p = layer_points(b);
+    const PointArrays p = points();
     evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data(), b.spots);
   }
   void operator()(const GaborSurfaceNoise& noise) const {
-    project(model, b);
-    const GaborGround ground{model.body, arrays(), model.metaballs.lists()};
-    const GaborTileCache* caches = model.gabor_caches.data() + layer.first_list;
-    if (b.tetrahedra) {
-      evaluate_tetrahedron_heights(noise, ground, caches, b.n, b.px.data(), b.py.data(), b.pz.data(),
-                                   b.height.data());
+    GaborGround ground{model.body, arrays(), model.metaballs.lists()};
+    if (in_patch) {
+      project_locally(model, b);
+      ground.origin = b.origin;
+      const auto number = static_cast<std::size_t>(layer.in_patch);
+      add_gabor(noise, ground, model.patch_caches[number].data(), {b.lpx.data(), b.lpy.data(), b.lpz.data()});
     } else {
-      evaluate_heights(noise, ground, caches, b.n, b.px.data(), b.py.data(), b.pz.data(), b.height.data());
+      project(model, b);
+      add_gabor(noise, ground, model.gabor_caches.data() + layer.first_list,
+                {b.px.data(), b.py.data(), b.pz.data()});
     }
   }
   void operator()(const CraterRelief&) const {}  // craters change elevations and have no heights
@@ -88,8 +102,19 @@ struct LayerHeights {
   const ArrayView& arrays() const { return model.tables.arrays; }
   template <class Noise>
   void evaluate(const Noise& noise) const {
-    const PointArrays p = layer_points(b);
+    const PointArrays p = points();
     evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
+  }
+  PointArrays points() const {
+    return in_patch ? local_points(b) : displaced(b, {b.x.data(), b.y.data(), b.z.data()});
+  }
+  void add_gabor(const GaborSurfaceNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
+                 const PointArrays& p) const {
+    if (b.tetrahedra) {
+      evaluate_tetrahedron_heights(noise, ground, caches, b.n, p.x, p.y, p.z, b.height.data());
+    } else {
+      evaluate_heights(noise, ground, caches, b.n, p.x, p.y, p.z, b.height.data());
+    }
   }
 };
 
@@ -141,7 +166,8 @@ void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
                   b.py.data(), b.pz.data(), b.elevation.data());
     return;
   }
-  layer.noise.visit(LayerHeights{model, layer, b});
+  const bool in_patch = b.origin != nullptr && layer.in_patch >= 0;
+  (in_patch ? noise_of(model, layer) : layer.noise).visit(LayerHeights{model, layer, b, in_patch});
   join_heights(model, layer.join, b);
 }
 

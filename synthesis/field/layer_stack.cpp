@@ -1,10 +1,12 @@
 // Adds a recipe's layers to the field model that holds its body.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "numerics/errors.h"
@@ -25,6 +27,9 @@ std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d>
   return elevations;
 }
 
+// A point takes about 0.1 ms where the spots of all layers take as many draws.
+constexpr double kMostSpotDraws = 8192.0;
+
 // Adds a recipe's layers to the field model in the recipe's order.
 class LayerStack {
  public:
@@ -35,9 +40,12 @@ class LayerStack {
   }
 
   void add_all() {
+    const BodyLeaf& first = model_.tables.leaf(0);
+    if (first.warped) report_left_out(-1, first.warp.detail);
     for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
       std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
     }
+    add_patch_noises();
     sum_changes();
     model_.update();
     add_boulders();
@@ -46,17 +54,18 @@ class LayerStack {
  private:
   template <class AnyLayer>
   void add(const AnyLayer& layer) {
-    push(make_noise(layer, recipe_.seed, number_of(layer), domain_, model_.arrays));
+    push(layer, make_noise(layer, recipe_.seed, number_of(layer), domain_, model_.arrays));
   }
   void add(const SpotLayer& layer) {
     const SpotNoise noise = make_noise(layer, recipe_.seed, number_of(layer), domain_, model_.arrays);
-    push(noise, add_lists(noise.kinds.count, model_.spot_lists));
+    check_work(layer);
+    push(layer, noise, add_lists(noise.kinds.count, model_.spot_lists));
   }
   void add(const GaborLayer& layer) {
     if (!(layer.height_rms > 0.0)) return;  // a layer of colour alone has no height
     const GaborSurfaceNoise noise =
         make_noise(layer, recipe_.seed, number_of(layer), supports_, model_.arrays);
-    push(noise, add_lists(noise.bands.count, model_.gabor_lists));
+    push(layer, noise, add_lists(noise.bands.count, model_.gabor_lists));
     model_.gabor_caches.resize(model_.gabor_lists.size());
   }
   void add(const CraterLayer& layer) {
@@ -130,12 +139,120 @@ class LayerStack {
   }
   std::string place_of(int layer) const { return name_ + ": layers[" + std::to_string(layer) + "]"; }
 
+  // Throws InputError where the spots so far take too long to compute, with all sizes of this layer.
+  void check_work(const SpotLayer& layer) {
+    ArrayStore discarded;
+    const NoiseFrame whole(Box{{}, {}});
+    const SpotNoise noise = make_noise(layer, recipe_.seed, number_of(layer), whole, discarded);
+    spot_draws_ += draws_at_a_point(noise, discarded.view());
+    if (spot_draws_ <= kMostSpotDraws) return;
+    const auto whole_number = [](double v) { return std::to_string(std::llround(v)); };
+    throw InputError(place_of(index_) + ".density: these spots, with those of earlier layers, take " +
+                     whole_number(spot_draws_) + " random draws at each point, at most " +
+                     whole_number(kMostSpotDraws) +
+                     " are allowed; lower density, layers or size, or use larger cells or fewer parts");
+  }
+
+  // The noise of a layer in a frame with an origin of its own.
+  template <class AnyLayer>
+  auto moved_noise(const AnyLayer& layer, const NoiseFrame& frame, ArrayStore& arrays) const {
+    if constexpr (std::is_same_v<AnyLayer, GaborLayer>) {
+      const Vec3d e = supports_.extent();
+      return make_noise(layer, recipe_.seed, number_of(layer), frame, std::max({e.x, e.y, e.z}), arrays);
+    } else {
+      return make_noise(layer, recipe_.seed, number_of(layer), frame, arrays);
+    }
+  }
+
+  // Whether float coordinates of the body's frame are too coarse for a noise in the field's patch.
   template <typename Noise>
-  void push(const Noise& noise, std::uint32_t first_list = 0) {
+  bool too_fine_for_body(const Noise& noise) const {
+    if (!model_.patch || !model_.body.plain()) return false;
+    if constexpr (std::is_same_v<Noise, FractalNoise>) {
+      if (noise.has_local_form()) return noise.detail.left_out > 0.0;
+    }
+    return noise.detail.left_out > 0.0 ||
+           largest_coordinate(domain_) > kMostPreciseCells * noise.detail.finest;
+  }
+
+  // A layer that stands in the frame of the patch. Its noise is made when all heights are known.
+  struct PatchLayer {
+    std::size_t layer;  // number in the model
+    int index;          // place in the recipe
+    double displaced;   // bound of the displacement of its coordinates, length units
+  };
+
+  // Leaves the noise of a layer to add_patch_noises() where the patch needs that. Returns a bound of its
+  // heights.
+  template <class AnyLayer, typename Noise>
+  double height_bound_of(const AnyLayer& layer, const Noise& noise) {
+    if (!too_fine_for_body(noise)) {
+      report_left_out(index_, noise.detail);
+      return noise.height_bound;
+    }
+    patch_layers_.push_back({model_.layers.size(), index_, largest_coordinate(Box{displaced_, displaced_})});
+    ArrayStore discarded;
+    const NoiseFrame whole(Box{{}, {}}, model_.patch->center);
+    return std::max(noise.height_bound, moved_noise(layer, whole, discarded).height_bound);
+  }
+
+  void report_left_out(int index, const NoiseDetail& detail) {
+    if (detail.left_out > 0.0) model_.left_out.push_back({index, detail.left_out, detail.finest});
+  }
+
+  // Makes the noises of the layers that are too fine for the body's frame. Points of a block lie within two
+  // sides of the centre; Gabor noise is evaluated at their projections.
+  void add_patch_noises() {
+    if (patch_layers_.empty()) return;
+    const PatchCube& patch = *model_.patch;
+    make_patch_warp();
+    const double warp = model_.patch_warp ? model_.patch_warp->bound : 0.0;
+    for (const PatchLayer& l : patch_layers_) {
+      index_ = l.index;
+      std::visit([&](const auto& layer) { add_patch_noise(layer, l, patch, warp); },
+                 recipe_.layers[static_cast<std::size_t>(l.index)]);
+    }
+    std::stable_sort(model_.left_out.begin(), model_.left_out.end(),
+                     [](const LayerLeftOut& a, const LayerLeftOut& b) { return a.layer < b.layer; });
+  }
+  template <class AnyLayer>
+  void add_patch_noise(const AnyLayer& layer, const PatchLayer& l, const PatchCube& patch, double warp) {
+    if constexpr (requires { layer.use; }) {
+      const bool on_surface = std::is_same_v<AnyLayer, GaborLayer>;
+      const double reach = 2.0 * patch.side + (on_surface ? warp + model_.height_bound : l.displaced);
+      const NoiseFrame frame(widened(Box{{}, {}}, reach), patch.center);
+      const auto noise = moved_noise(layer, frame, model_.arrays);
+      report_left_out(l.index, noise.detail);
+      model_.layers[l.layer].in_patch = static_cast<std::int32_t>(model_.patch_noises.size());
+      model_.patch_noises.push_back(LayerNoise(noise));
+      model_.patch_caches.emplace_back();
+      if constexpr (std::is_same_v<AnyLayer, GaborLayer>)
+        model_.patch_caches.back().resize(noise.bands.count);
+    }
+  }
+  // The body's warp in the frame of the patch, with the octaves that it has in the body's frame.
+  void make_patch_warp() {
+    model_.update();
+    const BodyLeaf& first = model_.tables.leaf(0);
+    if (!first.warped) return;
+    const Vec3d& center = model_.patch->center;
+    constexpr float kEverywhere = std::numeric_limits<float>::max();
+    CoordinateWarp warp = first.warp;
+    for (ArrayRange<NoiseOctave>& octaves : warp.octaves) {
+      const std::span<const NoiseOctave> of_body = model_.arrays.view().span(octaves);
+      octaves = model_.arrays.add(local_octaves(Noise::kSimplex, of_body, center));
+    }
+    warp.low = {-kEverywhere, -kEverywhere, -kEverywhere};
+    warp.high = {kEverywhere, kEverywhere, kEverywhere};
+    model_.patch_warp = warp;
+  }
+
+  template <class AnyLayer, typename Noise>
+  void push(const AnyLayer& layer, const Noise& noise, std::uint32_t first_list = 0) {
     const LayerUse& use = *use_of(recipe_.layers[static_cast<std::size_t>(index_)]);
     LayerJoin join;
     join.how = use.combination;
-    join.height_bound = noise.height_bound;
+    join.height_bound = height_bound_of(layer, noise);
     join.displaced = displaced_;
     if (use.locality) {
       join.local = true;
@@ -204,6 +321,8 @@ class LayerStack {
   Box supports_, domain_;
   Vec3d displaced_;           // bound of the displacement of later layers along each axis, length units
   std::map<int, int> slots_;  // slot of the kept heights of each masking layer
+  std::vector<PatchLayer> patch_layers_;
+  double spot_draws_ = 0.0;          // by draws_at_a_point()
   std::optional<BareSurface> bare_;  // made for the first layer that needs it
   int index_ = 0;
 };
@@ -228,6 +347,8 @@ void FieldModel::update() {
   tables.height_reach = static_cast<float>(height_bound * (1.0 + 1e-5));
   tables.longest_step = static_cast<float>(height_bound);
   tables.steepest = static_cast<float>(body.lipschitz_bound);
+  tables.patch_noises = patch_noises.data();
+  if (patch) tables.patch_origin = patch->center;
 }
 
 void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model) {

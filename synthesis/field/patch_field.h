@@ -4,9 +4,11 @@
 //
 // Float coordinates in a body's frame have a spacing of about 2^-24 of its size: 0.02 mm on a body of 500 m.
 // F is uncertain by as much. A PatchField evaluates a body that has_local_form() and fractal layers to the
-// digits of local coordinates. Other bodies and layers are evaluated at points rounded to float coordinates
-// of the body's frame. This rounding moves their pattern by up to one spacing, and changes its slope by one
-// spacing over a cell. Otherwise the surface is that of the ImplicitField.
+// digits of local coordinates. If the field was made for the patch, that also holds for every layer of noise
+// whose details are fine beside this spacing. Other bodies and layers are evaluated at points rounded to
+// float coordinates of the body's frame. This rounding moves their pattern by up to one spacing, and changes
+// its slope by one spacing over a cell. Otherwise the surface is that of the ImplicitField, which leaves out
+// what float coordinates of the body's frame cannot hold.
 #pragma once
 
 #include "numerics/interval.h"

@@ -41,19 +41,24 @@ std::string meaning(std::size_t label, const Layer& layer) {
 
 }  // namespace
 
-SurfaceLabels::SurfaceLabels(const Recipe& recipe, const std::string& name) {
+SurfaceLabels::SurfaceLabels(const Recipe& recipe, const std::string& name,
+                             const std::optional<PatchCube>& patch) {
   Recipe so_far = recipe;
   std::fill(so_far.layers.begin(), so_far.layers.end(), idle());
-  stages_.push_back({0, ImplicitField(so_far, name)});
+  stages_.push_back({0, ImplicitField(so_far, name, patch)});
   for (const std::size_t i : order_of_layers(recipe)) {
     so_far.layers[i] = recipe.layers[i];
-    stages_.push_back({static_cast<int>(i) + 1, ImplicitField(so_far, name)});
+    stages_.push_back({static_cast<int>(i) + 1, ImplicitField(so_far, name, patch)});
   }
   legend_.push_back("label 0: the bare body");
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     legend_.push_back(meaning(i + 1, recipe.layers[i]));
   }
-  rounding_ = static_cast<float>(kRounding * largest_coordinate(stages_.back().field.bounds()));
+  const ImplicitField& whole = stages_.back().field;
+  in_patch_ = whole.has_patch_layers();
+  const double largest =
+      in_patch_ ? std::max(patch->side, whole.height_bound()) : largest_coordinate(whole.bounds());
+  rounding_ = static_cast<float>(kRounding * largest);
 }
 
 void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> vertices,
@@ -69,16 +74,24 @@ void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> verti
 void SurfaceLabels::label_some(const Vec3d& origin, std::span<const MeshVertex> vertices,
                                std::span<VertexLabel> labels) const {
   const std::size_t n = vertices.size();
-  std::array<float, kChunk> x, y, z, bare, before, after, largest;
+  std::array<float, kChunk> x, y, z, lx, ly, lz, bare, before, after, largest;
   Box box;
   for (std::size_t i = 0; i < n; ++i) {
+    const Vec3f& local = vertices[i].position;
+    lx[i] = local.x, ly[i] = local.y, lz[i] = local.z;
     x[i] = static_cast<float>(origin.x + double{vertices[i].position.x});
     y[i] = static_cast<float>(origin.y + double{vertices[i].position.y});
     z[i] = static_cast<float>(origin.z + double{vertices[i].position.z});
     box.extend({double{x[i]}, double{y[i]}, double{z[i]}});
   }
   for (const Stage& stage : stages_) {
-    stage.field.gather(box).evaluate({x.data(), n}, {y.data(), n}, {z.data(), n}, {after.data(), n});
+    const FieldBlock block = stage.field.gather(box);
+    if (in_patch_) {
+      block.evaluate_local(origin, {lx.data(), n}, {ly.data(), n}, {lz.data(), n}, {after.data(), n},
+                           kExactEverywhere);
+    } else {
+      block.evaluate({x.data(), n}, {y.data(), n}, {z.data(), n}, {after.data(), n});
+    }
     const bool is_bare = stage.label == 0;
     for (std::size_t i = 0; i < n; ++i) {
       const float change = is_bare ? rounding_ : std::fabs(after[i] - before[i]);

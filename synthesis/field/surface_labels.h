@@ -19,10 +19,11 @@ namespace astrolith {
 // by itself.
 class SurfaceLabels {
  public:
-  // Takes the recipe and the name that ImplicitField takes, and throws what its constructor throws.
-  SurfaceLabels(const Recipe& recipe, const std::string& name);
+  // Takes what ImplicitField takes, and throws what its constructor throws.
+  SurfaceLabels(const Recipe& recipe, const std::string& name, const std::optional<PatchCube>& patch = {});
 
-  // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. Elevations are
+  // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. The origin is the
+  // centre of the patch, if there is one. Elevations are
   // above the bare body, in length units. Both spans have one size.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels) const;
 
@@ -41,6 +42,7 @@ class SurfaceLabels {
   std::vector<Stage> stages_;  // the bare body first
   std::vector<std::string> legend_;
   float rounding_ = 0.0f;  // bound of the rounding of F, length units
+  bool in_patch_ = false;  // whether fields are evaluated in the frame of a patch
 };
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "synthesis/body/local_metaballs.h"
 
 namespace astrolith {
 namespace {
@@ -11,19 +12,28 @@ namespace {
 struct Centers {
   std::vector<float> x, y, z, distance, gx, gy, gz;
 
-  Centers(std::span<const GaborCell> cells, float side, const GaborGround& ground) {
+  Centers(std::span<const GaborCell> cells, const SurfaceBand& band, const GaborGround& ground) {
     Box box;
     for (const GaborCell& c : cells) {
-      const Vec3f p = gabor_cell_center(c[0], c[1], c[2], side);
+      const Vec3f p = gabor_cell_center(band, c[0], c[1], c[2]);
       box.extend({p.x, p.y, p.z});
       x.push_back(p.x);
       y.push_back(p.y);
       z.push_back(p.z);
     }
     for (std::vector<float>* v : {&distance, &gx, &gy, &gz}) v->resize(x.size());
+    const int n = static_cast<int>(x.size());
+    if (ground.origin != nullptr) {
+      const Box at{box.min + *ground.origin, box.max + *ground.origin};
+      const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, at);
+      evaluate_local_metaballs(metaballs_of_plain(ground.body, ground.arrays, reaching.lists()),
+                               *ground.origin, n, x.data(), y.data(), z.data(), distance.data(), gx.data(),
+                               gy.data(), gz.data());
+      return;
+    }
     const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, box);
-    evaluate_body(ground.body, ground.arrays, reaching.lists(), static_cast<int>(x.size()), x.data(),
-                  y.data(), z.data(), distance.data(), gx.data(), gy.data(), gz.data());
+    evaluate_body(ground.body, ground.arrays, reaching.lists(), n, x.data(), y.data(), z.data(),
+                  distance.data(), gx.data(), gy.data(), gz.data());
   }
 };
 
@@ -31,7 +41,7 @@ struct Centers {
 
 std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
                                      std::span<const GaborCell> cells) {
-  const Centers centers(cells, band.cell, ground);
+  const Centers centers(cells, band, ground);
   std::vector<GaborImpulse> impulses;
   const GaborLobeShare* lobes = ground.arrays[band.lobes];
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -21,7 +21,8 @@ struct SurfaceBand : GaborDraw {
 struct GaborGround {
   const BodyTables& body;
   ArrayView arrays;
-  LeafLists metaballs;  // all metaballs of the body
+  LeafLists metaballs;            // all metaballs of the body
+  const Vec3d* origin = nullptr;  // of the coordinates of a patch on a plain body; null: the body's own
 };
 
 using GaborCell = std::array<int, 3>;

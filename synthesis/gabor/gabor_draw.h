@@ -25,6 +25,8 @@ struct GaborDraw {
   int impulses_per_cell;
   float amplitude;  // amplitude of a kernel, length units
   float farthest;   // greatest first-order distance of an impulse from the surface, length units
+  std::int64_t first_cell[3] = {0, 0, 0};  // number of the cell that cells are counted from
+  Vec3f first_corner{};                    // lowest corner of that cell, length units
 };
 
 // Two unit tangent vectors and the outward unit normal.
@@ -43,19 +45,20 @@ ASTROLITH_HD inline TangentFrame tangent_frame(const Vec3f& inward) {
   return {u, cross(u, n), n};
 }
 
-ASTROLITH_HD inline Vec3f gabor_cell_center(int cx, int cy, int cz, float cell) {
-  return {(static_cast<float>(cx) + 0.5f) * cell, (static_cast<float>(cy) + 0.5f) * cell,
-          (static_cast<float>(cz) + 0.5f) * cell};
+ASTROLITH_HD inline Vec3f gabor_cell_center(const GaborDraw& band, int cx, int cy, int cz) {
+  const auto at = [&](int c, float first) { return (static_cast<float>(c) + 0.5f) * band.cell + first; };
+  return {at(cx, band.first_corner.x), at(cy, band.first_corner.y), at(cz, band.first_corner.z)};
 }
 
 // The position of an impulse in its cell. Ten bits of the hash choose each coordinate, to a thousandth of a
 // cell.
-ASTROLITH_HD inline Vec3f point_in_gabor_cell(std::uint32_t hash, int cx, int cy, int cz, float cell) {
-  const auto at = [&](int c, int shift) {
+ASTROLITH_HD inline Vec3f point_in_gabor_cell(const GaborDraw& band, std::uint32_t hash, int cx, int cy,
+                                              int cz) {
+  const auto at = [&](int c, int shift, float first) {
     const std::uint32_t bits = (hash >> shift) & 1023u;
-    return (static_cast<float>(c) + (static_cast<float>(bits) + 0.5f) * 0x1p-10f) * cell;
+    return (static_cast<float>(c) + (static_cast<float>(bits) + 0.5f) * 0x1p-10f) * band.cell + first;
   };
-  return {at(cx, 2), at(cy, 12), at(cz, 22)};
+  return {at(cx, 2, band.first_corner.x), at(cy, 12, band.first_corner.y), at(cz, 22, band.first_corner.z)};
 }
 
 // The lobe that a uniform number in [0, 1) selects: the first one whose cumulative share exceeds the number.
@@ -88,11 +91,12 @@ ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeS
                                          const Vec3f& inward, Visit&& visit) {
   if (math::abs(height) > band.farthest + band.cell) return;
   const TangentFrame frame = tangent_frame(inward);
-  const Vec3f center = gabor_cell_center(cx, cy, cz, band.cell);
-  const std::uint32_t cell_hash = hash_cell(band.seed, cx, cy, cz);
+  const Vec3f center = gabor_cell_center(band, cx, cy, cz);
+  const std::int64_t* first = band.first_cell;
+  const std::uint32_t cell_hash = hash_wide_cell(band.seed, first[0] + cx, first[1] + cy, first[2] + cz);
   for (int j = 0; j < band.impulses_per_cell; ++j) {
     const std::uint32_t hash = hash_append(cell_hash, static_cast<std::uint32_t>(j));
-    const Vec3f p = point_in_gabor_cell(hash, cx, cy, cz, band.cell);
+    const Vec3f p = point_in_gabor_cell(band, hash, cx, cy, cz);
     const float above = height + dot(frame.n, p - center);
     if (math::abs(above) > band.farthest) continue;
     // Sixteen bits choose the lobe, the other sixteen the phase.
@@ -126,14 +130,16 @@ ASTROLITH_KERNEL float beyond_gabor_reach(const GaborImpulse& k, const float* ce
   return math::max(math::max(u, v) - kGaborSlack * kGaborReach, n - kGaborSlack * kGaborSlabReach);
 }
 
-// The cells, along one axis, whose impulses may reach float points between low and high.
+// The cells along axis 0, 1 or 2 whose impulses may reach float points between low and high.
 struct GaborCellSpan {
   int first, last;
 };
-ASTROLITH_HD inline GaborCellSpan gabor_cells_around(const GaborDraw& band, float low, float high) {
+ASTROLITH_HD inline GaborCellSpan gabor_cells_around(const GaborDraw& band, int axis, float low, float high) {
   const double cell = static_cast<double>(band.cell), reach = (1.0 + 1e-3) * static_cast<double>(band.reach);
-  return {static_cast<int>(std::floor((static_cast<double>(low) - reach) / cell)),
-          static_cast<int>(std::floor((static_cast<double>(high) + reach) / cell))};
+  const Vec3f& corner = band.first_corner;
+  const auto first = static_cast<double>(axis == 0 ? corner.x : axis == 1 ? corner.y : corner.z);
+  return {static_cast<int>(std::floor((static_cast<double>(low) - first - reach) / cell)),
+          static_cast<int>(std::floor((static_cast<double>(high) - first + reach) / cell))};
 }
 
 // The number of cells along a side of a tile. Impulses are added in the order of tiles.

@@ -33,7 +33,7 @@ double longest_side(const Box& box) {
 // One bandwidth at the scale of a domain. The variance is density K^2/2 (integral of e^2)^2 (integral of
 // W^2); the factor 1/2 comes from the uniform phase.
 SurfaceBand surface_band(const GaborLayer& layer, const GaborBand& band, std::uint32_t seed,
-                         const Box& domain, ArrayStore& arrays) {
+                         const Vec3d& origin, double body_side, ArrayStore& arrays) {
   const double a = band.a / layer.pixel_size;
   const double cells_under_kernel =
       kGaborKernelArea * kGaborSlabThickness / portable::whole_power(kGaborSpaceCell, 3);
@@ -42,13 +42,29 @@ SurfaceBand surface_band(const GaborLayer& layer, const GaborBand& band, std::ui
   const double energy = kGaborProfileEnergy * kGaborProfileEnergy * kGaborSlabEnergy;
   const double density = count / portable::whole_power(kGaborSpaceCell, 3);
   const double amplitude = layer.height_rms * std::sqrt(2.0 * band.variance_share / (density * energy));
-  const double farthest_impulse = 1.0 / a < kSmallKernel * longest_side(domain)
-                                      ? kFarthestReach / a
-                                      : std::numeric_limits<double>::infinity();
-  return {{seed, static_cast<float>(a), static_cast<float>(kGaborSpaceCell / a),
-           static_cast<float>(kCornerReach / a), count, static_cast<float>(amplitude),
-           static_cast<float>(farthest_impulse)},
+  const double farthest_impulse =
+      1.0 / a < kSmallKernel * body_side ? kFarthestReach / a : std::numeric_limits<double>::infinity();
+  const auto cell = static_cast<float>(kGaborSpaceCell / a);
+  const OriginCell first = origin_cell(1.0 / double{cell} * origin);
+  return {{seed,
+           static_cast<float>(a),
+           cell,
+           static_cast<float>(kCornerReach / a),
+           count,
+           static_cast<float>(amplitude),
+           static_cast<float>(farthest_impulse),
+           {first.x, first.y, first.z},
+           to_float(-double{cell} * first.rest)},
           arrays.add(band.lobes)};
+}
+
+// The shortest wave or narrowest cell of a band, length units.
+double finest_length(const GaborBand& band, double pixel_size) {
+  double highest = 1.0 / kGaborSpaceCell;  // in units of a
+  for (const GaborBand::Lobe& lobe : band.lobes) {
+    highest = std::max({highest, std::fabs(double{lobe.frequency_x}), std::fabs(double{lobe.frequency_y})});
+  }
+  return pixel_size / (band.a * highest);
 }
 
 GaborSurfacePoints add_bands(const GaborSurfaceNoise& noise, const GaborGround& ground,
@@ -65,17 +81,26 @@ GaborSurfacePoints add_bands(const GaborSurfaceNoise& noise, const GaborGround& 
 
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                              ArrayStore& arrays) {
+  return make_noise(layer, seed, layer_index, NoiseFrame(domain), longest_side(domain), arrays);
+}
+
+GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
+                             const NoiseFrame& frame, double body_side, ArrayStore& arrays) {
   GaborSurfaceNoise noise;
-  noise.low = to_float(domain.min);
-  noise.high = to_float(domain.max);
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   noise.clip = static_cast<float>(kGaborClip * layer.height_rms);
   noise.height_bound = static_cast<double>(noise.clip);
   std::vector<SurfaceBand> bands;
   for (const GaborBand& band : gabor_bands(layer)) {
     const double cell = kGaborSpaceCell / (band.a / layer.pixel_size);
-    if (!(largest_coordinate(domain) / cell <= kLargestCell)) continue;
-    bands.push_back(
-        surface_band(layer, band, gabor_band_seed(seed, layer_index, band.bandwidth), domain, arrays));
+    noise.detail.finest = std::min(noise.detail.finest, finest_length(band, layer.pixel_size));
+    if (!(frame.farthest() / cell <= kLargestCell)) {
+      noise.detail.left_out += band.variance_share;
+      continue;
+    }
+    bands.push_back(surface_band(layer, band, gabor_band_seed(seed, layer_index, band.bandwidth),
+                                 frame.origin, body_side, arrays));
   }
   noise.bands = arrays.add(bands);
   return noise;

@@ -15,6 +15,7 @@
 #include "recipe/recipe.h"
 #include "synthesis/gabor/gabor_cells.h"
 #include "synthesis/gabor/gabor_kernel.h"
+#include "synthesis/noise/noise_frame.h"
 
 namespace astrolith {
 
@@ -43,12 +44,17 @@ struct GaborSurfaceNoise {
   float clip = 0.0f;          // heights are clamped to +- clip: 6 standard deviations, length units
   double height_bound = 0.0;  // bound of |n(p)|, length units
   ArrayRange<SurfaceBand> bands;
+  NoiseDetail detail;
 };
 
-// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
-// surface; points outside it are moved to its border. Bands whose grids reach beyond 2^20 cells from the
-// origin are left out, since float coordinates could not tell neighbouring cells apart. Heights have mean 0
-// and the standard deviation layer.height_rms.
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
+// frame holds the surface; points outside it are moved to its border. Bands whose grids reach beyond 2^20
+// cells from the frame's origin are left out, since float coordinates could not tell neighbouring cells
+// apart. Without any band left out, heights have mean 0 and the standard deviation layer.height_rms.
+// `body_side` is the longest side of the box that holds the body, length units.
+GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
+                             const NoiseFrame& frame, double body_side, ArrayStore& arrays);
+// The noise in the body's frame, whose domain is that box.
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
                              ArrayStore& arrays);
 

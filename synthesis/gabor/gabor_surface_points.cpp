@@ -21,7 +21,8 @@ constexpr std::int64_t kCellsPerPoint = 300;
 CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
   CellRange range;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const GaborCellSpan span = gabor_cells_around(band, box.low[axis], box.high[axis]);
+    const GaborCellSpan span =
+        gabor_cells_around(band, static_cast<int>(axis), box.low[axis], box.high[axis]);
     range.first[axis] = span.first;
     range.last[axis] = span.last;
   }

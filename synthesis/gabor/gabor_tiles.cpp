@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostShelfBytes = std::size_t{1} << 19;  // 32 MB for each band
 
-// The key of a tile. Indices are below 2^20 in magnitude.
+// The key of a tile. Indices are below 2^20 in magnitude, since cells are counted from the frame's origin.
 std::uint64_t key_of(const std::array<int, 3>& index) {
   std::uint64_t key = 0;
   for (const int i : index) key = key << 21 | (static_cast<std::uint32_t>(i) & 0x1fffffu);

@@ -106,6 +106,26 @@ ASTROLITH_SIMD_CLONES void apply_crater(const CraterKernel& kernel, int n, const
   }
 }
 
+// So few points or craters are not split any more.
+constexpr int kFewPoints = 16;
+constexpr std::size_t kFewCraters = 64;
+
+// Applies the craters that reach the points. The points are split into halves while many craters reach some
+// of them only. A crater that does not reach a point changes nothing there.
+void apply_reaching(const CraterKernel* craters, const BoxTree& tree, int n, const float* x, const float* y,
+                    const float* z, float* elevation) {
+  Box box;
+  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
+  const std::vector<std::uint32_t> reaching = tree.touching(box);
+  if (n > kFewPoints && reaching.size() > kFewCraters) {
+    const int half = n / 2;
+    apply_reaching(craters, tree, half, x, y, z, elevation);
+    apply_reaching(craters, tree, n - half, x + half, y + half, z + half, elevation + half);
+    return;
+  }
+  for (const std::uint32_t k : reaching) apply_crater(craters[k], n, x, y, z, elevation);
+}
+
 // Sets the base of each crater: the elevation at its centre after the older craters that are no smaller.
 void find_bases(std::span<const PlacedCrater> placed, std::span<const float> elevations,
                 std::vector<CraterKernel>& craters) {
@@ -160,10 +180,7 @@ CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const Placed
 
 void apply_craters(const CraterRelief& relief, const ArrayView& arrays, const BoxTree& tree, int n,
                    const float* x, const float* y, const float* z, float* elevation) {
-  Box box;
-  for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  const CraterKernel* craters = arrays[relief.craters];
-  for (const std::uint32_t k : tree.touching(box)) apply_crater(craters[k], n, x, y, z, elevation);
+  apply_reaching(arrays[relief.craters], tree, n, x, y, z, elevation);
   const float clip = static_cast<float>(relief.elevation_bound);
   for (int i = 0; i < n; ++i) elevation[i] = math::clamp(elevation[i], -clip, clip);
 }

@@ -20,21 +20,23 @@ ASTROLITH_SIMD_CLONES void clamp_all(int n, const float* __restrict p, float low
 
 }  // namespace
 
-CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const Box& domain,
+CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const NoiseFrame& frame,
                                     ArrayStore& arrays) {
   double largest = 0.0, amplitude = std::fabs(warp.amplitude);
   for (int o = 0; o < warp.octaves; ++o, amplitude *= warp.gain) largest += amplitude;
-  const Box reached = widened(domain, largest);
+  const Box reached = widened(frame.domain, largest);
   CoordinateWarp made;
   made.low = to_float(reached.min);
   made.high = to_float(reached.max);
-  const double farthest = largest_coordinate(reached);
+  const double farthest = NoiseFrame::farthest_of(largest_coordinate(reached), frame.origin);
+  made.detail.finest = 1.0 / (warp.frequency * whole_power(warp.lacunarity, warp.octaves - 1));
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    const std::vector<NoiseOctave> octaves =
-        make_octaves(warp.frequency, warp.amplitude, warp.octaves, warp.gain, warp.lacunarity,
-                     {seed, kWarpStream + axis, 3}, farthest);
+    std::vector<NoiseOctave> octaves = make_octaves(warp.frequency, warp.amplitude, warp.octaves, warp.gain,
+                                                    warp.lacunarity, {seed, kWarpStream + axis, 3}, farthest);
+    if (frame.moved) octaves = local_octaves(Noise::kSimplex, octaves, frame.origin);
     made.octaves[axis] = arrays.add(octaves);
     if (axis != 0) continue;
+    made.detail.left_out = share_left_out(octaves.size(), warp.octaves, warp.gain);
     made.bound = sum_bound(octaves) * (1.0 + 1e-5) + 1e-6 * farthest;
     // The gradients of the three displacements are the rows of the derivative of warp(p).
     made.lipschitz_bound = 1.0 + std::sqrt(3.0) * slope_bound(Noise::kSimplex, octaves);

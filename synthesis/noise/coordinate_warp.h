@@ -6,6 +6,7 @@
 
 #include "numerics/arrays.h"
 #include "recipe/recipe.h"
+#include "synthesis/noise/noise_frame.h"
 #include "synthesis/noise/octave_bounds.h"
 
 namespace astrolith {
@@ -18,12 +19,13 @@ struct CoordinateWarp {
   double bound = 0.0;                  // largest displacement of a coordinate, length units
   // |p + warp(p) - q - warp(q)| <= lipschitz_bound |p - q|, in exact arithmetic.
   double lipschitz_bound = 1.0;
+  NoiseDetail detail;
 };
 
 // `seed` is the seed of the layer or body whose coordinates are warped. The noises of the warp are
-// independent of the noises made from that seed. `domain` holds the displaced points p + warp(p) of interest.
-// The octaves are stored in `arrays`.
-CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const Box& domain,
+// independent of the noises made from that seed. The domain of the frame holds the displaced points p +
+// warp(p) of interest. The octaves are stored in `arrays`.
+CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const NoiseFrame& frame,
                                     ArrayStore& arrays);
 
 // The displaced point p + warp(p), length units.

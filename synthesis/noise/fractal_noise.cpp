@@ -54,27 +54,49 @@ void evaluate_chunk(const FractalNoise& noise, const ArrayView& arrays, int n, c
   sum_octaves(noise, arrays.span(noise.octaves), n, qx.data(), qy.data(), qz.data(), height);
 }
 
+// The argument of the noise at a point.
+Vec3d placed(const FractalNoise& noise, const Vec3d& bias, const Vec3d& p) {
+  return {double{noise.scale.x} * p.x + bias.x, double{noise.scale.y} * p.y + bias.y,
+          double{noise.scale.z} * p.z + bias.z};
+}
+
+NoiseDetail detail_of(const FractalLayer& layer, const FractalNoise& noise, std::size_t kept_octaves) {
+  const double scale =
+      std::max({std::fabs(layer.scale.x), std::fabs(layer.scale.y), std::fabs(layer.scale.z)});
+  NoiseDetail detail;
+  detail.finest = 1.0 / (layer.frequency * whole_power(layer.lacunarity, layer.octaves - 1) * scale);
+  if (noise.warped) detail.finest = std::min(detail.finest, noise.warp.detail.finest);
+  detail.left_out = share_left_out(kept_octaves, layer.octaves, layer.gain);
+  return detail;
+}
+
 }  // namespace
 
-FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
-                        ArrayStore& arrays) {
+FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index,
+                        const NoiseFrame& frame, ArrayStore& arrays) {
   FractalNoise noise;
   noise.noise = layer.noise;
   noise.scale = to_float(layer.scale);
-  noise.bias = to_float(layer.bias);
+  // The octaves of a frame with an origin of its own hold the bias.
+  const Vec3d bias = frame.moved ? Vec3d{} : layer.bias;
+  noise.bias = to_float(bias);
   noise.gradient_modulation = static_cast<float>(layer.gradient_modulation);
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   noise.warped = layer.warp.has_value();
-  if (noise.warped) noise.warp = make_coordinate_warp(*layer.warp, layer_seed, domain, arrays);
-  const Box reached = noise.warped ? widened(domain, noise.warp.bound) : domain;
+  if (noise.warped) noise.warp = make_coordinate_warp(*layer.warp, layer_seed, frame, arrays);
+  const Box reached = noise.warped ? widened(frame.domain, noise.warp.bound) : frame.domain;
   noise.low = to_float(reached.min);
   noise.high = to_float(reached.max);
-  const double farthest =
-      std::max({farthest_coordinate(reached.min.x, reached.max.x, layer.scale.x, layer.bias.x),
-                farthest_coordinate(reached.min.y, reached.max.y, layer.scale.y, layer.bias.y),
-                farthest_coordinate(reached.min.z, reached.max.z, layer.scale.z, layer.bias.z)});
-  noise.octaves = arrays.add(make_octaves(layer.frequency, layer.amplitude * layer.weight, layer.octaves,
-                                          layer.gain, layer.lacunarity, {layer_seed}, farthest));
+  const double largest = std::max({farthest_coordinate(reached.min.x, reached.max.x, layer.scale.x, bias.x),
+                                   farthest_coordinate(reached.min.y, reached.max.y, layer.scale.y, bias.y),
+                                   farthest_coordinate(reached.min.z, reached.max.z, layer.scale.z, bias.z)});
+  const Vec3d origin = frame.moved ? placed(noise, layer.bias, frame.origin) : Vec3d{};
+  std::vector<NoiseOctave> octaves =
+      make_octaves(layer.frequency, layer.amplitude * layer.weight, layer.octaves, layer.gain,
+                   layer.lacunarity, {layer_seed}, NoiseFrame::farthest_of(largest, origin));
+  noise.detail = detail_of(layer, noise, octaves.size());
+  if (frame.moved) octaves = local_octaves(layer.noise, octaves, origin);
+  noise.octaves = arrays.add(octaves);
   double amplitude = layer.amplitude * layer.weight;
   for (std::uint32_t o = 0; o < noise.octaves.count; ++o, amplitude *= layer.gain) {
     noise.height_bound += std::fabs(amplitude);

@@ -27,16 +27,17 @@ struct FractalNoise {
   ArrayRange<NoiseOctave> octaves;
   float gradient_modulation = 0.0f;
   double height_bound = 0.0;  // bound of |n(p)|, length units
+  NoiseDetail detail;
 
   // Whether evaluate_local_heights() accepts this noise.
   bool has_local_form() const { return !warped; }
 };
 
-// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
-// surface; points outside it are moved to its border. Octaves too fine for float coordinates within the
-// domain are left out (noise_octaves.h).
-FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
-                        ArrayStore& arrays);
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
+// frame holds the surface; points outside it are moved to its border. Octaves too fine for float coordinates
+// within the domain are left out (noise_octaves.h).
+FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer_index,
+                        const NoiseFrame& frame, ArrayStore& arrays);
 
 // The height n(p), length units.
 ASTROLITH_HD inline float height_at(const FractalNoise& n, const ArrayView& arrays, const Vec3f& at) {

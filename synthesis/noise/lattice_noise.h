@@ -27,6 +27,12 @@ ASTROLITH_KERNEL std::uint32_t lattice_point(float i, float j, float k, std::uin
          static_cast<std::uint32_t>(static_cast<std::int32_t>(k)) * kLatticeZ;
 }
 
+// What moves the number of a lattice point by (i, j, k) points.
+ASTROLITH_HD inline std::uint32_t lattice_step(std::int64_t i, std::int64_t j, std::int64_t k) {
+  return static_cast<std::uint32_t>(i) * kLatticeX + static_cast<std::uint32_t>(j) * kLatticeY +
+         static_cast<std::uint32_t>(k) * kLatticeZ;
+}
+
 // Hashes of a lattice point whose top bits choose a gradient. Simplex noise keeps two rounds of mixing, so
 // that its recipes keep their shapes. One round is enough for the cubic lattices, and faster.
 ASTROLITH_KERNEL std::uint32_t lattice_hash(std::uint32_t point) {

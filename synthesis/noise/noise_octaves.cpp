@@ -85,10 +85,19 @@ std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave>
     }
     const Vec3d rest = at - cell;
     o.offset = to_float(rest);
-    o.seed = lattice_point(static_cast<float>(lattice.x), static_cast<float>(lattice.y),
-                           static_cast<float>(lattice.z), o.seed);
+    o.seed += lattice_step(static_cast<std::int64_t>(lattice.x), static_cast<std::int64_t>(lattice.y),
+                           static_cast<std::int64_t>(lattice.z));
   }
   return octaves;
+}
+
+double share_left_out(std::size_t kept, int count, double gain) {
+  double left = 0.0, total = 0.0, power = 1.0;
+  for (std::size_t o = 0; o < static_cast<std::size_t>(count); ++o, power *= gain * gain) {
+    total += power;
+    if (o >= kept) left += power;
+  }
+  return left / total;
 }
 
 double sum_bound(std::span<const NoiseOctave> octaves) {

@@ -31,8 +31,12 @@ std::vector<NoiseOctave> make_octaves(double frequency, double amplitude, int co
                                       double lacunarity, const OctaveSeeds& seeds, double farthest);
 
 // Octaves that give at p the sum that `octaves` give at q + p. New seeds move each lattice by a whole number
-// of cells, and the offsets hold the rest.
+// of cells, and the offsets hold the rest. Expects |frequency q| <= kFarthestCell (noise_frame.h).
 std::vector<NoiseOctave> local_octaves(Noise noise, std::span<const NoiseOctave> octaves, const Vec3d& q);
+
+// The share of the variance of `count` octaves that those from number `kept` on have; octaves are
+// independent.
+double share_left_out(std::size_t kept, int count, double gain);
 
 // A bound of |sum|, length units.
 double sum_bound(std::span<const NoiseOctave> octaves);

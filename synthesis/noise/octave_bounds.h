@@ -39,7 +39,7 @@ ASTROLITH_HD inline Interval bound_noise(Noise noise, const NoiseOctave& octave,
   const double rounding = 1e-6 * f * largest_coordinate(box);  // error of a float coordinate, cells
   const double spread = range.slope * (0.5 * f * norm(box.extent()) + rounding) + 1e-5;
   if (spread >= 1.0) return {range.low, range.high};
-  const Vec3d c = f * box.center();
+  const Vec3d c = f * box.center() + Vec3d{octave.offset.x, octave.offset.y, octave.offset.z};
   const Vec3f at = to_float(c);
   const NoiseOctave unit{1.0f, 1.0f, 1.0f, octave.seed, {}};
   const double value = static_cast<double>(with_octave(noise, unit, at, 0.0f));

@@ -29,15 +29,21 @@ ASTROLITH_SIMD_CLONES void add_impulse(const PhasorKernels& kernels, float dx, f
 
 }  // namespace
 
-PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                        ArrayStore&) {
   PhasorNoise noise;
-  noise.low = to_float(domain.min);
-  noise.high = to_float(domain.max);
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   noise.kernels = {to_float(normalized(layer.direction)), static_cast<float>(layer.spread),
                    static_cast<float>(layer.frequency * layer.cell_size)};
   noise.inverse_cell = static_cast<float>(1.0 / layer.cell_size);
-  const bool too_fine = largest_coordinate(domain) / layer.cell_size > kLargestCell;
+  const bool too_fine = frame.farthest() / layer.cell_size > kLargestCell;
+  if (!too_fine) {
+    const OriginCell origin = origin_cell(double{noise.inverse_cell} * frame.origin);
+    noise.first_point = lattice_step(origin.x, origin.y, origin.z);
+    noise.offset = to_float(origin.rest);
+  }
+  noise.detail = {std::min(layer.cell_size, 1.0 / layer.frequency), too_fine ? 1.0 : 0.0};
   noise.amplitude = too_fine ? 0.0f : static_cast<float>(layer.amplitude);
   noise.profile = layer.profile;
   noise.impulses = layer.impulses_per_cell;
@@ -53,16 +59,17 @@ void evaluate_phases(const PhasorNoise& n, int count, const float* x, const floa
     const int size = std::min(kChunk, count - begin);
     for (int i = 0; i < size; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      px[k] = math::clamp(x[begin + i], n.low.x, n.high.x) * n.inverse_cell;
-      py[k] = math::clamp(y[begin + i], n.low.y, n.high.y) * n.inverse_cell;
-      pz[k] = math::clamp(z[begin + i], n.low.z, n.high.z) * n.inverse_cell;
+      const Vec3f p = n.in_cells({x[begin + i], y[begin + i], z[begin + i]});
+      px[k] = p.x;
+      py[k] = p.y;
+      pz[k] = p.z;
     }
     real.fill(0.0f);
     imaginary.fill(0.0f);
     for (int c = 0; c < 27; ++c) {
       for (int j = 0; j < n.impulses; ++j) {
         const Vec3f cell = phasor_cell(c);
-        add_impulse(n.kernels, cell.x, cell.y, cell.z, phasor_seed(n.seed, j), size, px.data(), py.data(),
+        add_impulse(n.kernels, cell.x, cell.y, cell.z, n.impulse_seed(j), size, px.data(), py.data(),
                     pz.data(), real.data(), imaginary.data());
       }
     }

@@ -18,6 +18,7 @@
 #include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/lattice_noise.h"
+#include "synthesis/noise/noise_frame.h"
 
 namespace astrolith {
 
@@ -85,26 +86,37 @@ struct PhasorNoise {
   PhasorProfile profile = PhasorProfile::kSine;
   int impulses = 0;  // number of impulses in each cell
   std::uint32_t seed = 0;
-  double height_bound = 0.0;  // bound of |n(p)|, length units
+  std::uint32_t first_point = 0;  // lattice_step() of the cell that cells are counted from
+  Vec3f offset{};                 // added to the coordinates in cells
+  double height_bound = 0.0;      // bound of |n(p)|, length units
+  NoiseDetail detail;
+
+  // The seed of impulse j of each cell.
+  ASTROLITH_HD std::uint32_t impulse_seed(int j) const { return phasor_seed(seed, j) + first_point; }
+  // A point in cells.
+  ASTROLITH_HD Vec3f in_cells(const Vec3f& at) const {
+    const Vec3f p = moved_into(at, low, high);
+    return {math::fma(p.x, inverse_cell, offset.x), math::fma(p.y, inverse_cell, offset.y),
+            math::fma(p.z, inverse_cell, offset.z)};
+  }
 };
 
-// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
-// surface; points outside it are moved to its border. If the domain reaches farther than 2^20 cells from the
-// origin, the amplitude is 0, since float coordinates could not tell cells apart. Heights have mean 0. Their
-// standard deviation over the amplitude is 1/sqrt 2 for a sine, 1/sqrt 3 for a triangle and a sawtooth, and 1
-// for a square.
-PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
+// frame holds the surface; points outside it are moved to its border. If the domain reaches farther than 2^20
+// cells from the origin, the amplitude is 0, since float coordinates could not tell cells apart. Heights have
+// mean 0. Their standard deviation over the amplitude is 1/sqrt 2 for a sine, 1/sqrt 3 for a triangle and a
+// sawtooth, and 1 for a square.
+PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                        ArrayStore& arrays);
 
 // The height n(p), length units.
 ASTROLITH_HD inline float height_at(const PhasorNoise& n, const ArrayView&, const Vec3f& at) {
-  const Vec3f p = moved_into(at, n.low, n.high);
-  const float x = p.x * n.inverse_cell, y = p.y * n.inverse_cell, z = p.z * n.inverse_cell;
+  const Vec3f p = n.in_cells(at);
   PhasorSum sum{};
   for (int c = 0; c < 27; ++c) {
     const Vec3f cell = phasor_cell(c);
     for (int j = 0; j < n.impulses; ++j) {
-      sum = with_phasor_impulse(n.kernels, cell.x, cell.y, cell.z, phasor_seed(n.seed, j), x, y, z, sum);
+      sum = with_phasor_impulse(n.kernels, cell.x, cell.y, cell.z, n.impulse_seed(j), p.x, p.y, p.z, sum);
     }
   }
   return n.amplitude * phasor_profile(n.profile, math::atan2_turns(sum.imaginary, sum.real));

@@ -32,15 +32,16 @@ struct Windows {
 };
 
 ASTROLITH_SIMD_CLONES void find_windows(int n, const float* __restrict x, const float* __restrict y,
-                                        const float* __restrict z, float inverse_cell, float coherence,
-                                        std::uint32_t seed, Windows& out) {
+                                        const float* __restrict z, float inverse_cell, Vec3f offset,
+                                        float coherence, std::uint32_t seed, Windows& out) {
   for (unsigned c = 0; c < 8; ++c) {
     float* __restrict weight = out.weight[c].data();
     std::uint32_t* __restrict corner = out.corner[c].data();
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
       const PhaseCorner there =
-          phase_corner(c, x[i] * inverse_cell, y[i] * inverse_cell, z[i] * inverse_cell, seed);
+          phase_corner(c, math::fma(x[i], inverse_cell, offset.x), math::fma(y[i], inverse_cell, offset.y),
+                       math::fma(z[i], inverse_cell, offset.z), seed);
       weight[i] = there.weight;
       corner[i] = there.hash;
     }
@@ -85,21 +86,35 @@ std::vector<double> wave_frequencies(const RandomPhaseLayer& layer, std::uint32_
   return frequencies;
 }
 
-std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, double farthest) {
+// The phase of a wave at the origin of a frame, in turns; the phase at the body's origin if that is the same.
+float phase_at(const Vec3f& frequency, float phase, const Vec3d& origin) {
+  const double turns = double{frequency.x} * origin.x + double{frequency.y} * origin.y +
+                       double{frequency.z} * origin.z + double{phase};
+  return static_cast<float>(turns - std::floor(turns));
+}
+
+// Waves too fine for the frame are left out; `left_out` becomes their share of the variance.
+std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, const NoiseFrame& frame,
+                             double& left_out) {
   const std::vector<double> frequencies = wave_frequencies(layer, seed);
   double power = 0.0;
   for (const double f : frequencies) power += portable::pow(f / layer.frequency_max, -layer.exponent);
   std::vector<Wave> waves;
   for (std::size_t j = 0; j < frequencies.size(); ++j) {
     const double f = frequencies[j];
-    if (std::sqrt(3.0) * f * farthest > kMostTurns) continue;
+    const double share = std::pow(f / layer.frequency_max, -layer.exponent) / power;
+    if (std::sqrt(3.0) * f * frame.farthest() > kMostTurns) {
+      left_out += share;
+      continue;
+    }
     const std::uint32_t h = hash_append(seed ^ kWaveStream, static_cast<std::uint32_t>(j));
     const Vec3f u = direction_in_cone(to_float(normalized(layer.direction)), static_cast<float>(layer.spread),
                                       unit_float(hash_append(h, 1)), unit_float(hash_append(h, 2)));
     const double amplitude =
         layer.height_rms * std::sqrt(2.0 * portable::pow(f / layer.frequency_max, -layer.exponent) / power);
-    waves.push_back({u * static_cast<float>(f), unit_float(hash_append(h, 3)), static_cast<float>(amplitude),
-                     hash_append(h, 4)});
+    const Vec3f frequency = u * static_cast<float>(f);
+    waves.push_back({frequency, phase_at(frequency, unit_float(hash_append(h, 3)), frame.origin),
+                     static_cast<float>(amplitude), hash_append(h, 4)});
   }
   return waves;
 }
@@ -113,7 +128,8 @@ void evaluate_chunk(const RandomPhaseNoise& noise, std::span<const Wave> waves, 
     pz[i] = math::clamp(z[i], noise.low.z, noise.high.z);
   }
   Windows windows;
-  find_windows(n, px.data(), py.data(), pz.data(), noise.inverse_cell, noise.coherence, noise.seed, windows);
+  find_windows(n, px.data(), py.data(), pz.data(), noise.inverse_cell, noise.offset, noise.coherence,
+               noise.seed, windows);
   std::fill(height, height + n, 0.0f);
   for (const Wave& wave : waves) {
     add_wave(wave, noise.randomness, n, px.data(), py.data(), pz.data(), windows, height);
@@ -126,19 +142,23 @@ void evaluate_chunk(const RandomPhaseNoise& noise, std::span<const Wave> waves, 
 }  // namespace
 
 RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index,
-                            const Box& domain, ArrayStore& arrays) {
+                            const NoiseFrame& frame, ArrayStore& arrays) {
   RandomPhaseNoise noise;
-  noise.low = to_float(domain.min);
-  noise.high = to_float(domain.max);
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   noise.inverse_cell = static_cast<float>(1.0 / layer.cell_size);
   noise.randomness = static_cast<float>(layer.randomness);
   noise.coherence = static_cast<float>(coherence_of(layer.randomness));
   noise.clip = static_cast<float>(kClip * layer.height_rms);
   noise.seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   noise.height_bound = static_cast<double>(noise.clip);
-  const double farthest = largest_coordinate(domain);
-  if (farthest / layer.cell_size <= kLargestCell)
-    noise.waves = arrays.add(draw_waves(layer, noise.seed, farthest));
+  noise.detail = {std::min(layer.cell_size, 1.0 / layer.frequency_max), 1.0};
+  if (!(frame.farthest() / layer.cell_size <= kLargestCell)) return noise;
+  noise.detail.left_out = 0.0;
+  noise.waves = arrays.add(draw_waves(layer, noise.seed, frame, noise.detail.left_out));
+  const OriginCell origin = origin_cell(double{noise.inverse_cell} * frame.origin);
+  noise.seed += lattice_step(origin.x, origin.y, origin.z);
+  noise.offset = to_float(origin.rest);
   return noise;
 }
 

@@ -16,6 +16,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
+#include "synthesis/noise/noise_frame.h"
 #include "synthesis/noise/perlin_noise.h"
 
 namespace astrolith {
@@ -64,17 +65,19 @@ struct RandomPhaseNoise {
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<Wave> waves;
   float inverse_cell = 0.0f, randomness = 0.0f, coherence = 0.0f;
-  float clip = 0.0f;  // heights are clamped to +- clip: 6 standard deviations, length units
-  std::uint32_t seed = 0;
+  float clip = 0.0f;          // heights are clamped to +- clip: 6 standard deviations, length units
+  std::uint32_t seed = 0;     // with the lattice_step() of the cell that cells are counted from
+  Vec3f offset{};             // added to the coordinates in cells
   double height_bound = 0.0;  // bound of |n(p)|, length units
+  NoiseDetail detail;
 };
 
-// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
-// surface; points outside it are moved to its border. Waves of more than 2^18 turns within the domain are
-// left out, since float coordinates could not hold their phases. Heights have mean 0; their standard
-// deviation over seeds is height_rms.
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
+// frame holds the surface; points outside it are moved to its border. Waves of more than 2^18 turns within
+// the domain are left out, since float coordinates could not hold their phases. Heights have mean 0; their
+// standard deviation over seeds is height_rms.
 RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, int layer_index,
-                            const Box& domain, ArrayStore& arrays);
+                            const NoiseFrame& frame, ArrayStore& arrays);
 
 // The height n(p), length units.
 ASTROLITH_HD inline float height_at(const RandomPhaseNoise& n, const ArrayView& arrays, const Vec3f& at) {
@@ -82,7 +85,9 @@ ASTROLITH_HD inline float height_at(const RandomPhaseNoise& n, const ArrayView& 
   PhaseCorner corners[8];
   float weights = 0.0f;
   for (unsigned c = 0; c < 8; ++c) {
-    corners[c] = phase_corner(c, p.x * n.inverse_cell, p.y * n.inverse_cell, p.z * n.inverse_cell, n.seed);
+    corners[c] = phase_corner(c, math::fma(p.x, n.inverse_cell, n.offset.x),
+                              math::fma(p.y, n.inverse_cell, n.offset.y),
+                              math::fma(p.z, n.inverse_cell, n.offset.z), n.seed);
     weights += corners[c].weight;
   }
   const Wave* waves = arrays[n.waves];

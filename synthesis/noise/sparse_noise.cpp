@@ -5,28 +5,29 @@
 #include <vector>
 
 #include "numerics/hash_random.h"
+#include "synthesis/noise/noise_octaves.h"
 #include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
 namespace {
 
 ASTROLITH_SIMD_CLONES void upscale(int n, const float* __restrict x, const float* __restrict y,
-                                   const float* __restrict z, float frequency, std::uint32_t seed,
+                                   const float* __restrict z, const SparseLevel& sparse_level,
                                    float probability, float inverse_probability, float* __restrict noise) {
+  const SparseLevel level = sparse_level;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    noise[i] = upscaled_noise(frequency * x[i], frequency * y[i], frequency * z[i], seed, probability,
-                              inverse_probability);
+    noise[i] = sparse_noise(level, probability, inverse_probability, x[i], y[i], z[i]);
   }
 }
 
 }  // namespace
 
-SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                        ArrayStore& arrays) {
   SparseNoise noise;
-  noise.low = to_float(domain.min);
-  noise.high = to_float(domain.max);
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   noise.amplitude = static_cast<float>(layer.amplitude);
   (layer.merged ? noise.sum_cut : noise.level_cut) = static_cast<float>(layer.threshold);
   noise.probability = static_cast<float>(layer.probability);
@@ -35,11 +36,18 @@ SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_i
   std::vector<SparseLevel> levels;
   double gains = 0.0, gain = 1.0, cell = layer.cell_size;
   for (int l = 0; l < layer.levels; ++l, gain *= layer.gain, cell *= 0.5) {
-    if (!(largest_coordinate(domain) / cell <= kLargestCell)) break;
-    levels.push_back({static_cast<float>(1.0 / cell), static_cast<float>(gain),
-                      hash_append(layer_seed, static_cast<std::uint32_t>(l))});
+    if (!(frame.farthest() / cell <= kLargestCell)) break;
+    // Cells have their centres at whole coordinates.
+    const auto frequency = static_cast<float>(1.0 / cell);
+    const OriginCell origin = origin_cell(double{frequency} * frame.origin);
+    levels.push_back(
+        {frequency, static_cast<float>(gain),
+         hash_append(layer_seed, static_cast<std::uint32_t>(l)) + lattice_step(origin.x, origin.y, origin.z),
+         to_float(origin.rest)});
     gains += gain;
   }
+  noise.detail = {layer.cell_size * whole_power(0.5, layer.levels - 1),
+                  share_left_out(levels.size(), layer.levels, layer.gain)};
   noise.levels = arrays.add(levels);
   const double greatest = double{kInverseBumpHeight};
   const double deepest =
@@ -54,8 +62,7 @@ void evaluate_heights(const SparseNoise& n, const ArrayView& arrays, int count, 
   std::vector<float> noise(static_cast<std::size_t>(count));
   std::fill(height, height + count, 0.0f);
   for (const SparseLevel& level : arrays.span(n.levels)) {
-    upscale(count, p.x(), p.y(), p.z(), level.frequency, level.seed, n.probability, n.inverse_probability,
-            noise.data());
+    upscale(count, p.x(), p.y(), p.z(), level, n.probability, n.inverse_probability, noise.data());
     for (int i = 0; i < count; ++i) {
       height[i] = with_sparse_level(level.gain, noise[static_cast<std::size_t>(i)], n.level_cut, height[i]);
     }

@@ -11,6 +11,7 @@
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/lattice_noise.h"
+#include "synthesis/noise/noise_frame.h"
 
 namespace astrolith {
 
@@ -60,7 +61,15 @@ struct SparseLevel {
   float frequency;  // cells per length unit
   float gain;       // amplitude over that of the first level
   std::uint32_t seed;
+  Vec3f offset{};  // added to the coordinates in cells
 };
+
+// The noise of a level at a point.
+ASTROLITH_KERNEL float sparse_noise(const SparseLevel& l, float probability, float inverse_probability,
+                                    float x, float y, float z) {
+  return upscaled_noise(math::fma(l.frequency, x, l.offset.x), math::fma(l.frequency, y, l.offset.y),
+                        math::fma(l.frequency, z, l.offset.z), l.seed, probability, inverse_probability);
+}
 
 // Adds one level to the sum; and the height from the complete sum.
 ASTROLITH_KERNEL float with_sparse_level(float gain, float noise, float cut, float sum) {
@@ -78,12 +87,13 @@ struct SparseNoise {
   float amplitude = 0.0f, level_cut = 0.0f, sum_cut = 0.0f;
   float probability = 0.0f, inverse_probability = 0.0f;
   double height_bound = 0.0;  // bound of |n(p)|, length units
+  NoiseDetail detail;
 };
 
-// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
-// surface; points outside it are moved to its border. Levels too fine for float coordinates within the domain
-// are left out.
-SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
+// frame holds the surface; points outside it are moved to its border. Levels too fine for float coordinates
+// within the domain are left out.
+SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                        ArrayStore& arrays);
 
 // The height n(p), length units.
@@ -93,8 +103,7 @@ ASTROLITH_HD inline float height_at(const SparseNoise& n, const ArrayView& array
   float sum = 0.0f;
   for (std::uint32_t l = 0; l < n.levels.count; ++l) {
     const SparseLevel& level = levels[l];
-    const float noise = upscaled_noise(level.frequency * p.x, level.frequency * p.y, level.frequency * p.z,
-                                       level.seed, n.probability, n.inverse_probability);
+    const float noise = sparse_noise(level, n.probability, n.inverse_probability, p.x, p.y, p.z);
     sum = with_sparse_level(level.gain, noise, n.level_cut, sum);
   }
   return sparse_height(n.amplitude, sum, n.sum_cut);
@@ -118,8 +127,9 @@ ASTROLITH_HD inline double greatest_sparse_noise(const SparseLevel& level, float
                                                  float inverse_probability, const Box& box) {
   const double f = double{level.frequency};
   const double rounding = 1e-6 * (1.0 + f * largest_coordinate(box));
-  const Vec3d low = f * box.min - Vec3d{rounding, rounding, rounding},
-              high = f * box.max + Vec3d{rounding, rounding, rounding};
+  const Vec3d offset{level.offset.x, level.offset.y, level.offset.z};
+  const Vec3d low = f * box.min + offset - Vec3d{rounding, rounding, rounding},
+              high = f * box.max + offset + Vec3d{rounding, rounding, rounding};
   const auto first = [](double c) { return std::floor(c + 0.5) - 1.0; };
   const auto last = [](double c) { return std::floor(c + 0.5) + 1.0; };
   const double cells = (last(high.x) - first(low.x) + 1.0) * (last(high.y) - first(low.y) + 1.0) *

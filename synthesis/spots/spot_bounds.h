@@ -6,8 +6,9 @@
 
 namespace astrolith {
 
-inline constexpr double kMostSpotCells = 4096.0;  // largest number of cells whose impulses are drawn at once
-inline constexpr double kSpotSlack = 1e-5;        // relative slack for the rounding of positions and kernels
+// The largest numbers of cells, and of impulses on average, that are drawn at once.
+inline constexpr double kMostSpotCells = 4096.0, kMostSpots = 65536.0;
+inline constexpr double kSpotSlack = 1e-5;  // relative slack for the rounding of positions and kernels
 
 // The ranges over a box of two squares in the axes of the kernel: q.q, and q.V^-1 q, which decides the cut.
 struct SpotSquares {
@@ -74,12 +75,18 @@ struct SpotSumBound {
   }
 };
 
+// Whether too many impulses lie around a box to be drawn at once.
+ASTROLITH_HD inline bool too_many_spots(const SpotKind& kind, const Box& box) {
+  const double cells = spot_cells_around(kind, box).count();
+  return cells > kMostSpotCells || cells * kind.lattice.probability * kind.lattice.density > kMostSpots;
+}
+
 // An interval that holds the clipped sum of all spots of a kind over the box. If too many cells lie around
 // the box, the impulses are not drawn, and the interval is the range of the clip.
 ASTROLITH_HD inline Interval bound_drawn_spots(const SpotKind& kind, const std::uint32_t* thresholds,
                                                const Box& box) {
   const double clip = double{kind.clip};
-  if (spot_cells_around(kind, box).count() > kMostSpotCells) return {-clip, clip};
+  if (too_many_spots(kind, box)) return {-clip, clip};
   SpotSumBound bound{kind, box};
   for_each_spot(kind, thresholds, box, [&](const SpotImpulse& impulse) { bound.add(impulse); });
   return bound.clipped();

@@ -16,12 +16,14 @@ struct SpotLattice {
   Vec3d cells_per[3];  // rows of the inverse matrix: position to cells, per length unit
   std::uint32_t seed;
   double probability;  // probability of a cell to hold impulses
+  double density;      // impulses of a cell that holds some, on average
   double reach;        // distance of an impulse beyond its cell and a margin for rounding, in cells
   float width;         // side of the range of a cell's impulses, in cells
   float least_weight;
   // The thresholds of this lattice in a shared array. A cell has l + 1 impulses if its hash reaches the l-th
   // threshold and not the next.
   std::uint32_t first_threshold, num_thresholds;
+  std::int64_t first_cell[3] = {0, 0, 0};  // number of the cell that cells are counted from
 };
 
 // One part of the spots of one size. All parts of a size share their impulses; each part moves them by its
@@ -29,7 +31,8 @@ struct SpotLattice {
 struct SpotKind {
   SpotKernel kernel;
   SpotLattice lattice;
-  Vec3d offset;   // from the impulse to the centre of the part, length units
+  Vec3d offset;   // from the impulse to the centre of the part, and from the origin of a patch to its first
+                  // cell; length units
   Vec3d support;  // half the sides of the box around a spot, length units
   float clip;     // limit of |sum|, length units
 };
@@ -78,7 +81,8 @@ template <typename Visit>
 ASTROLITH_HD void for_each_spot_of_cell(const SpotLattice& lattice, const std::uint32_t* thresholds, int a,
                                         int b, int c, Visit&& visit) {
   constexpr std::uint32_t kCountStream = 0x636f756eu, kOccupiedStream = 0x6f636375u;
-  const std::uint32_t cell = hash_cell(lattice.seed, a, b, c);
+  const std::uint32_t cell = hash_wide_cell(lattice.seed, lattice.first_cell[0] + a,
+                                            lattice.first_cell[1] + b, lattice.first_cell[2] + c);
   if (!(static_cast<double>(unit_float(hash_append(cell, kOccupiedStream))) < lattice.probability)) return;
   const std::uint32_t number = hash_append(cell, kCountStream);
   for (std::uint32_t l = 0; l < lattice.num_thresholds && number >= thresholds[lattice.first_threshold + l];

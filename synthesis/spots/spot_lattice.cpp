@@ -53,6 +53,7 @@ SpotLattice make_spot_lattice(const SpotLayer& layer, double cell_size, double d
           {across(a, b, c), across(b, c, a), across(c, a, b)},
           seed,
           layer.probability,
+          density,
           layer.reach + 1e-3,
           1.0f + 2.0f * static_cast<float>(layer.reach),
           static_cast<float>(layer.least_weight),

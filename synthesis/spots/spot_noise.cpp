@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -103,48 +104,120 @@ double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
   return kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
 }
 
-// Adds the sum of one kind's spots to the heights at n points. The points are split into halves while too
-// many cells lie around them.
-void add_sum(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x, const float* y,
-             const float* z, float* height) {
+// Counts the cells of a lattice from the one that holds the origin of a frame. Returns the vector from the
+// origin to that cell, length units.
+Vec3d count_cells_from(const Vec3d& origin, SpotLattice& lattice) {
+  const Vec3d* per = lattice.cells_per;
+  const OriginCell cell = origin_cell({dot(per[0], origin), dot(per[1], origin), dot(per[2], origin)});
+  lattice.first_cell[0] = cell.x;
+  lattice.first_cell[1] = cell.y;
+  lattice.first_cell[2] = cell.z;
+  const auto along = [&](const Vec3f& edge, double cells) {
+    return Vec3d{cells * double{edge.x}, cells * double{edge.y}, cells * double{edge.z}};
+  };
+  return -1.0 *
+         (along(lattice.a, cell.rest.x) + along(lattice.b, cell.rest.y) + along(lattice.c, cell.rest.z));
+}
+
+// The share of the variance of the sizes from number `kept` on. The variance of a size goes as the square of
+// its amplitude and as its number of spots in a cell.
+double share_left_out(const SpotLayer& layer, int kept) {
+  double left = 0.0, total = 0.0;
+  for (int j = 0; j < layer.layers; ++j) {
+    const double density = std::pow(layer.lacunarity, j * (layer.exponent - 2.0));
+    const double power = whole_power(layer.gain * layer.gain, j) * density;
+    total += power;
+    if (j >= kept) left += power;
+  }
+  return left / total;
+}
+
+// The narrowest cell or axis of a spot, length units.
+double finest_length(const SpotLayer& layer, std::span<const SpotPart> parts) {
+  const Vec3d& v = layer.variances;
+  double finest = layer.cell_size * least_height(layer.lattice);
+  for (const SpotPart& part : parts) {
+    const Vec3d& a = part.axes;
+    const double cut = std::sqrt(layer.sigma * std::min({v.x, v.y, v.z}));
+    finest = std::min(finest, layer.size * std::min({a.x, a.y, a.z}) * std::min(cut, 1.0));
+  }
+  return finest / whole_power(layer.lacunarity, layer.layers - 1);
+}
+
+Box box_of(int n, const float* x, const float* y, const float* z) {
   Box box;
   for (int i = 0; i < n; ++i) box.extend({x[i], y[i], z[i]});
-  if (n > 1 && spot_cells_around(kind, box).count() > kMostSpotCells) {
-    const int half = n / 2;
-    add_sum(kind, thresholds, half, x, y, z, height);
-    add_sum(kind, thresholds, n - half, x + half, y + half, z + half, height + half);
+  return box;
+}
+
+// So few points or impulses are not split any more.
+constexpr int kFewPoints = 16;
+constexpr std::size_t kFewImpulses = 64;
+
+// Adds the sum of one kind's spots to the heights at n points. `impulses` hold all whose spots reach them.
+// The points are split into halves while many impulses reach some of them only. An impulse that does not
+// reach a point would add exactly 0 there.
+void add_reaching(const SpotKind& kind, const std::vector<SpotImpulse>& impulses, int n, const float* x,
+                  const float* y, const float* z, float* height) {
+  if (n <= kFewPoints || impulses.size() <= kFewImpulses) {
+    add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
     return;
   }
-  const std::vector<SpotImpulse> impulses = draw_spots(kind, thresholds, box);
-  add_spots(kind.kernel, impulses.data(), impulses.size(), n, x, y, z, height);
+  const int half = n / 2;
+  for (const auto& [first, count] : {std::pair{0, half}, {half, n - half}}) {
+    const Box box = box_of(count, x + first, y + first, z + first);
+    add_reaching(kind, impulses_reaching(impulses, kind.support, box), count, x + first, y + first, z + first,
+                 height + first);
+  }
+}
+
+// Draws the impulses and adds the sum of one kind's spots to the heights at n points. The points are split
+// into halves while too many lie around them, or more cells than around each point by itself.
+void draw_and_add(const SpotKind& kind, const std::uint32_t* thresholds, int n, const float* x,
+                  const float* y, const float* z, float* height) {
+  const Box box = box_of(n, x, y, z);
+  const double cells = spot_cells_around(kind, box).count();
+  if (n > 1 &&
+      (too_many_spots(kind, box) || cells > n * spot_cells_around(kind, box_of(1, x, y, z)).count())) {
+    const int half = n / 2;
+    draw_and_add(kind, thresholds, half, x, y, z, height);
+    draw_and_add(kind, thresholds, n - half, x + half, y + half, z + half, height + half);
+    return;
+  }
+  add_reaching(kind, draw_spots(kind, thresholds, box), n, x, y, z, height);
 }
 
 }  // namespace
 
-SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                      ArrayStore& arrays) {
   SpotNoise noise;
-  noise.low = to_float(domain.min);
-  noise.high = to_float(domain.max);
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   std::vector<SpotKind> kinds;
   std::vector<std::uint32_t> thresholds;
   const std::vector<SpotPart> parts = layer.parts.empty() ? std::vector<SpotPart>(1) : layer.parts;
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
+  int sizes = 0;
   for (int j = 0; j < layer.layers; ++j) {
     const double shrink = portable::whole_power(layer.lacunarity, j);
     const double cell = layer.cell_size / shrink, unit = layer.size / shrink;
-    if (!(largest_coordinate(domain) / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
-    const SpotLattice lattice =
+    if (!(frame.farthest() / (cell * least_height(layer.lattice)) <= kLargestCell)) break;
+    SpotLattice lattice =
         make_spot_lattice(layer, cell, layer.density * portable::pow(shrink, layer.exponent - 2.0),
                           hash_append(layer_seed, static_cast<std::uint32_t>(j)), thresholds);
+    const Vec3d first = count_cells_from(frame.origin, lattice);
+    ++sizes;
     const double amplitude =
         (layer.inverted ? 1.0 : -1.0) * layer.amplitude * portable::whole_power(layer.gain, j);
     for (const SpotPart& part : parts) {
       const double clip = clip_of(layer, part, amplitude);
       kinds.push_back(kind_of(layer, part, lattice, unit, amplitude, clip));
+      kinds.back().offset += first;
       noise.height_bound += clip * (1.0 + kSpotSlack);
     }
   }
+  noise.detail = {finest_length(layer, parts), share_left_out(layer, sizes)};
   noise.kinds = arrays.add(kinds);
   noise.thresholds = arrays.add(thresholds);
   return noise;
@@ -163,13 +236,25 @@ double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side) {
   return cells;
 }
 
+double draws_at_a_point(const SpotNoise& noise, const ArrayView& arrays) {
+  double draws = 0.0;
+  for (const SpotKind& kind : arrays.span(noise.kinds)) {
+    const Vec3d& half = kind.support;
+    double cells = 1.0;
+    for (const Vec3d& per : kind.lattice.cells_per) {
+      const double reach = std::fabs(per.x) * half.x + std::fabs(per.y) * half.y + std::fabs(per.z) * half.z;
+      cells *= 2.0 * (reach + double{kind.lattice.reach}) + 1.0;
+    }
+    draws += cells * (1.0 + kind.lattice.probability * kind.lattice.density);
+  }
+  return draws;
+}
+
 std::shared_ptr<const SpotImpulses> gather_spots(const SpotNoise& noise, const ArrayView& arrays,
                                                  const Box& box, const SpotImpulses* larger_box_impulses) {
   const Box moved = moved_into(box, noise.low, noise.high);
   const std::span<const SpotKind> kinds = arrays.span(noise.kinds);
-  const auto too_many = [&](const SpotKind& kind) {
-    return spot_cells_around(kind, moved).count() > kMostSpotCells;
-  };
+  const auto too_many = [&](const SpotKind& kind) { return too_many_spots(kind, moved); };
   if (larger_box_impulses == nullptr && std::any_of(kinds.begin(), kinds.end(), too_many)) return nullptr;
   auto impulses = std::make_shared<SpotImpulses>();
   for (std::size_t k = 0; k < kinds.size(); ++k) {
@@ -191,10 +276,10 @@ void evaluate_heights(const SpotNoise& noise, const ArrayView& arrays, int n, co
     const SpotKind& kind = kinds[k];
     std::fill(sum.begin(), sum.end(), 0.0f);
     if (impulses == nullptr) {
-      add_sum(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
+      draw_and_add(kind, arrays[noise.thresholds], n, p.x(), p.y(), p.z(), sum.data());
     } else {
-      const std::vector<SpotImpulse> reaching = impulses_reaching((*impulses)[k], kind.support, box);
-      add_spots(kind.kernel, reaching.data(), reaching.size(), n, p.x(), p.y(), p.z(), sum.data());
+      add_reaching(kind, impulses_reaching((*impulses)[k], kind.support, box), n, p.x(), p.y(), p.z(),
+                   sum.data());
     }
     for (int i = 0; i < n; ++i)
       height[i] += math::clamp(sum[static_cast<std::size_t>(i)], -kind.clip, kind.clip);

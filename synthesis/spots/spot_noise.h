@@ -13,6 +13,7 @@
 #include "numerics/arrays.h"
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
+#include "synthesis/noise/noise_frame.h"
 #include "synthesis/spots/spot_bounds.h"
 #include "synthesis/spots/spot_kernel.h"
 #include "synthesis/spots/spot_lattice.h"
@@ -24,12 +25,14 @@ struct SpotNoise {
   ArrayRange<SpotKind> kinds;
   ArrayRange<std::uint32_t> thresholds;  // shared by the lattices of all kinds
   double height_bound = 0.0;             // bound of |n(p)|, length units
+  NoiseDetail detail;
 };
 
-// `layer_index` is the layer's number in the recipe; layers of one seed are independent. `domain` holds the
-// surface; points outside it are moved to its border. Sizes whose lattices reach beyond 2^20 cells from the
-// origin are left out, since float coordinates could not tell neighbouring cells apart.
-SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
+// `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
+// frame holds the surface; points outside it are moved to its border. Sizes whose lattices reach beyond 2^20
+// cells from the frame's origin are left out, since float coordinates could not tell neighbouring cells
+// apart.
+SpotNoise make_noise(const SpotLayer& layer, std::uint64_t seed, int layer_index, const NoiseFrame& frame,
                      ArrayStore& arrays);
 
 // The drawn impulses of each kind.
@@ -45,6 +48,9 @@ std::vector<SpotImpulse> draw_spots(const SpotKind& kind, const std::uint32_t* t
 
 // The number of cells that impulses are drawn from for a cubic box; `side` is in length units.
 double cells_of(const SpotNoise& noise, const ArrayView& arrays, double side);
+
+// The number of cells and impulses that are drawn on average for a point by itself.
+double draws_at_a_point(const SpotNoise& noise, const ArrayView& arrays);
 
 // The height n(p), length units, from lists of the impulses that reach p: kind k has impulses[first[k]] to
 // impulses[first[k + 1] - 1].

@@ -1,5 +1,6 @@
 // synth, run as a user runs it.
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "geometry/io/mesh_io.h"
@@ -269,6 +270,62 @@ TEST_F(Synth, PatchesWithoutSurfaceSayWhereThereIsSome) {
   refuse({"-1", "0", "0", "0"}, "--patch: has no centre or no side");
   refuse({"-1", "0", "0"}, "--patch");
   refuse({"-1", "0", "0", "0.1", "--tile", "1/2"}, "--tile");
+}
+
+// A ball of 17 km under grains of millimetres: the whole mesh names the layer that it leaves out, and a patch
+// has it.
+TEST_F(Synth, LayersLeftOutAreNamed) {
+  const std::string recipe = folder_.write("big.json", R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 8500]]},
+    "layers": [{"type": "gabor", "name": "grains", "pixel_size": 0.004, "height_rms": 0.004,
+                "lobes": [[1, 0.2, 0.1, 1], [10, 0.01, 0, 3]]}]})");
+  const std::string summary = (folder_ / "s.json").string(), out = (folder_ / "out.ply").string();
+  const auto run = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{recipe,     "-o",  out,         "--resolution", "32",
+                                       "--device", "cpu", "--summary", summary};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const testing::Outcome outcome = run_program(kSynth, arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return outcome.errors;
+  };
+  const std::string said = run({});
+  EXPECT_NE(said.find("layers[0] \"grains\" (gabor, 25 % of its variance); a --patch shows it"),
+            std::string::npos)
+      << said;
+  const auto whole = nlohmann::json::parse(text_of(summary)).at("layers_left_out");
+  ASSERT_EQ(whole.size(), 1u);
+  EXPECT_EQ(whole[0].at("layer"), 0);
+  EXPECT_EQ(whole[0].at("name"), "grains");
+  EXPECT_EQ(whole[0].at("type"), "gabor");
+  EXPECT_NEAR(whole[0].at("variance_share").get<double>(), 0.25, 1e-6);
+  EXPECT_EQ(run({"--patch", "8500", "0", "0", "0.5"}).find("left out"), std::string::npos);
+  EXPECT_TRUE(nlohmann::json::parse(text_of(summary)).at("layers_left_out").empty());
+}
+
+// Half a metre of a ball of 17 km, whose normal is along x there: heights have a standard deviation of 4 mm.
+TEST_F(Synth, APatchOfALargeBodyKeepsFineLayers) {
+  const std::string recipe = folder_.write("big.json", R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 8500]]},
+    "layers": [{"type": "gabor", "pixel_size": 0.004, "height_rms": 0.004, "lobes": [[3, -0.05, 0.1, 1]]}]})");
+  const std::string out = (folder_ / "out.ply").string();
+  const testing::Outcome outcome = run_program(kSynth, {recipe, "-o", out, "--resolution", "96", "--device",
+                                                        "cpu", "--patch", "8500", "0", "0", "0.5"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  double squares = 0.0, sum = 0.0;
+  const TriangleMesh mesh = read_mesh(out);
+  for (const Vec3d& p : mesh.vertices) {
+    sum += p.x;
+    squares += p.x * p.x;
+  }
+  const double n = static_cast<double>(mesh.vertices.size());
+  EXPECT_NEAR(std::sqrt(squares / n - sum * sum / (n * n)), 0.004, 0.001);
+}
+
+TEST_F(Synth, SpotsThatTakeTooLongAreRefused) {
+  expect_recipe_refused(R"({"format_version": 1, "length_unit": "m", "body": {"type": "metaballs",
+    "spheres": [[0, 0, 0, 100]]}, "layers": [{"type": "spots", "amplitude": 0.5, "size": 40, "cell_size": 40,
+    "density": 60, "layers": 12, "gain": 4}]})",
+                        "layers[0].density: these spots");
 }
 
 TEST_F(Synth, PredictionWritesNothing) {

@@ -305,6 +305,39 @@ TEST(SpotNoise, EvenCellsHoldTheFractionByChance) {
   EXPECT_NEAR(total / cells, 2.25, 4.0 * std::sqrt(0.25 * 0.75 / cells));
 }
 
+// Points are split into groups that few impulses reach. The group of a point changes no bit of its height.
+TEST(SpotNoise, DenseSpotsAreTheSameTogetherAndOneByOne) {
+  SpotLayer layer = small_spots(60.0);
+  layer.size = 0.4;
+  layer.layers = 3;
+  layer.reach = 0.5;
+  layer.kappa = -0.5;
+  const LoneNoise<SpotNoise> noise(layer, 3, 1, kDomain);
+  CounterRandom random(4);
+  std::vector<float> x, y, z, height(700);
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    x.push_back(static_cast<float>(random.uniform(-3, 3)));
+    y.push_back(static_cast<float>(0.01 * static_cast<double>(i)));
+    z.push_back(static_cast<float>(random.uniform(-1, 1)));
+  }
+  noise.evaluate(static_cast<int>(height.size()), x.data(), y.data(), z.data(), height.data());
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    ASSERT_EQ(height[i], height_at(noise, x[i], y[i], z[i])) << i;
+  }
+}
+
+TEST(SpotNoise, DrawsAtAPointAreCounted) {
+  SpotLayer layer = small_spots(60.0);
+  const LoneNoise<SpotNoise> one(layer, 3, 1, kDomain);
+  const double draws = draws_at_a_point(one.noise(), one.arrays());
+  EXPECT_GE(draws, 61.0);  // those of the point's own cell
+  EXPECT_LE(draws, 27.0 * 61.0);
+  layer.layers = 12;
+  layer.lacunarity = 1.1;
+  const LoneNoise<SpotNoise> twelve(layer, 3, 1, kDomain);
+  EXPECT_NEAR(draws_at_a_point(twelve.noise(), twelve.arrays()), 12.0 * draws, 1e-6 * draws);
+}
+
 TEST(SpotNoise, NoDensityNoSpots) {
   EXPECT_TRUE(
       impulses_reaching(LoneNoise<SpotNoise>(small_spots(0.0), 3, 1, kDomain), 0, {{-9, -9, -9}, {9, 9, 9}})
