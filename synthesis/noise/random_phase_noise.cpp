@@ -102,7 +102,7 @@ std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, 
   std::vector<Wave> waves;
   for (std::size_t j = 0; j < frequencies.size(); ++j) {
     const double f = frequencies[j];
-    const double share = std::pow(f / layer.frequency_max, -layer.exponent) / power;
+    const double share = portable::pow(f / layer.frequency_max, -layer.exponent) / power;
     if (std::sqrt(3.0) * f * frame.farthest() > kMostTurns) {
       left_out += share;
       continue;

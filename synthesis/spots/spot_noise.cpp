@@ -124,7 +124,7 @@ Vec3d count_cells_from(const Vec3d& origin, SpotLattice& lattice) {
 double share_left_out(const SpotLayer& layer, int kept) {
   double left = 0.0, total = 0.0;
   for (int j = 0; j < layer.layers; ++j) {
-    const double density = std::pow(layer.lacunarity, j * (layer.exponent - 2.0));
+    const double density = portable::pow(layer.lacunarity, j * (layer.exponent - 2.0));
     const double power = whole_power(layer.gain * layer.gain, j) * density;
     total += power;
     if (j >= kept) left += power;
