@@ -137,6 +137,32 @@ TEST_F(Synth, VariationsAreAsAlikeAsAskedAndStayInOnePiece) {
                  "--vary");
 }
 
+TEST_F(Synth, HeightsBeyondAllMeasureAreRefusedByName) {
+  expect_recipe_refused(replaced(kTwoSpheres, "0.05", "1e9"), "layers[0].amplitude: heights of up to");
+}
+
+// An intersection with a joint of 100 km lowers the whole surface of a body of 2 km by 50 km.
+TEST_F(Synth, ALayerThatTakesTheBodyAwayIsNamed) {
+  const std::string layers = R"("octaves": 4}, {"type": "simplex", "amplitude": 0.001, "frequency": 2,
+    "combine": {"type": "blend", "operator": "intersection", "width": 100}}])";
+  expect_recipe_refused(replaced(kTwoSpheres, R"("octaves": 4}])", layers),
+                        "layers[1].combine.width: nothing of the body is left");
+}
+
+// U+202E would turn the rest of the line around, and U+2028 breaks it.
+TEST_F(Synth, WhatARecipeQuotesIsEscaped) {
+  expect_recipe_refused(replaced(kTwoSpheres, "simplex", "\u202esim\u2028plex\u009b"),
+                        "layers[0].type: must be one of");
+  const testing::Outcome outcome = run_program(
+      kSynth, {folder_.write("\u202e\xff.json", replaced(kTwoSpheres, "simplex", "\u202e\u2028\u009b")), "-o",
+               (folder_ / "out.ply").string()});
+  for (const char* raw : {"\u202e", "\u2028", "\u009b", "\xff"}) {
+    EXPECT_EQ(outcome.errors.find(raw), std::string::npos) << outcome.errors;
+  }
+  EXPECT_NE(outcome.errors.find(R"(\u202e\xff.json: layers[0].type)"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find(R"(\u202e\u2028\u009b)"), std::string::npos) << outcome.errors;
+}
+
 TEST_F(Synth, SeedChangesTheMesh) {
   const std::string mesh = synthesise("a.ply", {"--seed", "5"});
   EXPECT_TRUE(mesh == synthesise("b.ply", {"--seed", "5"}));
