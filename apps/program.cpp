@@ -77,7 +77,7 @@ std::string option_not_finite(const CLI::App& app) {
 
 // The options that name a file to write, and those, beside the positional ones, that name a file to read.
 const std::vector<std::string> kOutputs{"output", "summary", "spectrum", "preview", "feature-list"};
-const std::vector<std::string> kInputs{"base"};
+const std::vector<std::string> kInputs{"base", "target"};
 
 bool is_named(const CLI::Option& option, const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(),
