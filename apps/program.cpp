@@ -18,6 +18,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
+#include "numerics/printable_text.h"
 
 namespace astrolith {
 namespace {
@@ -34,22 +35,16 @@ void on_interrupt(int signal_number) {
   }
 }
 
-// Messages may quote libraries and file names, with line breaks and terminal controls in them; the promise is
-// one line of text.
-std::string one_line(std::string text) {
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  std::replace_if(text.begin(), text.end(), is_control, ' ');
-  return text;
-}
-
 void end_bar() {
   if (g_bar_open.exchange(false)) std::fputc('\n', stderr);
 }
 
-// Prints a line below the unfinished progress bar, if there is one. A closed stderr is no reason to fail.
+// Prints one line below the unfinished progress bar, if there is one. All messages of all programs pass here:
+// they may quote libraries, files and file names, with line breaks and terminal controls in them. A closed
+// stderr is no reason to fail.
 void print_line(const std::string& text) {
   end_bar();
-  std::fputs((text + "\n").c_str(), stderr);
+  std::fputs((printable(text) + "\n").c_str(), stderr);
 }
 
 std::string bar(double fraction) {
@@ -82,7 +77,7 @@ std::string option_not_finite(const CLI::App& app) {
 
 // The options that name a file to write, and those, beside the positional ones, that name a file to read.
 const std::vector<std::string> kOutputs{"output", "summary", "spectrum", "preview", "feature-list"};
-const std::vector<std::string> kInputs{"base"};
+const std::vector<std::string> kInputs{"base", "target"};
 
 bool is_named(const CLI::Option& option, const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(),
@@ -142,7 +137,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     parser_->parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return parser_->exit(e);  // --help, --version
-    print_line(fmt::format("{}: {}; see {} --help", name_, one_line(e.what()), name_));
+    print_line(fmt::format("{}: {}; see {} --help", name_, e.what(), name_));
     return 2;
   }
   if (const std::string wrong = option_not_finite(*parser_); !wrong.empty()) {
@@ -158,13 +153,13 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     end_bar();
     return part_failed_ ? 1 : 0;
   } catch (const InputError& e) {
-    print_line(fmt::format("{}: {}", name_, one_line(e.what())));
+    print_line(fmt::format("{}: {}", name_, e.what()));
     return 2;
   } catch (const std::bad_alloc&) {
     print_line(fmt::format("{}: out of memory; try a smaller resolution or fewer samples", name_));
     return 1;
   } catch (const std::exception& e) {
-    print_line(fmt::format("{}: {}", name_, one_line(e.what())));
+    print_line(fmt::format("{}: {}", name_, e.what()));
     return 1;
   }
 }
@@ -198,7 +193,7 @@ Progress Program::progress(std::string stage) const {
       state->shown_at = now.count();
       const std::string line =
           fmt::format("\r{:<10} [{}] {:3.0f} % {:5.1f} s  {}\x1b[K{}", stage, bar(fraction), 100.0 * fraction,
-                      now.count(), words, fraction >= 1.0 ? "\n" : "");
+                      now.count(), printable(words), fraction >= 1.0 ? "\n" : "");
       std::fputs(line.c_str(), stderr);
       g_bar_open = fraction < 1.0;
     }
@@ -214,7 +209,7 @@ void Program::say(const std::string& line) const {
 
 void Program::report_failure(const std::string& line) {
   part_failed_ = true;
-  print_line(fmt::format("{}: {}", name_, one_line(line)));
+  print_line(fmt::format("{}: {}", name_, line));
 }
 
 std::string Program::tool() const { return name_ + " " + kCodeVersion.text(); }

@@ -1,18 +1,23 @@
-// The shapes that synth and fit_shape compare variations with. The similarity is the one that `compare`
-// measures by default: histograms of the features called ahd.
+// What synth and fit_shape share about variations: the measure of similarity, and the words for the result.
 #pragma once
 
-#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "geometry/triangle_mesh.h"
-#include "recipe/recipe.h"
 #include "synthesis/finish/variation_search.h"
 
 namespace astrolith {
 
-// The recipe's own body. Throws InputError where its surface is empty.
-VariationReference reference_of(const Recipe& recipe);
-// A mesh with the given number of closed pieces.
-VariationReference reference_of(const TriangleMesh& mesh, std::int64_t components);
+// Measures the similarity with a mesh as `compare` does by default: histograms of the features called ahd, of
+// 10,000 samples. Throws InputError for a mesh without area.
+SimilarityMeasure similarity_with(const TriangleMesh& mesh);
+
+// "strength 0.31, new noise; 0.84 % of the diagonal from the recipe's own body on average, 2.5 % at most"
+std::string words_of(const Variation& variation);
+
+// The figures of a variation: similarity, strength, noise ("new" or "kept"), and its mean and largest
+// distance from the recipe's own body as fractions of the diagonal.
+nlohmann::ordered_json figures_of(const Variation& variation);
 
 }  // namespace astrolith

@@ -21,9 +21,11 @@ void Place::fail(std::string_view message) const {
 
 std::string quote_text(std::string_view text) {
   constexpr std::size_t kShown = 40;
-  std::string shown(text.substr(0, kShown));
-  if (text.size() > kShown) shown += "...";
-  return json_string(shown);
+  if (text.size() <= kShown) return json_string(text);
+  // A cut may not halve a character of UTF-8, whose bytes after the first are 10xxxxxx.
+  std::size_t end = kShown;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+  return json_string(std::string(text.substr(0, end)) + "...");
 }
 
 std::string quote_list(const std::vector<std::string_view>& words, std::string_view last) {

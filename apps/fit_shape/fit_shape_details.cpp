@@ -188,20 +188,21 @@ std::vector<std::filesystem::path> variation_files(const std::filesystem::path& 
   return files;
 }
 
-std::vector<double> write_variations(const Program& program, const TargetBody& target, const Recipe& recipe,
-                                     const DetailArguments& arguments,
-                                     const std::vector<std::filesystem::path>& files) {
-  const VariationReference reference = reference_of(target.surface, target.components);
-  std::vector<double> similarities;
+nlohmann::ordered_json write_variations(const Program& program, const TargetBody& target,
+                                        const Recipe& recipe, const DetailArguments& arguments,
+                                        const std::vector<std::filesystem::path>& files) {
+  const SimilarityMeasure similarity = similarity_with(target.surface);
+  nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < files.size(); ++k) {
     const Variation variation =
-        find_variation(recipe, reference, arguments.delta, k + 1, program.progress("variation"));
+        find_variation(recipe, similarity, arguments.delta, k + 1, program.progress("variation"));
     write_recipe(variation.recipe, files[k]);
-    similarities.push_back(variation.similarity);
-    program.say(files[k].string() + ": similarity " + fmt::format("{:.4f}", variation.similarity));
+    figures.push_back(figures_of(variation));
+    program.say(fmt::format("{}: similarity {:.4f} with the mesh; {}", files[k].string(),
+                            variation.similarity, words_of(variation)));
     if (Program::interrupted()) break;
   }
-  return similarities;
+  return figures;
 }
 
 FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options) {

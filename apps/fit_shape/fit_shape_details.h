@@ -57,10 +57,11 @@ std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, c
 // FIT.json becomes FIT_variation_K.json, K from 1. Throws InputError for the first that cannot be written.
 std::vector<std::filesystem::path> variation_files(const std::filesystem::path& fit, int count);
 
-// Writes variations of the recipe, each with its measured similarity to the target. Returns the similarities.
-std::vector<double> write_variations(const Program& program, const TargetBody& target, const Recipe& recipe,
-                                     const DetailArguments& arguments,
-                                     const std::vector<std::filesystem::path>& files);
+// Writes variations of the recipe, each with its measured similarity to the target. Returns the figures of
+// each.
+nlohmann::ordered_json write_variations(const Program& program, const TargetBody& target,
+                                        const Recipe& recipe, const DetailArguments& arguments,
+                                        const std::vector<std::filesystem::path>& files);
 
 // The summary of a search: its evaluations and scores, and the roughness of target and details at each lag.
 nlohmann::ordered_json details_json(const DetailsFitResult& details);

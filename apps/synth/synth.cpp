@@ -9,9 +9,11 @@
 #include "apps/synth/synth_mesh.h"
 #include "apps/synth/synth_texture.h"
 #include "apps/variation_reference.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
 #include "synthesis/finish/lay_on_base.h"
 
 namespace astrolith {
@@ -26,6 +28,7 @@ struct Options {
   TextureRequest texture;
   MeshRequest mesh;
   double vary = 0.0;  // 0 = the recipe itself
+  fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
 
 void declare_options(Program& program, Options& options) {
@@ -41,18 +44,25 @@ void declare_options(Program& program, Options& options) {
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
                   "convert")
       .placeholder("BODY.json");
+  Option vary =
+      program.app
+          .add_option(
+              "--vary", options.vary,
+              "another body of the same kind: the strongest variation that --seed draws whose similarity "
+              "with the --target, or else with the recipe's own body, as `compare` measures it, is at "
+              "least 1 less this; with new noise, unless that alone is too different")
+          .check(in_range(1e-3, 1.0))
+          .default_text("");
   program.app
-      .add_option(
-          "--vary", options.vary,
-          "another body of the same kind: the strongest variation that --seed draws whose similarity "
-          "with the recipe's own body, as `compare` measures it, is at least 1 less this; with new noise, "
-          "unless that alone is too different")
-      .check(in_range(1e-3, 1.0))
-      .default_text("");
+      .add_option("--target", options.target,
+                  "with --vary: the mesh that the body is to be like, such as the one that the recipe was "
+                  "fitted to")
+      .needs(vary)
+      .placeholder("MESH");
   declare_texture_options(program, options.texture);
-  for (const char* of_mesh :
-       {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
-        "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view", "--sun"}) {
+  for (const char* of_mesh : {"--resolution", "--triangles", "--max-memory", "--tile", "--patch",
+                              "--feature-list", "--vary", "--target", "--min-component", "--predict",
+                              "--device", "--points", "--labels", "--preview", "--view", "--sun"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   program.app.option("--seed")
@@ -76,13 +86,29 @@ Recipe read_input(const Program& program, const Options& options) {
   return recipe;
 }
 
+// The mesh that variations are to be like.
+TriangleMesh target_of(const Program& program, const Options& options, const Recipe& recipe) {
+  const Provenance& origin = recipe.provenance;
+  if (options.target.empty()) return mesh_for_comparison(recipe);
+  if (!origin.input_sha256.empty() && sha256_of_file(options.target) != origin.input_sha256) {
+    program.say("note: " + options.target.string() + " is not the file that the recipe was fitted to, " +
+                origin.input_name);
+  }
+  return read_mesh(options.target);
+}
+
 Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
+  const TriangleMesh target = target_of(program, options, recipe);
+  const SimilarityMeasure similarity =
+      target.triangles.empty() ? SimilarityMeasure() : similarity_with(target);
   Variation variation =
-      find_variation(recipe, reference_of(recipe), options.vary, program.seed, program.progress("vary"));
+      find_variation(recipe, similarity, options.vary, program.seed, program.progress("vary"));
+  const std::string whose = options.target.empty() ? "the recipe's own body" : options.target.string();
   program.summary["similarity"] = variation.similarity;
-  program.summary["variation_strength"] = variation.strength;
-  program.say("variation " + std::to_string(program.seed) + ": similarity " +
-              fmt::format("{:.4f}", variation.similarity));
+  program.summary["similarity_with"] = options.target.empty() ? "recipe" : "target";
+  program.summary["variation"] = figures_of(variation);
+  program.say(fmt::format("variation {}: similarity {:.4f} with {}; {}", program.seed, variation.similarity,
+                          whose, words_of(variation)));
   return std::move(variation.recipe);
 }
 

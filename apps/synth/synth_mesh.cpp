@@ -261,7 +261,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
       mesh_without_crumbs(program, field, region, resolution, request.least_component,
                           chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, result.sink());
   const ManifoldReport report = result.finish_check();
-  if (report.triangles == 0) fail_empty(field, region, file);
+  if (report.triangles == 0) fail_empty(recipe, field, region, resolution, file);
   require_closed_manifold(report, statistics);
   if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
 

@@ -10,7 +10,7 @@
 #include "cuda/mesher/mesh_field.h"
 #include "numerics/errors.h"
 #include "numerics/interval.h"
-#include "recipe/recipe.h"
+#include "recipe/height_field.h"
 #include "synthesis/field/field_mesh.h"
 
 namespace astrolith {
@@ -18,6 +18,9 @@ namespace {
 
 // The finest cell of a body made by operations, as a fraction of its largest coordinate.
 constexpr double kFinestCell = 0x1p-15;
+
+// Cells along the longest side of a mesh that only looks whether there is a surface.
+constexpr int kLookAround = 64;
 
 MeshTile parse_tile(const std::string& text) {
   if (text.empty()) return {};
@@ -57,6 +60,25 @@ void check_cells(const ImplicitField& field, const Region& region, int resolutio
                   finest, cell));
 }
 
+// Whether a coarse mesh shows nothing of the recipe's surface.
+bool is_empty(const Recipe& recipe, const std::filesystem::path& file) {
+  const ImplicitField field(recipe, file.string());
+  if (field.bounds().empty()) return true;
+  MeshDiscard sink;
+  return mesh_field(field, field.bounds(), kLookAround, sink).triangles == 0;
+}
+
+// The layer that takes away what the body and the layers before it have of a surface; -1 where there is none.
+int emptying_layer(const Recipe& recipe, const std::filesystem::path& file) {
+  Recipe part = recipe;
+  if (!is_empty(part, file)) return -1;
+  for (std::size_t i = recipe.layers.size(); i > 0; --i) {
+    part.layers.resize(i - 1);
+    if (!is_empty(part, file)) return static_cast<int>(i) - 1;
+  }
+  return -1;
+}
+
 }  // namespace
 
 Region parse_region(const std::string& tile, const std::vector<double>& patch) {
@@ -88,14 +110,25 @@ MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
 }
 
-void fail_empty(const ImplicitField& field, const Region& region, const std::filesystem::path& file) {
-  if (!region.is_patch) {
-    throw WorkError(file.string() + ": the recipe's surface is empty at this resolution" +
-                    (region.is_cut() ? " in this tile" : "; raise it"));
+void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,
+                const std::filesystem::path& file) {
+  if (const int layer = emptying_layer(recipe, file); layer >= 0) {
+    throw InputError(fmt::format(
+        "{}: layers[{}].{}: nothing of the body is left that a mesh of {} cells shows; make the layer's "
+        "heights smaller",
+        file.string(), layer, height_field(recipe.layers[static_cast<std::size_t>(layer)]), kLookAround));
   }
-  const Vec3d p = nearby_surface_point(field, region.center);
-  throw InputError(fmt::format(
-      "--patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
+  if (region.is_patch) {
+    const Vec3d p = nearby_surface_point(field, region.center);
+    throw InputError(fmt::format(
+        "--patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
+  }
+  if (region.is_cut()) {
+    throw InputError(fmt::format("--tile: no surface lies in tile {} of {}; take another",
+                                 region.tile.index + 1, region.tile.count));
+  }
+  throw InputError(fmt::format("{}: the whole body lies between the samples of --resolution {}; raise it",
+                               file.string(), resolution));
 }
 
 }  // namespace astrolith

@@ -37,8 +37,9 @@ enum class MeshingDevice { kCpu, kGpu };
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
 
-// Throws the error of a region without surface. `file` is the recipe's file.
-[[noreturn]] void fail_empty(const ImplicitField& field, const Region& region,
-                             const std::filesystem::path& file);
+// Throws InputError for a region without surface at this resolution: the layer that takes the whole body
+// away, where there is one, or what to ask for instead. `file` is the recipe's file.
+[[noreturn]] void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region,
+                             int resolution, const std::filesystem::path& file);
 
 }  // namespace astrolith

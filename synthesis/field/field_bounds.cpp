@@ -29,6 +29,11 @@ struct ModelLists {
   bool boulder_reaches(const Box& box) const { return model.boulder_tree.any_touching(box); }
 };
 
+// The lists of a box that no metaball reaches.
+struct NoMetaballs {
+  MetaballList metaballs(std::uint32_t) const { return {nullptr, nullptr, 0}; }
+};
+
 // Scratch memory for the bounds of one box. It is reused, since thousands of boxes are bounded.
 BoundScratch scratch_for(const FieldModel& model, const ReachingMetaballs& metaballs) {
   thread_local std::vector<KernelInterval> kernels;
@@ -114,6 +119,20 @@ DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSp
                             spots_of(of_larger, i));
   }
   return spots;
+}
+
+double height_limit(const FieldModel& model) {
+  constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
+  constexpr double kSlack = 1e-4;  // the rounding of heights, of s and of their sum
+  const FieldView& f = model.tables;
+  const Box anywhere{{0, 0, 0}, {0, 0, 0}};
+  if (f.body.plain()) {
+    const MetaballInterval beyond =
+        bound_metaballs(f.leaf(0).metaballs, NoMetaballs{}.metaballs(0), anywhere, kAnyHeight, nullptr);
+    return -(1.0 - kSlack) * beyond.level_max / beyond.gradient_max;
+  }
+  const Interval beyond = bound_distance(f.body, f.arrays, NoMetaballs{}, anywhere, kAnyHeight, nullptr);
+  return beyond.high < 0.0 ? -(1.0 - kSlack) * beyond.high : 0.0;
 }
 
 // The supports reach far beyond the surface. The octree is therefore built again on the box that is left,

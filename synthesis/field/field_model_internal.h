@@ -75,6 +75,11 @@ inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) 
 BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
                         const Box& box);
 
+// The bound that all heights of a body must stay below, in length units. Where no metaball reaches, s is a
+// large negative number, but a finite one. Heights above its magnitude would fill all space with matter. The
+// limit is 0 or less where the body's own operations fill all space. It depends on the body alone.
+double height_limit(const FieldModel& model);
+
 // A box that holds the whole surface, within about 1/64 of its longest side. Uses all of the model but
 // `bounds`.
 Box surface_bounds(const FieldModel& model);

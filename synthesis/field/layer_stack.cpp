@@ -1,6 +1,7 @@
 // Adds a recipe's layers to the field model that holds its body.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "recipe/height_field.h"
 #include "synthesis/field/bare_body.h"
 #include "synthesis/field/field_model_internal.h"
 
@@ -34,7 +36,12 @@ constexpr double kMostSpotDraws = 8192.0;
 class LayerStack {
  public:
   LayerStack(const Recipe& recipe, const std::string& name, FieldModel& model)
-      : recipe_(recipe), name_(name), model_(model), supports_(model.body.supports), domain_(supports_) {
+      : recipe_(recipe),
+        name_(name),
+        model_(model),
+        height_limit_(height_limit(model)),
+        supports_(model.body.supports),
+        domain_(supports_) {
     const BodyLeaf& first = model.tables.leaf(0);
     if (model.body.plain() && first.warped) domain_ = widened(supports_, first.warp.bound);
   }
@@ -42,9 +49,18 @@ class LayerStack {
   void add_all() {
     const BodyLeaf& first = model_.tables.leaf(0);
     if (first.warped) report_left_out(-1, first.warp.detail);
+    if (!(height_limit_ > 0.0)) {
+      throw InputError(name_ +
+                       ": body.operations: their widths and bulges add matter where no metaball is; lower "
+                       "them below the size of the body");
+    }
     for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
       std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
+      const bool too_high = !(model_.height_bound < height_limit_);
+      if (too_high != first_too_high_.has_value())
+        first_too_high_ = too_high ? std::optional(index_) : std::nullopt;
     }
+    check_heights();
     add_patch_noises();
     sum_changes();
     model_.update();
@@ -109,6 +125,18 @@ class LayerStack {
     for (const FieldBoulder& boulder : all) boxes.push_back(boulder.box);
     model_.boulder_tree = BoxTree(boxes);
     model_.boulders = std::move(all);
+  }
+
+  // Throws InputError where the elevations could reach the height limit.
+  void check_heights() const {
+    if (!first_too_high_) return;
+    char words[160];
+    std::snprintf(words, sizeof words,
+                  ": heights of up to %.3g would fill the space around the body; make them smaller, all "
+                  "heights together at most %.3g",
+                  model_.height_bound, height_limit_);
+    const Layer& layer = recipe_.layers[static_cast<std::size_t>(*first_too_high_)];
+    throw InputError(place_of(*first_too_high_) + "." + std::string(height_field(layer)) + words);
   }
 
   // Appends lists of impulses for the layer that is pushed next. Returns the number of the first list.
@@ -316,6 +344,8 @@ class LayerStack {
   const Recipe& recipe_;
   const std::string& name_;  // name of the recipe, for errors
   FieldModel& model_;
+  double height_limit_;                // length units
+  std::optional<int> first_too_high_;  // the layer since which elevations may reach the limit
   // No surface lies outside the supports of the body's kernels. `domain_` is where layers are evaluated: the
   // supports, widened by the warps of the body and of the layers so far.
   Box supports_, domain_;

@@ -29,7 +29,8 @@ constexpr double kLeastArea = 0.1;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// An edge between two vertices that can move. With heights along the verticals its drop is drop + h_a - h_b.
+// An edge between two vertices that are not rock. With heights along the verticals its drop is drop + h_a -
+// h_b.
 struct Edge {
   std::uint32_t a, b;
   double drop;   // height of a above b before anything moved
@@ -57,8 +58,11 @@ std::vector<double> seen_areas(const TriangleMesh& mesh, std::span<const Vec3d> 
   return areas;
 }
 
+// Vertices whose faces have no area are rock too: nothing could lie on them.
 std::vector<char> find_rock(const TriangleMesh& mesh, std::span<const Vec3d> up) {
   std::vector<char> rock(up.size(), 0);
+  const std::vector<double> areas = seen_areas(mesh, up);
+  for (std::size_t v = 0; v < rock.size(); ++v) rock[v] = areas[v] > 0.0 ? 0 : 1;
   for (const Triangle& t : mesh.triangles) {
     const Vec3d area = area_vector(mesh, t);
     for (const std::uint32_t v : t) {
@@ -68,18 +72,19 @@ std::vector<char> find_rock(const TriangleMesh& mesh, std::span<const Vec3d> up)
   return rock;
 }
 
-// Measures the areas of the mesh as it is now, and sets the heights to 0.
+// Measures the areas of the mesh as it is now, and sets the heights to 0. A vertex that is not rock can
+// always move: where a slide has folded its faces over, it has the smallest area until it has slid back.
 void measure_areas(const TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock,
                    Vertices& vertices) {
   vertices.area = seen_areas(mesh, up);
+  double sum = 0.0, movable = 0.0;
   for (std::size_t v = 0; v < rock.size(); ++v) {
     if (rock[v] != 0 || !(vertices.area[v] > 0.0)) vertices.area[v] = 0.0;
+    sum += vertices.area[v];
+    movable += vertices.area[v] > 0.0 ? 1.0 : 0.0;
   }
-  const double sum = std::accumulate(vertices.area.begin(), vertices.area.end(), 0.0);
-  const auto movable = static_cast<double>(
-      std::count_if(vertices.area.begin(), vertices.area.end(), [](double a) { return a > 0.0; }));
-  for (double& area : vertices.area) {
-    if (area > 0.0) area = std::max(area, kLeastArea * sum / movable);
+  for (std::size_t v = 0; v < rock.size(); ++v) {
+    if (rock[v] == 0) vertices.area[v] = std::max(vertices.area[v], kLeastArea * sum / movable);
   }
   vertices.height.assign(rock.size(), 0.0);
 }
@@ -95,30 +100,32 @@ Incline incline(const TriangleMesh& mesh, std::span<const Vec3d> up, std::uint32
   return {drop, norm(d - drop * vertical)};
 }
 
-// Each edge of a closed mesh runs once from its lower vertex number to its higher one.
+// Visits the edges between two vertices that are not rock. Each edge of a closed mesh runs once from its
+// lower vertex number to its higher one.
 template <typename Visit>
-void for_each_edge_between_movable(const TriangleMesh& mesh, const Vertices& vertices, const Visit& visit) {
+void for_each_loose_edge(const TriangleMesh& mesh, const std::vector<char>& rock, const Visit& visit) {
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      if (a < b && vertices.area[a] > 0.0 && vertices.area[b] > 0.0) visit(a, b);
+      if (a < b && rock[a] == 0 && rock[b] == 0) visit(a, b);
     }
   }
 }
 
-std::vector<Edge> make_edges(const TriangleMesh& mesh, std::span<const Vec3d> up, const Vertices& vertices,
-                             double slope) {
+std::vector<Edge> make_edges(const TriangleMesh& mesh, std::span<const Vec3d> up,
+                             const std::vector<char>& rock, double slope) {
   std::vector<Edge> edges;
-  for_each_edge_between_movable(mesh, vertices, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_loose_edge(mesh, rock, [&](std::uint32_t a, std::uint32_t b) {
     const Incline i = incline(mesh, up, a, b);
     edges.push_back({a, b, i.drop, slope * i.length});
   });
   return edges;
 }
 
-double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, const Vertices& vertices) {
+// The steepest loose edge, in degrees.
+double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock) {
   double slope = 0.0;
-  for_each_edge_between_movable(mesh, vertices, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_loose_edge(mesh, rock, [&](std::uint32_t a, std::uint32_t b) {
     const Incline i = incline(mesh, up, a, b);
     slope = std::max(slope, portable::atan2(std::fabs(i.drop), i.length));
   });
@@ -187,6 +194,30 @@ void renew_normals(TriangleMesh& mesh, const Vertices& vertices) {
   }
 }
 
+// Lets everything slide until a first sweep over newly measured edges moves nothing. Verticals converge
+// downwards, so that edges are measured anew after far slides.
+void slide_until_at_rest(TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock,
+                         double talus_degrees, int most_sweeps, const Progress& progress, Vertices& vertices,
+                         ErosionStatistics& statistics) {
+  const double slope = kAim * portable::tan(talus_degrees / kDegrees);
+  bool at_rest = false;
+  while (statistics.sweeps < most_sweeps && !at_rest) {
+    measure_areas(mesh, up, rock, vertices);
+    const std::vector<Edge> edges = make_edges(mesh, up, rock, slope);
+    ActiveEdges active = all_active(edges, up.size());
+    const int first = statistics.sweeps + 1;
+    for (double moved = 1.0; moved > 0.0 && statistics.sweeps < most_sweeps;) {
+      moved = sweep_edges(edges, ++statistics.sweeps, active, vertices);
+      statistics.volume_moved += moved;
+      at_rest = moved == 0.0 && statistics.sweeps == first;
+      if (!report(progress, double(statistics.sweeps) / most_sweeps, "erosion")) {
+        throw WorkError("erosion: stopped before the slopes had settled");
+      }
+    }
+    for (std::size_t v = 0; v < up.size(); ++v) mesh.vertices[v] += vertices.height[v] * up[v];
+  }
+}
+
 }  // namespace
 
 ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double talus_degrees, int most_sweeps,
@@ -196,32 +227,24 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
   }
   const std::vector<char> rock = find_rock(mesh, up);
   Vertices vertices{{}, {}, std::vector<char>(up.size(), 0)};
-  measure_areas(mesh, up, rock, vertices);
   ErosionStatistics statistics;
-  statistics.rock_vertices = std::count(vertices.area.begin(), vertices.area.end(), 0.0);
-  statistics.steepest_before = steepest(mesh, up, vertices);
-  const double slope = kAim * portable::tan(talus_degrees / kDegrees), volume_before = volume(mesh);
-  // Verticals converge downwards. After far slides everything is therefore measured anew, until nothing moves
-  // in the first sweep.
-  while (statistics.sweeps < most_sweeps && !statistics.settled) {
-    measure_areas(mesh, up, rock, vertices);
-    const std::vector<Edge> edges = make_edges(mesh, up, vertices, slope);
-    ActiveEdges active = all_active(edges, up.size());
-    const int first = statistics.sweeps + 1;
-    for (double moved = 1.0; moved > 0.0 && statistics.sweeps < most_sweeps;) {
-      moved = sweep_edges(edges, ++statistics.sweeps, active, vertices);
-      statistics.volume_moved += moved;
-      statistics.settled = moved == 0.0 && statistics.sweeps == first;
-      if (!report(progress, double(statistics.sweeps) / most_sweeps, "erosion")) {
-        throw WorkError("erosion: stopped before the slopes had settled");
-      }
-    }
-    for (std::size_t v = 0; v < up.size(); ++v) mesh.vertices[v] += vertices.height[v] * up[v];
+  statistics.rock_vertices = std::count(rock.begin(), rock.end(), char{1});
+  statistics.steepest_before = statistics.steepest_after = steepest(mesh, up, rock);
+  const double volume_before = volume(mesh);
+  // The lift that restores the volume can make slopes steeper again, by degrees where the verticals of
+  // neighbours differ much. The slopes of the mesh as it is left decide whether it has settled, and slide
+  // once more where one is too steep.
+  bool slides = true;
+  while (statistics.sweeps < most_sweeps && slides && !statistics.settled) {
+    const double moved_before = statistics.volume_moved;
+    slide_until_at_rest(mesh, up, rock, talus_degrees, most_sweeps, progress, vertices, statistics);
+    restore_volume(mesh, up, volume_before);
+    slides = statistics.volume_moved > moved_before;
+    statistics.steepest_after = steepest(mesh, up, rock);
+    statistics.settled = statistics.steepest_after <= talus_degrees;
   }
   report(progress, 1.0, "erosion");
-  restore_volume(mesh, up, volume_before);
   statistics.moved_vertices = std::count(vertices.changed.begin(), vertices.changed.end(), char{1});
-  statistics.steepest_after = steepest(mesh, up, vertices);
   renew_normals(mesh, vertices);
   return statistics;
 }

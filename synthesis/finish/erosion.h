@@ -7,7 +7,8 @@
 // is too high by
 //   e = (h_v - h_u) - l tan T > 0.
 // It lets the volume c e / (1/a_v + 1/a_u) pass from v to u; with c = 1 the edge would then be at the talus
-// angle. Edges take their turns in the order of the mesh until none is too high.
+// angle. Edges take their turns in the order of the mesh until none is too high. The volume is then restored,
+// which may make edges too high once more; slides and restoring take turns until none is.
 //
 // The surface stays a graph over the horizontal wherever it was one, and so it cannot run into itself.
 // Vertices under overhangs and on walls are rock and stay where they are: one of their faces leans over or
@@ -26,10 +27,10 @@ struct ErosionStatistics {
   std::int64_t moved_vertices = 0;
   std::int64_t rock_vertices = 0;  // vertices that could not move
   int sweeps = 0;
-  bool settled = false;          // no slope above the talus angle is left
-  double steepest_before = 0.0;  // steepest edge between vertices that can move, degrees
-  double steepest_after = 0.0;
-  double volume_moved = 0.0;  // cubic length units
+  bool settled = false;          // whether steepest_after is at most the talus angle
+  double steepest_before = 0.0;  // steepest edge between two vertices that are not rock, degrees
+  double steepest_after = 0.0;   // the same edge of the finished mesh
+  double volume_moved = 0.0;     // cubic length units
 };
 
 // Erodes a closed mesh in place. `up` holds a unit vector for each vertex, or zero for rock. The volume stays

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 #include "numerics/scalar_math.h"
 
 namespace astrolith {
@@ -29,7 +30,7 @@ CoordinateWarp make_coordinate_warp(const Warp& warp, std::uint32_t seed, const 
   made.low = to_float(reached.min);
   made.high = to_float(reached.max);
   const double farthest = NoiseFrame::farthest_of(largest_coordinate(reached), frame.origin);
-  made.detail.finest = 1.0 / (warp.frequency * whole_power(warp.lacunarity, warp.octaves - 1));
+  made.detail.finest = 1.0 / (warp.frequency * portable::whole_power(warp.lacunarity, warp.octaves - 1));
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     std::vector<NoiseOctave> octaves = make_octaves(warp.frequency, warp.amplitude, warp.octaves, warp.gain,
                                                     warp.lacunarity, {seed, kWarpStream + axis, 3}, farthest);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 #include "numerics/scalar_math.h"
 
 namespace astrolith {
@@ -64,7 +65,8 @@ NoiseDetail detail_of(const FractalLayer& layer, const FractalNoise& noise, std:
   const double scale =
       std::max({std::fabs(layer.scale.x), std::fabs(layer.scale.y), std::fabs(layer.scale.z)});
   NoiseDetail detail;
-  detail.finest = 1.0 / (layer.frequency * whole_power(layer.lacunarity, layer.octaves - 1) * scale);
+  detail.finest =
+      1.0 / (layer.frequency * portable::whole_power(layer.lacunarity, layer.octaves - 1) * scale);
   if (noise.warped) detail.finest = std::min(detail.finest, noise.warp.detail.finest);
   detail.left_out = share_left_out(kept_octaves, layer.octaves, layer.gain);
   return detail;

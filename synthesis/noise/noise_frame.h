@@ -55,13 +55,6 @@ inline OriginCell origin_cell(const Vec3d& at) {
           static_cast<std::int64_t>(cell.z), at - cell};
 }
 
-// base^exponent for a whole exponent >= 0, by the same multiplications on every machine.
-inline double whole_power(double base, int exponent) {
-  double power = 1.0;
-  for (int i = 0; i < exponent; ++i) power *= base;
-  return power;
-}
-
 // How fine a noise is, and what its frame could not hold of it.
 struct NoiseDetail {
   double finest = std::numeric_limits<double>::infinity();  // shortest wave or narrowest cell, length units

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
 #include "synthesis/noise/noise_octaves.h"
 #include "synthesis/noise/points_in_domain.h"
 
@@ -46,7 +47,7 @@ SparseNoise make_noise(const SparseLayer& layer, std::uint64_t seed, int layer_i
          to_float(origin.rest)});
     gains += gain;
   }
-  noise.detail = {layer.cell_size * whole_power(0.5, layer.levels - 1),
+  noise.detail = {layer.cell_size * portable::whole_power(0.5, layer.levels - 1),
                   share_left_out(levels.size(), layer.levels, layer.gain)};
   noise.levels = arrays.add(levels);
   const double greatest = double{kInverseBumpHeight};

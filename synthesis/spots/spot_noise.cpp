@@ -125,7 +125,7 @@ double share_left_out(const SpotLayer& layer, int kept) {
   double left = 0.0, total = 0.0;
   for (int j = 0; j < layer.layers; ++j) {
     const double density = portable::pow(layer.lacunarity, j * (layer.exponent - 2.0));
-    const double power = whole_power(layer.gain * layer.gain, j) * density;
+    const double power = portable::whole_power(layer.gain * layer.gain, j) * density;
     total += power;
     if (j >= kept) left += power;
   }
@@ -141,7 +141,7 @@ double finest_length(const SpotLayer& layer, std::span<const SpotPart> parts) {
     const double cut = std::sqrt(layer.sigma * std::min({v.x, v.y, v.z}));
     finest = std::min(finest, layer.size * std::min({a.x, a.y, a.z}) * std::min(cut, 1.0));
   }
-  return finest / whole_power(layer.lacunarity, layer.layers - 1);
+  return finest / portable::whole_power(layer.lacunarity, layer.layers - 1);
 }
 
 Box box_of(int n, const float* x, const float* y, const float* z) {

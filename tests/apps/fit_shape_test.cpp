@@ -216,13 +216,19 @@ TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
 TEST_F(FitShape, VariationsAreAsAlikeAsAsked) {
   const std::string summary_file = (folder_ / "s.json").string();
   fit("egg.json", {"--base-only", "--variations", "2", "--delta", "0.3", "--summary", summary_file});
-  const auto similarities = nlohmann::json::parse(text_of(summary_file))["variations"];
-  ASSERT_EQ(similarities.size(), 2u);
+  const auto figures = nlohmann::json::parse(text_of(summary_file))["variations"];
+  ASSERT_EQ(figures.size(), 2u);
   for (int k = 1; k <= 2; ++k) {
     const Recipe variation = read_recipe(folder_ / ("egg_variation_" + std::to_string(k) + ".json"));
-    ASSERT_EQ(variation.provenance.achieved.size(), 1u);
-    EXPECT_EQ(variation.provenance.achieved[0].first, "similarity");
-    EXPECT_GE(variation.provenance.achieved[0].second, 0.7 - 1e-6);
+    const auto& achieved = variation.provenance.achieved;
+    ASSERT_EQ(achieved.size(), 4u);
+    EXPECT_EQ(achieved[0].first, "similarity");
+    EXPECT_GE(achieved[0].second, 0.7 - 1e-6);
+    EXPECT_EQ(achieved[2].first, "variation_mean_distance");
+    EXPECT_GE(achieved[2].second, 1e-4 - 1e-10);
+    const auto& stated = figures.at(static_cast<std::size_t>(k) - 1);
+    EXPECT_NEAR(stated["mean_distance"].get<double>(), achieved[2].second, 1e-6);
+    EXPECT_GT(stated["strength"].get<double>(), 0.0);
   }
 }
 

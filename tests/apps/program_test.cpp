@@ -49,10 +49,22 @@ TEST(Program, StatusSaysWhoseFaultItWas) {
 
 TEST(Program, AnErrorIsOneLineOfText) {
   EXPECT_EQ(run({}, [](Program&) { throw InputError("a\nb\x1b[31m.obj: bad\r\n"); }).errors,
-            "tool: a b [31m.obj: bad  \n");
+            "tool: a\\nb\\x1b[31m.obj: bad\\r\\n\n");
   const std::string errors = run({"--unknown"}, [](Program&) {}).errors;
   EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
   EXPECT_NE(errors.find("--unknown"), std::string::npos);
+}
+
+// U+202E turns the text after it around, U+2028 breaks the line, and U+009B begins a command to a terminal.
+TEST(Program, WhatMessagesQuoteCannotHide) {
+  const std::string raw = "\u202e\u2028\u009b\xff.json", shown = "\\u202e\\u2028\\u009b\\xff.json";
+  EXPECT_EQ(run({}, [&](Program&) { throw InputError(raw); }).errors, "tool: " + shown + "\n");
+  EXPECT_EQ(run({}, [&](Program&) { throw WorkError(raw); }).errors, "tool: " + shown + "\n");
+  EXPECT_EQ(run({}, [&](Program& p) { p.say(raw); }).errors, shown + "\n");
+  EXPECT_EQ(run({}, [&](Program& p) { p.note(raw); }).errors, shown + "\n");
+  EXPECT_EQ(run({}, [&](Program& p) { p.report_failure(raw); }).errors, "tool: " + shown + "\n");
+  const std::string wrong = run({"--" + raw}, [](Program&) { FAIL(); }).errors;
+  EXPECT_NE(wrong.find(shown), std::string::npos) << wrong;
 }
 
 TEST(Program, APartThatFailedIsNamedAndTheRestGoesOn) {
@@ -63,7 +75,7 @@ TEST(Program, APartThatFailedIsNamedAndTheRestGoesOn) {
   });
   EXPECT_EQ(outcome.status, 1);
   EXPECT_TRUE(went_on);
-  EXPECT_EQ(outcome.errors, "tool: a.obj: is empty; left out\n");
+  EXPECT_EQ(outcome.errors, "tool: a.obj: is empty;\\nleft out\n");
 }
 
 TEST(Program, RangesAreStatedInWords) {

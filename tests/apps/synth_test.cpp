@@ -156,11 +156,78 @@ TEST_F(Synth, VariationsAreAsAlikeAsAskedAndStayInOnePiece) {
   const std::string one = synthesise("one.ply", {"--vary", "0.3", "--seed", "1", "--summary", summary_file});
   const auto summary = nlohmann::json::parse(text_of(summary_file));
   EXPECT_GE(summary["similarity"].get<double>(), 0.7);
+  EXPECT_EQ(summary["similarity_with"], "recipe");
+  EXPECT_GT(summary["variation"]["mean_distance"].get<double>(), 1e-3);
+  EXPECT_GT(summary["variation"]["max_distance"], summary["variation"]["mean_distance"]);
+  EXPECT_GT(summary["variation"]["strength"].get<double>(), 0.0);
   EXPECT_EQ(summary["components"].get<int>(), 1);
   EXPECT_FALSE(one == itself);
   expect_refusal(folder_, kSynth,
                  {(folder_ / "r.json").string(), "-o", (folder_ / "no.ply").string(), "--vary", "1.5"},
                  "--vary");
+}
+
+// Two samplings of one body are less alike than 0.999, so that every other body is refused. The similarity
+// that the refusal offers can be had.
+TEST_F(Synth, AVariationThatWouldBeTheSameBodyIsRefused) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres), out = (folder_ / "out.ply").string();
+  std::vector<std::string> arguments{recipe, "-o", out, "--resolution", "32", "--vary", "0.001"};
+  const testing::Outcome refused = run_program(kSynth, arguments);
+  const std::string& refusal = refused.errors;
+  EXPECT_EQ(refused.status, 2);
+  ASSERT_EQ(refusal.rfind("synth: variation 1: no other body with a similarity of 0.999", 0), 0u) << refusal;
+  const std::string before = "a difference of ";
+  arguments.back() = refusal.substr(refusal.find(before) + before.size(), 6);
+  const testing::Outcome outcome = run_program(kSynth, arguments);
+  EXPECT_EQ(outcome.status, 0) << refusal << outcome.errors;
+  EXPECT_NE(outcome.errors.find("% of the diagonal"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(Synth, VariationsCanBeLikeATargetInstead) {
+  const std::string summary_file = (folder_ / "s.json").string(), target = (folder_ / "target.ply").string();
+  synthesise("target.ply", {});
+  const std::string note = "is not the file that the recipe was fitted to, rock.ply";
+  for (const bool fitted : {false, true}) {
+    const std::string origin = R"("provenance": {"input_name": "rock.ply", "input_sha256": ")" +
+                               (fitted ? sha256_of_file(target) : std::string(64, '0')) + "\"}, \"body\"";
+    const testing::Outcome outcome =
+        run_program(kSynth, {folder_.write("fit.json", replaced(kTwoSpheres, "\"body\"", origin)), "-o",
+                             (folder_ / "out.ply").string(), "--resolution", "32", "--vary", "0.3",
+                             "--target", target, "--summary", summary_file});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors.find(note) == std::string::npos, fitted) << outcome.errors;
+    EXPECT_NE(outcome.errors.find("with " + target), std::string::npos) << outcome.errors;
+    EXPECT_EQ(nlohmann::json::parse(text_of(summary_file))["similarity_with"], "target");
+  }
+  expect_refusal(folder_, kSynth,
+                 {(folder_ / "r.json").string(), "-o", (folder_ / "no.ply").string(), "--target", target},
+                 "--vary");
+}
+
+TEST_F(Synth, HeightsBeyondAllMeasureAreRefusedByName) {
+  expect_recipe_refused(replaced(kTwoSpheres, "0.05", "1e9"), "layers[0].amplitude: heights of up to");
+}
+
+// An intersection with a joint of 100 km lowers the whole surface of a body of 2 km by 50 km.
+TEST_F(Synth, ALayerThatTakesTheBodyAwayIsNamed) {
+  const std::string layers = R"("octaves": 4}, {"type": "simplex", "amplitude": 0.001, "frequency": 2,
+    "combine": {"type": "blend", "operator": "intersection", "width": 100}}])";
+  expect_recipe_refused(replaced(kTwoSpheres, R"("octaves": 4}])", layers),
+                        "layers[1].combine.width: nothing of the body is left");
+}
+
+// U+202E would turn the rest of the line around, and U+2028 breaks it.
+TEST_F(Synth, WhatARecipeQuotesIsEscaped) {
+  expect_recipe_refused(replaced(kTwoSpheres, "simplex", "\u202esim\u2028plex\u009b"),
+                        "layers[0].type: must be one of");
+  const testing::Outcome outcome = run_program(
+      kSynth, {folder_.write("\u202e\xff.json", replaced(kTwoSpheres, "simplex", "\u202e\u2028\u009b")), "-o",
+               (folder_ / "out.ply").string()});
+  for (const char* raw : {"\u202e", "\u2028", "\u009b", "\xff"}) {
+    EXPECT_EQ(outcome.errors.find(raw), std::string::npos) << outcome.errors;
+  }
+  EXPECT_NE(outcome.errors.find(R"(\u202e\xff.json: layers[0].type)"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find(R"(\u202e\u2028\u009b)"), std::string::npos) << outcome.errors;
 }
 
 TEST_F(Synth, SeedChangesTheMesh) {

@@ -68,6 +68,54 @@ TEST(ImplicitField, GradientWithLayersIsTheDerivative) {
   EXPECT_NEAR(field.value(p + step) - field.value(p - step), dot(g, 2.0 * step), 2e-4);
 }
 
+std::string refusal_of(const Recipe& recipe) {
+  try {
+    const ImplicitField field(recipe, "r.json");
+    return "";
+  } catch (const InputError& e) {
+    return e.what();
+  }
+}
+
+// Where no metaball reaches, s is a finite number. Greater heights would make all space matter.
+TEST(ImplicitField, HeightsThatWouldFillSpaceAreRefused) {
+  Recipe recipe = sphere_recipe(100.0);
+  recipe.layers = {fractal_layer(1.0, 0.01, 1), fractal_layer(1e9, 0.01, 1), fractal_layer(1.0, 0.01, 1)};
+  EXPECT_EQ(refusal_of(recipe).rfind("r.json: layers[1].amplitude: heights of up to 1e+09", 0), 0u)
+      << refusal_of(recipe);
+  recipe.layers = {gabor_layer(1.0, 1e9)};
+  EXPECT_EQ(refusal_of(recipe).rfind("r.json: layers[0].height_rms: ", 0), 0u) << refusal_of(recipe);
+  FractalLayer blended = fractal_layer(1.0, 0.01, 1);
+  blended.use.combination = {Combine::kBlend, 1e9, false, {}};
+  recipe.layers = {blended};
+  EXPECT_EQ(refusal_of(recipe).rfind("r.json: layers[0].combine.width: ", 0), 0u) << refusal_of(recipe);
+}
+
+// Just below the limit all of the field beyond the metaballs is outside, by value and by bounds.
+TEST(ImplicitField, HeightsBelowTheLimitLeaveSpaceEmpty) {
+  for (const Kernel kernel : kKernels) {
+    for (const bool combined : {false, true}) {
+      Recipe recipe = sphere_recipe(1.0);
+      recipe.body->kernel = kernel;
+      if (combined) {
+        BodyOperation operation;
+        operation.operand.push_back(*recipe.body);
+        recipe.body->operations.push_back(operation);
+      }
+      recipe.layers = {fractal_layer(1e9, 1.0, 1)};
+      const std::string refusal = refusal_of(recipe);
+      ASSERT_NE(refusal, "") << kernel_word(kernel);
+      const double limit = std::stod(refusal.substr(refusal.rfind(' ')));  // of three digits
+      EXPECT_GT(limit, 100.0) << "radii";
+      recipe.layers = {fractal_layer(0.99 * limit, 1.0, 1)};
+      const ImplicitField field(recipe);
+      const Box far{{8, 8, 8}, {9, 9, 9}};
+      EXPECT_EQ(field.gather(far).content(), BlockContent::kOutside) << kernel_word(kernel);
+      EXPECT_LT(field.value(far.min), 0.0);
+    }
+  }
+}
+
 TEST(ImplicitField, BoundsHoldTheSurfaceTightly) {
   for (const double amplitude : {0.0, 0.03}) {
     Recipe recipe = potato_recipe(100, 12);
