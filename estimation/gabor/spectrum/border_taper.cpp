@@ -113,6 +113,8 @@ bool tiles_along_y(const GreyImage& image) {
   return continues(image.height, [&](int y) { return row_bend(image, y); });
 }
 
+std::vector<double> border_fading(int n) { return fading(n, false); }
+
 TaperedImage taper_borders(const GreyImage& image) {
   const std::vector<double> wx = fading(image.width, tiles_along_x(image));
   const std::vector<double> wy = fading(image.height, tiles_along_y(image));

@@ -20,6 +20,9 @@ struct TaperedImage {
   double looks = 1.0;  // share of independent values in its periodogram, (0, 1]
 };
 
+// The weights of n columns (or rows) that taper_borders uses where borders do not match.
+std::vector<double> border_fading(int n);
+
 // Fades the image to its mean by a raised cosine (Tukey 1967), over a tenth of each side at borders that do
 // not match. Along an axis that tiles, the image does not change.
 //
