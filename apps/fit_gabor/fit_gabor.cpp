@@ -1,6 +1,7 @@
 // fit_gabor IMAGE -o RECIPE: a photo of rock becomes a layer of Gabor noise with the photo's spectrum.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/fit_gabor/fit_gabor_outputs.h"
@@ -16,9 +17,8 @@
 namespace astrolith {
 namespace {
 
-// Relative distance between fitted and estimated spectrum from which the fit is called poor: a photo of rock
-// ends near 0.03, a raw periodogram of the true spectrum is 0.48 from it.
-constexpr double kPoorDistance = 0.6;
+// Photos whose spectrum holds less than this share of their variance get a note.
+constexpr double kMostVariance = 0.95;
 
 struct Options {
   std::string image;
@@ -98,7 +98,10 @@ void add_pursuit_options(CommandLine& app, Options& o) {
   app.add_option("--penalty", o.photo.fit.penalty_ratio,
                  "sparsity penalty over the largest useful one; smaller finds more lobes")
       .check(in_range(1e-4, 0.99));
-  app.add_option("--gap", o.photo.fit.relative_gap, "stop the pursuit at this certified relative duality gap")
+  app.add_option(
+         "--gap", o.photo.fit.relative_gap,
+         "stop the pursuit at this certified relative duality gap; selection and refinement then change "
+         "the lobes")
       .check(in_range(1e-8, 0.5));
 }
 
@@ -111,8 +114,7 @@ void add_output_options(CommandLine& app, Options& o) {
       .default_text("");
   app.add_option("--report", o.report_folder,
                  "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "
-                 "spectra, lobes, "
-                 "gap; and its pictures pixel by pixel")
+                 "spectra, lobes, gap of the pursuit; and its pictures pixel by pixel")
       .placeholder("DIR");
   app.add_option(
          "--spectrum", o.spectrum_file,
@@ -165,9 +167,10 @@ Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& pho
   recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
   recipe.provenance.input_sha256 = sha256_of_file(o.image);
   recipe.provenance.options = program.given_options();
-  recipe.provenance.achieved = {{"relative_duality_gap", photo.relative_gap()},
+  recipe.provenance.achieved = {{"band_overlap", photo.band_overlap()},
+                                {"pursuit_gap", photo.pursuit_gap()},
                                 {"spectrum_distance", photo.spectrum_distance()},
-                                {"variance_ratio", photo.variance_ratio()}};
+                                {"spectrum_residual", photo.spectrum_residual()}};
   for (const FittedChannel& channel : photo.channels)
     recipe.layers.push_back(make_layer(o, channel, recipe.layers.empty()));
   return recipe;
@@ -179,13 +182,50 @@ nlohmann::ordered_json details(const Gaussianity& g) {
           {"variance_spread", g.variance_spread}, {"sentence", g.sentence}};
 }
 
+nlohmann::ordered_json details(const std::vector<BandVariance>& bands) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const BandVariance& band : bands) {
+    list.push_back(
+        {{"cycles_per_pixel", {band.lowest, band.highest}}, {"photo", band.photo}, {"noise", band.noise}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json details(const FittedChannel& channel) {
+  const GaborFit& fit = channel.fit;
+  const LobeQuality& q = fit.quality;
+  return {{"lobes", fit.lobes.size()},
+          {"pursuit_lobes", fit.pursuit_lobes},
+          {"pursuit_gap", fit.pursuit.relative_gap},
+          {"pursuit_reached", fit.pursuit.reached},
+          {"refinement_reached", fit.refinement_reached},
+          {"spectrum_distance", fit.spectrum_distance},
+          {"periodogram_distance", q.periodogram_distance},
+          {"perfect_periodogram_distance", q.perfect_distance},
+          {"spectrum_residual", q.residual},
+          {"weak_above", q.weak_above},
+          {"weak", q.weak()},
+          {"band_overlap", q.band_overlap},
+          {"bands", details(q.bands)},
+          {"variance", channel.variance()},
+          {"pixel_variance", channel.pixel_variance()},
+          {"variance_ratio_before_scaling", fit.variance_before_scaling},
+          {"gaussianity", channel.gaussianity.p_value}};
+}
+
 void summarize(const PhotoFit& photo, Program& program) {
   auto& s = program.summary;
   const Gaussianity gaussianity = photo.gaussianity();
   s["lobes"] = photo.lobes();
-  s["relative_duality_gap"] = photo.relative_gap();
+  s["pursuit_gap"] = photo.pursuit_gap();
+  s["pursuit_reached"] = photo.pursuit_reached();
+  s["refinement_reached"] = photo.refinement_reached();
   s["spectrum_distance"] = photo.spectrum_distance();
-  s["variance_ratio"] = photo.variance_ratio();
+  s["spectrum_residual"] = photo.spectrum_residual();
+  s["weak_above"] = photo.weak_above();
+  s["weak"] = photo.weak();
+  s["band_overlap"] = photo.band_overlap();
+  s["variance_in_spectrum"] = photo.variance_in_spectrum();
   s["gaussianity"] = gaussianity.p_value;
   s["gaussianity_details"] = details(gaussianity);
   int iterations = 0;
@@ -194,13 +234,7 @@ void summarize(const PhotoFit& photo, Program& program) {
     iterations += channel.fit.pursuit.iterations;
     before_scaling += channel.fit.variance_before_scaling * channel.variance();
     variance += channel.variance();
-    s["channels"].push_back({{"lobes", channel.fit.lobes.size()},
-                             {"pursuit_lobes", channel.fit.pursuit_lobes},
-                             {"relative_duality_gap", channel.fit.pursuit.relative_gap},
-                             {"spectrum_distance", channel.fit.spectrum_distance},
-                             {"variance", channel.variance()},
-                             {"variance_ratio_before_scaling", channel.fit.variance_before_scaling},
-                             {"gaussianity", channel.gaussianity.p_value}});
+    s["channels"].push_back(details(channel));
   }
   s["variance_ratio_before_scaling"] = before_scaling / variance;
   s["iterations"] = iterations;
@@ -226,14 +260,34 @@ void require_outputs(const Options& o) {
   }
 }
 
-void say_result(const PhotoFit& photo, const Program& program) {
+// What may mend a weak fit.
+std::string remedy(const PhotoFit& photo, const Options& o) {
+  const bool full = std::any_of(photo.channels.begin(), photo.channels.end(), [&](const FittedChannel& c) {
+    return static_cast<int>(c.fit.lobes.size()) >= o.photo.fit.max_lobes;
+  });
+  if (full) return fmt::format("allow more than {} --lobes", o.photo.fit.max_lobes);
+  return o.photo.detrend_degree == 0 ? "try a smaller --penalty, or --detrend 2 against uneven light"
+                                     : "try a smaller --penalty";
+}
+
+void say_result(const PhotoFit& photo, const Options& o, const Program& program) {
   const std::size_t layers = photo.channels.size();
-  program.say(fmt::format(
-      "{} lobes{}, certified relative duality gap {:.1e}, distance {:.3f} from the estimated spectrum",
-      photo.lobes(), layers > 1 ? fmt::format(" in {} layers", layers) : "", photo.relative_gap(),
-      photo.spectrum_distance()));
-  if (photo.spectrum_distance() > kPoorDistance) {
-    program.say("note: the lobes miss much of the spectrum; allow more --lobes or a smaller --penalty");
+  program.say(
+      fmt::format("{} lobes{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the photo's (weak above "
+                  "{:.3f}), {:.1f} % "
+                  "of the variance in the right octave",
+                  photo.lobes(), layers > 1 ? fmt::format(" in {} layers", layers) : "", photo.pursuit_gap(),
+                  photo.spectrum_residual(), photo.weak_above(), 100.0 * photo.band_overlap()));
+  if (photo.weak()) {
+    program.say("note: weak fit: a good one would be nearer to the photo's spectrum; " + remedy(photo, o));
+  }
+  if (!photo.pursuit_reached()) program.say("note: the pursuit ended before the --gap asked for");
+  const double held = photo.variance_in_spectrum();
+  if (held < kMostVariance) {
+    program.say(
+        fmt::format("note: {:.0f} % of the photo's variance lies in features wider than {} pixels, which "
+                    "the noise lacks; scale the photo down to that size to keep them",
+                    100.0 * (1.0 - held), o.photo.fit.largest_side));
   }
   program.say(photo.gaussianity().sentence);
 }
@@ -256,7 +310,7 @@ void work(Program& program, const Options& o) {
   if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
   if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
   program.summary["peak_bytes"] = peak_bytes();
-  say_result(photo, program);
+  say_result(photo, o, program);
 }
 
 }  // namespace
@@ -267,7 +321,11 @@ int main(int argc, char** argv) {
   Program program(
       "fit_gabor",
       "Fits a layer of Gabor noise to a photo of rock: a sparse sum of Gaussians in its power spectrum, by "
-      "non-negative basis pursuit with a certified duality gap.");
+      "non-negative basis pursuit with a certified duality gap. Of the final lobes the summary says how far "
+      "their spectrum is from the photo's (spectrum_residual; 0: as good as can be told, above weak_above: "
+      "weak), the share of the variance in the right octave (band_overlap) and the variance of a texture "
+      "made "
+      "of them over that of the photo's pixels (variance_ratio_synthesized).");
   Options options;
   add_options(program, options);
   return program.run(argc, argv, [&] { work(program, options); });

@@ -69,7 +69,7 @@ double synthesized_variance_ratio(const PhotoFit& photo, const std::vector<std::
   double kept = 0.0, variance = 0.0;
   for (std::size_t k = 0; k < photo.channels.size(); ++k) {
     kept += variance_of(syntheses[k]) * photo.channels[k].variance();
-    variance += photo.channels[k].variance();
+    variance += photo.channels[k].pixel_variance();
   }
   return kept / variance;
 }

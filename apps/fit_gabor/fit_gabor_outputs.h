@@ -14,7 +14,7 @@ namespace astrolith {
 std::vector<std::vector<float>> synthesize_channels(const PhotoFit& photo, const Recipe& recipe,
                                                     const Program& program);
 
-// Variance that the syntheses have, over the exemplar's, all channels together.
+// Variance that the syntheses have, over that of the photo's pixels, all channels together.
 double synthesized_variance_ratio(const PhotoFit& photo, const std::vector<std::vector<float>>& syntheses);
 
 // Writes a figure for each channel. The first channel's figure lies in `folder` itself and shows colours

@@ -66,7 +66,7 @@ ShapeFitResult fit_base(const Program& program, const FitArguments& arguments, c
   const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
     return limit.guard(program.progress(stage), stage);
   });
-  if (!Program::interrupted() && !limit.reached()) checkpoint.keep_base(fit);
+  if (!Program::interrupted() && !fit.interrupted) checkpoint.keep_base(fit);
   return fit;
 }
 
@@ -77,8 +77,8 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
   program.summary["base"] = {{"mean_distance", d.mean}, {"p99_distance", d.p99}, {"max_distance", d.max}};
   const DetailArguments& wanted = arguments.details;
   if (wanted.micro == "auto") {
-    program.say("micro: " +
-                add_residual_texture(target, arguments.fit.seed, program.progress("micro"), recipe));
+    program.say("micro: " + add_residual_texture(target, arguments.fit.seed,
+                                                 limit.guard(program.progress("micro"), "micro"), recipe));
   } else if (!wanted.transfer.empty()) {
     transfer_details(program, wanted.transfer, recipe);
   } else if (!wanted.base_only) {
@@ -148,7 +148,11 @@ void run(Program& program, FitArguments& arguments) {
   if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
   TimeLimit limit(arguments.time_limit);
   settle_fit_options(program, arguments);
-  const TargetBody target = prepare_target(read_mesh(arguments.mesh), arguments.mesh);
+  // Reading takes about as long as a quarter of the checks.
+  constexpr double kReadShare = 0.2;
+  TriangleMesh mesh = read_mesh(arguments.mesh);
+  report(limit.preparation(0.0), kReadShare, "read");
+  const TargetBody target = prepare_target(std::move(mesh), arguments.mesh, limit.preparation(kReadShare));
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
@@ -159,7 +163,7 @@ void run(Program& program, FitArguments& arguments) {
   ShapeFitResult fit = fit_base(program, arguments, target, limit, checkpoint);
   Recipe recipe = recipe_of(program, arguments, fit);
   const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
-  if (with_details && !Program::interrupted() && !limit.reached()) {
+  if (with_details && !Program::interrupted() && limit.allows_more()) {
     add_details(program, arguments, target, limit, checkpoint, fit, recipe);
   }
   if (Program::interrupted()) program.say("stopped by Ctrl-C: this is the best so far");
@@ -173,7 +177,9 @@ void run(Program& program, FitArguments& arguments) {
   summarize(program, fit, Program::interrupted() || limit.reached());
   program.summary["diagonal"] = target.diagonal;  // distances are fractions of it
   program.summary["length_unit"] = arguments.unit;
-  if (!variations.empty() && !Program::interrupted()) {
+  if (!variations.empty() && !Program::interrupted() && !limit.allows_more()) {
+    program.say("no variations: the time is over");
+  } else if (!variations.empty() && !Program::interrupted()) {
     program.summary["variations"] = write_variations(program, target, recipe, arguments.details, variations);
   }
   say_result(program, target, fit, !recipe.layers.empty());

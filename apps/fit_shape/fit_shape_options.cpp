@@ -49,8 +49,10 @@ void declare_run_options(CommandLine& app, FitArguments& arguments) {
       .check(zero_or_more());
   app.add_option("--time-limit", arguments.time_limit,
                  "seconds after which the best so far is written, measured figures included; 0 = none. The "
-                 "result then "
-                 "depends on the machine")
+                 "result then depends on the machine. A step that has begun is ended first, such as the "
+                 "sampling of the surface or the mesh of the result, some seconds each. Where reading and "
+                 "checking the mesh takes longer than the limit, there is nothing to write, and the program "
+                 "ends with a line that says how long they need")
       .check(zero_or_more());
   app.add_option(
          "--checkpoint", arguments.checkpoint,

@@ -71,6 +71,13 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   return lobes;
 }
 
+std::vector<SpectralLobe> refined(std::vector<SpectralLobe> lobes, const std::vector<double>& weight,
+                                  GaborFit& fit) {
+  RefinedLobes best = fewest_lobes(std::move(lobes), fit.estimate, weight);
+  fit.refinement_reached = best.reached;
+  return std::move(best.lobes);
+}
+
 // The smallest standard deviation of an exemplar. With a smaller one, the variance of a lobe could fall out
 // of the range of a recipe.
 constexpr double kSmallestContrast = 1e-4;
@@ -123,12 +130,12 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   fit.pursuit_lobes = static_cast<int>(lobes.size());
   const std::vector<double> weight = row_weights(fit.estimate.spectrum, options.target);
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
-  if (options.target == SpectrumTarget::kSmoothed)
-    lobes = fewest_lobes(std::move(lobes), fit.estimate, weight);
+  if (options.target == SpectrumTarget::kSmoothed) lobes = refined(std::move(lobes), weight, fit);
   if (lobes.empty()) throw WorkError(name + ": no lobe was found; try a smaller penalty");
   fit.lobes = to_layer_lobes(lobes, fit);
   fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);
   fit.spectrum_distance = optimal_transport_distance(fit.fitted, fit.estimate.spectrum);
+  fit.quality = judge_lobes(fit.fitted, fit.periodogram, fit.estimate.standard_error);
   return fit;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "estimation/gabor/image/grey_image.h"
+#include "estimation/gabor/lobes/lobe_quality.h"
 #include "estimation/gabor/pursuit/basis_pursuit.h"
 #include "estimation/gabor/spectrum/power_spectrum.h"
 #include "estimation/gabor/spectrum/spectrum_estimate.h"
@@ -42,7 +43,9 @@ struct GaborFit {
   BasisPursuitResult pursuit;            // its x is empty
   int pursuit_lobes = 0;                 // number of lobes before selection
   double variance_before_scaling = 0.0;  // variance of the selected lobes over that of the exemplar
+  bool refinement_reached = true;        // RefinedLobes::reached; true where there is no refinement
   double spectrum_distance = 0.0;        // optimal-transport distance of `fitted` from the estimate
+  LobeQuality quality;                   // of `fitted` beside the periodogram
 };
 
 // The smallest side of an exemplar, in pixels.

@@ -175,11 +175,14 @@ void write_gabor_report(const ReportPicture& exemplar, const ReportPicture& synt
   draw_photo(page, panel(0, 0), exemplar);
   caption(page, panel(1, 0), "b", "synthesis, same size");
   draw_photo(page, panel(1, 0), synthesis);
-  caption(page, panel(2, 0), "c", fmt::format("certified relative gap {:.1e}", fit.pursuit.relative_gap));
+  caption(page, panel(2, 0), "c",
+          fmt::format("certified gap of the pursuit {:.1e}", fit.pursuit.relative_gap));
   draw_gap(page, panel(2, 0), fit.pursuit);
   caption(page, panel(0, 1), "d", "spectrum estimated from the exemplar");
   draw_spectrum(page, panel(0, 1), measured);
-  caption(page, panel(1, 1), "e", fmt::format("fitted spectrum, distance {:.3f}", fit.spectrum_distance));
+  caption(page, panel(1, 1), "e",
+          fmt::format("fitted spectrum, residual {:.3f}{}", fit.quality.residual,
+                      fit.quality.weak() ? " (weak)" : ""));
   draw_spectrum(page, panel(1, 1), fitted);
   caption(page, panel(2, 1), "f", fmt::format("{} lobes at half their peak, over d", fit.lobes.size()));
   draw_spectrum(page, panel(2, 1), measured);

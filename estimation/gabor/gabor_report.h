@@ -25,8 +25,9 @@ ReportPicture tone_mapped(std::span<const float> values, int width, int height);
 
 // Writes the pictures of a fit into `folder`, which is made if it is missing:
 //   report.png, report.svg   one figure (200 pixels an inch) of (a) the exemplar, (b) the synthesis, (c) the
-//                            certified gap against the steps of the pursuit, (d) the spectrum estimated from
-//                            the exemplar, (e) the fitted spectrum, (f) the lobes over the estimated spectrum
+//                            certified gap of the pursuit against its steps, (d) the spectrum estimated from
+//                            the exemplar, (e) the fitted spectrum and its residual, (f) the lobes over the
+//                            estimated spectrum
 //   exemplar.png, synthesis.png, spectrum_exemplar.png, spectrum_fitted.png   pictures a, b, d and e in full
 // `synthesis` has the size of `exemplar`. Spectra are logarithmic over six decades, with frequency 0 in the
 // middle. Throws InputError where a file cannot be written.

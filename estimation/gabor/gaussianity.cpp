@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -17,9 +18,13 @@
 namespace astrolith {
 namespace {
 
-constexpr int kSurrogates = 99;
-constexpr int kLargestSide = 512;
+constexpr int kLargestTile = 512;
 constexpr int kBlocks = 8;
+
+// Large photos have fewer surrogates, since the work is that of so many tiles at most. 19 are the least that
+// reach p = 0.05.
+constexpr int kMostSurrogates = 99, kFewestSurrogates = 19;
+constexpr int kSurrogateTiles = 16 * kMostSurrogates;
 
 constexpr std::array<int, 3> kLags{1, 4, 16};
 
@@ -46,16 +51,30 @@ struct Measures {
   }
 };
 
-GreyImage central_square(const GreyImage& image) {
-  const int width = std::min(image.width, kLargestSide);
-  const int height = std::min(image.height, kLargestSide);
-  const int x0 = (image.width - width) / 2;
-  const int y0 = (image.height - height) / 2;
-  GreyImage square{width, height, {}};
-  for (int y = y0; y < y0 + height; ++y) {
-    for (int x = x0; x < x0 + width; ++x) square.values.push_back(image.at(x, y));
+// Equal tiles of at most 512 x 512 pixels side by side over the whole image. A few columns and rows, fewer
+// than there are tiles along them, are left out where the sides are no multiples.
+struct Tiling {
+  int columns, rows, width, height;
+
+  explicit Tiling(const GreyImage& image)
+      : columns((image.width - 1) / kLargestTile + 1),
+        rows((image.height - 1) / kLargestTile + 1),
+        width(image.width / columns),
+        height(image.height / rows) {}
+  int count() const { return columns * rows; }
+};
+
+GreyImage tile_of(const GreyImage& image, const Tiling& tiling, int t) {
+  const auto start = [](int extent, int i, int n) {
+    return static_cast<int>(static_cast<std::int64_t>(extent) * i / n);
+  };
+  const int x0 = start(image.width, t % tiling.columns, tiling.columns);
+  const int y0 = start(image.height, t / tiling.columns, tiling.rows);
+  GreyImage tile{tiling.width, tiling.height, {}};
+  for (int y = y0; y < y0 + tiling.height; ++y) {
+    for (int x = x0; x < x0 + tiling.width; ++x) tile.values.push_back(image.at(x, y));
   }
-  return square;
+  return tile;
 }
 
 double block_variance(const GreyImage& image, int bx, int by) {
@@ -71,100 +90,159 @@ double block_variance(const GreyImage& image, int bx, int by) {
   return std::max(0.0, square / n - sum / n * (sum / n));
 }
 
-// Skewness and excess kurtosis.
-std::array<double, 2> shape_of(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0.0;
-  for (const double v : values) mean += v / n;
-  double moments[3] = {};
-  for (const double v : values) {
-    const double d = v - mean;
-    moments[0] += d * d / n;
-    moments[1] += d * d * d / n;
-    moments[2] += d * d * d * d / n;
-  }
-  if (moments[0] <= 0.0) return {};
-  return {moments[1] / std::pow(moments[0], 1.5), moments[2] / (moments[0] * moments[0]) - 3.0};
-}
-
-// Excess kurtosis of the differences over (dx, dy) pixels. Their mean is 0, because the image is periodic.
-double step_kurtosis(const GreyImage& image, int dx, int dy) {
-  double second = 0.0, fourth = 0.0;
-  const auto add = [&](const double* from, const double* to, int n) {
-    double row_second = 0.0, row_fourth = 0.0;
-    for (int x = 0; x < n; ++x) {
-      const double square = (to[x] - from[x]) * (to[x] - from[x]);
-      row_second += square;
-      row_fourth += square * square;
-    }
-    second += row_second;
-    fourth += row_fourth;
-  };
-  const auto width = static_cast<std::size_t>(image.width);
-  for (int y = 0; y < image.height; ++y) {
-    const double* row = &image.values[static_cast<std::size_t>(y) * width];
-    const double* other = &image.values[static_cast<std::size_t>((y + dy) % image.height) * width];
-    add(row, other + dx, image.width - dx);
-    add(row + image.width - dx, other, dx);
-  }
-  return second > 0.0 ? fourth / (second * second) * static_cast<double>(image.values.size()) - 3.0 : 0.0;
-}
-
-double spread_among_blocks(const GreyImage& image) {
-  double sum = 0.0, square = 0.0;
-  for (int by = 0; by < kBlocks; ++by) {
-    for (int bx = 0; bx < kBlocks; ++bx) {
-      const double variance = block_variance(image, bx, by);
-      sum += variance / (kBlocks * kBlocks);
-      square += variance * variance / (kBlocks * kBlocks);
-    }
-  }
-  return sum > 0.0 ? std::sqrt(std::max(0.0, square - sum * sum)) / sum : 0.0;
-}
-
-Measures measure(const GreyImage& image) {
-  Measures m;
-  const std::array<double, 2> shape = shape_of(image.values);
-  m.skewness = shape[0];
-  m.excess_kurtosis = shape[1];
-  m.variance_spread = spread_among_blocks(image);
-  for (std::size_t k = 0; k < kLags.size(); ++k) {
-    m.steps[2 * k] = step_kurtosis(image, kLags[k], 0);
-    m.steps[2 * k + 1] = step_kurtosis(image, 0, kLags[k]);
-  }
-  return m;
-}
-
-// Noise with the moduli of `spectrum` and independent uniform phases. The transform of a real image is
-// symmetric: in the columns that hold both a frequency and its opposite, one is the conjugate of the other,
-// and a frequency that is its own opposite is real.
-GreyImage random_phase_surrogate(const FourierTransform& fourier,
-                                 const std::vector<std::complex<double>>& spectrum, std::uint64_t seed,
-                                 std::uint64_t index) {
-  CounterRandom random(seed, index);
-  GreyImage noise{fourier.width(), fourier.height(), std::vector<double>(fourier.grid_size())};
-  std::vector<std::complex<double>> half(fourier.half_size());
-  const auto columns = static_cast<std::size_t>(fourier.half_width());
-  const auto rows = static_cast<std::size_t>(fourier.height());
-  for (std::size_t y = 0; y < rows; ++y) {
-    const std::size_t opposite = (rows - y) % rows;
-    for (std::size_t x = 0; x < columns; ++x) {
-      const std::size_t i = y * columns + x;
-      const bool self_opposite = x == 0 || 2 * x == static_cast<std::size_t>(fourier.width());
-      const double turn = random.uniform();
-      if (self_opposite && opposite < y) {
-        half[i] = std::conj(half[opposite * columns + x]);
-      } else if (self_opposite && opposite == y) {
-        half[i] = std::abs(spectrum[i]) * (turn < 0.5 ? -1.0 : 1.0);
-      } else {
-        half[i] = std::polar(std::abs(spectrum[i]), 2.0 * std::numbers::pi * turn);
+// Power sums over the pixels of all tiles, each tile about its own mean. Tiles are added in their order.
+class MeasureSums {
+ public:
+  void add(const GreyImage& tile) {
+    add_values(tile.values);
+    for (int by = 0; by < kBlocks; ++by) {
+      for (int bx = 0; bx < kBlocks; ++bx) {
+        const double variance = block_variance(tile, bx, by);
+        blocks_ += 1.0;
+        block_sum_ += variance;
+        block_square_ += variance * variance;
       }
     }
+    for (std::size_t k = 0; k < kLags.size(); ++k) {
+      add_steps(tile, kLags[k], 0, steps_[2 * k]);
+      add_steps(tile, 0, kLags[k], steps_[2 * k + 1]);
+    }
   }
-  half[0] = 0.0;
-  fourier.inverse(half, noise.values);
-  return noise;
-}
+
+  Measures measures() const {
+    Measures m;
+    const double variance = second_ / pixels_;
+    if (variance > 0.0) {
+      m.skewness = third_ / pixels_ / (variance * std::sqrt(variance));
+      m.excess_kurtosis = fourth_ / pixels_ / (variance * variance) - 3.0;
+    }
+    const double mean = block_sum_ / blocks_;
+    if (mean > 0.0)
+      m.variance_spread = std::sqrt(std::max(0.0, block_square_ / blocks_ - mean * mean)) / mean;
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const Steps& s = steps_[k];
+      m.steps[k] = s.second > 0.0 ? s.fourth / (s.second * s.second) * pixels_ - 3.0 : 0.0;
+    }
+    return m;
+  }
+
+ private:
+  struct Steps {
+    double second = 0.0, fourth = 0.0;
+  };
+
+  void add_values(const std::vector<double>& values) {
+    double mean = 0.0;
+    for (const double v : values) mean += v;
+    mean /= static_cast<double>(values.size());
+    for (const double v : values) {
+      const double d = v - mean, square = d * d;
+      second_ += square;
+      third_ += square * d;
+      fourth_ += square * square;
+    }
+    pixels_ += static_cast<double>(values.size());
+  }
+
+  // The differences over (dx, dy) pixels. Their mean is 0, because the tile is periodic.
+  static void add_steps(const GreyImage& tile, int dx, int dy, Steps& sums) {
+    const auto add = [&](const double* from, const double* to, int n) {
+      double row_second = 0.0, row_fourth = 0.0;
+      for (int x = 0; x < n; ++x) {
+        const double square = (to[x] - from[x]) * (to[x] - from[x]);
+        row_second += square;
+        row_fourth += square * square;
+      }
+      sums.second += row_second;
+      sums.fourth += row_fourth;
+    };
+    const auto width = static_cast<std::size_t>(tile.width);
+    for (int y = 0; y < tile.height; ++y) {
+      const double* row = &tile.values[static_cast<std::size_t>(y) * width];
+      const double* other = &tile.values[static_cast<std::size_t>((y + dy) % tile.height) * width];
+      add(row, other + dx, tile.width - dx);
+      add(row + tile.width - dx, other, dx);
+    }
+  }
+
+  double pixels_ = 0.0, second_ = 0.0, third_ = 0.0, fourth_ = 0.0;
+  double blocks_ = 0.0, block_sum_ = 0.0, block_square_ = 0.0;
+  std::array<Steps, 2 * kLags.size()> steps_{};
+};
+
+// The moduli of the transforms of all tiles, and textures with these moduli and random phases.
+//
+// In a Gaussian texture the tiles are alike and nearly independent, so at each frequency the moduli of the
+// tiles may be exchanged. A surrogate turns them by a random number of tiles, a different one at each
+// frequency. A change from tile to tile thus shows in the photo and not in its surrogates.
+class Surrogates {
+ public:
+  Surrogates(const Tiling& tiling, std::uint64_t seed)
+      : tiles_(static_cast<std::size_t>(tiling.count())),
+        seed_(seed),
+        fourier_(tiling.width, tiling.height) {}
+
+  void add_tile(const GreyImage& tile) {
+    std::vector<std::complex<double>> half(fourier_.half_size());
+    fourier_.forward(tile.values, half);
+    for (const std::complex<double>& c : half) moduli_.push_back(std::abs(c));
+  }
+
+  // The measures of surrogate number `index`.
+  Measures measure(std::uint64_t index) const {
+    CounterRandom random(seed_, index);
+    const std::vector<std::size_t> turns = turns_of(index);
+    MeasureSums sums;
+    for (std::size_t t = 0; t < tiles_; ++t) sums.add(tile(t, turns, random));
+    return sums.measures();
+  }
+
+ private:
+  // By how many tiles the moduli of each frequency are turned. A lone tile keeps its own.
+  std::vector<std::size_t> turns_of(std::uint64_t index) const {
+    std::vector<std::size_t> turns(fourier_.half_size(), 0);
+    constexpr std::uint64_t kTurns = 0x7475726eu;  // a stream apart from that of the phases
+    CounterRandom random(seed_ ^ kTurns, index);
+    if (tiles_ > 1) {
+      for (std::size_t& turn : turns) turn = random.below(tiles_);
+    }
+    return turns;
+  }
+
+  // Noise with the moduli of the tiles and independent uniform phases. The transform of a real image is
+  // symmetric: in the columns that hold both a frequency and its opposite, one is the conjugate of the other,
+  // and a frequency that is its own opposite is real.
+  GreyImage tile(std::size_t t, const std::vector<std::size_t>& turns, CounterRandom& random) const {
+    GreyImage noise{fourier_.width(), fourier_.height(), std::vector<double>(fourier_.grid_size())};
+    std::vector<std::complex<double>> half(fourier_.half_size());
+    const auto columns = static_cast<std::size_t>(fourier_.half_width());
+    const auto rows = static_cast<std::size_t>(fourier_.height());
+    for (std::size_t y = 0; y < rows; ++y) {
+      const std::size_t opposite = (rows - y) % rows;
+      for (std::size_t x = 0; x < columns; ++x) {
+        const std::size_t i = y * columns + x;
+        const bool self_opposite = x == 0 || 2 * x == static_cast<std::size_t>(fourier_.width());
+        const double modulus = moduli_[(t + turns[i]) % tiles_ * half.size() + i];
+        const double turn = random.uniform();
+        if (self_opposite && opposite < y) {
+          half[i] = std::conj(half[opposite * columns + x]);
+        } else if (self_opposite && opposite == y) {
+          half[i] = modulus * (turn < 0.5 ? -1.0 : 1.0);
+        } else {
+          half[i] = std::polar(modulus, 2.0 * std::numbers::pi * turn);
+        }
+      }
+    }
+    half[0] = 0.0;
+    fourier_.inverse(half, noise.values);
+    return noise;
+  }
+
+  std::size_t tiles_;
+  std::uint64_t seed_;
+  FourierTransform fourier_;
+  std::vector<double> moduli_;  // tile by tile
+};
 
 // How unusual each sample is among all samples: its largest standardised measure.
 std::vector<double> unusualness(const std::vector<Measures>& samples) {
@@ -240,15 +318,20 @@ std::string sentence_for(const Gaussianity& g) {
 // smooth texture. In the last case the border is a large part of the square, and the periodic component
 // changes it.
 Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
-  const GreyImage exemplar = decompose_periodic(central_square(image)).periodic;
-  const FourierTransform fourier(exemplar.width, exemplar.height);
-  std::vector<std::complex<double>> spectrum(fourier.half_size());
-  fourier.forward(exemplar.values, spectrum);
-  std::vector<Measures> samples(kSurrogates + 1);
-  samples[0] = measure(exemplar);
-  parallel_for(1, kSurrogates + 1, [&](std::int64_t i) {
+  const Tiling tiling(image);
+  Surrogates noise(tiling, seed);
+  MeasureSums photo;
+  for (int t = 0; t < tiling.count(); ++t) {
+    const GreyImage tile = decompose_periodic(tile_of(image, tiling, t)).periodic;
+    photo.add(tile);
+    noise.add_tile(tile);
+  }
+  const int surrogates = std::clamp(kSurrogateTiles / tiling.count(), kFewestSurrogates, kMostSurrogates);
+  std::vector<Measures> samples(static_cast<std::size_t>(surrogates) + 1);
+  samples[0] = photo.measures();
+  parallel_for(1, surrogates + 1, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
-    samples[k] = measure(random_phase_surrogate(fourier, spectrum, seed, k));
+    samples[k] = noise.measure(k);
   });
 
   Gaussianity result;
@@ -257,13 +340,13 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
   for (const double k : samples[0].steps)
     result.edge_kurtosis += k / static_cast<double>(samples[0].steps.size());
   double usual_spread = 0.0;
-  for (int i = 1; i <= kSurrogates; ++i) usual_spread += samples[static_cast<std::size_t>(i)].variance_spread;
-  usual_spread /= kSurrogates;
+  for (int i = 1; i <= surrogates; ++i) usual_spread += samples[static_cast<std::size_t>(i)].variance_spread;
+  usual_spread /= surrogates;
   result.variance_spread = usual_spread > 0.0 ? samples[0].variance_spread / usual_spread : 1.0;
   const std::vector<double> unusual = unusualness(samples);
   const auto as_unusual =
       std::count_if(unusual.begin(), unusual.end(), [&](double u) { return u >= unusual[0]; });
-  result.p_value = static_cast<double>(as_unusual) / (kSurrogates + 1);
+  result.p_value = static_cast<double>(as_unusual) / (surrogates + 1);
   result.likeness = likeness_of(result);
   result.sentence = sentence_for(result);
   return result;

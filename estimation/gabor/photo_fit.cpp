@@ -46,6 +46,17 @@ PhotoFit color_channels(const std::filesystem::path& file, const PhotoFitOptions
   return photo;
 }
 
+// The root of the mean of squares over the channels, weighted by their variances.
+template <typename Figure>
+double root_mean_square(const std::vector<FittedChannel>& channels, const Figure& figure) {
+  double square = 0.0, variance = 0.0;
+  for (const FittedChannel& c : channels) {
+    square += figure(c) * figure(c) * c.variance();
+    variance += c.variance();
+  }
+  return std::sqrt(square / variance);
+}
+
 }  // namespace
 
 std::size_t PhotoFit::lobes() const {
@@ -54,29 +65,65 @@ std::size_t PhotoFit::lobes() const {
   return count;
 }
 
-double PhotoFit::relative_gap() const {
+double FittedChannel::pixel_variance() const {
+  const auto n = static_cast<double>(exemplar.values.size());
+  double mean = 0.0, sum = 0.0;
+  for (const double v : exemplar.values) mean += v;
+  mean /= n;
+  for (const double v : exemplar.values) sum += (v - mean) * (v - mean);
+  return sum / n;
+}
+
+double PhotoFit::pursuit_gap() const {
   double largest = 0.0;
   for (const FittedChannel& c : channels) largest = std::max(largest, c.fit.pursuit.relative_gap);
   return largest;
 }
 
-// Distances are relative to variances. Squared distances add up over channels, and so do variances.
-double PhotoFit::spectrum_distance() const {
-  double square = 0.0, variance = 0.0;
-  for (const FittedChannel& c : channels) {
-    square += c.fit.spectrum_distance * c.fit.spectrum_distance * c.variance();
-    variance += c.variance();
-  }
-  return std::sqrt(square / variance);
+bool PhotoFit::pursuit_reached() const {
+  return std::all_of(channels.begin(), channels.end(),
+                     [](const FittedChannel& c) { return c.fit.pursuit.reached; });
 }
 
-double PhotoFit::variance_ratio() const {
-  double fitted = 0.0, variance = 0.0;
+bool PhotoFit::refinement_reached() const {
+  return std::all_of(channels.begin(), channels.end(),
+                     [](const FittedChannel& c) { return c.fit.refinement_reached; });
+}
+
+// Distances are relative to variances. Squared distances add up over channels, and so do variances.
+double PhotoFit::spectrum_distance() const {
+  return root_mean_square(channels, [](const FittedChannel& c) { return c.fit.spectrum_distance; });
+}
+
+double PhotoFit::spectrum_residual() const {
+  return root_mean_square(channels, [](const FittedChannel& c) { return c.fit.quality.residual; });
+}
+
+double PhotoFit::weak_above() const {
+  return root_mean_square(channels, [](const FittedChannel& c) { return c.fit.quality.weak_above; });
+}
+
+double PhotoFit::band_overlap() const {
+  double sum = 0.0, variance = 0.0;
   for (const FittedChannel& c : channels) {
-    for (const GaborLobe& lobe : c.fit.lobes) fitted += lobe.variance;
+    sum += c.fit.quality.band_overlap * c.variance();
     variance += c.variance();
   }
-  return fitted / variance;
+  return sum / variance;
+}
+
+bool PhotoFit::weak() const {
+  return std::any_of(channels.begin(), channels.end(),
+                     [](const FittedChannel& c) { return c.fit.quality.weak(); });
+}
+
+double PhotoFit::variance_in_spectrum() const {
+  double held = 0.0, variance = 0.0;
+  for (const FittedChannel& c : channels) {
+    held += c.variance();
+    variance += c.pixel_variance();
+  }
+  return held / variance;
 }
 
 Gaussianity PhotoFit::gaussianity() const {

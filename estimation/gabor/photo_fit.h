@@ -27,7 +27,10 @@ struct FittedChannel {
   GaborFit fit;
   Gaussianity gaussianity;
 
+  // The variance that the lobes have, which is that of the periodogram.
   double variance() const { return fit.exemplar_rms * fit.exemplar_rms; }
+  // The variance of the exemplar's pixels. It is larger than the above where tiles lose wide features.
+  double pixel_variance() const;
 };
 
 struct PhotoFit {
@@ -35,9 +38,19 @@ struct PhotoFit {
   std::vector<std::string> remarks;     // remarks of the image reader
 
   std::size_t lobes() const;
-  double relative_gap() const;       // the largest certified gap of the channels
+  // The largest certified gap of the channels' pursuits. Selection and refinement then change the lobes, so
+  // it says nothing of the final ones.
+  double pursuit_gap() const;
+  bool pursuit_reached() const;      // every pursuit ended at the gap that was asked for
+  bool refinement_reached() const;   // every refinement ended (GaborFit::refinement_reached)
   double spectrum_distance() const;  // distance of all fitted spectra together from all estimated spectra
-  double variance_ratio() const;     // variance of all lobes over that of the exemplar
+  double spectrum_residual() const;  // distance from the photo's spectra (LobeQuality::residual)
+  double weak_above() const;         // LobeQuality::weak_above of all channels together
+  double band_overlap() const;       // LobeQuality::band_overlap of all channels together
+  bool weak() const;                 // the fit of at least one channel is weak
+  // The share of the photo's variance that the periodograms hold. Photos above largest_side lose features
+  // that are wider than a tile.
+  double variance_in_spectrum() const;
   // The judgement of the least plausible channel, with the smallest p-value of all channels. This p-value is
   // multiplied by the number of channels, since the least of several is small more often (Bonferroni).
   Gaussianity gaussianity() const;

@@ -56,13 +56,19 @@ TEST_F(FitGabor, SameBytesForAnyThreadCount) {
 TEST_F(FitGabor, SummaryHoldsTheFigures) {
   fit("rock.json", {"--summary", (folder_ / "s.json").string()});
   const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
-  for (const char* field : {"lobes", "relative_duality_gap", "spectrum_distance", "variance_ratio",
-                            "gaussianity", "iterations", "seconds"}) {
+  for (const char* field :
+       {"lobes", "pursuit_gap", "pursuit_reached", "refinement_reached", "spectrum_distance",
+        "spectrum_residual", "weak_above", "weak", "band_overlap", "variance_in_spectrum",
+        "variance_ratio_synthesized", "gaussianity", "iterations", "seconds"}) {
     ASSERT_TRUE(summary.contains(field)) << field;
     EXPECT_FALSE(summary[field].is_null()) << field;  // NaN would become null
   }
-  EXPECT_GE(summary["relative_duality_gap"].get<double>(), 0.0);
-  EXPECT_NEAR(summary["variance_ratio"].get<double>(), 1.0, 0.02);
+  EXPECT_GE(summary["pursuit_gap"].get<double>(), 0.0);
+  EXPECT_FALSE(summary.contains("variance_ratio"));  // 1 by construction
+  EXPECT_FALSE(summary["weak"].get<bool>());
+  double photo = 0.0;
+  for (const auto& band : summary["channels"][0]["bands"]) photo += band["photo"].get<double>();
+  EXPECT_NEAR(photo, 1.0, 1e-6);
   EXPECT_NEAR(summary["variance_ratio_before_scaling"].get<double>(), 1.0, 0.1);
 }
 
@@ -75,10 +81,22 @@ TEST_F(FitGabor, APhotoOfGravelKeepsItsVariance) {
                               summary_file, "--report", (folder_ / "report").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   const auto summary = nlohmann::json::parse(text_of(summary_file));
-  EXPECT_GE(summary["relative_duality_gap"].get<double>(), 0.0);
-  EXPECT_LE(summary["relative_duality_gap"].get<double>(), 1e-2);
+  EXPECT_GE(summary["pursuit_gap"].get<double>(), 0.0);
+  EXPECT_LE(summary["pursuit_gap"].get<double>(), 1e-2);
+  EXPECT_FALSE(summary["weak"].get<bool>());
   EXPECT_NEAR(summary["variance_ratio_synthesized"].get<double>(), 1.0, 0.02);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "report.png"));
+}
+
+// Two lobes are too few for the noise of the photo, and the program says what to do.
+TEST_F(FitGabor, AWeakFitIsCalledWeak) {
+  const auto photo = testing::package_file("gravel.png");
+  ASTROLITH_SKIP_WITHOUT(photo);
+  const testing::Outcome outcome =
+      run_program(kFitGabor, {photo.string(), "-o", (folder_ / "gravel.json").string(), "--lobes", "2"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("note: weak fit"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("--lobes"), std::string::npos) << outcome.errors;
 }
 
 TEST_F(FitGabor, NumbersMustBeFinite) {

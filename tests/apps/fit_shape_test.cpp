@@ -213,6 +213,14 @@ TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
   EXPECT_NEAR(layer.height_rms, 0.003, 1e-12);
 }
 
+// The preparation of the mesh has no result that could be written.
+TEST_F(FitShape, ATimeLimitBelowThePreparationIsRefusedWithTheTimeThatItNeeds) {
+  const std::string mesh = folder_.write("large.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 150, 200));
+  const std::string out = (folder_ / "out.json").string();
+  expect_refusal(folder_, kFitShape, {mesh, "-o", out, "--time-limit", "0.001"}, "--time-limit");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST_F(FitShape, VariationsAreAsAlikeAsAsked) {
   const std::string summary_file = (folder_ / "s.json").string();
   fit("egg.json", {"--base-only", "--variations", "2", "--delta", "0.3", "--summary", summary_file});

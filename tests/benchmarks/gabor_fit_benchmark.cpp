@@ -155,7 +155,7 @@ nlohmann::ordered_json measure_photo(const std::filesystem::path& file, const Op
           {"lobes", h.lobe_count},
           {"recipe_bytes", h.largest_recipe},
           {"seconds", h.seconds},
-          {"relative_duality_gap", h.largest_gap}};
+          {"pursuit_gap", h.largest_gap}};
 }
 
 nlohmann::ordered_json measure_photos(const Options& options) {

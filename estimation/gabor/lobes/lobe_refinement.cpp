@@ -34,8 +34,8 @@ double distance_of(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& 
 
 }  // namespace
 
-std::vector<SpectralLobe> refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
-  if (lobes.empty()) return lobes;
+RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
+  if (lobes.empty()) return {};
   const LobeMisfit misfit(lobes, target);
   std::vector<double> parameters(static_cast<std::size_t>(misfit.parameters()), 0.0);
   const ceres::GradientProblem problem(new MisfitFunction(misfit));
@@ -45,21 +45,21 @@ std::vector<SpectralLobe> refine_lobes(const std::vector<SpectralLobe>& lobes, c
   options.function_tolerance = 1e-3;  // stop when a step lowers the misfit by a smaller share
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, parameters.data(), &summary);
-  return misfit.lobes_at(parameters);
+  return {misfit.lobes_at(parameters), summary.termination_type == ceres::CONVERGENCE};
 }
 
-std::vector<SpectralLobe> fewest_lobes(std::vector<SpectralLobe> lobes, const SpectrumEstimate& estimate,
-                                       const std::vector<double>& weight) {
+RefinedLobes fewest_lobes(std::vector<SpectralLobe> lobes, const SpectrumEstimate& estimate,
+                          const std::vector<double>& weight) {
   const double allowed = estimate.standard_error / 3.0;
-  lobes = refine_lobes(lobes, estimate.spectrum);
-  while (lobes.size() > 1) {
-    const auto fewer = static_cast<int>(0.75 * static_cast<double>(lobes.size()));
-    std::vector<SpectralLobe> candidate =
-        refine_lobes(select_lobes(lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum);
-    if (candidate.empty() || distance_of(candidate, estimate.spectrum) > allowed) break;
-    lobes = std::move(candidate);
+  RefinedLobes best = refine_lobes(lobes, estimate.spectrum);
+  while (best.lobes.size() > 1) {
+    const auto fewer = static_cast<int>(0.75 * static_cast<double>(best.lobes.size()));
+    RefinedLobes candidate = refine_lobes(
+        select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum);
+    if (candidate.lobes.empty() || distance_of(candidate.lobes, estimate.spectrum) > allowed) break;
+    best = std::move(candidate);
   }
-  return lobes;
+  return best;
 }
 
 }  // namespace astrolith

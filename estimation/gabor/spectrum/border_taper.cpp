@@ -9,17 +9,26 @@ namespace {
 
 constexpr double kFadedShare = 0.1;  // share of a side that is faded at each end
 
-double squared_bend(double before, double here, double after) {
-  const double bend = before - 2.0 * here + after;
-  return bend * bend;
-}
+// So many separate places inside must bend more than the border. One place may be a strong stratum, and
+// another its far side.
+constexpr int kPlaces = 3;
+constexpr double kPlaceShare = 1.0 / 16.0;  // share of a side that a place covers at each side of its middle
 
-// The sum over column x of the squared second differences along x of the periodic image.
+// A border continues if it bends at most so many times as much as the third of these places. Of 400
+// realisations of 128 x 128 pixels of each of five spectra, at most 2.3 % were taken for cuts, and of their
+// quarters, cut out, at most 3 % for tiles (none of three of the spectra). With a factor of 1 the shares
+// were 9 % and 1.5 %, with 1.1 0.5 % and 4.8 %.
+constexpr double kStillContinues = 1.05;
+
+double bend_of(double before, double here, double after) { return std::abs(before - 2.0 * here + after); }
+
+// The sum over column x of the second differences along x of the periodic image, without their signs.
+// Squares would let a single bright grain outweigh all other rows.
 double column_bend(const GreyImage& image, int x) {
   const int w = image.width;
   double sum = 0.0;
   for (int y = 0; y < image.height; ++y) {
-    sum += squared_bend(image.at((x + w - 1) % w, y), image.at(x, y), image.at((x + 1) % w, y));
+    sum += bend_of(image.at((x + w - 1) % w, y), image.at(x, y), image.at((x + 1) % w, y));
   }
   return sum;
 }
@@ -28,16 +37,29 @@ double row_bend(const GreyImage& image, int y) {
   const int h = image.height;
   double sum = 0.0;
   for (int x = 0; x < image.width; ++x) {
-    sum += squared_bend(image.at(x, (y + h - 1) % h), image.at(x, y), image.at(x, (y + 1) % h));
+    sum += bend_of(image.at(x, (y + h - 1) % h), image.at(x, y), image.at(x, (y + 1) % h));
   }
   return sum;
 }
 
+// The bend of the place that bends third most, of separate places inside.
+double usual_largest(std::vector<double> bends) {
+  const auto n = static_cast<std::ptrdiff_t>(bends.size());
+  const auto around = static_cast<std::ptrdiff_t>(kPlaceShare * static_cast<double>(n));
+  bends.front() = bends.back() = -1.0;  // the border
+  for (int place = 1; place < kPlaces; ++place) {
+    const auto largest = std::max_element(bends.begin(), bends.end()) - bends.begin();
+    std::fill(bends.begin() + std::max<std::ptrdiff_t>(0, largest - around),
+              bends.begin() + std::min(n, largest + around + 1), -1.0);
+  }
+  return *std::max_element(bends.begin(), bends.end());
+}
+
 template <typename Bend>
 bool continues(int n, const Bend& bend) {
-  double largest = 0.0;
-  for (int i = 1; i + 1 < n; ++i) largest = std::max(largest, bend(i));
-  return std::max(bend(0), bend(n - 1)) <= largest;
+  std::vector<double> bends;
+  for (int i = 0; i < n; ++i) bends.push_back(bend(i));
+  return std::max(bends.front(), bends.back()) <= kStillContinues * usual_largest(bends);
 }
 
 std::vector<double> fading(int n, bool tiles) {
@@ -90,6 +112,8 @@ bool tiles_along_x(const GreyImage& image) {
 bool tiles_along_y(const GreyImage& image) {
   return continues(image.height, [&](int y) { return row_bend(image, y); });
 }
+
+std::vector<double> border_fading(int n) { return fading(n, false); }
 
 TaperedImage taper_borders(const GreyImage& image) {
   const std::vector<double> wx = fading(image.width, tiles_along_x(image));

@@ -8,9 +8,10 @@
 
 namespace astrolith {
 
-// Whether opposite borders continue each other along x, or along y: the sum of the squared second differences
-// across the border is no larger than the largest one inside. An image that tiles fails by chance with a
-// probability of about two over its number of columns (or rows), and is then tapered without need.
+// Whether opposite borders continue each other along x, or along y. The bend of a column (or a row) is the
+// sum of its second differences, taken without signs. Borders continue each other if they bend about as much
+// as at least three separate places inside, or less. A strong stratum or a bright grain therefore does not
+// hide a cut. White noise continues across any cut, which does it no harm.
 bool tiles_along_x(const GreyImage& image);
 bool tiles_along_y(const GreyImage& image);
 
@@ -18,6 +19,9 @@ struct TaperedImage {
   GreyImage image;     // taper * (exemplar - its weighted mean), scaled to the variance of the exemplar
   double looks = 1.0;  // share of independent values in its periodogram, (0, 1]
 };
+
+// The weights of n columns (or rows) that taper_borders uses where borders do not match.
+std::vector<double> border_fading(int n);
 
 // Fades the image to its mean by a raised cosine (Tukey 1967), over a tenth of each side at borders that do
 // not match. Along an axis that tiles, the image does not change.

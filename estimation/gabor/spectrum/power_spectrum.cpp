@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <complex>
+#include <cstdint>
+#include <cstdlib>
 
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
@@ -18,6 +20,27 @@ std::vector<int> tile_starts(int extent, int tile) {
     starts.push_back(static_cast<int>(static_cast<std::int64_t>(extent - tile) * i / steps));
   }
   return starts;
+}
+
+// The variance of the mean of the periodograms of tiles along one axis, over that of one periodogram. Tiles
+// that overlap share pixels, so their periodograms have the correlation |sum w w'|^2 / (sum w^2)^2, where w'
+// are the weights w of the other tile (Welch 1967).
+double scatter_along(const std::vector<int>& starts, int tile, Borders borders) {
+  const auto n = static_cast<std::size_t>(tile);
+  const std::vector<double> weight =
+      borders == Borders::kTaper ? border_fading(tile) : std::vector<double>(n, 1.0);
+  double energy = 0.0;
+  for (const double w : weight) energy += w * w;
+  double sum = 0.0;
+  for (const int a : starts) {
+    for (const int b : starts) {
+      double shared = 0.0;
+      for (std::size_t i = static_cast<std::size_t>(std::abs(a - b)), j = 0; i < n; ++i, ++j)
+        shared += weight[i] * weight[j];
+      sum += shared * shared / (energy * energy);
+    }
+  }
+  return sum / static_cast<double>(starts.size() * starts.size());
 }
 
 GreyImage cut(const GreyImage& image, int x0, int y0, int width, int height) {
@@ -86,6 +109,7 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
   for (double& p : mean.power) p /= tiles;
   // Tiles that overlap share pixels, so the number of independent looks is that of tiles side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());
+  mean.scatter = scatter_along(xs, tile_width, borders) * scatter_along(ys, tile_height, borders);
   return mean;
 }
 

@@ -15,8 +15,11 @@ struct PowerSpectrum {
   int width = 0;
   int height = 0;
   std::vector<double> power;
-  // The number n of independent periodograms in this mean: each value is truth * Gamma(n) / n.
+  // The number n of independent periodograms in this mean: each value is truth * Gamma(n) / n. A taper, under
+  // which neighbours are correlated, lowers it.
   double averages = 1.0;
+  // The variance of each value by itself over its squared mean: 1 for one periodogram, tapered or not.
+  double scatter = 1.0;
 
   double variance() const;
 };

@@ -103,6 +103,7 @@ PowerSpectrum mean_periodogram(const std::vector<GreyImage>& images, double area
   const double n = static_cast<double>(images.size());
   for (double& p : mean.power) p /= n;
   mean.averages = std::max(1.0, looks * std::min(1.0, area_in_patches / n));
+  mean.scatter = 1.0 / mean.averages;
   return mean;
 }
 

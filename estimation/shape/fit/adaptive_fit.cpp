@@ -1,6 +1,7 @@
 #include "estimation/shape/fit/adaptive_fit.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "estimation/shape/fit/component_repair.h"
 #include "estimation/shape/fit/sphere_growth.h"
@@ -45,6 +46,19 @@ void refine_on_all_samples(const AdaptiveFitOptions& options, const SurfaceSampl
 }
 
 }  // namespace
+
+AdaptiveFitOptions options_for(int spheres) {
+  constexpr double kFew = 250.0, kMany = 1000.0;
+  const double many = std::clamp((spheres - kFew) / (kMany - kFew), 0.0, 1.0);
+  const auto times = [](int count, double factor) { return static_cast<int>(std::lround(count * factor)); };
+  AdaptiveFitOptions options;
+  options.spheres = spheres;
+  options.relocations = times(options.relocations, 1.0 / (1.0 + 2.0 * many));
+  options.grown_iterations = times(options.grown_iterations, 1.0 + many);
+  options.relocation_iterations = times(options.relocation_iterations, 1.0 + many);
+  options.last_iterations = times(options.last_iterations, 1.0 + many);
+  return options;
+}
 
 AdaptiveFitSummary fit_adaptively(const TargetBody& target, const MetaballModel& start,
                                   const SurfaceSamples& samples, const FitPoints& containment,

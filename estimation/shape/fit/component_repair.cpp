@@ -13,6 +13,8 @@ namespace {
 // diagonal). Nearer to the surface the samples and the shells of points beside it are dense enough.
 constexpr double kWatchedCells = 30000.0;
 constexpr double kWatchedDepth = 0.012;
+// Bodies that are thin everywhere are watched from this share of their greatest depth on.
+constexpr double kWatchedShare = 0.5;
 
 // A level below this is low. Between two places of the grid the level can be lower by about as much.
 constexpr double kLowLevel = 0.05;
@@ -51,8 +53,10 @@ void remove_within(MetaballModel& model, const std::vector<StrayComponent>& stra
 
 InsideWatch::InsideWatch(const TargetBody& target) {
   const ClearanceGrid grid = make_clearance_grid(target.mesh, target.tree, kWatchedCells);
+  const float deepest = *std::max_element(grid.clearance.begin(), grid.clearance.end());
+  const double depth = std::min(kWatchedDepth, kWatchedShare * double{deepest});
   for (std::size_t i = 0; i < grid.clearance.size(); ++i) {
-    if (double{grid.clearance[i]} > kWatchedDepth) places_.push_back(grid.center(i));
+    if (double{grid.clearance[i]} > depth) places_.push_back(grid.center(i));
   }
 }
 

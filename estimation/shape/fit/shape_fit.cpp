@@ -4,6 +4,7 @@
 
 #include "descriptor/histogram_distance.h"
 #include "descriptor/shape_description.h"
+#include "estimation/shape/fit/containment.h"
 #include "estimation/shape/fit/global_parameter_search.h"
 #include "estimation/shape/packing/sphere_packing.h"
 #include "numerics/errors.h"
@@ -15,21 +16,8 @@ namespace {
 constexpr double kBaseShare = 0.5;
 constexpr int kFewSpheres = 16;  // so many metaballs may all come from the packing
 
-// Fits with at least this many metaballs converge slowly. Their refinements have twice as many iterations,
-// and to save time they have a third as many relocations.
-constexpr int kManySpheres = 500;
-
 constexpr std::int64_t kSearchSamples = 800;       // the cost of a fitness grows with the square
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
-
-// Containment points on each side of the surface: their number and their least distance from the surface.
-constexpr int kContainmentPoints = 2000;
-constexpr double kContainmentDepth = 0.015;  // fraction of the diagonal
-
-// Shells of points on both sides of the surface, at these distances from it (fractions of the diagonal). No
-// island with a size of a few hundredths fits between two shells.
-constexpr double kShells[] = {0.008, 0.016, 0.032};
-constexpr double kShellShare = 0.25;  // points in a shell, as a share of the surface samples
 
 // Independent random streams of one seed.
 enum Stream : std::uint64_t {
@@ -80,30 +68,23 @@ GlobalParameterSearchSummary search(const TargetBody& target, const Packing& pac
   return search_global_parameters(packing.spheres, samples, search_options, progress);
 }
 
-AdaptiveFitSummary refine_model(const TargetBody& target, const MetaballModel& start,
+AdaptiveFitSummary refine_model(const TargetBody& target, const Packing& packing, const MetaballModel& start,
                                 const ShapeFitOptions& options, const Progress& progress) {
   const std::int64_t count =
       options.points > 0 ? options.points : std::max(kFewestPoints, kPointsPerSphere * options.spheres);
+  const AdaptiveFitSummary unrefined{start, {}, true};
+  if (!report(progress, 0.0, "samples")) return unrefined;
   const SurfaceSamples samples = sample_poisson_disk(
       target.surface, count, stream_seed(options.seed, kSurface), SampleNormals::interpolated);
-  FitPoints containment;
-  add_containment_points(target, kContainmentDepth, kContainmentPoints,
-                         stream_seed(options.seed, kContainment), containment);
-  for (const double distance : kShells) {
-    add_shell_points(target, distance, static_cast<int>(kShellShare * static_cast<double>(count)),
-                     stream_seed(options.seed, kShellsAround), containment);
-  }
-  AdaptiveFitOptions adaptive;
-  adaptive.spheres = options.spheres;
+  if (!report(progress, 0.0, "containment points")) return unrefined;
+  const FitPoints containment = containment_points(
+      target, {packing.spheres.front().radius, count, stream_seed(options.seed, kContainment),
+               stream_seed(options.seed, kShellsAround)});
+  AdaptiveFitOptions adaptive = options_for(options.spheres);
   adaptive.tolerance = options.tolerance;
   adaptive.subtractive = options.subtract;
   adaptive.repair_resolution = options.check_resolution;
-  if (options.spheres >= kManySpheres) {
-    adaptive.relocations /= 3;
-    adaptive.grown_iterations *= 2;
-    adaptive.relocation_iterations *= 2;
-    adaptive.last_iterations *= 2;
-  }
+  if (!report(progress, 0.0, "starting")) return unrefined;
   return fit_adaptively(target, start, samples, containment, adaptive, progress);
 }
 
@@ -142,7 +123,7 @@ ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& option
   ShapeFitResult result;
   const Packing packing = pack(target, options, progress("pack"));
   const GlobalParameterSearchSummary base = search(target, packing, options, progress("search"));
-  AdaptiveFitSummary fit = refine_model(target, base.model, options, progress("refine"));
+  AdaptiveFitSummary fit = refine_model(target, packing, base.model, options, progress("refine"));
   result.body = body_in_file_frame(fit.model, target);
   result.filling_rate = packing.filling_rate;
   result.base_similarity = base.similarity;

@@ -96,25 +96,52 @@ void require_closed_body(TriangleMesh& mesh, const std::string& name, std::vecto
 
 // The share of the surface just under which the winding number is not 1: places that lie outside the body, or
 // inside it twice.
-double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& surface) {
+double share_of_wrong_windings(const TriangleMesh& mesh, const TriangleMesh& surface,
+                               const Progress& progress) {
   const auto triangles = static_cast<std::int64_t>(mesh.triangles.size());
   const std::int64_t count = std::clamp(kWindingTriangles / triangles, kFewestWindings, kMostWindings);
   const SurfaceSamples samples = sample_surface(surface, count, 1);
   std::vector<char> wrong(samples.points.size());
-  parallel_for(0, count, [&](std::int64_t i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double winding = winding_number(mesh, samples.points[k] - kJustUnder * samples.normals[k]);
-    wrong[k] = std::abs(winding - 1.0) > 0.5 ? 1 : 0;
-  });
+  for (std::int64_t first = 0; first < count; first += kFewestWindings) {
+    report(progress, 0.7 + 0.3 * static_cast<double>(first) / static_cast<double>(count), "winding numbers");
+    parallel_for(first, std::min(count, first + kFewestWindings), [&](std::int64_t i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double winding = winding_number(mesh, samples.points[k] - kJustUnder * samples.normals[k]);
+      wrong[k] = std::abs(winding - 1.0) > 0.5 ? 1 : 0;
+    });
+  }
   return static_cast<double>(std::count(wrong.begin(), wrong.end(), 1)) / static_cast<double>(count);
 }
 
-void require_no_crossing(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& name) {
-  const double share = share_of_wrong_windings(mesh, surface);
+void require_no_crossing(const TriangleMesh& mesh, const TriangleMesh& surface, const std::string& name,
+                         const Progress& progress) {
+  const double share = share_of_wrong_windings(mesh, surface, progress);
   if (share <= kWrongWindings) return;
   throw InputError(name + ": mesh passes through itself or has parts inside out (about " +
                    std::to_string(static_cast<int>(std::lround(100.0 * share))) +
                    " % of its surface does not bound the body); repair it first");
+}
+
+// Where the surface bends back, a point offset from it may lie too near to the surface or on its other side.
+// Points nearer than this share of the offset are left out.
+constexpr double kSurelyAway = 0.7;
+
+// The point below p halfway to the opposite wall, where that wall is too near for a point at `distance`.
+// Edges are no walls: the normal must look the other way.
+bool find_middle(const SurfaceTree& tree, const Vec3d& p, const Vec3d& normal, double distance,
+                 Vec3d& middle) {
+  constexpr double kOpposite = -0.5;  // largest cosine between the walls' normals
+  constexpr int kSteps = 6;
+  middle = p - normal * distance;
+  if (tree.signed_distance(middle) > kSurelyAway * distance) return false;
+  double depth = 0.5 * distance;
+  for (int step = 0; step < kSteps; ++step, depth *= 0.5) {
+    middle = p - normal * depth;
+    if (tree.signed_distance(middle) <= kSurelyAway * depth) continue;
+    // The nearest point from a little deeper lies on the opposite wall.
+    return dot(tree.closest(p - normal * (2.0 * depth)).normal, normal) < kOpposite;
+  }
+  return false;
 }
 
 void move_to_body_frame(TriangleMesh& mesh, const Vec3d& center, double diagonal) {
@@ -123,11 +150,12 @@ void move_to_body_frame(TriangleMesh& mesh, const Vec3d& center, double diagonal
 
 }  // namespace
 
-TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
+TargetBody prepare_target(TriangleMesh mesh, const std::string& name, const Progress& progress) {
   std::vector<std::string> remarks;
   mesh.normals.clear();
   mesh = welded(std::move(mesh), remarks);
   if (mesh.triangles.empty()) throw InputError(name + ": no face with an area; give a closed mesh");
+  report(progress, 0.3, "welded");
   const Box box = mesh.bounds();
   const double diagonal = box.diagonal();
   if (!(diagonal > 1e-9 && diagonal < 1e9)) {
@@ -142,13 +170,16 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name) {
   if (body_volume < kSmallestVolume) {
     throw InputError(name + ": mesh encloses no volume to speak of; give a solid body, not a sheet");
   }
+  report(progress, 0.5, "topology");
   SurfaceTree tree(mesh);
+  report(progress, 0.6, "tree");
   OuterSurface outer = outer_surface(mesh, tree, kBuriedDepth);
   if (outer.mesh.triangles.size() < mesh.triangles.size()) {
     remarks.push_back("components overlap; their union is fitted, walls inside it are left out (" +
                       std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
   }
-  require_no_crossing(mesh, outer.mesh, name);
+  report(progress, 0.7, "outer surface");
+  require_no_crossing(mesh, outer.mesh, name, progress);
   const double area = surface_area(outer.mesh);
   return {std::move(mesh),
           std::move(tree),
@@ -204,9 +235,6 @@ void add_containment_points(const TargetBody& target, double depth, int count, s
 
 void add_shell_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
                       FitPoints& points) {
-  // Where the surface bends back, an offset point may lie too near to the surface or on its other side.
-  // Points nearer than this share of the distance are left out.
-  constexpr double kSurelyAway = 0.7;
   const SurfaceSamples samples = sample_surface(target.surface, count, seed, SampleNormals::interpolated);
   std::vector<Vec3d> inner(samples.points.size()), outer(samples.points.size());
   std::vector<char> inner_ok(inner.size()), outer_ok(outer.size());
@@ -223,6 +251,24 @@ void add_shell_points(const TargetBody& target, double distance, int count, std:
   for (std::size_t i = 0; i < inner.size(); ++i) {
     if (inner_ok[i] != 0) points.inside.push_back(inner[i]);
     if (outer_ok[i] != 0) points.outside.push_back(outer[i]);
+  }
+}
+
+void add_middle_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
+                       FitPoints& points) {
+  const SurfaceSamples samples = sample_surface(target.surface, count, seed, SampleNormals::interpolated);
+  std::vector<Vec3d> middle(samples.points.size());
+  std::vector<char> found(middle.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(middle.size()),
+      [&](std::int64_t k) {
+        const auto i = static_cast<std::size_t>(k);
+        found[i] =
+            find_middle(target.tree, samples.points[i], samples.normals[i], distance, middle[i]) ? 1 : 0;
+      },
+      16);
+  for (std::size_t i = 0; i < middle.size(); ++i) {
+    if (found[i] != 0) points.inside.push_back(middle[i]);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "estimation/shape/target/fit_points.h"
 #include "geometry/surface/surface_tree.h"
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {
@@ -30,8 +31,10 @@ struct TargetBody {
 
 // Throws InputError "name: what is wrong; what to do" if the mesh has no faces, is open, is not manifold, is
 // flat, or passes through itself. Whole components may overlap. Repeated vertices and faces and faces that
-// look inwards are mended, with a remark each.
-TargetBody prepare_target(TriangleMesh mesh, const std::string& name);
+// look inwards are mended, with a remark each. Between its steps the preparation calls `progress` with the
+// share of its time that is over, of a usual mesh. It cannot give half a target: a progress that asks to stop
+// throws, or is not heeded.
+TargetBody prepare_target(TriangleMesh mesh, const std::string& name, const Progress& progress = {});
 
 // Moves a body from the file's frame and unit into the target's.
 MetaballBody in_target_frame(const TargetBody& target, MetaballBody body);
@@ -46,5 +49,10 @@ void add_containment_points(const TargetBody& target, double depth, int count, s
 // and cavities of a fit begin there.
 void add_shell_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
                       FitPoints& points);
+
+// Adds points inside the body where it is so thin that a shell at `distance` has none: below random places of
+// the surface, up to `count`, about as far from one wall as from the other.
+void add_middle_points(const TargetBody& target, double distance, int count, std::uint64_t seed,
+                       FitPoints& points);
 
 }  // namespace astrolith

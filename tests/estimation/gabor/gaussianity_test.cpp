@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimation/gabor/image/image_reader.h"
+#include "numerics/parallel_for.h"
 #include "tests/estimation/gabor/known_spectrum.h"
 #include "tests/support/data.h"
 
@@ -59,6 +60,70 @@ TEST(Gaussianity, SeesEdgesUnderAGaussianMarginal) {
   EXPECT_GT(g.edge_kurtosis, 3.0);
   EXPECT_EQ(g.likeness, Likeness::kOutside);
   EXPECT_NE(g.sentence.find("edges"), std::string::npos) << g.sentence;
+}
+
+// A Gaussian texture of 1024 x 1024 pixels, of realisations of 128 x 128 pixels side by side.
+GreyImage large_texture(std::uint64_t seed) {
+  constexpr int kSide = 1024, kTile = 128;
+  GreyImage image{kSide, kSide, std::vector<double>(kSide * kSide)};
+  for (int ty = 0; ty < kSide / kTile; ++ty) {
+    for (int tx = 0; tx < kSide / kTile; ++tx) {
+      const GreyImage tile = testing::realisation_of(
+          testing::broad_spectrum(), 1000 * seed + static_cast<std::uint64_t>(ty * kSide + tx));
+      for (int y = 0; y < kTile; ++y) {
+        for (int x = 0; x < kTile; ++x)
+          image.values[static_cast<std::size_t>((ty * kTile + y) * kSide + tx * kTile + x)] = tile.at(x, y);
+      }
+    }
+  }
+  return image;
+}
+
+bool in_the_middle(int x, int y) { return std::max(std::abs(x - 512), std::abs(y - 512)) < 260; }
+
+TEST(Gaussianity, SeesEdgesOutsideTheMiddleOfALargePhoto) {
+  GreyImage image = large_texture(1);
+  EXPECT_TRUE(test_gaussianity(image, 1).plausible());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (in_the_middle(x, y)) continue;
+      double& v = image.values[static_cast<std::size_t>(y * image.width + x)];
+      v = 0.1 * v + ((x / 40 + y / 40) % 7 == 0 ? 4.0 : -0.5);
+    }
+  }
+  const Gaussianity g = test_gaussianity(image, 1);
+  EXPECT_EQ(g.likeness, Likeness::kOutside);
+  EXPECT_GT(g.edge_kurtosis, 3.0);
+  EXPECT_LE(g.p_value, 0.05);
+}
+
+// The texture is Gaussian everywhere, and weak outside the middle.
+TEST(Gaussianity, SeesThatTheBorderOfALargePhotoIsWeaker) {
+  GreyImage image = large_texture(2);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (!in_the_middle(x, y)) image.values[static_cast<std::size_t>(y * image.width + x)] *= 0.2;
+    }
+  }
+  const Gaussianity g = test_gaussianity(image, 1);
+  EXPECT_GT(g.variance_spread, 2.0);
+  EXPECT_LE(g.p_value, 0.01);
+  EXPECT_NE(g.likeness, Likeness::kGaussian);
+}
+
+TEST(Gaussianity, OfAPhotoLargerThanATileIsTheSameForAnyThreadCount) {
+  GreyImage image = large_texture(3);
+  image.width = 1000;
+  image.height = 600;
+  image.values.resize(1000 * 600);
+  const auto with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return test_gaussianity(image, 1);
+  };
+  const Gaussianity one = with(1), two = with(2);
+  EXPECT_EQ(one.p_value, two.p_value);
+  EXPECT_EQ(one.edge_kurtosis, two.edge_kurtosis);
+  EXPECT_EQ(one.variance_spread, two.variance_spread);
 }
 
 TEST(Gaussianity, FlagsBricksAndPaving) {

@@ -49,10 +49,25 @@ TEST_F(PhotoFitTest, ColoursComeApartIntoTheLayersThatMadeThem) {
   EXPECT_NEAR(first.fit.exemplar_rms, 0.1, 0.02);
   EXPECT_NEAR(first.fit.lobes[0].frequency_x, 0.0625, 0.02);
   EXPECT_NEAR(std::abs(photo.channels[1].fit.lobes[0].frequency_x), 0.25, 0.05);
-  EXPECT_NEAR(photo.variance_ratio(), 1.0, 1e-6);
+  EXPECT_NEAR(photo.variance_in_spectrum(), 1.0, 1e-6);
+  EXPECT_FALSE(photo.weak());
+  EXPECT_LT(photo.spectrum_residual(), photo.weak_above());
   EXPECT_EQ(photo.lobes(), first.fit.lobes.size() + photo.channels[1].fit.lobes.size());
   EXPECT_GT(layer_of(first, true).height_rms, 0.0);
   EXPECT_EQ(layer_of(photo.channels[1], false).height_rms, 0.0);
+}
+
+// A photo above the largest side is cut into tiles, and a slope across it is lost.
+TEST_F(PhotoFitTest, VarianceWiderThanATileIsStated) {
+  std::vector<float> values;
+  for (int i = 0; i < 128 * 128; ++i) {
+    values.push_back(0.5f + 0.002f * static_cast<float>(i % 128) + 0.01f * static_cast<float>(i * 7919 % 13));
+  }
+  write_tiff_float(values, 128, 128, file_, 1);
+  PhotoFitOptions options;
+  EXPECT_NEAR(fit(options).variance_in_spectrum(), 1.0, 1e-6);
+  options.fit.largest_side = 32;
+  EXPECT_LT(fit(options).variance_in_spectrum(), 0.6);
 }
 
 TEST_F(PhotoFitTest, LuminanceIsOneLayerWithoutColour) {

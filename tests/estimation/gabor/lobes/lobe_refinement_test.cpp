@@ -61,7 +61,7 @@ TEST(LobeMisfit, GradientAgreesWithDifferences) {
 
 TEST(RefineLobes, FindsTheLobesOfAnExactSpectrum) {
   const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
-  const std::vector<SpectralLobe> refined = refine_lobes(disturbed(four_lobes()), truth);
+  const std::vector<SpectralLobe> refined = refine_lobes(disturbed(four_lobes()), truth).lobes;
   ASSERT_EQ(refined.size(), 4u);
   EXPECT_LT(optimal_transport_distance(sum_of(refined, 64, 64), truth), 0.01);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -74,7 +74,7 @@ TEST(RefineLobes, ThreadsDoNotChangeABit) {
   const PowerSpectrum truth = sum_of(four_lobes(), 64, 48);
   const auto refined_with = [&](int threads) {
     const ThreadLimit limit(threads);
-    return sum_of(refine_lobes(disturbed(four_lobes()), truth), 64, 48).power;
+    return sum_of(refine_lobes(disturbed(four_lobes()), truth).lobes, 64, 48).power;
   };
   EXPECT_EQ(refined_with(1), refined_with(4));
 }
@@ -92,7 +92,7 @@ TEST(FewestLobes, KeepsWhatTheEstimateIsWorth) {
     }
   }
   const std::vector<double> evenly(truth.power.size(), 1.0);
-  const std::vector<SpectralLobe> few = fewest_lobes(lobes, {truth, {}, 0.09}, evenly);
+  const std::vector<SpectralLobe> few = fewest_lobes(lobes, {truth, {}, 0.09}, evenly).lobes;
   EXPECT_LE(few.size(), 6u);
   EXPECT_GE(few.size(), 3u);
   EXPECT_LE(optimal_transport_distance(sum_of(few, 64, 64), truth), 0.03);

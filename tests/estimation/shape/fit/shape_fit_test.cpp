@@ -130,6 +130,22 @@ TEST(ShapeFit, ToleranceEndsTheGrowth) {
   EXPECT_LT(fit_shape(target, options).body.spheres.size(), 40u);
 }
 
+// One metaball more never changes the plan of a fit by more than a step.
+TEST(ShapeFit, ThePlanIsASmoothFunctionOfTheNumberOfMetaballs) {
+  for (int spheres = 1; spheres < 2000; ++spheres) {
+    const AdaptiveFitOptions one = options_for(spheres), more = options_for(spheres + 1);
+    EXPECT_LE(more.relocations, one.relocations);
+    EXPECT_LE(one.relocations - more.relocations, 1) << spheres;
+    EXPECT_GE(more.relocation_iterations, one.relocation_iterations);
+    EXPECT_LE(more.relocation_iterations - one.relocation_iterations, 1) << spheres;
+    EXPECT_LE(more.grown_iterations - one.grown_iterations, 1) << spheres;
+    EXPECT_LE(more.last_iterations - one.last_iterations, 1) << spheres;
+  }
+  EXPECT_EQ(options_for(200).relocations, 40);
+  EXPECT_EQ(options_for(1000).relocations, 13);
+  EXPECT_EQ(options_for(1000).relocation_iterations, 40);
+}
+
 TEST(ShapeFit, RefusesOptionsOutOfRange) {
   const TargetBody target = prepare_target(testing::icosphere(2), "sphere");
   try {
