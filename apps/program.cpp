@@ -164,16 +164,19 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   }
 }
 
+double Program::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
 void Program::timed(const std::function<void()>& work) {
   require_distinct_files(*parser_);
   // A summary that cannot be written should not be found out after an hour's work.
   if (!summary_file.empty()) require_writable(summary_file);
-  const auto start = std::chrono::steady_clock::now();
+  start_ = std::chrono::steady_clock::now();
   work();
   for (const std::string& line : notes_) say(line);
   if (summary_file.empty()) return;
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  if (!summary.contains("seconds")) summary["seconds"] = seconds.count();
+  if (!summary.contains("seconds")) summary["seconds"] = seconds();
   if (interrupted()) summary["interrupted"] = true;
   write_summary(summary_file, summary);
 }

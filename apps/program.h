@@ -9,6 +9,7 @@
 //   }
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -58,6 +59,9 @@ class Program {
   // quiet and summary left out, since they do not change the result.
   std::vector<std::pair<std::string, std::string>> given_options() const;
 
+  // Wall-clock seconds since run() began the work.
+  double seconds() const;
+
   CommandLine app;
   nlohmann::ordered_json summary;
 
@@ -70,6 +74,7 @@ class Program {
   void timed(const std::function<void()>& work);
 
   std::string name_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<std::string> notes_;
   bool part_failed_ = false;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -98,19 +99,6 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
          (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
 }
 
-bool is_gabor(const Layer& layer) { return std::holds_alternative<GaborLayer>(layer); }
-
-bool has_gabor(const Recipe& recipe) {
-  return std::any_of(recipe.layers.begin(), recipe.layers.end(), is_gabor);
-}
-
-// The recipe for a prediction by coarse meshes, whose cells are far larger than the kernels of Gabor noise.
-// In such meshes the noise costs more than in the mesh itself, and adds little to the surface.
-Recipe without_gabor(Recipe recipe) {
-  std::erase_if(recipe.layers, is_gabor);
-  return recipe;
-}
-
 // Meshes the region into a sink, without the pieces that are too small.
 MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field, const Region& region,
                                    int resolution, double least_component, MeshingDevice device,
@@ -127,19 +115,6 @@ MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field,
       mesh_region(field, region, resolution, filter, program.progress("mesh"), device);
   filter.finish();
   return statistics;
-}
-
-// Cells along the longest side of the region that was asked for.
-int resolution_of(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
-                  const Region& region, const fs::path& output) {
-  const ImplicitField coarse_field(without_gabor(recipe), file.string(), region.cube());
-  const auto discarded = [&](int resolution) {
-    MeshDiscard sink;
-    const Region uncut = region.is_patch ? region : Region{};
-    return mesh_region(coarse_field, uncut, resolution, sink, program.progress("prediction"));
-  };
-  const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), has_gabor(recipe)};
-  return choose_resolution(program, request.size, discarded, output, use, region.tile.count);
 }
 
 // Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
@@ -198,6 +173,37 @@ class MeshOutput {
   SinkList sinks_;
 };
 
+// A mesh to be made: what was asked for, and what was found out about it.
+struct MeshJob {
+  const MeshRequest& request;
+  const Recipe& recipe;
+  const fs::path& file;  // of the recipe
+  const Region& region;
+  const ImplicitField& field;
+  int resolution;
+  const fs::path& output;
+};
+
+// Makes the mesh and all files that were asked for.
+void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen) {
+  const auto& [request, recipe, file, region, field, resolution, output] = job;
+  MeshOutput result(program.tool(), request, recipe, file, region, output);
+  const MeshStatistics statistics =
+      mesh_without_crumbs(program, field, region, resolution, request.least_component,
+                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, result.sink());
+  const ManifoldReport report = result.finish_check();
+  if (report.triangles == 0) fail_empty(recipe, field, region, resolution, file);
+  require_closed_manifold(report, statistics);
+  if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
+
+  result.write();
+  if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
+  if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
+  summarize_mesh(program, region, statistics, report);
+  summarize_output(program, output);
+  program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);
+}
+
 }  // namespace
 
 void declare_mesh_options(Program& program, MeshRequest& request) {
@@ -251,26 +257,19 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   if (field.bounds().empty()) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }
-  const int resolution = resolution_of(program, request, recipe, file, region, output);
+  const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), request.least_component > 0.0};
+  const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});
   report_layers_left_out(program, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
   const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));
-
-  MeshOutput result(program.tool(), request, recipe, file, region, output);
-  const MeshStatistics statistics =
-      mesh_without_crumbs(program, field, region, resolution, request.least_component,
-                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, result.sink());
-  const ManifoldReport report = result.finish_check();
-  if (report.triangles == 0) fail_empty(recipe, field, region, resolution, file);
-  require_closed_manifold(report, statistics);
-  if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
-
-  result.write();
-  if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
-  if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
-  summarize_mesh(program, region, statistics, report);
-  summarize_output(program, output);
-  program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);
+  const MeshJob job{request, recipe, file, region, field, resolution, output};
+  if (chosen || !(request.size.max_memory_gb > 0.0)) return make_files(program, job, chosen);
+  try {
+    const MemoryGuard guard(memory_limit(request.size.max_memory_gb));
+    make_files(program, job, chosen);
+  } catch (const std::bad_alloc&) {
+    fail_memory(program, request.size, output);
+  }
 }
 
 void summarize_output(Program& program, const fs::path& output) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -19,7 +20,7 @@ namespace {
 // The finest cell of a body made by operations, as a fraction of its largest coordinate.
 constexpr double kFinestCell = 0x1p-15;
 
-// Cells along the longest side of a mesh that only looks whether there is a surface.
+// The most cells along the longest side of a mesh that only looks whether there is a surface.
 constexpr int kLookAround = 64;
 
 MeshTile parse_tile(const std::string& text) {
@@ -60,21 +61,21 @@ void check_cells(const ImplicitField& field, const Region& region, int resolutio
                   finest, cell));
 }
 
-// Whether a coarse mesh shows nothing of the recipe's surface.
-bool is_empty(const Recipe& recipe, const std::filesystem::path& file) {
+// Whether a mesh of so many cells shows nothing of the recipe's surface.
+bool is_empty(const Recipe& recipe, const std::filesystem::path& file, int cells) {
   const ImplicitField field(recipe, file.string());
   if (field.bounds().empty()) return true;
   MeshDiscard sink;
-  return mesh_field(field, field.bounds(), kLookAround, sink).triangles == 0;
+  return mesh_field(field, field.bounds(), cells, sink).triangles == 0;
 }
 
 // The layer that takes away what the body and the layers before it have of a surface; -1 where there is none.
-int emptying_layer(const Recipe& recipe, const std::filesystem::path& file) {
+int emptying_layer(const Recipe& recipe, const std::filesystem::path& file, int cells) {
   Recipe part = recipe;
-  if (!is_empty(part, file)) return -1;
+  if (!is_empty(part, file, cells)) return -1;
   for (std::size_t i = recipe.layers.size(); i > 0; --i) {
     part.layers.resize(i - 1);
-    if (!is_empty(part, file)) return static_cast<int>(i) - 1;
+    if (!is_empty(part, file, cells)) return static_cast<int>(i) - 1;
   }
   return -1;
 }
@@ -112,11 +113,13 @@ MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int
 
 void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,
                 const std::filesystem::path& file) {
-  if (const int layer = emptying_layer(recipe, file); layer >= 0) {
-    throw InputError(fmt::format(
-        "{}: layers[{}].{}: nothing of the body is left that a mesh of {} cells shows; make the layer's "
-        "heights smaller",
-        file.string(), layer, height_field(recipe.layers[static_cast<std::size_t>(layer)]), kLookAround));
+  const int cells = region.is_patch ? kLookAround : std::min(resolution, kLookAround);
+  if (const int layer = emptying_layer(recipe, file, cells); layer >= 0) {
+    throw InputError(
+        fmt::format("{}: layers[{}].{}: nothing of the body is left that a mesh of {} cells shows; make the "
+                    "layer's heights smaller{}",
+                    file.string(), layer, height_field(recipe.layers[static_cast<std::size_t>(layer)]), cells,
+                    region.is_patch ? "" : ", or raise --resolution"));
   }
   if (region.is_patch) {
     const Vec3d p = nearby_surface_point(field, region.center);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "apps/memory_use.h"
 #include "numerics/errors.h"
-#include "synthesis/mesh/mesh_prediction.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/field_tables.h"
 #include "synthesis/mesh/sample_grid.h"
 
 namespace astrolith {
@@ -16,30 +18,104 @@ namespace {
 // Below this resolution a mesh is small and quick: predicting would cost more than it tells.
 constexpr int kWorthPredicting = 256;
 
-// Memory of the program, its libraries and its threads.
-constexpr double kBytesAnyway = 50e6;
-
-// Bytes that a format takes for each triangle and half a vertex: in the file, and in memory until it is
-// written.
-struct OutputCost {
-  double file;
-  double memory;
-};
-
-OutputCost output_cost(const std::filesystem::path& output, MeshUse use) {
-  const std::string extension = output.extension().string();
-  const double collected = 36.0 * 1.5;  // vertices and normals as doubles, triangles; grown by doubling
-  // Verticals, heights and edges of an erosion are gone before a picture is drawn.
-  const double rendered = std::max(use.preview ? 120.0 : 0.0, use.erosion ? 112.0 : 0.0);
-  if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
-  if (extension == ".stl") return {50.0, collected + rendered};
-  if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
-  return {75.0, collected + rendered};
-}
-
 // A count in three characters or so: "1.2 M", "340 k".
 std::string rounded(double count) {
   return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
+}
+
+struct Prediction {
+  double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0, seconds = 0.0;
+};
+
+MeshEstimate sample(const PlannedMesh& mesh, const Region& region, int resolution, const SampleSize& size) {
+  return region.is_patch ? sample_patch(PatchField(mesh.field, region.center), region.size, resolution, size)
+                         : sample_field(mesh.field, mesh.field.bounds(), resolution, region.tile, size);
+}
+
+// The resolution at which the whole mesh, or the patch, has about so many triangles. The samples have a fixed
+// size, so that the resolution is the same on every machine.
+int resolution_for(double triangles, const PlannedMesh& mesh) {
+  constexpr SampleSize kSize{2048, 512, false};
+  constexpr int kFirst = 96, kMostSteps = 5;
+  constexpr double kNearEnough = 0.01;
+  const Region whole = mesh.region.is_patch ? mesh.region : Region{};
+  int resolution = kFirst;
+  double found = 0.0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    found = sample(mesh, whole, resolution, kSize).triangles;
+    if (!(found > 0.0)) {
+      throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
+    }
+    const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
+    const int next =
+        static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
+    if (next == resolution || std::fabs(found / triangles - 1.0) < kNearEnough) break;
+    resolution = next;
+  }
+  if (resolution == kMaxResolution && found < 0.9 * triangles) {
+    throw InputError(
+        fmt::format("--triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
+                    resolution, rounded(found)));
+  }
+  return resolution;
+}
+
+int threads_of(const Program& program) {
+  return program.threads > 0 ? program.threads
+                             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// Improves the estimate of a mesh that takes long by the body without its layers.
+MeshEstimate with_bare_body(const MeshEstimate& estimate, const PlannedMesh& mesh) {
+  constexpr double kLong = 1.0;  // processor seconds; the body's sample takes some hundredths
+  constexpr SampleSize kSize{1024, 512, false};
+  if (mesh.region.is_patch || estimate.whole || estimate.seconds < kLong) return estimate;
+  Recipe bare = mesh.recipe;
+  bare.layers.clear();
+  const MeshEstimate of_body =
+      sample_field(ImplicitField(bare), mesh.field.bounds(), estimate.resolution, mesh.region.tile, kSize);
+  return corrected_by_bare(estimate, of_body.triangles);
+}
+
+// Takes at most 3 hundredths of the seconds of the mesh, or 8 hundredths of a second of one processor.
+Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh) {
+  constexpr double kShare = 0.03, kFreeSeconds = 0.08;
+  const double seconds_before = program.seconds(), peak_before = static_cast<double>(peak_bytes());
+  const bool gabor = mesh.field.tables().gabor_lists.count > 0;
+  const MeshEstimate estimate = with_bare_body(
+      estimate_within([&](const SampleSize& size) { return sample(mesh, mesh.region, resolution, size); },
+                      gabor, kShare, kFreeSeconds),
+      mesh);
+  const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
+  const OutputCost output = output_cost(mesh.output, mesh.use);
+  const ErosionCost erosion =
+      mesh.use.erosion ? erosion_cost(mesh.field, mesh.recipe, estimate) : ErosionCost{};
+  // A peak that the sample made is one of blocks, which the mesh will have too.
+  const double peak_after = static_cast<double>(peak_bytes());
+  const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
+  const double working =
+      meshing_bytes(estimate) + gabor_tiles.more_bytes + output.memory * estimate.triangles;
+  const double times = mesh.use.twice ? 2.0 : 1.0;
+  Prediction predicted;
+  predicted.triangles = estimate.triangles;
+  predicted.file_bytes = output.file * estimate.triangles;
+  predicted.peak_bytes = std::max(peak_after, held + working);
+  const double parallel = times * (estimate.seconds + gabor_tiles.seconds) + erosion.parallel_seconds;
+  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
+  predicted.seconds = seconds_before + parallel / threads_of(program) + serial;
+  return predicted;
+}
+
+void check_memory(const MeshSizeRequest& request, int resolution, const PlannedMesh& mesh,
+                  const Prediction& predicted) {
+  const double limit = memory_limit(request.max_memory_gb);
+  if (predicted.peak_bytes <= limit) return;
+  const bool collected = output_cost(mesh.output, mesh.use).memory > 0.0;
+  throw InputError(fmt::format(
+      "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
+      "lower the resolution, raise --max-memory{}",
+      mesh.output.string(), rounded(predicted.triangles), resolution, predicted.peak_bytes / 1e9, limit / 1e9,
+      collected ? ", or write .ply without --preview, which is streamed" : ""));
 }
 
 }  // namespace
@@ -58,8 +134,9 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
   program.app
       .add_option(
           "--max-memory", request.max_memory_gb,
-          "refuse meshes that are predicted to need more gigabytes of memory; without it three quarters of "
-          "the machine's")
+          "stay below this many gigabytes of memory: a mesh that is predicted to need more is refused, one "
+          "that turns out to need more is stopped; without it meshes predicted to need more than three "
+          "quarters of the machine's memory are refused")
       .check(above_zero())
       .default_text("");
   program.app.add_flag(
@@ -68,48 +145,34 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
       "the summary");
 }
 
-int choose_resolution(Program& program, const MeshSizeRequest& request,
-                      const std::function<MeshStatistics(int resolution)>& mesh_at,
-                      const std::filesystem::path& output, MeshUse use, int tiles) {
+int choose_resolution(Program& program, const MeshSizeRequest& request, const PlannedMesh& mesh) {
   const bool by_triangles = request.triangles > 0.0;
   const bool small = request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting;
-  if (!by_triangles && !request.only_predict && small) {
-    return request.resolution;
-  }
-  const MeshGrowth growth(mesh_at);
+  if (!by_triangles && !request.only_predict && small) return request.resolution;
 
-  MeshPrediction mesh =
-      growth.at(by_triangles ? growth.resolution_for(request.triangles) : request.resolution);
-  if (by_triangles && mesh.triangles < 0.9 * request.triangles) {
-    throw InputError(
-        fmt::format("--triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
-                    mesh.resolution, rounded(mesh.triangles)));
-  }
-  // The slab with the most surface has seldom more than twice its share.
-  const double share = std::min(1.0, 2.0 / tiles);
-  if (tiles > 1) {
-    mesh.triangles *= share;
-    mesh.evaluations *= share;
-  }
-  const OutputCost cost = output_cost(output, use);
-  const double memory = kBytesAnyway + mesh.working_bytes + cost.memory * mesh.triangles;
-  program.summary["resolution"] = mesh.resolution;
-  program.summary["predicted"] = {{"triangles", mesh.triangles},
-                                  {"file_bytes", cost.file * mesh.triangles},
-                                  {"peak_bytes", memory},
-                                  {"seconds", growth.seconds(mesh)}};
-  if (memory > memory_limit(request.max_memory_gb)) {
-    throw InputError(fmt::format(
-        "{}: the mesh of about {} triangles needs {:.2g} GB of memory, more than {:.2g} GB; "
-        "lower the resolution, raise --max-memory{}",
-        output.string(), rounded(mesh.triangles), memory / 1e9, memory_limit(request.max_memory_gb) / 1e9,
-        cost.memory > 0.0 ? ", or write .ply without --preview, which is streamed" : ""));
-  }
+  const int resolution = by_triangles ? resolution_for(request.triangles, mesh) : request.resolution;
+  const Prediction predicted = predict(program, resolution, mesh);
+  program.summary["resolution"] = resolution;
+  program.summary["predicted"] = {{"triangles", predicted.triangles},
+                                  {"file_bytes", predicted.file_bytes},
+                                  {"peak_bytes", predicted.peak_bytes},
+                                  {"seconds", predicted.seconds}};
+  check_memory(request, resolution, mesh, predicted);
   program.say(
-      fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, up to {:.0f} s{}",
-                  mesh.resolution, rounded(mesh.triangles), cost.file * mesh.triangles / 1e6, memory / 1e6,
-                  std::ceil(growth.seconds(mesh)), use.gabor_noise ? " and its Gabor noise" : ""));
-  return mesh.resolution;
+      fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, about {:.0f} s",
+                  resolution, rounded(predicted.triangles), predicted.file_bytes / 1e6,
+                  predicted.peak_bytes / 1e6, std::ceil(predicted.seconds)));
+  return resolution;
+}
+
+void fail_memory(const Program& program, const MeshSizeRequest& request,
+                 const std::filesystem::path& output) {
+  const double limit = memory_limit(request.max_memory_gb) / 1e9;
+  const double predicted = program.summary["predicted"]["peak_bytes"].get<double>() / 1e9;
+  throw InputError(fmt::format(
+      "{}: the mesh needs more than the {:.3g} GB of --max-memory, and more than the {:.3g} GB that "
+      "were predicted; lower the resolution, or raise --max-memory to {:.3g}",
+      output.string(), limit, predicted, 1.5 * std::max(limit, predicted)));
 }
 
 }  // namespace astrolith

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 
 #include "apps/program.h"
-#include "synthesis/mesh/mesher.h"
+#include "apps/synth/synth_cost.h"
+#include "apps/synth/synth_region.h"
 
 namespace astrolith {
 
@@ -16,21 +16,23 @@ struct MeshSizeRequest {
   bool only_predict = false;
 };
 
-// The uses of a mesh that need it in memory, and the noise that its prediction leaves out.
-struct MeshUse {
-  bool preview = false;
-  bool erosion = false;
-  bool gabor_noise = false;
-};
-
 void declare_size_options(Program& program, MeshSizeRequest& request);
 
-// Returns the cells along the longest side. `mesh` makes the mesh at a resolution and discards it. `tiles` is
-// the number of slabs that the mesh is cut into; one of them is made. Large meshes are announced with
-// triangles, bytes and seconds, and stand as "predicted" in the summary. Throws InputError when the mesh
-// needs more memory than allowed.
-int choose_resolution(Program& program, const MeshSizeRequest& request,
-                      const std::function<MeshStatistics(int resolution)>& mesh,
-                      const std::filesystem::path& output, MeshUse use, int tiles);
+// A mesh whose size is to be chosen.
+struct PlannedMesh {
+  const ImplicitField& field;
+  const Recipe& recipe;
+  Region region;
+  std::filesystem::path output;
+  MeshUse use;
+};
+
+// Returns the cells along the longest side. Large meshes are announced with triangles, bytes and seconds,
+// and stand as "predicted" in the summary. Throws InputError when the mesh needs more memory than allowed.
+int choose_resolution(Program& program, const MeshSizeRequest& request, const PlannedMesh& mesh);
+
+// Throws the InputError of a mesh that took more memory than predicted, and more than allowed.
+[[noreturn]] void fail_memory(const Program& program, const MeshSizeRequest& request,
+                              const std::filesystem::path& output);
 
 }  // namespace astrolith

@@ -5,6 +5,7 @@
 
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/field/patch_field.h"
+#include "synthesis/mesh/mesh_sample.h"
 #include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
@@ -14,5 +15,10 @@ MeshStatistics mesh_field(const ImplicitField& field, const Box& bounds, int res
 
 MeshStatistics mesh_patch(const PatchField& field, double size, int resolution, MeshSink& sink,
                           const Progress& progress = {});
+
+// The estimates of these meshes from samples of their blocks (synthesis/mesh/mesh_sample.h).
+MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int resolution, MeshTile tile,
+                          const SampleSize& size);
+MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolution, const SampleSize& size);
 
 }  // namespace astrolith

@@ -21,6 +21,19 @@ FieldBlock FieldBlock::restricted_to(const Box& child) const {
           spots_reaching(*model_, child, spots_), child};
 }
 
+double FieldBlock::list_bytes() const {
+  std::size_t bytes = metaballs_.spheres.capacity() * sizeof(MetaballSphere<float>) +
+                      metaballs_.first.capacity() * sizeof(std::uint32_t) +
+                      spots_.capacity() * sizeof(DrawnSpots::value_type);
+  for (const auto& of_layer : spots_) {
+    if (of_layer == nullptr) continue;
+    for (const std::vector<SpotImpulse>& of_kind : *of_layer) {
+      bytes += sizeof(of_kind) + of_kind.capacity() * sizeof(SpotImpulse);
+    }
+  }
+  return static_cast<double>(bytes);
+}
+
 namespace {
 
 // Calls evaluate(first, count) for batches of n points.
@@ -60,6 +73,23 @@ void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, st
   for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
     evaluate_batch(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), {&x[i], &y[i], &z[i]}, {band},
                    &value[i]);
+  });
+}
+
+void FieldBlock::evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                               std::span<float> value) const {
+  const FieldView& f = model_->tables;
+  const BodyLeaf& first = f.leaf(0);
+  std::array<float, kBatch> wx, wy, wz, gx, gy, gz;
+  for_each_batch(value.size(), [&](std::size_t i, std::size_t batch) {
+    const int n = static_cast<int>(batch);
+    PointArrays at{&x[i], &y[i], &z[i]};
+    if (f.body.plain() && first.warped) {
+      warp_points(first.warp, f.arrays, n, at.x, at.y, at.z, wx.data(), wy.data(), wz.data());
+      at = {wx.data(), wy.data(), wz.data()};
+    }
+    evaluate_body(f.body, f.arrays, metaballs_.lists(), n, at.x, at.y, at.z, &value[i], gx.data(), gy.data(),
+                  gz.data());
   });
 }
 
@@ -147,6 +177,12 @@ FieldBlock ImplicitField::gather(const Box& box) const {
   return {*model_,
           metaballs_reaching(f.body, f.arrays, model_->metaballs.lists(), body_box(f.body, f.arrays, box)),
           spots_reaching(*model_, box, {}), box};
+}
+
+std::vector<GaborCacheUse> ImplicitField::gabor_caches() const {
+  std::vector<GaborCacheUse> uses;
+  for (const GaborTileCache& cache : model_->gabor_caches) uses.push_back(use_of(cache));
+  return uses;
 }
 
 const FieldView& ImplicitField::tables() const { return model_->tables; }

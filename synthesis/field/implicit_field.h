@@ -27,6 +27,7 @@
 
 namespace astrolith {
 
+struct GaborCacheUse;  // synthesis/gabor/gabor_tiles.h
 struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
@@ -78,7 +79,14 @@ class FieldBlock {
   void evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                                  std::span<const float> z, std::span<float> value) const;
 
+  // value[i] = F of the body without layers and boulders, at points within the box.
+  void evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                     std::span<float> value) const;
+
   const Box& box() const { return box_; }
+
+  // The memory of the lists that the block owns, bytes.
+  double list_bytes() const;
 
  private:
   friend class ImplicitField;
@@ -134,6 +142,9 @@ class ImplicitField {
 
   // The field narrowed to a box.
   FieldBlock gather(const Box& box) const;
+
+  // What the cache of each list of Gabor impulses holds; tables().gabor_lists says which bands these are.
+  std::vector<GaborCacheUse> gabor_caches() const;
 
   // The field's tables, for evaluation on a GPU. They live as long as the field.
   const FieldView& tables() const;

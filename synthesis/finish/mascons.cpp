@@ -10,6 +10,7 @@
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
 #include "numerics/scalar_math.h"
+#include "synthesis/mesh/processor_clock.h"
 
 namespace astrolith {
 namespace {
@@ -115,6 +116,17 @@ std::vector<Mascon> mascons_of(const ImplicitField& field, std::span<const Spher
   }
   if (mascons.empty()) throw InputError("gravity: the body is too thin to find its mass; check its spheres");
   return mascons;
+}
+
+double seconds_of_mascons(const ImplicitField& field, std::span<const Sphere> spheres) {
+  const Box bounds = field.bounds();
+  const Vec3d extent = bounds.extent();
+  const double step = std::max({extent.x, extent.y, extent.z}) / kLatticeCells;
+  const double planes = std::ceil(extent.z / step);
+  const ProcessorClock clock;
+  for (const double at : {0.35, 0.65})
+    inner_points(field, spheres, bounds, step, static_cast<int>(at * planes));
+  return 0.5 * planes * clock.seconds();
 }
 
 std::vector<Vec3d> vertical_directions(std::span<const Mascon> mascons, const BodyMotion& motion,

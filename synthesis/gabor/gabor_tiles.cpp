@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kMostShelfBytes = std::size_t{1} << 19;  // 32 MB for each band
+constexpr auto kMostShelfBytes = static_cast<std::size_t>(kMostCacheBytes / GaborTileCache::kShelves);
 
 // The key of a tile. Indices are below 2^20 in magnitude, since cells are counted from the frame's origin.
 std::uint64_t key_of(const std::array<int, 3>& index) {
@@ -18,10 +18,22 @@ std::uint64_t key_of(const std::array<int, 3>& index) {
 }
 
 std::size_t bytes_of(const GaborTile& tile) {
-  return sizeof(tile) + tile.chunks.capacity() * sizeof(ImpulseChunk);
+  constexpr std::size_t kBookkeeping = 160;  // of the map, the queue, the shared pointer and the allocator
+  return kBookkeeping + sizeof(tile) + tile.chunks.capacity() * sizeof(ImpulseChunk);
 }
 
 }  // namespace
+
+GaborCacheUse use_of(const GaborTileCache& cache) {
+  GaborCacheUse use;
+  for (GaborTileCache::Shelf& shelf : *cache.shelves) {
+    const std::lock_guard lock(shelf.mutex);
+    use.held_bytes += static_cast<double>(shelf.bytes);
+    use.drawn += static_cast<double>(shelf.drawn);
+    use.drawn_bytes += static_cast<double>(shelf.drawn_bytes);
+  }
+  return use;
+}
 
 std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& index) const {
   const std::uint64_t key = key_of(index);
@@ -38,6 +50,8 @@ std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& inde
   if (!is_new) return place->second;  // another thread was faster
   shelf.oldest_first.push_back(key);
   shelf.bytes += bytes_of(*made);
+  ++shelf.drawn;
+  shelf.drawn_bytes += static_cast<std::int64_t>(bytes_of(*made));
   while (shelf.bytes > kMostShelfBytes && shelf.oldest_first.size() > 1) {
     const auto oldest = shelf.tiles.find(shelf.oldest_first.front());
     shelf.bytes -= bytes_of(*oldest->second);

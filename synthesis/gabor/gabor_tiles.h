@@ -33,11 +33,22 @@ struct GaborTileCache {
     std::unordered_map<std::uint64_t, std::shared_ptr<const GaborTile>> tiles;
     std::deque<std::uint64_t> oldest_first;
     std::size_t bytes = 0;
+    std::int64_t drawn = 0, drawn_bytes = 0;  // of all tiles that were ever kept
   };
   static constexpr std::size_t kShelves = 64;
 
   std::unique_ptr<std::array<Shelf, kShelves>> shelves = std::make_unique<std::array<Shelf, kShelves>>();
 };
+
+// What a cache holds and has held.
+struct GaborCacheUse {
+  double held_bytes = 0.0;
+  double drawn = 0.0;        // number of tiles that were ever kept
+  double drawn_bytes = 0.0;  // memory of all of these
+};
+GaborCacheUse use_of(const GaborTileCache& cache);
+// The most memory of a cache, bytes.
+inline constexpr double kMostCacheBytes = double(GaborTileCache::kShelves) * (1 << 19);
 
 // The tiles of one band on a body. The members may be called from many threads.
 class GaborTiles {

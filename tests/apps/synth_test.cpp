@@ -185,7 +185,9 @@ TEST_F(Synth, AVariationThatWouldBeTheSameBodyIsRefused) {
 
 TEST_F(Synth, VariationsCanBeLikeATargetInstead) {
   const std::string summary_file = (folder_ / "s.json").string(), target = (folder_ / "target.ply").string();
-  synthesise("target.ply", {});
+  ASSERT_EQ(
+      run_program(kSynth, {folder_.write("r.json", kTwoSpheres), "-o", target, "--resolution", "128"}).status,
+      0);
   const std::string note = "is not the file that the recipe was fitted to, rock.ply";
   for (const bool fitted : {false, true}) {
     const std::string origin = R"("provenance": {"input_name": "rock.ply", "input_sha256": ")" +
@@ -407,6 +409,66 @@ TEST_F(Synth, PredictionWritesNothing) {
   for (const char* figure : {"triangles", "file_bytes", "peak_bytes", "seconds"}) {
     EXPECT_GT(predicted.at(figure).get<double>(), 0.0) << figure;
   }
+}
+
+// A body with a Gabor layer of three bands, which masks a second layer.
+const std::string kMaskedByGabor = R"({"format_version": 1, "length_unit": "m",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
+  "layers": [{"type": "gabor", "name": "grain", "pixel_size": 0.01, "height_rms": 0.01,
+              "lobes": [[2, 0.1, 0.1, 1], [3, 0.125, -0.25, 1], [4, 0.05, 0.02, 1]]},
+             {"type": "simplex", "amplitude": 0.05, "frequency": 2,
+              "mask": {"layer": "grain", "from": -0.01, "to": 0.01}}]})";
+
+TEST_F(Synth, AMaskMayNameAGaborLayer) {
+  const std::string recipe = folder_.write("masked.json", kMaskedByGabor);
+  const std::string output = (folder_ / "out.ply").string();
+  for (const char* size : {"--resolution", "--triangles"}) {
+    const std::string value = size == std::string("--resolution") ? "24" : "3000";
+    const testing::Outcome made = run_program(kSynth, {recipe, "-o", output, size, value});
+    EXPECT_EQ(made.status, 0) << made.errors;
+  }
+  const testing::Outcome predicted =
+      run_program(kSynth, {recipe, "-o", output, "--resolution", "24", "--predict"});
+  EXPECT_EQ(predicted.status, 0) << predicted.errors;
+}
+
+TEST_F(Synth, MemoryStaysBelowWhatIsAllowed) {
+  const std::string recipe = folder_.write("masked.json", kMaskedByGabor);
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  int made = 0, refused = 0;
+  for (const double gigabytes : {0.01, 0.03, 0.045, 0.06, 0.5}) {
+    const testing::Outcome outcome =
+        run_program(kSynth, {recipe, "-o", output, "--resolution", "64", "--threads", "2", "--max-memory",
+                             std::to_string(gigabytes), "--summary", summary});
+    if (outcome.status == 0) {
+      ++made;
+      EXPECT_LE(nlohmann::json::parse(text_of(summary)).at("peak_bytes").get<double>(), 1e9 * gigabytes);
+    } else {
+      ++refused;
+      EXPECT_EQ(outcome.status, 2) << outcome.errors;
+      EXPECT_NE(outcome.errors.find("GB"), std::string::npos) << outcome.errors;
+      EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+    }
+  }
+  EXPECT_GE(made, 1);
+  EXPECT_GE(refused, 1);
+}
+
+// Prediction looks at few blocks, so that it is far quicker than the mesh and not far from the truth.
+TEST_F(Synth, PredictionMeetsTheMesh) {
+  const std::string recipe = folder_.write("masked.json", kMaskedByGabor);
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  const auto figures = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{recipe, "-o", output, "--resolution", "96", "--summary", summary};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(kSynth, arguments).status, 0);
+    return nlohmann::json::parse(text_of(summary));
+  };
+  const auto predicted = figures({"--predict"}), made = figures({});
+  const auto& of_mesh = predicted.at("predicted");
+  EXPECT_NEAR(of_mesh.at("triangles").get<double>() / made.at("triangles").get<double>(), 1.0, 0.3);
+  EXPECT_LE(made.at("peak_bytes").get<double>(), 1.2 * of_mesh.at("peak_bytes").get<double>());
+  EXPECT_GE(made.at("peak_bytes").get<double>(), 0.5 * of_mesh.at("peak_bytes").get<double>());
 }
 
 TEST_F(Synth, SmallPiecesAreLeftOut) {

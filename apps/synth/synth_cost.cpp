@@ -1,0 +1,152 @@
+#include "apps/synth/synth_cost.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "geometry/io/ply_stream_writer.h"
+#include "synthesis/body/body_spheres.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/field_tables.h"
+#include "synthesis/finish/erosion.h"
+#include "synthesis/finish/mascons.h"
+#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/mesh/manifold_check.h"
+
+namespace astrolith {
+namespace {
+
+// A plane crosses 1 to sqrt(3) edges of a lattice for each square of its side, on average over all directions
+// 1.5. The same holds for boxes of a lattice.
+constexpr double kMeanProjection = 1.5;
+
+// The tiles of a band that blocks of the surface need. A block needs the tiles within reach of it.
+double tiles_of_surface(const SurfaceBand& band, const MeshEstimate& mesh, const Vec3d& extent) {
+  const double tile = double{band.cell} * kTileCells, block = kBlockCells * mesh.step;
+  const double wide = tile + 2.0 * double{band.reach} + 0.5 * block;
+  const double area = mesh.vertices * mesh.step * mesh.step / kMeanProjection;
+  const auto along = [&](double length) { return (length + 2.0 * double{band.reach}) / tile + 1.0; };
+  return std::min(kMeanProjection * area * wide / (tile * tile * tile),
+                  along(extent.x) * along(extent.y) * along(extent.z));
+}
+
+// How often a tile is drawn. Tiles that find no room are drawn anew in each layer of blocks that needs them.
+double draws_of_tile(const SurfaceBand& band, const MeshEstimate& mesh, double bytes, double height) {
+  const double block = kBlockCells * mesh.step;
+  const double wide = double{band.cell} * kTileCells + 2.0 * double{band.reach} + block;
+  const double of_two_layers = bytes * std::min((wide + 2.0 * block) / height, 1.0);
+  return of_two_layers <= 0.9 * kMostCacheBytes ? 1.0 : std::max(wide / block, 1.0);
+}
+
+const SurfaceBand& band_of(const FieldView& field, const ImpulseList& list) {
+  const GaborSurfaceNoise& noise = *field.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
+  return field.arrays[noise.bands][list.element];
+}
+
+// The spheres as mascons, without the work of finding the volume of each.
+std::vector<Mascon> balls_of(std::span<const Sphere> spheres) {
+  std::vector<Mascon> mascons;
+  for (const Sphere& sphere : spheres) mascons.push_back({sphere.center, sphere.radius});
+  return mascons;
+}
+
+Recipe ball() {
+  Recipe recipe;
+  recipe.body = MetaballBody{};
+  recipe.body->spheres = {{{0, 0, 0}, 1.0}};
+  return recipe;
+}
+
+}  // namespace
+
+OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use) {
+  const std::string extension = output.extension().string();
+  // Half a vertex and half a normal as doubles, and a triangle; half of one array is copied as it grows.
+  const double collected = 36.0 + 6.0;
+  // Verticals, areas, heights and edges; they are gone before a picture is drawn.
+  const double rendered = std::max(use.preview ? 120.0 : 0.0, use.erosion ? 90.0 : 0.0);
+  if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
+  if (extension == ".stl") return {50.0, collected + rendered};
+  if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
+  return {75.0, collected + rendered};
+}
+
+GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
+  const FieldView& view = field.tables();
+  const std::span<const ImpulseList> lists = view.arrays.span(view.gabor_lists);
+  const std::vector<GaborCacheUse> caches = field.gabor_caches();
+  const Vec3d extent = field.bounds().extent();
+  GaborCost cost;
+  double drawn_bytes = 0.0, bytes_to_draw = 0.0;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    const GaborCacheUse& cache = caches[i];
+    if (!(cache.drawn > 0.0)) continue;  // too many cells for tiles: impulses are drawn for each point
+    const SurfaceBand& band = band_of(view, lists[i]);
+    const double tiles = std::max(tiles_of_surface(band, mesh, extent), cache.drawn);
+    const double bytes = tiles * cache.drawn_bytes / cache.drawn;
+    cost.more_bytes += std::min(bytes, kMostCacheBytes) - std::min(cache.held_bytes, kMostCacheBytes);
+    drawn_bytes += cache.drawn_bytes;
+    bytes_to_draw += bytes * draws_of_tile(band, mesh, bytes, extent.z);
+  }
+  if (drawn_bytes > 0.0) cost.seconds = mesh.caching_seconds * bytes_to_draw / drawn_bytes;
+  return cost;
+}
+
+ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
+  constexpr int kCoarser = 6, kFewestCells = 16;
+  // An edge that rests costs this much in a sweep.
+  constexpr double kSecondsOfEdge = 1.2e-9;
+  const Erosion& erosion = *recipe.erosion;
+  const std::vector<Sphere> spheres = adding_spheres(*recipe.body);
+  const double mascon_seconds = seconds_of_mascons(field, spheres);
+  const int cells = std::min(std::max(mesh.resolution / kCoarser, kFewestCells), mesh.resolution);
+  MeshCollector coarse;
+  mesh_field(field, field.bounds(), cells, coarse);
+  if (coarse.mesh.triangles.empty()) return {mascon_seconds, 0.0};
+  const std::vector<Vec3d> up = vertical_directions(
+      balls_of(spheres), {erosion.density, erosion.rotation_period}, coarse.mesh.vertices);
+  const double triangles = static_cast<double>(coarse.mesh.triangles.size());
+  const ProcessorClock clock;
+  const ErosionStatistics done = erode(coarse.mesh, up, erosion.talus_angle, erosion.iterations);
+  const double ratio = std::max(mesh.triangles / triangles, 1.0);
+  const double most_sweeps = 1.5 * mesh.triangles * erosion.iterations * kSecondsOfEdge;
+  const double growing = clock.seconds() * (done.sweeps > 2 ? ratio * ratio : ratio);
+  return {mascon_seconds, std::min(growing, clock.seconds() * ratio + most_sweeps)};
+}
+
+double meshing_bytes(const MeshEstimate& mesh) {
+  constexpr double kNode = sizeof(BlockNode<FieldBlock>) + 96.0;  // and what the allocator adds to its lists
+  // Corners: those of two layers, and the sorted ones of the older layer.
+  constexpr double kCheckOfTriangle = 36.0, kCheckOfVertex = 32.0;
+  const double of_layer = mesh.blocks_of_layer * mesh.triangles_per_block();
+  const double of_three = mesh.blocks_of_three_layers * mesh.triangles_per_block();
+  return mesh.blocks_of_three_layers * sizeof(LayerBlock<kBlockCells>) +
+         2.0 * mesh.blocks_of_layer * (mesh.list_bytes + kNode) +
+         of_layer * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)) +
+         of_three * (kCheckOfTriangle + 0.5 * kCheckOfVertex);
+}
+
+double output_seconds_per_triangle() {
+  MeshCollector collector;
+  const ImplicitField field(ball());
+  constexpr int kCells = 40;
+  mesh_field(field, field.bounds(), kCells, collector);
+  const TriangleMesh& mesh = collector.mesh;
+  std::vector<MeshVertex> vertices;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    vertices.push_back({to_float(mesh.vertices[i]), to_float(mesh.normals[i])});
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
+  const ProcessorClock clock;
+  ManifoldCheck check;
+  check.add_vertices(vertices);
+  check.add_triangles(mesh.triangles);
+  check.finish();
+  for (const Triangle& triangle : mesh.triangles) {
+    if (file) std::fwrite(&triangle, 1, sizeof triangle, file.get());
+  }
+  return clock.seconds() / double(mesh.triangles.size());
+}
+
+}  // namespace astrolith

@@ -1,0 +1,49 @@
+// What a mesh of synth costs: seconds and memory, counted from the estimate of its blocks.
+#pragma once
+
+#include <filesystem>
+
+#include "recipe/recipe.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesh_sample.h"
+
+namespace astrolith {
+
+// The uses of a mesh that cost more than the mesh.
+struct MeshUse {
+  bool preview = false;
+  bool erosion = false;
+  bool twice = false;  // small pieces are left out, for which the mesh is made twice
+};
+
+// What a format takes for each triangle and its half vertex, bytes.
+struct OutputCost {
+  double file;
+  double memory;
+};
+OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use);
+
+// The tiles of Gabor impulses that a mesh draws and keeps.
+struct GaborCost {
+  double more_bytes = 0.0;  // beyond what the caches hold now
+  double seconds = 0.0;     // of one processor
+};
+GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh);
+
+// Memory of the mesher and of the check of its mesh, bytes, without its output and without caches.
+double meshing_bytes(const MeshEstimate& mesh);
+
+// What an erosion adds to a mesh.
+struct ErosionCost {
+  double parallel_seconds = 0.0;  // of one processor
+  double serial_seconds = 0.0;
+};
+// A mesh of a sixth of the cells is made and eroded. Sweeps take longer on finer meshes, so that the seconds
+// of an erosion that has far to go are rough.
+ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh);
+
+// Seconds for a triangle and its half vertex to be checked, written and hashed. Found by doing so with a
+// small mesh, in some milliseconds.
+double output_seconds_per_triangle();
+
+}  // namespace astrolith

@@ -1,0 +1,74 @@
+#include "synthesis/mesh/mesh_sample.h"
+
+#include <numeric>
+
+#include "numerics/hash_random.h"
+
+namespace astrolith {
+namespace {
+
+// Below this many samples in a range of layers their number says little about the range.
+constexpr int kEnoughSamples = 100;
+
+}  // namespace
+
+std::vector<std::size_t> evenly_chosen(std::size_t size, std::size_t count, std::uint32_t seed) {
+  std::vector<std::size_t> chosen(std::min(size, count));
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (size <= count) return chosen;
+  const double stride = double(size) / double(count);
+  const double start = stride * double(hash_append(seed, 1) >> 8) * 0x1p-24;
+  for (std::size_t& i : chosen) i = std::min(static_cast<std::size_t>(start + stride * double(i)), size - 1);
+  return chosen;
+}
+
+double most_in_layers(const std::vector<double>& profile, const std::vector<int>& samples, int layers) {
+  double most = 0.0;
+  const std::size_t size = profile.size();
+  for (std::size_t first = 0; first < size; ++first) {
+    double sum = 0.0;
+    int seen = 0;
+    std::size_t end = first;
+    while (end < size && (end < first + static_cast<std::size_t>(layers) || seen < kEnoughSamples)) {
+      sum += profile[end];
+      seen += samples[end];
+      ++end;
+    }
+    const double width = double(end - first);
+    if (seen < kEnoughSamples && first > 0) break;  // the rest lies within ranges before it
+    most = std::max(most, sum * std::min(1.0, layers / width));
+  }
+  return most;
+}
+
+MeshEstimate corrected_by_bare(MeshEstimate mesh, double bare_triangles) {
+  constexpr double kLeastCorrelation = 0.6, kMostChange = 3.0;
+  if (mesh.whole || !(mesh.bare_correlation >= kLeastCorrelation) || !(mesh.bare_triangles > 0.0))
+    return mesh;
+  const double ratio = std::clamp(bare_triangles / mesh.bare_triangles, 1.0 / kMostChange, kMostChange);
+  for (double* count : {&mesh.triangles, &mesh.vertices, &mesh.evaluations, &mesh.seconds}) *count *= ratio;
+  return mesh;
+}
+
+MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)>& sample, bool warm_up,
+                             double share, double free_seconds) {
+  constexpr int kFewest = 12, kMost = 768;
+  SampleSize size{2 * kFewest, kFewest / 2, warm_up};
+  MeshEstimate estimate = sample(size);
+  double spent = estimate.spent_seconds;
+  while (!estimate.whole && size.blocks < kMost) {
+    const double allowed = std::max(free_seconds, share * estimate.seconds) - spent;
+    const double growth = std::min(allowed / std::max(estimate.spent_seconds, 1e-6), 16.0);
+    if (growth < 1.5) break;
+    size.nodes = std::min(static_cast<int>(growth * size.nodes), 2 * kMost);
+    size.blocks = std::min(static_cast<int>(growth * size.blocks), kMost);
+    const double caching = estimate.caching_seconds;
+    estimate = sample(size);
+    estimate.caching_seconds += caching;
+    spent += estimate.spent_seconds;
+  }
+  estimate.spent_seconds = spent;
+  return estimate;
+}
+
+}  // namespace astrolith
