@@ -35,8 +35,9 @@ TEST_P(EveryProgram, HelpCanBecomeAManPage) {
     const std::size_t gap = line.find("  ", 3);
     EXPECT_EQ(line.find("[]"), std::string::npos) << line;
     // A description on the same line begins behind two spaces at least.
-    if (gap != std::string::npos) EXPECT_GE(line.find_first_not_of(' ', gap), 30u) << line;
-    if (gap == std::string::npos) {
+    if (gap != std::string::npos) {
+      EXPECT_GE(line.find_first_not_of(' ', gap), 30u) << line;
+    } else {
       std::string next;
       ASSERT_TRUE(std::getline(help, next));
       EXPECT_TRUE(std::regex_match(next, description)) << line << "\n" << next;
