@@ -35,9 +35,9 @@ MeshEstimate sample(const PlannedMesh& mesh, const Region& region, int resolutio
 // The resolution at which the whole mesh, or the patch, has about so many triangles. The samples have a fixed
 // size, so that the resolution is the same on every machine.
 int resolution_for(double triangles, const PlannedMesh& mesh) {
-  constexpr SampleSize kSize{2048, 512, false};
-  constexpr int kFirst = 96, kMostSteps = 5;
-  constexpr double kNearEnough = 0.01;
+  constexpr SampleSize kSize{512, 192, false};
+  constexpr int kFirst = 96, kMostSteps = 3;
+  constexpr double kNearEnough = 0.02;
   const Region whole = mesh.region.is_patch ? mesh.region : Region{};
   int resolution = kFirst;
   double found = 0.0;
@@ -65,11 +65,11 @@ int threads_of(const Program& program) {
                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// Improves the estimate of a mesh that takes long by the body without its layers.
-MeshEstimate with_bare_body(const MeshEstimate& estimate, const PlannedMesh& mesh) {
-  constexpr double kLong = 1.0;  // processor seconds; the body's sample takes some hundredths
+// Improves the estimate of a mesh that takes long by the body without its layers, whose sample takes some
+// hundredths of a second.
+MeshEstimate with_bare_body(const MeshEstimate& estimate, const PlannedMesh& mesh, double long_seconds) {
   constexpr SampleSize kSize{1024, 512, false};
-  if (mesh.region.is_patch || estimate.whole || estimate.seconds < kLong) return estimate;
+  if (mesh.region.is_patch || estimate.whole || estimate.seconds < long_seconds) return estimate;
   Recipe bare = mesh.recipe;
   bare.layers.clear();
   const MeshEstimate of_body =
@@ -77,15 +77,21 @@ MeshEstimate with_bare_body(const MeshEstimate& estimate, const PlannedMesh& mes
   return corrected_by_bare(estimate, of_body.triangles);
 }
 
-// Takes at most 3 hundredths of the seconds of the mesh, or 8 hundredths of a second of one processor.
-Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh) {
-  constexpr double kShare = 0.03, kFreeSeconds = 0.08;
+// What a prediction may take. With --predict the figures are all that is asked for. Otherwise they guard the
+// memory of a mesh, which should hardly wait for them.
+struct Care {
+  SampleBudget sample;
+  double long_seconds;  // from here on a mesh is worth a sample of its bare body
+};
+constexpr Care kForFigures{{24, 0.03, 0.3}, 0.3}, kForMemory{{6, 0.02, 0.03}, 2.0};
+
+Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh, const Care& care) {
   const double seconds_before = program.seconds(), peak_before = static_cast<double>(peak_bytes());
   const bool gabor = mesh.field.tables().gabor_lists.count > 0;
   const MeshEstimate estimate = with_bare_body(
       estimate_within([&](const SampleSize& size) { return sample(mesh, mesh.region, resolution, size); },
-                      gabor, kShare, kFreeSeconds),
-      mesh);
+                      gabor, care.sample),
+      mesh, care.long_seconds);
   const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
   const OutputCost output = output_cost(mesh.output, mesh.use);
   const ErosionCost erosion =
@@ -151,7 +157,8 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
   if (!by_triangles && !request.only_predict && small) return request.resolution;
 
   const int resolution = by_triangles ? resolution_for(request.triangles, mesh) : request.resolution;
-  const Prediction predicted = predict(program, resolution, mesh);
+  const Prediction predicted =
+      predict(program, resolution, mesh, request.only_predict ? kForFigures : kForMemory);
   program.summary["resolution"] = resolution;
   program.summary["predicted"] = {{"triangles", predicted.triangles},
                                   {"file_bytes", predicted.file_bytes},

@@ -51,13 +51,13 @@ MeshEstimate corrected_by_bare(MeshEstimate mesh, double bare_triangles) {
 }
 
 MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)>& sample, bool warm_up,
-                             double share, double free_seconds) {
-  constexpr int kFewest = 12, kMost = 768;
-  SampleSize size{2 * kFewest, kFewest / 2, warm_up};
+                             const SampleBudget& budget) {
+  constexpr int kMost = 768;
+  SampleSize size{4 * budget.first_blocks, budget.first_blocks, warm_up};
   MeshEstimate estimate = sample(size);
   double spent = estimate.spent_seconds;
   while (!estimate.whole && size.blocks < kMost) {
-    const double allowed = std::max(free_seconds, share * estimate.seconds) - spent;
+    const double allowed = std::max(budget.free_seconds, budget.share * estimate.seconds) - spent;
     const double growth = std::min(allowed / std::max(estimate.spent_seconds, 1e-6), 16.0);
     if (growth < 1.5) break;
     size.nodes = std::min(static_cast<int>(growth * size.nodes), 2 * kMost);

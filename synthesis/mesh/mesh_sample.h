@@ -53,10 +53,16 @@ double most_in_layers(const std::vector<double>& profile, const std::vector<int>
 // many or too few as that of the body.
 MeshEstimate corrected_by_bare(MeshEstimate mesh, double bare_triangles);
 
-// Calls sample() with growing sizes until the estimate has taken its share of the seconds that it predicts
-// for the mesh, or `free_seconds` if these are more. Seconds are those of one processor.
+// What an estimate may take.
+struct SampleBudget {
+  int first_blocks = 6;       // of the first and smallest sample
+  double share = 0.03;        // of the seconds that are predicted for the mesh,
+  double free_seconds = 0.0;  // or this many seconds of one processor if these are more
+};
+
+// Calls sample() with growing sizes until the estimate has taken what it may.
 MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)>& sample, bool warm_up,
-                             double share, double free_seconds);
+                             const SampleBudget& budget);
 
 template <int B, BlockField Field>
 class MeshSampler {

@@ -93,7 +93,7 @@ TEST_F(FitGabor, AWeakFitIsCalledWeak) {
   const auto photo = testing::package_file("gravel.png");
   ASTROLITH_SKIP_WITHOUT(photo);
   const testing::Outcome outcome =
-      run_program(kFitGabor, {photo.string(), "-o", (folder_ / "gravel.json").string(), "--lobes", "2"});
+      run_program(kFitGabor, {photo.string(), "-o", (folder_ / "gravel.json").string(), "--lobes", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NE(outcome.errors.find("note: weak fit"), std::string::npos) << outcome.errors;
   EXPECT_NE(outcome.errors.find("--lobes"), std::string::npos) << outcome.errors;
