@@ -44,12 +44,19 @@ inline double memory_limit(double gigabytes) {
   return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+// A sanitizer keeps memory of its own beside the program's, and ends a program whose allocation fails.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kMemoryIsTheProgramsOwn = false;
+#else
+inline constexpr bool kMemoryIsTheProgramsOwn = true;
+#endif
+
 // While it lives, this process cannot grow beyond `bytes` of memory: an allocation that would take it there
-// throws std::bad_alloc. Expects that the threads of the work exist.
+// throws std::bad_alloc. Expects that the threads of the work exist. Does nothing under a sanitizer.
 class MemoryGuard {
  public:
   explicit MemoryGuard(double bytes) {
-    if (getrlimit(RLIMIT_DATA, &before_) != 0) return;
+    if (getrlimit(RLIMIT_DATA, &before_) != 0 || !kMemoryIsTheProgramsOwn) return;
     // The limit counts memory that is mapped for writing, whether it is used or not. What is mapped and not
     // yet used may still become so: stacks of threads, free parts of heaps, and pages of the program itself.
     constexpr double kStillToBeUsed = 4e6;

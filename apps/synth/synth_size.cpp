@@ -83,7 +83,7 @@ struct Care {
   SampleBudget sample;
   double long_seconds;  // from here on a mesh is worth a sample of its bare body
 };
-constexpr Care kForFigures{{24, 0.03, 0.3}, 0.3}, kForMemory{{6, 0.02, 0.03}, 2.0};
+constexpr Care kForFigures{{24, 0.03, 0.3}, 0.3}, kForMemory{{24, 0.02, 0.03}, 2.0};
 
 Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh, const Care& care) {
   const double seconds_before = program.seconds(), peak_before = static_cast<double>(peak_bytes());
