@@ -71,9 +71,9 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   return lobes;
 }
 
-std::vector<SpectralLobe> refined(std::vector<SpectralLobe> lobes, const std::vector<double>& weight,
+std::vector<SpectralLobe> refined(const std::vector<SpectralLobe>& lobes, const std::vector<double>& weight,
                                   GaborFit& fit) {
-  RefinedLobes best = fewest_lobes(std::move(lobes), fit.estimate, weight);
+  RefinedLobes best = fewest_lobes(lobes, fit.estimate, weight);
   fit.refinement_reached = best.reached;
   return std::move(best.lobes);
 }
@@ -130,7 +130,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   fit.pursuit_lobes = static_cast<int>(lobes.size());
   const std::vector<double> weight = row_weights(fit.estimate.spectrum, options.target);
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
-  if (options.target == SpectrumTarget::kSmoothed) lobes = refined(std::move(lobes), weight, fit);
+  if (options.target == SpectrumTarget::kSmoothed) lobes = refined(lobes, weight, fit);
   if (lobes.empty()) throw WorkError(name + ": no lobe was found; try a smaller penalty");
   fit.lobes = to_layer_lobes(lobes, fit);
   fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);

@@ -48,7 +48,7 @@ RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpe
   return {misfit.lobes_at(parameters), summary.termination_type == ceres::CONVERGENCE};
 }
 
-RefinedLobes fewest_lobes(std::vector<SpectralLobe> lobes, const SpectrumEstimate& estimate,
+RefinedLobes fewest_lobes(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate,
                           const std::vector<double>& weight) {
   const double allowed = estimate.standard_error / 3.0;
   RefinedLobes best = refine_lobes(lobes, estimate.spectrum);

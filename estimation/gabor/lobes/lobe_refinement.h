@@ -26,7 +26,7 @@ RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpe
 // as the distance from the estimate is at most a third of the estimate's own standard error. Errors add in
 // squares, so the removed lobes raise the error by at most one part in twenty. `weight` is that of
 // select_lobes.
-RefinedLobes fewest_lobes(std::vector<SpectralLobe> lobes, const SpectrumEstimate& estimate,
+RefinedLobes fewest_lobes(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate,
                           const std::vector<double>& weight);
 
 }  // namespace astrolith
