@@ -28,7 +28,7 @@ double FieldBlock::list_bytes() const {
   for (const auto& of_layer : spots_) {
     if (of_layer == nullptr) continue;
     for (const std::vector<SpotImpulse>& of_kind : *of_layer) {
-      bytes += sizeof(of_kind) + of_kind.capacity() * sizeof(SpotImpulse);
+      bytes += sizeof(std::vector<SpotImpulse>) + of_kind.capacity() * sizeof(SpotImpulse);
     }
   }
   return static_cast<double>(bytes);
