@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws random valid recipes, makes their meshes with `synth` and checks what must hold for each of them.
 
-    tests/benchmarks/random_recipes.py build/release/bin/synth --count 500 --first 1 --keep /tmp/failed
+    tests/benchmarks/random_recipes.py build/release/bin/synth --count 500 --first 1 --keep failed
 
 A recipe has any body (kernels, subtractive metaballs, warp, operations), up to five layers of any type with
 masks, joins and localities, and sometimes erosion. Values are drawn from the whole of their ranges, extremes
