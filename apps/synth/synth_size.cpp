@@ -83,7 +83,10 @@ struct Care {
   SampleBudget sample;
   double long_seconds;  // from here on a mesh is worth a sample of its bare body
 };
-constexpr Care kForFigures{{24, 0.03, 0.3}, 0.3}, kForMemory{{24, 0.02, 0.03}, 2.0};
+// A resolution that triangles chose has a sample of fixed size, whose triangles are those that were asked
+// for.
+constexpr Care kForFigures{{24, 0.03, 0.3}, 0.3}, kForMemory{{24, 0.02, 0.03}, 2.0},
+    kForTriangles{{192, 0.0, 0.0}, 2.0};
 
 Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh, const Care& care) {
   const double seconds_before = program.seconds(), peak_before = static_cast<double>(peak_bytes());
@@ -157,8 +160,10 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
   if (!by_triangles && !request.only_predict && small) return request.resolution;
 
   const int resolution = by_triangles ? resolution_for(request.triangles, mesh) : request.resolution;
-  const Prediction predicted =
-      predict(program, resolution, mesh, request.only_predict ? kForFigures : kForMemory);
+  const Prediction predicted = predict(program, resolution, mesh,
+                                       request.only_predict ? kForFigures
+                                       : by_triangles       ? kForTriangles
+                                                            : kForMemory);
   program.summary["resolution"] = resolution;
   program.summary["predicted"] = {{"triangles", predicted.triangles},
                                   {"file_bytes", predicted.file_bytes},

@@ -36,7 +36,7 @@ struct NoiseFrame {
 
   // Cells are resolved if the quotient of this distance and their side is at most kLargestCell.
   double farthest() const { return farthest_of(largest_coordinate(domain), origin); }
-  // The same distance for an origin and a largest coordinate of another scale.
+  // Returns farthest() of a frame with this origin and this largest coordinate, in any unit.
   static double farthest_of(double largest, const Vec3d& origin) {
     return std::max(largest, largest_coordinate(Box{origin, origin}) * (kLargestCell / kFarthestCell));
   }

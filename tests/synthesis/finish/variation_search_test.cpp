@@ -27,7 +27,7 @@ double mesh_diagonal(const Recipe& recipe) {
 
 Recipe potato() { return testing::potato_recipe(12, 5); }
 
-// The same body again is as alike as can be, and no variation.
+// A variation that is the same body again is refused, although it is as alike as can be.
 TEST(VariationSearch, AVariationDiffersMeasurably) {
   const Recipe recipe = potato();
   for (const double delta : {0.5, 0.05}) {
