@@ -11,13 +11,13 @@ namespace astrolith {
 namespace {
 
 constexpr std::int64_t kRowsPerChunk = 64;
-constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
+constexpr std::size_t kMostDistancePoints = std::size_t{1} << 24;
 constexpr int kMaxBins = 65536;
 
 void check(std::span<const Vec3d> points, int bins) {
-  if (points.size() < 2 || points.size() > kMaxPoints) {
+  if (points.size() < 2 || points.size() > kMostDistancePoints) {
     throw InputError("shape distribution: " + std::to_string(points.size()) + " points; give between 2 and " +
-                     std::to_string(kMaxPoints));
+                     std::to_string(kMostDistancePoints));
   }
   if (bins < 1 || bins > kMaxBins) {
     throw InputError("shape distribution: " + std::to_string(bins) + " bins; give between 1 and " +

@@ -13,7 +13,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
+constexpr std::size_t kMostSurfletPoints = std::size_t{1} << 24;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("shape histogram: " + what); }
 
@@ -28,8 +28,8 @@ void check(std::span<const Vec3d> points, std::span<const Vec3d> normals, int bi
     refuse(std::to_string(points.size()) + " points have " + std::to_string(normals.size()) +
            " normals; give one for each");
   }
-  if (points.size() > kMaxPoints) {
-    refuse(std::to_string(points.size()) + " points are more than " + std::to_string(kMaxPoints) +
+  if (points.size() > kMostSurfletPoints) {
+    refuse(std::to_string(points.size()) + " points are more than " + std::to_string(kMostSurfletPoints) +
            "; sample fewer");
   }
   for (std::size_t i = 0; i < points.size(); ++i) {

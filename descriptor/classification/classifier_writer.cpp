@@ -12,11 +12,11 @@ namespace astrolith {
 namespace {
 
 // JSON whose numbers are floats, written with as many digits as a float needs.
-using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t,
-                                  std::uint64_t, float>;
+using FloatJson = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t,
+                                       std::uint64_t, float>;
 
-Json to_json(const DecisionTree& tree) {
-  Json rows = Json::array();
+FloatJson to_json(const DecisionTree& tree) {
+  FloatJson rows = FloatJson::array();
   for (const TreeNode& node : tree) {
     if (node.feature < 0) {
       rows.push_back({node.next});
@@ -27,9 +27,9 @@ Json to_json(const DecisionTree& tree) {
   return rows;
 }
 
-Json to_json(const ShapeClassifier& classifier, const std::string& tool) {
+FloatJson to_json(const ShapeClassifier& classifier, const std::string& tool) {
   const FeatureOptions& f = classifier.features;
-  Json json;
+  FloatJson json;
   json["format"] = kClassifierFormat;
   json["version"] = kClassifierVersion;
   json["tool"] = tool;
@@ -42,7 +42,7 @@ Json to_json(const ShapeClassifier& classifier, const std::string& tool) {
   if (classifier.components) {
     json["components"] = {{"mean", classifier.components->mean}, {"axes", classifier.components->axes}};
   }
-  json["forest"] = Json::array();
+  json["forest"] = FloatJson::array();
   for (const DecisionTree& tree : classifier.forest.trees) json["forest"].push_back(to_json(tree));
   return json;
 }
@@ -52,7 +52,7 @@ Json to_json(const ShapeClassifier& classifier, const std::string& tool) {
 void write_classifier(const ShapeClassifier& classifier, const std::string& tool,
                       const std::filesystem::path& file) {
   const std::string text =
-      to_json(classifier, tool).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+      to_json(classifier, tool).dump(-1, ' ', false, FloatJson::error_handler_t::replace) + "\n";
   if (text.size() > kMaxClassifierBytes) {
     throw InputError(file.string() + ": would be larger than " + std::to_string(kMaxClassifierBytes >> 20) +
                      " MiB; take fewer trees, bins or components");

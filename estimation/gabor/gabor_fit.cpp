@@ -31,7 +31,7 @@ void require_texture(const GreyImage& exemplar, const std::string& name) {
   }
 }
 
-double mean_of(const GreyImage& image) {
+double mean_grey(const GreyImage& image) {
   double sum = 0.0;
   for (const double v : image.values) sum += v;
   return sum / static_cast<double>(image.values.size());
@@ -111,7 +111,7 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
       options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
   GaborFit fit = fit_gabor_spectrum(exemplar_periodogram(exemplar, options.largest_side, borders), name,
                                     options, progress);
-  fit.exemplar_mean = mean_of(exemplar);
+  fit.exemplar_mean = mean_grey(exemplar);
   return fit;
 }
 

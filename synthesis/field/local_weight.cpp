@@ -12,8 +12,8 @@
 namespace astrolith {
 namespace {
 
-constexpr int kChunk = 256;
-using Chunk = std::array<float, kChunk>;
+constexpr int kWeightChunk = 256;
+using Chunk = std::array<float, kWeightChunk>;
 
 // The spheres that may be nearest to some point of the box. Leaving out all other spheres changes no bit.
 void nearest_candidates(std::span<const WeightSphere> spheres, const Box& box,
@@ -65,8 +65,8 @@ void multiply_by_weight(const LocalWeight& weight, const ArrayView& arrays, int 
   if (weight.others.count == 0) return;
   thread_local std::vector<WeightSphere> candidates;
   Chunk group, others;
-  for (int begin = 0; begin < n; begin += kChunk) {
-    const int size = std::min(kChunk, n - begin);
+  for (int begin = 0; begin < n; begin += kWeightChunk) {
+    const int size = std::min(kWeightChunk, n - begin);
     const float *px = x + begin, *py = y + begin, *pz = z + begin;
     Box box;
     for (int i = 0; i < size; ++i) box.extend({double{px[i]}, double{py[i]}, double{pz[i]}});

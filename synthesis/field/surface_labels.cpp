@@ -10,8 +10,8 @@
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kChunk = 256;  // points of one gathered block
-constexpr double kRounding = 4e-6;   // rounding of F, relative to the largest coordinate
+constexpr std::size_t kLabelsChunk = 256;  // points of one gathered block
+constexpr double kRounding = 4e-6;         // rounding of F, relative to the largest coordinate
 
 bool is_boulders(const Layer& layer) { return std::holds_alternative<BoulderLayer>(layer); }
 
@@ -63,10 +63,10 @@ SurfaceLabels::SurfaceLabels(const Recipe& recipe, const std::string& name,
 
 void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> vertices,
                           std::span<VertexLabel> labels) const {
-  const std::size_t chunks = (vertices.size() + kChunk - 1) / kChunk;
+  const std::size_t chunks = (vertices.size() + kLabelsChunk - 1) / kLabelsChunk;
   parallel_for(0, static_cast<std::int64_t>(chunks), [&](std::int64_t c) {
-    const std::size_t first = static_cast<std::size_t>(c) * kChunk;
-    const std::size_t count = std::min(kChunk, vertices.size() - first);
+    const std::size_t first = static_cast<std::size_t>(c) * kLabelsChunk;
+    const std::size_t count = std::min(kLabelsChunk, vertices.size() - first);
     label_some(origin, vertices.subspan(first, count), labels.subspan(first, count));
   });
 }
@@ -74,7 +74,7 @@ void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> verti
 void SurfaceLabels::label_some(const Vec3d& origin, std::span<const MeshVertex> vertices,
                                std::span<VertexLabel> labels) const {
   const std::size_t n = vertices.size();
-  std::array<float, kChunk> x, y, z, lx, ly, lz, bare, before, after, largest;
+  std::array<float, kLabelsChunk> x, y, z, lx, ly, lz, bare, before, after, largest;
   Box box;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3f& local = vertices[i].position;

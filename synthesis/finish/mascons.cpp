@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kLatticeCells = 64;           // along the longest side: the volume is right within a percent
 constexpr double kGravitation = 6.674e-11;  // m^3 / (kg s^2)
-constexpr int kBatch = 128;
+constexpr int kPointsAtOnce = 128;
 
 // The points of one plane of the lattice that lie inside, and the sphere that each belongs to.
 struct InnerPoints {
@@ -137,11 +137,11 @@ std::vector<Vec3d> vertical_directions(std::span<const Mascon> mascons, const Bo
   const double spin = turn * turn / (kGravitation * motion.density);
   const Vec3d center = center_of_mass(mascons);
   std::vector<Vec3d> up(points.size());
-  const auto batches = static_cast<std::int64_t>((points.size() + kBatch - 1) / kBatch);
+  const auto batches = static_cast<std::int64_t>((points.size() + kPointsAtOnce - 1) / kPointsAtOnce);
   parallel_for(0, batches, [&](std::int64_t batch) {
-    const std::size_t begin = static_cast<std::size_t>(batch) * kBatch;
-    const std::size_t n = std::min<std::size_t>(kBatch, points.size() - begin);
-    std::array<double, kBatch> x{}, y{}, z{}, gx{}, gy{}, gz{};
+    const std::size_t begin = static_cast<std::size_t>(batch) * kPointsAtOnce;
+    const std::size_t n = std::min<std::size_t>(kPointsAtOnce, points.size() - begin);
+    std::array<double, kPointsAtOnce> x{}, y{}, z{}, gx{}, gy{}, gz{};
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3d& p = points[begin + i];
       x[i] = p.x, y[i] = p.y, z[i] = p.z;

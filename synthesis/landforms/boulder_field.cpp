@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-void expect_on_body(double axis, const BareSurface& surface, const std::string& where) {
+void expect_boulder_fits(double axis, const BareSurface& surface, const std::string& where) {
   if (axis <= surface.longest_side()) return;
   throw InputError(where + ": is " + std::to_string(axis) + ", longer than the bare body, " +
                    std::to_string(surface.longest_side()) + "; lower it");
@@ -57,7 +57,7 @@ void find_listed(const BoulderLayer& layer, const BareSurface& surface, const st
   for (std::size_t i = 0; i < layer.boulders.size(); ++i) {
     const Boulder& b = layer.boulders[i];
     const std::string at = where + ".boulders[" + std::to_string(i) + "].";
-    expect_on_body(std::max({b.axes.x, b.axes.y, b.axes.z}), surface, at + "axes");
+    expect_boulder_fits(std::max({b.axes.x, b.axes.y, b.axes.z}), surface, at + "axes");
     const Vec3d bare = surface.find(b.place, at + (b.place.is_direction ? "direction" : "position"));
     out.push_back({bare, {{}, {}, b.axes, b.heading, b.tilt, b.burial, 0}});
   }
@@ -66,7 +66,7 @@ void find_listed(const BoulderLayer& layer, const BareSurface& surface, const st
 void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t seed, int layer_index,
           const std::string& where, std::vector<Placement>& out) {
   const BoulderPopulation& population = *layer.population;
-  expect_on_body(population.drawn.greatest_diameter, surface, where + ".greatest_diameter");
+  expect_boulder_fits(population.drawn.greatest_diameter, surface, where + ".greatest_diameter");
   for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
     CounterRandom& random = drawn.random;
     const auto spread = [&](double ratio) {

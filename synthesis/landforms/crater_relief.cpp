@@ -23,7 +23,7 @@ PlacedCrater sized_crater(const CraterLayer& layer, double diameter, double age)
   return {{}, diameter, profile.depth * diameter, profile.rim_height * diameter, age, complex};
 }
 
-void expect_on_body(double diameter, const BareSurface& surface, const std::string& where) {
+void expect_crater_fits(double diameter, const BareSurface& surface, const std::string& where) {
   if (diameter <= surface.longest_side()) return;
   throw InputError(where + "diameter: is " + std::to_string(diameter) + ", wider than the bare body, " +
                    std::to_string(surface.longest_side()) + "; lower it");
@@ -34,7 +34,7 @@ void place_listed(const CraterLayer& layer, const BareSurface& surface, const st
   for (std::size_t i = 0; i < layer.craters.size(); ++i) {
     const Crater& crater = layer.craters[i];
     const std::string at = where + ".craters[" + std::to_string(i) + "].";
-    expect_on_body(crater.diameter, surface, at);
+    expect_crater_fits(crater.diameter, surface, at);
     PlacedCrater placed = sized_crater(layer, crater.diameter, crater.age);
     placed.position = surface.find(crater.place, at + (crater.place.is_direction ? "direction" : "position"));
     if (crater.depth) placed.depth = *crater.depth;
@@ -46,7 +46,7 @@ void place_listed(const CraterLayer& layer, const BareSurface& surface, const st
 void place_drawn(const CraterLayer& layer, const BareSurface& surface, std::uint64_t seed, int layer_index,
                  const std::string& where, std::vector<PlacedCrater>& out) {
   const CraterPopulation& population = *layer.population;
-  expect_on_body(population.drawn.greatest_diameter, surface, where + ".greatest_");
+  expect_crater_fits(population.drawn.greatest_diameter, surface, where + ".greatest_");
   for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
     const double age_share = drawn.random.uniform();
     PlacedCrater crater = sized_crater(layer, drawn.diameter, population.greatest_age * age_share);

@@ -12,8 +12,8 @@
 namespace astrolith {
 namespace {
 
-constexpr int kChunk = 256;  // ten arrays of this many floats stay in the first cache
-using Chunk = std::array<float, kChunk>;
+constexpr int kFractalChunk = 256;  // ten arrays of this many floats stay in the first cache
+using Chunk = std::array<float, kFractalChunk>;
 
 ASTROLITH_SIMD_CLONES void place(int n, const float* __restrict p, float low, float high, float scale,
                                  float bias, float* __restrict q) {
@@ -25,7 +25,7 @@ double farthest_coordinate(double low, double high, double scale, double bias) {
   return std::max(std::fabs(scale * low + bias), std::fabs(scale * high + bias));
 }
 
-// Writes the sum of the octaves at n <= kChunk arguments of the noise.
+// Writes the sum of the octaves at n <= kFractalChunk arguments of the noise.
 void sum_octaves(const FractalNoise& noise, std::span<const NoiseOctave> octaves, int n, const float* x,
                  const float* y, const float* z, float* height) {
   std::fill(height, height + n, 0.0f);
@@ -108,8 +108,8 @@ FractalNoise make_noise(const FractalLayer& layer, std::uint64_t seed, int layer
 
 void evaluate_heights(const FractalNoise& noise, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
-  for (int begin = 0; begin < count; begin += kChunk) {
-    evaluate_chunk(noise, arrays, std::min(kChunk, count - begin), x + begin, y + begin, z + begin,
+  for (int begin = 0; begin < count; begin += kFractalChunk) {
+    evaluate_chunk(noise, arrays, std::min(kFractalChunk, count - begin), x + begin, y + begin, z + begin,
                    height + begin);
   }
 }
@@ -121,8 +121,8 @@ void evaluate_local_heights(const FractalNoise& noise, const ArrayView& arrays, 
       bias{noise.bias.x, noise.bias.y, noise.bias.z};
   const Vec3d q{scale.x * origin.x + bias.x, scale.y * origin.y + bias.y, scale.z * origin.z + bias.z};
   const std::vector<NoiseOctave> octaves = local_octaves(noise.noise, arrays.span(noise.octaves), q);
-  for (int begin = 0; begin < count; begin += kChunk) {
-    const int size = std::min(kChunk, count - begin);
+  for (int begin = 0; begin < count; begin += kFractalChunk) {
+    const int size = std::min(kFractalChunk, count - begin);
     Chunk qx, qy, qz;
     place(size, x + begin, -kEverywhere, kEverywhere, noise.scale.x, 0.0f, qx.data());
     place(size, y + begin, -kEverywhere, kEverywhere, noise.scale.y, 0.0f, qy.data());

@@ -25,7 +25,8 @@ class LoneNoise {
   double height_bound() const { return noise_.height_bound; }
   // An interval that holds n(p) for every float point p of the box, length units.
   Interval bound_heights(const Box& box) const {
-    return astrolith::bound_heights(noise_, arrays_.view(), box);
+    using astrolith::bound_heights;  // the functions of the noises, which this member hides
+    return bound_heights(noise_, arrays_.view(), box);
   }
 
   const Noise& noise() const { return noise_; }

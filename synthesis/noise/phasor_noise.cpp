@@ -9,8 +9,8 @@
 namespace astrolith {
 namespace {
 
-constexpr int kChunk = 128;
-using Chunk = std::array<float, kChunk>;
+constexpr int kPhasorChunk = 128;
+using PhasorArray = std::array<float, kPhasorChunk>;
 
 // Adds one impulse to the sums at n points, in cells. The impulse lies (dx, dy, dz) cells away from the cell
 // of each point.
@@ -54,9 +54,9 @@ PhasorNoise make_noise(const PhasorLayer& layer, std::uint64_t seed, int layer_i
 
 void evaluate_phases(const PhasorNoise& n, int count, const float* x, const float* y, const float* z,
                      float* turns) {
-  Chunk px{}, py{}, pz{}, real, imaginary;
-  for (int begin = 0; begin < count; begin += kChunk) {
-    const int size = std::min(kChunk, count - begin);
+  PhasorArray px{}, py{}, pz{}, real, imaginary;
+  for (int begin = 0; begin < count; begin += kPhasorChunk) {
+    const int size = std::min(kPhasorChunk, count - begin);
     for (int i = 0; i < size; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const Vec3f p = n.in_cells({x[begin + i], y[begin + i], z[begin + i]});

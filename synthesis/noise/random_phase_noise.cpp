@@ -17,8 +17,8 @@
 namespace astrolith {
 namespace {
 
-constexpr int kChunk = 128;  // the windows of eight corners stay in the first cache
-using Chunk = std::array<float, kChunk>;
+constexpr int kPhaseChunk = 128;  // the windows of eight corners stay in the first cache
+using PhaseArray = std::array<float, kPhaseChunk>;
 
 constexpr double kMostTurns = 262144.0;  // 2^18, where a float holds five bits of a turn
 constexpr double kClip = 6.0;
@@ -26,9 +26,9 @@ constexpr std::uint32_t kWaveStream = 0x77617665u;
 
 // The windows and hashes of the eight corners around each point of a chunk.
 struct Windows {
-  std::array<Chunk, 8> weight;
-  std::array<std::array<std::uint32_t, kChunk>, 8> corner;
-  Chunk scale;  // 1 / norm
+  std::array<PhaseArray, 8> weight;
+  std::array<std::array<std::uint32_t, kPhaseChunk>, 8> corner;
+  PhaseArray scale;  // 1 / norm
 };
 
 ASTROLITH_SIMD_CLONES void find_windows(int n, const float* __restrict x, const float* __restrict y,
@@ -121,7 +121,7 @@ std::vector<Wave> draw_waves(const RandomPhaseLayer& layer, std::uint32_t seed, 
 
 void evaluate_chunk(const RandomPhaseNoise& noise, std::span<const Wave> waves, int n, const float* x,
                     const float* y, const float* z, float* height) {
-  Chunk px{}, py{}, pz{};
+  PhaseArray px{}, py{}, pz{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
     px[i] = math::clamp(x[i], noise.low.x, noise.high.x);
     py[i] = math::clamp(y[i], noise.low.y, noise.high.y);
@@ -164,9 +164,9 @@ RandomPhaseNoise make_noise(const RandomPhaseLayer& layer, std::uint64_t seed, i
 
 void evaluate_heights(const RandomPhaseNoise& noise, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height) {
-  for (int begin = 0; begin < count; begin += kChunk) {
-    evaluate_chunk(noise, arrays.span(noise.waves), std::min(kChunk, count - begin), x + begin, y + begin,
-                   z + begin, height + begin);
+  for (int begin = 0; begin < count; begin += kPhaseChunk) {
+    evaluate_chunk(noise, arrays.span(noise.waves), std::min(kPhaseChunk, count - begin), x + begin,
+                   y + begin, z + begin, height + begin);
   }
 }
 

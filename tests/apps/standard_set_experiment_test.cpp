@@ -10,7 +10,7 @@ namespace {
 using testing::LabelledShapes;
 using testing::run_program;
 
-const std::string kExperiment = ASTROLITH_STANDARD_SET_EXPERIMENT;
+const std::string kStandardSet = ASTROLITH_STANDARD_SET_EXPERIMENT;
 
 std::vector<std::string> arguments(const LabelledShapes& shapes) {
   return {shapes.all,  "-o", shapes.at("r.json"), "--points", "400", "--trees", "20",
@@ -21,7 +21,7 @@ TEST(StandardSetExperiment, StatesItsProtocolAndTellsClassesApart) {
   const LabelledShapes shapes;
   // This mesh is no surface. Its spectrum comes from points.
   shapes.folder.write("shapes/box/fin.obj", testing::kTetrahedron + "v 2 2 2\nf 1 2 5\n");
-  const testing::Outcome outcome = run_program(kExperiment, arguments(shapes));
+  const testing::Outcome outcome = run_program(kStandardSet, arguments(shapes));
   ASSERT_EQ(outcome.status, 0) << outcome.errors;
   const auto result = nlohmann::json::parse(testing::text_of(shapes.folder / "r.json"));
   EXPECT_EQ(result["protocol"]["models"], 19);
@@ -37,10 +37,10 @@ TEST(StandardSetExperiment, StatesItsProtocolAndTellsClassesApart) {
 TEST(StandardSetExperiment, NamesUnreadableFilesAndGoesOn) {
   const LabelledShapes shapes;
   shapes.folder.write("shapes/ball/broken.ply", testing::truncated_ply());
-  const testing::Outcome outcome = run_program(kExperiment, arguments(shapes));
+  const testing::Outcome outcome = run_program(kStandardSet, arguments(shapes));
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.errors.find("broken.ply"), std::string::npos);
-  testing::expect_refusal(shapes.folder, kExperiment, {shapes.at("none"), "-o", shapes.at("r2.json")},
+  testing::expect_refusal(shapes.folder, kStandardSet, {shapes.at("none"), "-o", shapes.at("r2.json")},
                           "none");
 }
 

@@ -14,12 +14,12 @@ using namespace testing;
 
 constexpr int kPairs = 200000;
 
-struct Oriented {
+struct OrientedPoint {
   Vec3d point, normal;
 };
 
-int bin_of(const Oriented& i, const Oriented& j) {
-  const auto single = [](const Oriented& s) {
+int bin_of(const OrientedPoint& i, const OrientedPoint& j) {
+  const auto single = [](const OrientedPoint& s) {
     const auto f = [](const Vec3d& v) {
       return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };
@@ -28,18 +28,18 @@ int bin_of(const Oriented& i, const Oriented& j) {
   return surflet_code<5>(single(i), single(j)) % 625;
 }
 
-int code_of(int alpha, int beta, int gamma, int delta) {
+int truth_code(int alpha, int beta, int gamma, int delta) {
   return ((alpha * 5 + beta) * 5 + gamma) * 5 + delta;
 }
 
 // Compares counts with expectations bin by bin. A statistic more than four standard deviations above its mean
 // would be no chance.
 void expect_frequencies(const std::vector<double>& expected,
-                        const std::function<Oriented(CounterRandom&)>& point) {
+                        const std::function<OrientedPoint(CounterRandom&)>& point) {
   CounterRandom random(11);
   std::vector<double> counts(625, 0.0);
   for (int k = 0; k < kPairs; ++k) {
-    const Oriented i = point(random), j = point(random);
+    const OrientedPoint i = point(random), j = point(random);
     ++counts[static_cast<std::size_t>(bin_of(i, j))];
   }
   double statistic = 0, sum = 0;
@@ -78,12 +78,12 @@ TEST(SurfletTruth, Sphere) {
       1, {0, 0.2, 0.4, 0.6, 0.8, std::sin(std::numbers::pi / 10), std::sin(3 * std::numbers::pi / 10), 1},
       [](double d) { return d * d; },
       [](double d) {
-        return code_of(fifth(2 * std::asin(d) / std::numbers::pi), 2, fifth(-d), fifth(2 * d - 1));
+        return truth_code(fifth(2 * std::asin(d) / std::numbers::pi), 2, fifth(-d), fifth(2 * d - 1));
       },
       expected);
   expect_frequencies(expected, [](CounterRandom& random) {
     const Vec3d n = random_direction(random);
-    return Oriented{0.5 * n, n};
+    return OrientedPoint{0.5 * n, n};
   });
 }
 
@@ -102,9 +102,9 @@ TEST(SurfletTruth, PlanePatch) {
   std::vector<double> expected(625, 0.0);
   add_shares(
       1, {0, 0.2, 0.4, 0.6, 0.8, 1}, [&](double d) { return square_distribution(d / side); },
-      [](double d) { return code_of(2, 2, 2, fifth(2 * d - 1)); }, expected);
+      [](double d) { return truth_code(2, 2, 2, fifth(2 * d - 1)); }, expected);
   expect_frequencies(expected, [&](CounterRandom& random) {
-    return Oriented{{side * (random.uniform() - 0.5), side * (random.uniform() - 0.5), 0}, {0, 0, 1}};
+    return OrientedPoint{{side * (random.uniform() - 0.5), side * (random.uniform() - 0.5), 0}, {0, 0, 1}};
   });
 }
 
@@ -118,18 +118,18 @@ TEST(SurfletTruth, TwoParallelPlanes) {
   const double diagonal = side * std::sqrt(2.0);
   add_shares(
       0.5, {0, 0.2, 0.4, 0.6, 0.8, diagonal}, distribution,
-      [](double t) { return code_of(2, 2, 2, fifth(2 * t - 1)); }, expected);
+      [](double t) { return truth_code(2, 2, 2, fifth(2 * t - 1)); }, expected);
   add_shares(
       0.5, {0, along(0.4), along(0.6), along(0.8), along(h / 0.6), diagonal}, distribution,
       [&](double t) {
         const double length = std::hypot(h, t);
-        return code_of(4, 2, fifth(-h / length), fifth(2 * length - 1));
+        return truth_code(4, 2, fifth(-h / length), fifth(2 * length - 1));
       },
       expected);
   expect_frequencies(expected, [&](CounterRandom& random) {
     const double up = random.uniform() < 0.5 ? 1 : -1;
-    return Oriented{{side * (random.uniform() - 0.5), side * (random.uniform() - 0.5), up * h / 2},
-                    {0, 0, up}};
+    return OrientedPoint{{side * (random.uniform() - 0.5), side * (random.uniform() - 0.5), up * h / 2},
+                         {0, 0, up}};
   });
 }
 

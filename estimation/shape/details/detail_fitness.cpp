@@ -14,11 +14,11 @@ namespace astrolith {
 namespace {
 
 // Heights lie within this distance of the base (fraction of the diagonal).
-constexpr double kReach = 0.05;
+constexpr double kHeightReach = 0.05;
 
 // A line with a height above this multiple of the median is left out: such a height is an error of the base
 // and not a detail.
-constexpr double kStray = 8.0;
+constexpr double kStrayLine = 8.0;
 
 // The range of amplitudes, as multiples of the residual's root mean square.
 constexpr double kLeastAmplitude = 0.02, kLargestAmplitude = 20.0;
@@ -74,15 +74,16 @@ DetailFitness::DetailFitness(const TargetBody& target, const MetaballBody& base,
                              const FitnessOptions& options)
     : options_(options),
       layout_(lay_out_probes(target, base, options.lines, options.seed)),
-      probe_(base, layout_.vertex_points(), kReach),
+      probe_(base, layout_.vertex_points(), kHeightReach),
       samples_(sample_poisson_disk(target.surface, options.samples, options.seed)),
       mesh_(layout_.mesh, nearest_places(layout_.mesh, samples_.points), curvature_radius(samples_)),
       wanted_histogram_(histogram_of(target.surface, samples_)) {
-  std::vector<double> heights = target_heights(target.tree, layout_.place_points(), kReach);
+  std::vector<double> heights = target_heights(target.tree, layout_.place_points(), kHeightReach);
   // The facets of a target that is finer than the base's mesh are steeper than that mesh can reproduce. The
   // mesh is then moved to the target, and both histogram and heights are taken from it.
   if (facet_edge(target) < 0.9 * probe_edge(target)) {
-    const std::vector<double> of_vertices = target_heights(target.tree, layout_.vertex_points(), kReach);
+    const std::vector<double> of_vertices =
+        target_heights(target.tree, layout_.vertex_points(), kHeightReach);
     wanted_histogram_ = histogram(of_vertices);
     heights = layout_.at_places(of_vertices);
   }
@@ -130,7 +131,7 @@ std::vector<double> DetailFitness::layers_roughness(std::span<const FractalLayer
 }
 
 void DetailFitness::leave_out_strays(std::span<const double> heights) {
-  const double most = std::max(kStray * median_magnitude(heights), kTiniestAmplitude);
+  const double most = std::max(kStrayLine * median_magnitude(heights), kTiniestAmplitude);
   for (std::vector<HeightTriple>& triples : layout_.triples) {
     std::erase_if(triples, [&](const HeightTriple& t) {
       return std::max({std::fabs(heights[t.before]), std::fabs(heights[t.middle]),

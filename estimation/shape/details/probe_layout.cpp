@@ -13,7 +13,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kMostTriangles = 50000.0;
 constexpr double kFirstLag = 2.0;  // edges
 constexpr double kLagRatio = std::numbers::sqrt2;
@@ -61,7 +61,7 @@ void add_lines(const SurfaceSamples& sites, std::uint64_t seed, ProbeLayout& lay
     const Vec3d& q = sites.points[j];
     const std::uint32_t middle = add(q);
     for (std::size_t k = 0; k < layout.lags.size(); ++k) {
-      const Vec3d step = layout.lags[k] * tangent(sites.normals[j], random.uniform(0.0, kTwoPi));
+      const Vec3d step = layout.lags[k] * tangent(sites.normals[j], random.uniform(0.0, kTurn));
       const std::uint32_t before = add(q - step), after = add(q + step);
       layout.triples[k].push_back({before, middle, after});
     }

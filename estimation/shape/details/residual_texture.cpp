@@ -17,7 +17,7 @@ namespace astrolith {
 namespace {
 
 // Heights lie within this distance of the base (fraction of the diagonal).
-constexpr double kReach = 0.05;
+constexpr double kTextureReach = 0.05;
 
 // The cosine of the largest angle between a normal of the base in a patch and the normal in its middle.
 // Beyond this angle the tangent plane is distorted, and at last no longer a chart.
@@ -25,7 +25,7 @@ constexpr double kLeastCosine = 0.7;
 
 // A patch with a height above this multiple of the median is left out: such a height does not belong to a
 // texture.
-constexpr double kStray = 12.0;
+constexpr double kStrayPatch = 12.0;
 
 struct Patch {
   std::vector<ProbePoint> points;  // (side x side) on the base
@@ -77,8 +77,8 @@ std::vector<GreyImage> residual_patches(const TargetBody& target, const Metaball
   for (std::size_t i = 0; i < sites.points.size(); ++i) {
     const Patch patch = make_patch(base, sites.points[i], sites.normals[i], options.side, pixel);
     if (!patch.flat) continue;
-    GreyImage image{options.side, options.side, target_heights(target.tree, patch.points, kReach)};
-    const double most = kStray * median_magnitude(image.values);
+    GreyImage image{options.side, options.side, target_heights(target.tree, patch.points, kTextureReach)};
+    const double most = kStrayPatch * median_magnitude(image.values);
     if (std::any_of(image.values.begin(), image.values.end(),
                     [&](double h) { return std::fabs(h) > most; })) {
       continue;

@@ -18,7 +18,7 @@ constexpr double kLargestLogRatio = 3.0;
 // The relative error of a roughness from a few thousand lines.
 constexpr double kRoughnessError = 0.02;
 
-constexpr int kMostOctaves = 8;
+constexpr int kMostOctavesTried = 8;
 
 double cycles_of_entry(double i) {
   return kLeastCycles * std::pow(kMostCycles / kLeastCycles, i / (kTableSize - 1));
@@ -165,7 +165,7 @@ std::vector<PlainNoise> noises_as_rough_as(std::span<const double> wanted, std::
   const RoughnessFit fit(wanted, lags, ranges, model);
   std::vector<RoughNoise> by_octaves;
   double least = std::numeric_limits<double>::infinity();
-  for (int octaves = 1; octaves <= kMostOctaves; ++octaves) {
+  for (int octaves = 1; octaves <= kMostOctavesTried; ++octaves) {
     const double finest = ranges.lowest_frequency * std::pow(kDetailLacunarity, octaves - 1);
     if (octaves > 1 && finest > ranges.highest_frequency) break;
     by_octaves.push_back(fit.best(which, octaves));

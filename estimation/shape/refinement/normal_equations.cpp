@@ -8,7 +8,7 @@ namespace astrolith {
 namespace {
 
 // Every entry of D is at least this part of the largest, so that idle spheres do not move freely.
-constexpr double kSmallestDamping = 1e-8;
+constexpr double kLeastDiagonal = 1e-8;
 
 // out[a][c] += sum_r rows[r][a] rows[r][c] for a = 0 .. 3 and all columns c. The first four columns of `rows`
 // are the derivatives by one sphere, and the other columns those by the spheres that follow it in the block.
@@ -146,7 +146,7 @@ void NormalEquations::assemble() {
   parallel_for(0, static_cast<std::int64_t>(spheres_),
                [&](std::int64_t i) { assemble_row(static_cast<std::size_t>(i)); });
   assemble_sharpness();
-  diagonal_ = diagonal_.cwiseMax(kSmallestDamping * diagonal_.maxCoeff());
+  diagonal_ = diagonal_.cwiseMax(kLeastDiagonal * diagonal_.maxCoeff());
 }
 
 void NormalEquations::assemble_row(std::size_t sphere) {

@@ -13,7 +13,7 @@ namespace {
 using testing::potato_recipe;
 using testing::sphere_recipe;
 
-GaborLayer layer_of(std::vector<GaborLobe> lobes, double pixel_size, double rms) {
+GaborLayer surface_layer(std::vector<GaborLobe> lobes, double pixel_size, double rms) {
   GaborLayer layer;
   layer.pixel_size = pixel_size;
   layer.height_rms = rms;
@@ -53,7 +53,7 @@ struct FlatPatch {
 TEST(GaborSurfaceNoise, FlatPatchHasTheVarianceAndTheSpectrumOfTheLobes) {
   // A pixel is 1/2000 of the radius. The many patches lie far apart; each has one or two kernels.
   const std::vector<GaborLobe> lobes = {{3, 0.12, 0.04, 3.0}, {2, -0.05, 0.2, 1.0}};
-  const GaborLayer layer = layer_of(lobes, 5e-4, 0.002);
+  const GaborLayer layer = surface_layer(lobes, 5e-4, 0.002);
   constexpr int n = 16, kPatches = 900, kLag = 3;
   std::array<double, (2 * kLag + 1) * (kLag + 1)> measured{};
   double fourth = 0.0;
@@ -92,7 +92,7 @@ TEST(GaborSurfaceNoise, FlatPatchHasTheVarianceAndTheSpectrumOfTheLobes) {
 
 TEST(GaborSurfaceNoise, HowPointsAreGroupedChangesNoBit) {
   Recipe recipe = potato_recipe(60, 5);
-  recipe.layers = {layer_of({{2, 0.1, 0.2, 1.0}, {5, -0.02, 0.05, 2.0}}, 0.01, 0.004)};
+  recipe.layers = {surface_layer({{2, 0.1, 0.2, 1.0}, {5, -0.02, 0.05, 2.0}}, 0.01, 0.004)};
   const ImplicitField field(recipe);
   CounterRandom random(3);
   const Box bounds = field.bounds();
@@ -117,7 +117,8 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
   // Half of the points lie close together, so that many share an impulse. Kernels measure 1/400 to 1/10 of
   // the body.
   Recipe recipe = potato_recipe(60, 5);
-  recipe.layers = {layer_of({{1, 0.1, 0.2, 1.0}, {3, 0.1, 0.1, 1.0}, {6, -0.01, 0.02, 2.0}}, 0.002, 0.004)};
+  recipe.layers = {
+      surface_layer({{1, 0.1, 0.2, 1.0}, {3, 0.1, 0.1, 1.0}, {6, -0.01, 0.02, 2.0}}, 0.002, 0.004)};
   const ImplicitField field(recipe);
   CounterRandom random(3);
   const Vec3d center = field.bounds().center();
@@ -136,7 +137,7 @@ TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
 
 // The points lie in two places so far apart that the cells between them are not drawn. Their group is split.
 TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
-  const testing::LoneGaborNoise noise(layer_of({{1, 0.1, 0.2, 1.0}}, 0.002, 1.0), 7, 0,
+  const testing::LoneGaborNoise noise(surface_layer({{1, 0.1, 0.2, 1.0}}, 0.002, 1.0), 7, 0,
                                       *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
   CounterRandom random(3);
   std::vector<float> x, y, z, height(11);
@@ -156,8 +157,8 @@ TEST(GaborSurfaceNoise, AGroupInTwoPlacesGivesTheBitsOfSinglePoints) {
 // The error falls as the square of the size, whether corners share their impulses or each corner draws its
 // own.
 TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
-  const testing::LoneGaborNoise noise(layer_of({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0), 7, 0,
-                                      *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
+  const testing::LoneGaborNoise noise(surface_layer({{2, 0.1, 0.2, 1.0}, {4, -0.02, 0.05, 2.0}}, 0.01, 1.0),
+                                      7, 0, *sphere_recipe(1.0).body, {{-2, -2, -2}, {2, 2, 2}});
   CounterRandom random(3);
   const auto largest_error = [&](double h, double spread) {
     std::vector<float> x, y, z, exact(240), linear(240);
@@ -183,7 +184,7 @@ TEST(GaborSurfaceNoise, TetrahedraAreTrueToFirstOrder) {
 
 TEST(GaborSurfaceNoise, HeightsAreConstantAlongTheNormal) {
   Recipe recipe = sphere_recipe(1.0);
-  recipe.layers = {layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
+  recipe.layers = {surface_layer({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
   const ImplicitField field(recipe), bare(sphere_recipe(1.0));
   CounterRandom random(4);
   double sum_squares = 0.0;
@@ -201,7 +202,7 @@ TEST(GaborSurfaceNoise, HeightsAreConstantAlongTheNormal) {
 
 TEST(GaborSurfaceNoise, IsSmoothEverywhereEvenAtThePoles) {
   Recipe recipe = sphere_recipe(1.0);
-  recipe.layers = {layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
+  recipe.layers = {surface_layer({{3, 0.1, 0.05, 1.0}}, 0.02, 0.01)};
   const ImplicitField field(recipe);
   // An arc across the pole, in steps of 1e-3, which is a fortieth of the wavelength.
   double before = field.value({std::sin(-0.2), 0.001, std::cos(-0.2)});
@@ -217,7 +218,7 @@ TEST(GaborSurfaceNoise, OtherLayersMoveItNotChangeIt) {
   Box domain;
   domain.extend({-2, -2, -2});
   domain.extend({2, 2, 2});
-  const GaborLayer layer = layer_of({{3, 0.1, 0.05, 1.0}}, 0.02, 1.0);
+  const GaborLayer layer = surface_layer({{3, 0.1, 0.05, 1.0}}, 0.02, 1.0);
   const MetaballBody body = *sphere_recipe(1.0).body;
   const testing::LoneGaborNoise first(layer, 1, 0, body, domain), second(layer, 1, 1, body, domain);
   CounterRandom random(6);
@@ -236,7 +237,7 @@ TEST(GaborSurfaceNoise, OtherLayersMoveItNotChangeIt) {
 TEST(GaborSurfaceNoise, AbsurdScalesNeitherCrashNorGrow) {
   for (const double pixel_size : {1e-12, 1e-5, 1e6}) {
     Recipe recipe = potato_recipe(10, 5);
-    recipe.layers = {layer_of({{1, 0.1, 0.2, 1.0}, {12, 0.0, 0.0, 2.0}}, pixel_size, 0.004)};
+    recipe.layers = {surface_layer({{1, 0.1, 0.2, 1.0}, {12, 0.0, 0.0, 2.0}}, pixel_size, 0.004)};
     const ImplicitField field(recipe);
     EXPECT_TRUE(std::isfinite(field.value({0.3, 0.1, 0.1})));
     EXPECT_TRUE(std::isfinite(field.value({1e30, -1e30, 0.1})));

@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-GaborLayer layer_of(std::vector<GaborLobe> lobes, double rms = 1.0) {
+GaborLayer texture_layer(std::vector<GaborLobe> lobes, double rms = 1.0) {
   GaborLayer layer;
   layer.height_rms = rms;
   layer.lobes = std::move(lobes);
@@ -36,7 +36,7 @@ Moments moments(const std::vector<float>& values) {
 
 TEST(GaborTexture, HasTheStatedVarianceAndIsGaussian) {
   for (const int impulses : {8, 32}) {
-    GaborLayer layer = layer_of({{2, 0.1, 0.2, 1.0}, {3, -0.2, 0.05, 2.0}}, 2.5);
+    GaborLayer layer = texture_layer({{2, 0.1, 0.2, 1.0}, {3, -0.2, 0.05, 2.0}}, 2.5);
     layer.impulses_per_kernel = impulses;
     const Moments m = moments(synthesize_texture(layer, 1024, 1024, {3}));
     EXPECT_NEAR(m.mean / 2.5, 0.0, 0.005);
@@ -47,7 +47,7 @@ TEST(GaborTexture, HasTheStatedVarianceAndIsGaussian) {
 
 // A single band, since more bands or more impulses would bring the noise closer to a Gaussian.
 TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
-  GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}});
+  GaborLayer layer = texture_layer({{2, 0.2, 0.1, 1.0}});
   layer.impulses_per_kernel = 4;
   const Moments m = moments(synthesize_texture(layer, 1024, 1024, {9}));
   EXPECT_NEAR(m.variance, 1.0, 0.01);
@@ -58,7 +58,7 @@ TEST(GaborTexture, OneBandOfFewImpulsesIsGaussian) {
 TEST(GaborTexture, EveryBandHasTheStatedDeviationAndIsGaussian) {
   constexpr int kSeeds = 6;
   for (int bandwidth = 1; bandwidth <= 4; ++bandwidth) {
-    const GaborLayer layer = layer_of({{bandwidth, 0.21, -0.13, 1.0}}, 0.5);
+    const GaborLayer layer = texture_layer({{bandwidth, 0.21, -0.13, 1.0}}, 0.5);
     const int side = 64 << bandwidth;  // the same number of kernels for every band
     double second = 0, fourth = 0;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -77,7 +77,7 @@ TEST(GaborTexture, EveryBandHasTheStatedDeviationAndIsGaussian) {
 TEST(GaborTexture, AutocovarianceIsTheLobes) {
   const std::vector<GaborLobe> lobes = {{3, 0.18, 0.05, 2.0}, {2, -0.1, 0.2, 1.0}, {3, 0.0, 0.0, 1.0}};
   constexpr int n = 1536;
-  const std::vector<float> texture = synthesize_texture(layer_of(lobes), n, n, {17});
+  const std::vector<float> texture = synthesize_texture(texture_layer(lobes), n, n, {17});
   for (int dy = 0; dy <= 6; ++dy) {
     for (int dx = -6; dx <= 6; ++dx) {
       double measured = 0.0, expected = 0.0;
@@ -120,7 +120,7 @@ TEST(GaborTexture, PeriodogramIsTheLobes) {
   };
   std::vector<std::vector<float>> textures;
   for (int r = 0; r < kRealisations; ++r) {
-    textures.push_back(synthesize_texture(layer_of(lobes), n, n, {static_cast<std::uint64_t>(r)}));
+    textures.push_back(synthesize_texture(texture_layer(lobes), n, n, {static_cast<std::uint64_t>(r)}));
   }
   for (const auto& [fx, fy] : {std::pair{0.2, 0.1}, {0.25, 0.1}, {0.2, 0.05}, {0.15, 0.15}, {-0.2, 0.1}}) {
     double mean = 0.0;
@@ -133,7 +133,7 @@ TEST(GaborTexture, PeriodogramIsTheLobes) {
 }
 
 TEST(GaborTexture, DependsOnLayerAndSeedAlone) {
-  GaborLayer layer = layer_of({{2, 0.1, 0.2, 1.0}, {5, -0.02, 0.05, 2.0}});
+  GaborLayer layer = texture_layer({{2, 0.1, 0.2, 1.0}, {5, -0.02, 0.05, 2.0}});
   const std::vector<float> one = synthesize_texture(layer, 333, 201, {5});
   {
     const ThreadLimit single(1);
@@ -150,7 +150,7 @@ TEST(GaborTexture, DependsOnLayerAndSeedAlone) {
 // The texture has no seams: second differences at the borders of tiles (every 64 pixels) are as large as
 // elsewhere.
 TEST(GaborTexture, HasNoSeams) {
-  const std::vector<float> t = synthesize_texture(layer_of({{5, 0.02, 0.03, 1.0}}), 1024, 1024, {2});
+  const std::vector<float> t = synthesize_texture(texture_layer({{5, 0.02, 0.03, 1.0}}), 1024, 1024, {2});
   double at_seams = 0, elsewhere = 0;
   int seams = 0, others = 0;
   for (std::size_t y = 0; y < 1024; ++y) {
@@ -166,7 +166,7 @@ TEST(GaborTexture, HasNoSeams) {
 }
 
 TEST(GaborTexture, AnySizeAndNoNonsense) {
-  const GaborLayer layer = layer_of({{1, 0.5, -0.5, 1.0}, {12, 0.0, 0.0, 1.0}});
+  const GaborLayer layer = texture_layer({{1, 0.5, -0.5, 1.0}, {12, 0.0, 0.0, 1.0}});
   EXPECT_EQ(synthesize_texture(layer, 1, 1, {1}).size(), 1u);
   EXPECT_EQ(synthesize_texture(layer, 1, 130, {1}).size(), 130u);
   for (const float v : synthesize_texture(layer, 65, 3, {1})) EXPECT_LE(std::fabs(v), 6.0f);
@@ -175,7 +175,7 @@ TEST(GaborTexture, AnySizeAndNoNonsense) {
 }
 
 TEST(GaborTexture, StopsWhenAsked) {
-  const GaborLayer layer = layer_of({{3, 0.1, 0.1, 1.0}});
+  const GaborLayer layer = texture_layer({{3, 0.1, 0.1, 1.0}});
   int calls = 0;
   const auto texture =
       synthesize_texture(layer, 64, 256, {1}, [&](double, std::string_view) { return ++calls < 2; });

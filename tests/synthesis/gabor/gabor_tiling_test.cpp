@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-GaborLayer layer_of(std::vector<GaborLobe> lobes) {
+GaborLayer tiling_layer(std::vector<GaborLobe> lobes) {
   GaborLayer layer;
   layer.height_rms = 1.0;
   layer.lobes = std::move(lobes);
@@ -31,17 +31,17 @@ TEST(GaborTiling, CorrelationIsTheGaussians) {
 }
 
 TEST(GaborTiling, WideLobesKeepTheirVarianceAndNarrowOnesDependOnTheirFrequency) {
-  EXPECT_NEAR(tiled_variance(layer_of({{4, 0.11, 0.23, 1.0}}), 256, 300), 1.0, 1e-12);
+  EXPECT_NEAR(tiled_variance(tiling_layer({{4, 0.11, 0.23, 1.0}}), 256, 300), 1.0, 1e-12);
   // Lobes narrower than the steps between frequencies: one has all its variance on one frequency, the other
   // lies between two.
-  EXPECT_GT(tiled_variance(layer_of({{7, 4.0 / 64, 0.0, 1.0}}), 64, 256), 1.5);
-  EXPECT_LT(tiled_variance(layer_of({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
+  EXPECT_GT(tiled_variance(tiling_layer({{7, 4.0 / 64, 0.0, 1.0}}), 64, 256), 1.5);
+  EXPECT_LT(tiled_variance(tiling_layer({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
 }
 
 // Every pixel equals the one a period away. A texture of twice the period in each direction shows this for
 // any position of the inner tiles of 64 pixels.
 TEST(GaborTiling, TheTextureRepeatsExactly) {
-  const GaborLayer layer = layer_of({{2, 0.2, 0.1, 1.0}, {5, -0.03, 0.04, 2.0}, {6, 0.1, 0.02, 1.0}});
+  const GaborLayer layer = tiling_layer({{2, 0.2, 0.1, 1.0}, {5, -0.03, 0.04, 2.0}, {6, 0.1, 0.02, 1.0}});
   TextureOptions options{7};
   options.period_width = 150;
   options.period_height = 97;
@@ -60,7 +60,7 @@ TEST(GaborTiling, TheTextureRepeatsExactly) {
 // Second differences across the border are as large as inside. A texture that does not repeat fails this
 // test.
 TEST(GaborTiling, TheBorderIsNoSeam) {
-  const GaborLayer layer = layer_of({{4, 0.05, 0.03, 1.0}});
+  const GaborLayer layer = tiling_layer({{4, 0.05, 0.03, 1.0}});
   constexpr std::size_t n = 128;
   const auto roughness = [](const std::vector<float>& t, std::size_t column) {
     double sum = 0.0;
@@ -85,7 +85,7 @@ TEST(GaborTiling, TheBorderIsNoSeam) {
 }
 
 TEST(GaborTiling, VarianceIsStatedWhateverThePeriod) {
-  const GaborLayer layer = layer_of({{3, 0.2, 0.1, 1.0}, {6, 0.05, 0.04, 1.0}, {6, 0.21, 0.01, 1.0}});
+  const GaborLayer layer = tiling_layer({{3, 0.2, 0.1, 1.0}, {6, 0.05, 0.04, 1.0}, {6, 0.21, 0.01, 1.0}});
   for (const int n : {48, 64, 100}) {
     double sum = 0.0;
     constexpr int kSeeds = 400;
@@ -98,10 +98,10 @@ TEST(GaborTiling, VarianceIsStatedWhateverThePeriod) {
 }
 
 TEST(GaborTiling, PeriodsTooSmallForTheLobesAreRefused) {
-  const GaborLayer narrow = layer_of({{12, 0.1, 0.1, 1.0}});
+  const GaborLayer narrow = tiling_layer({{12, 0.1, 0.1, 1.0}});
   EXPECT_THROW(synthesize_texture(narrow, 64, 64, {1, 0, 64, 64}), InputError);
   EXPECT_THROW(synthesize_texture(narrow, 1, 1, {1, 0, 1, 1}), InputError);
-  EXPECT_NO_THROW(synthesize_texture(layer_of({{1, 0.0, 0.0, 1.0}}), 8, 8, {1, 0, 8, 8}));
+  EXPECT_NO_THROW(synthesize_texture(tiling_layer({{1, 0.0, 0.0, 1.0}}), 8, 8, {1, 0, 8, 8}));
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ BoulderLayer random_boulders(CounterRandom& random) {
   return layer;
 }
 
-Recipe random_body(std::uint64_t seed) {
+Recipe random_boulder_body(std::uint64_t seed) {
   CounterRandom random(seed);
   Recipe recipe = testing::potato_recipe(20, seed, random.uniform(1.0, 8.0));
   if (seed % 3 == 0) recipe.body->warp = Warp{0.1, 3.0, 2};
@@ -144,7 +144,7 @@ Recipe random_body(std::uint64_t seed) {
 TEST(BoulderField, CulledBoxesHoldNoSurfaceAndBlocksGiveTheBitsOfTheField) {
   int culled = 0;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const ImplicitField field(random_body(seed));
+    const ImplicitField field(random_boulder_body(seed));
     CounterRandom random(seed + 100);
     const Box bounds = field.bounds();
     for (int b = 0; b < 300; ++b) {
@@ -176,7 +176,7 @@ TEST(BoulderField, CulledBoxesHoldNoSurfaceAndBlocksGiveTheBitsOfTheField) {
 
 TEST(BoulderField, MeshesAreClosedManifoldsAndTheSameForAnyThreads) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    testing::expect_closed_manifold_for_any_threads(random_body(seed));
+    testing::expect_closed_manifold_for_any_threads(random_boulder_body(seed));
   }
 }
 

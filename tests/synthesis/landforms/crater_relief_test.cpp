@@ -244,7 +244,7 @@ TEST(CraterRelief, BoundsOverBoxesAreNeverWrong) {
   EXPECT_GT(tight, 200);
 }
 
-Recipe random_body(std::uint64_t seed) {
+Recipe random_crater_body(std::uint64_t seed) {
   CounterRandom random(seed);
   Recipe recipe = testing::potato_recipe(20, seed, random.uniform(1.0, 8.0));
   if (seed % 3 == 0) recipe.body->warp = Warp{0.1, 3.0, 2};
@@ -258,7 +258,7 @@ Recipe random_body(std::uint64_t seed) {
 TEST(CraterRelief, CulledBoxesHoldNoSurface) {
   int culled = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const ImplicitField field(random_body(seed));
+    const ImplicitField field(random_crater_body(seed));
     CounterRandom random(seed + 100);
     const Box bounds = field.bounds();
     for (int b = 0; b < 400; ++b) {
@@ -282,7 +282,7 @@ TEST(CraterRelief, CulledBoxesHoldNoSurface) {
 
 TEST(CraterRelief, MeshesAreClosedManifoldsAndTheSameForAnyThreads) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    testing::expect_closed_manifold_for_any_threads(random_body(seed));
+    testing::expect_closed_manifold_for_any_threads(random_crater_body(seed));
   }
 }
 

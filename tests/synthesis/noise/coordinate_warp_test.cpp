@@ -7,11 +7,11 @@
 namespace astrolith {
 namespace {
 
-const Box kDomain{{-4, -4, -4}, {4, 4, 4}};
+const Box kWarpDomain{{-4, -4, -4}, {4, 4, 4}};
 
 struct LoneWarp {
   LoneWarp(const Warp& warp, std::uint32_t seed)
-      : tables(make_coordinate_warp(warp, seed, kDomain, arrays)) {}
+      : tables(make_coordinate_warp(warp, seed, kWarpDomain, arrays)) {}
 
   ArrayStore arrays;
   CoordinateWarp tables;

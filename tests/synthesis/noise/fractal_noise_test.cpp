@@ -16,7 +16,7 @@ namespace {
 
 constexpr Noise kNoises[] = {Noise::kSimplex, Noise::kPerlin, Noise::kWorleyF1, Noise::kWorleyF2,
                              Noise::kWorleyF2MinusF1};
-const Box kDomain{{-10, -10, -10}, {10, 10, 10}};
+const Box kFractalDomain{{-10, -10, -10}, {10, 10, 10}};
 
 struct Heights {
   std::vector<float> x, y, z, height;
@@ -46,8 +46,8 @@ FractalLayer random_layer(CounterRandom& random) {
 }
 
 TEST(FractalNoise, OneOctaveOfSimplexNoiseKeepsItsBits) {
-  const LoneNoise<FractalNoise> noise(testing::fractal_layer(0.5, 1.0, 1), 1, 0, kDomain);
-  const Heights h(noise, kDomain, 4096, 1);
+  const LoneNoise<FractalNoise> noise(testing::fractal_layer(0.5, 1.0, 1), 1, 0, kFractalDomain);
+  const Heights h(noise, kFractalDomain, 4096, 1);
   std::uint32_t checksum = 0;
   for (const float v : h.height) checksum = checksum * 31u + static_cast<std::uint32_t>(math::bits_of(v));
   EXPECT_EQ(checksum, 2811787874u);
@@ -65,7 +65,7 @@ TEST(FractalNoise, VectorsGiveTheBitsOfSinglePoints) {
   for (const auto& [noise, function] : kFunctions) {
     FractalLayer layer = testing::fractal_layer(1.0, 1.0, 1);
     layer.noise = noise;
-    const Heights h(LoneNoise<FractalNoise>(layer, 4, 0, kDomain), kDomain, 5000, 1);
+    const Heights h(LoneNoise<FractalNoise>(layer, 4, 0, kFractalDomain), kFractalDomain, 5000, 1);
     const std::uint32_t seed = hash_append(hash_seed(4, 0), 0);
     for (std::size_t i = 0; i < h.x.size(); ++i) {
       ASSERT_EQ(h.height[i], function(h.x[i], h.y[i], h.z[i], seed));
@@ -76,8 +76,8 @@ TEST(FractalNoise, VectorsGiveTheBitsOfSinglePoints) {
 TEST(FractalNoise, IsTheSumOfItsOctaves) {
   FractalLayer layer = testing::fractal_layer(0.8, 1.3, 3);
   layer.gain = 0.4;
-  const LoneNoise<FractalNoise> noise(layer, 5, 2, kDomain);
-  const Heights h(noise, kDomain, 500, 2);
+  const LoneNoise<FractalNoise> noise(layer, 5, 2, kFractalDomain);
+  const Heights h(noise, kFractalDomain, 500, 2);
   const std::uint32_t seed = hash_seed(5, 2);
   for (std::size_t i = 0; i < h.x.size(); ++i) {
     double sum = 0.0;
@@ -95,7 +95,7 @@ TEST(FractalNoise, VariancesOfOctavesAddUp) {
   FractalLayer layer = testing::fractal_layer(2.0, 3.0, 4);
   layer.noise = Noise::kPerlin;
   layer.bias = {0.3, 0.7, 0.1};
-  const Heights h(LoneNoise<FractalNoise>(layer, 9, 0, kDomain), kDomain, 200000, 3);
+  const Heights h(LoneNoise<FractalNoise>(layer, 9, 0, kFractalDomain), kFractalDomain, 200000, 3);
   double squares = 0.0, expected = 0.0;
   for (const float v : h.height) squares += static_cast<double>(v * v);
   for (int o = 0; o < 4; ++o) expected += std::pow(2.0 * 0.2605 * std::pow(0.5, o), 2);
@@ -104,11 +104,11 @@ TEST(FractalNoise, VariancesOfOctavesAddUp) {
 
 TEST(FractalNoise, ModulationSubduesSteepPlaces) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, 6);
-  const Heights plain(LoneNoise<FractalNoise>(layer, 1, 0, kDomain), kDomain, 5000, 4);
+  const Heights plain(LoneNoise<FractalNoise>(layer, 1, 0, kFractalDomain), kFractalDomain, 5000, 4);
   layer.gradient_modulation = 1e-9;
-  const Heights same(LoneNoise<FractalNoise>(layer, 1, 0, kDomain), kDomain, 5000, 4);
+  const Heights same(LoneNoise<FractalNoise>(layer, 1, 0, kFractalDomain), kFractalDomain, 5000, 4);
   layer.gradient_modulation = 0.3;
-  const Heights subdued(LoneNoise<FractalNoise>(layer, 1, 0, kDomain), kDomain, 5000, 4);
+  const Heights subdued(LoneNoise<FractalNoise>(layer, 1, 0, kFractalDomain), kFractalDomain, 5000, 4);
   double plain_squares = 0.0, subdued_squares = 0.0;
   for (std::size_t i = 0; i < plain.height.size(); ++i) {
     ASSERT_NEAR(plain.height[i], same.height[i], 1e-5);
@@ -123,7 +123,7 @@ TEST(FractalNoise, BoundsOverBoxesAreNeverWrong) {
   CounterRandom random(7);
   int tight = 0;
   for (int k = 0; k < 3000; ++k) {
-    const LoneNoise<FractalNoise> noise(random_layer(random), random.next(), 1, kDomain);
+    const LoneNoise<FractalNoise> noise(random_layer(random), random.next(), 1, kFractalDomain);
     const double size = std::pow(10.0, random.uniform(-3.0, 0.5));
     const Vec3d corner{random.uniform(-11, 10), random.uniform(-11, 10), random.uniform(-11, 10)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};
@@ -142,8 +142,8 @@ TEST(FractalNoise, BoundsOverBoxesAreNeverWrong) {
 TEST(FractalNoise, ChunksDoNotMatter) {
   CounterRandom random(8);
   for (int k = 0; k < 20; ++k) {
-    const LoneNoise<FractalNoise> noise(random_layer(random), 3, 1, kDomain);
-    const Heights h(noise, kDomain, 700, 5);
+    const LoneNoise<FractalNoise> noise(random_layer(random), 3, 1, kFractalDomain);
+    const Heights h(noise, kFractalDomain, 700, 5);
     for (std::size_t i = 0; i < h.x.size(); i += 13) {
       float alone = 0.0f;
       noise.evaluate(1, &h.x[i], &h.y[i], &h.z[i], &alone);

@@ -10,9 +10,9 @@
 namespace astrolith {
 namespace {
 
-const Box kDomain{{-100, -100, -100}, {100, 100, 100}};
+const Box kPhasorDomain{{-100, -100, -100}, {100, 100, 100}};
 
-PhasorLayer layer_of(PhasorProfile profile) {
+PhasorLayer phasor_layer(PhasorProfile profile) {
   PhasorLayer layer;
   layer.amplitude = 2.0;
   layer.frequency = 2.0;
@@ -39,7 +39,7 @@ Points scattered(int n) {
 TEST(PhasorNoise, PhasesAreUniform) {
   const Points p = scattered(40000);
   std::vector<float> turns(p.x.size());
-  const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kSine), 1, 0, kDomain);
+  const LoneNoise<PhasorNoise> noise(phasor_layer(PhasorProfile::kSine), 1, 0, kPhasorDomain);
   evaluate_phases(noise.noise(), p.size(), p.x.data(), p.y.data(), p.z.data(), turns.data());
   std::array<int, 16> count{};
   for (const float t : turns) {
@@ -55,7 +55,7 @@ TEST(PhasorNoise, ProfilesHaveTheirMeanVarianceAndRange) {
   const Points p = scattered(40000);
   const double variances[] = {0.5, 1.0 / 3.0, 1.0 / 3.0, 1.0};
   for (const PhasorProfile profile : kPhasorProfiles) {
-    const LoneNoise<PhasorNoise> noise(layer_of(profile), 2, 0, kDomain);
+    const LoneNoise<PhasorNoise> noise(phasor_layer(profile), 2, 0, kPhasorDomain);
     std::vector<float> height(p.x.size());
     noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), height.data());
     double sum = 0.0, squares = 0.0;
@@ -71,10 +71,10 @@ TEST(PhasorNoise, ProfilesHaveTheirMeanVarianceAndRange) {
 
 // The phase gains `frequency` turns per length unit along the direction of the kernels, and none across it.
 TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
-  PhasorLayer layer = layer_of(PhasorProfile::kSine);
+  PhasorLayer layer = phasor_layer(PhasorProfile::kSine);
   layer.direction = {0, 3, 4};
   layer.spread = 0.0;
-  const LoneNoise<PhasorNoise> noise(layer, 4, 0, kDomain);
+  const LoneNoise<PhasorNoise> noise(layer, 4, 0, kPhasorDomain);
   const auto gain = [&](const Vec3d& u) {
     const double h = 0.01;
     double sum = 0.0;
@@ -98,7 +98,7 @@ TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
 
 // Phasor noise with a sine profile reaches its full height in every wavelength. Gabor noise does not.
 TEST(PhasorNoise, ContrastNeverFades) {
-  const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kSine), 6, 0, kDomain);
+  const LoneNoise<PhasorNoise> noise(phasor_layer(PhasorProfile::kSine), 6, 0, kPhasorDomain);
   int full = 0, stretches = 0;
   for (double start = -90.0; start < 90.0; start += 0.6) {
     float highest = -2.0f, lowest = 2.0f;
@@ -116,7 +116,7 @@ TEST(PhasorNoise, ContrastNeverFades) {
 }
 
 TEST(PhasorNoise, BitsDependOnThePointAlone) {
-  const LoneNoise<PhasorNoise> noise(layer_of(PhasorProfile::kTriangle), 9, 1, kDomain);
+  const LoneNoise<PhasorNoise> noise(phasor_layer(PhasorProfile::kTriangle), 9, 1, kPhasorDomain);
   const Points p = scattered(301);
   std::vector<float> together(p.x.size());
   noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), together.data());

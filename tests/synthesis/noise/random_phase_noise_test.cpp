@@ -11,9 +11,9 @@
 namespace astrolith {
 namespace {
 
-const Box kDomain{{-100, -100, -100}, {100, 100, 100}};
+const Box kPhaseDomain{{-100, -100, -100}, {100, 100, 100}};
 
-RandomPhaseLayer layer_of(double randomness) {
+RandomPhaseLayer phase_layer(double randomness) {
   RandomPhaseLayer layer;
   layer.height_rms = 0.5;
   layer.cell_size = 2.0;
@@ -43,8 +43,8 @@ TEST(RandomPhaseNoise, HasItsMeanAndVarianceEverywhere) {
       double sum = 0.0, squares = 0.0, fourth = 0.0;
       constexpr int kSeeds = 4000;
       for (int seed = 0; seed < kSeeds; ++seed) {
-        const LoneNoise<RandomPhaseNoise> noise(layer_of(randomness), static_cast<std::uint64_t>(seed), 0,
-                                                kDomain);
+        const LoneNoise<RandomPhaseNoise> noise(phase_layer(randomness), static_cast<std::uint64_t>(seed), 0,
+                                                kPhaseDomain);
         const double h = height_at(noise, p) / 0.5;
         sum += h;
         squares += h * h;
@@ -61,7 +61,7 @@ TEST(RandomPhaseNoise, HasItsMeanAndVarianceEverywhere) {
 
 // All waves run along x. A line along x shows their spectrum, widened by the spectrum of the windows.
 TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
-  RandomPhaseLayer layer = layer_of(1.0);
+  RandomPhaseLayer layer = phase_layer(1.0);
   layer.waves = 48;
   layer.spread = 0.0;
   layer.direction = {2, 0, 0};
@@ -70,7 +70,7 @@ TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
   std::vector<double> power(kSamples / 2);
   std::vector<float> x(kSamples), y(kSamples), z(kSamples), height(kSamples);
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    const LoneNoise<RandomPhaseNoise> noise(layer, seed, 3, kDomain);
+    const LoneNoise<RandomPhaseNoise> noise(layer, seed, 3, kPhaseDomain);
     for (std::size_t i = 0; i < kSamples; ++i) {
       x[i] = static_cast<float>(kStep * (static_cast<double>(i) - 512.0));
       y[i] = z[i] = 0.37f;
@@ -102,9 +102,9 @@ TEST(RandomPhaseNoise, PowerLiesInItsBandAndIsFlatThere) {
 }
 
 TEST(RandomPhaseNoise, WithoutRandomnessWavesRunThroughAllCells) {
-  RandomPhaseLayer layer = layer_of(0.0);
+  RandomPhaseLayer layer = phase_layer(0.0);
   layer.waves = 1;
-  const LoneNoise<RandomPhaseNoise> noise(layer, 5, 0, kDomain);
+  const LoneNoise<RandomPhaseNoise> noise(layer, 5, 0, kPhaseDomain);
   const Wave& wave = waves_of(noise)[0];
   CounterRandom random(2);
   // Dividing by the sum of the windows, between 1 and sqrt 8, leaves exactly the wave.
@@ -117,11 +117,11 @@ TEST(RandomPhaseNoise, WithoutRandomnessWavesRunThroughAllCells) {
 }
 
 TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
-  RandomPhaseLayer layer = layer_of(1.0);
+  RandomPhaseLayer layer = phase_layer(1.0);
   layer.exponent = 2.0;
   layer.spread = 0.1;
   layer.direction = {0, -3, 0};
-  const LoneNoise<RandomPhaseNoise> noise(layer, 1, 0, kDomain);
+  const LoneNoise<RandomPhaseNoise> noise(layer, 1, 0, kPhaseDomain);
   ASSERT_EQ(waves_of(noise).size(), 12u);
   double variance = 0.0;
   const auto length = [](const Wave& w) { return norm(Vec3d{w.frequency.x, w.frequency.y, w.frequency.z}); };
@@ -135,7 +135,7 @@ TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
 }
 
 TEST(RandomPhaseNoise, BitsDependOnThePointAlone) {
-  const LoneNoise<RandomPhaseNoise> noise(layer_of(0.7), 9, 1, kDomain);
+  const LoneNoise<RandomPhaseNoise> noise(phase_layer(0.7), 9, 1, kPhaseDomain);
   CounterRandom random(4);
   std::vector<float> x, y, z, height(301);
   for (std::size_t i = 0; i < height.size(); ++i) {

@@ -8,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-const Box kDomain{{-50, -50, -50}, {50, 50, 50}};
+const Box kSparseDomain{{-50, -50, -50}, {50, 50, 50}};
 
 SparseLayer one_level(double probability) {
   SparseLayer layer;
@@ -76,7 +76,7 @@ TEST(SparseNoise, ShareOfCellsIsTheProbability) {
 
 // All cells are occupied by u in [0, 1). The mean of n is the mean of the values, since bumps add up to one.
 TEST(SparseNoise, BumpsAddUpToOne) {
-  const LoneNoise<SparseNoise> noise(one_level(1.0), 5, 0, kDomain);
+  const LoneNoise<SparseNoise> noise(one_level(1.0), 5, 0, kSparseDomain);
   CounterRandom random(2);
   double sum = 0.0;
   const int n = 4000;
@@ -93,7 +93,7 @@ TEST(SparseNoise, ThresholdCutsMostOfTheSurfaceFlat) {
   for (const bool merged : {false, true}) {
     layer.merged = merged;
     layer.threshold = 0.3;
-    const LoneNoise<SparseNoise> noise(layer, 5, 0, kDomain);
+    const LoneNoise<SparseNoise> noise(layer, 5, 0, kSparseDomain);
     CounterRandom random(3);
     int flat = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -117,7 +117,7 @@ TEST(SparseNoise, BoundsOverBoxesAreNeverWrongAndGroupsDoNotMatter) {
     layer.levels = 1 + static_cast<int>(random.below(4));
     layer.threshold = random.uniform();
     layer.merged = random.uniform() < 0.5;
-    const LoneNoise<SparseNoise> noise(layer, random.next(), 1, kDomain);
+    const LoneNoise<SparseNoise> noise(layer, random.next(), 1, kSparseDomain);
     const double size = layer.cell_size * std::pow(10.0, random.uniform(-2.0, 1.0));
     const Vec3d corner{random.uniform(-52, 50), random.uniform(-20, 20), random.uniform(-20, 20)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};

@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-const Box kDomain{{-50, -50, -50}, {50, 50, 50}};
+const Box kSpotDomain{{-50, -50, -50}, {50, 50, 50}};
 
 // The impulses of kind k whose spots may reach the box.
 std::vector<SpotImpulse> impulses_reaching(const LoneNoise<SpotNoise>& noise, std::uint32_t k,
@@ -41,7 +41,7 @@ constexpr int kSide = 40;  // cells
 std::vector<int> counts_by_cell(const SpotLayer& layer) {
   const Box box{{0, 0, 0}, {kSide, kSide, kSide}};
   std::vector<int> counts(kSide * kSide * kSide);
-  for (const SpotImpulse& p : impulses_reaching(LoneNoise<SpotNoise>(layer, 3, 1, kDomain), 0, box)) {
+  for (const SpotImpulse& p : impulses_reaching(LoneNoise<SpotNoise>(layer, 3, 1, kSpotDomain), 0, box)) {
     const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y)),
               z = static_cast<int>(std::floor(p.z));
     if (x < 0 || y < 0 || z < 0 || x >= kSide || y >= kSide || z >= kSide) continue;
@@ -91,7 +91,7 @@ TEST(SpotNoise, ProbabilityThinsCellsAndReachSpreadsImpulses) {
   layer.reach = 1.0;
   double total = 0.0, left_half = 0.0, weight = 0.0;
   const Box box{{-5, -5, -5}, {5, 5, 5}};
-  for (const SpotImpulse& p : impulses_reaching(LoneNoise<SpotNoise>(layer, 3, 1, kDomain), 0, box)) {
+  for (const SpotImpulse& p : impulses_reaching(LoneNoise<SpotNoise>(layer, 3, 1, kSpotDomain), 0, box)) {
     total += 1.0;
     left_half += p.x - std::floor(p.x) < 0.5f;
     weight += static_cast<double>(p.weight);
@@ -112,9 +112,9 @@ TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
   layer.gamma = 0.5;
   layer.variances = {1.0, 2.0, 0.5};
   layer.sigma = 6.0;
-  const LoneNoise<SpotNoise> noise(layer, 8, 0, kDomain);
+  const LoneNoise<SpotNoise> noise(layer, 8, 0, kSpotDomain);
   layer.inverted = true;
-  const LoneNoise<SpotNoise> boulders(layer, 8, 0, kDomain);
+  const LoneNoise<SpotNoise> boulders(layer, 8, 0, kSpotDomain);
   const SpotImpulse spot = impulses_reaching(noise, 0, {{0, 0, 0}, {20, 20, 20}}).front();
   CounterRandom random(1);
   int within = 0;
@@ -140,7 +140,7 @@ TEST(SpotNoise, SizesOnASurfaceFollowTheExponent) {
     layer.size = 0.4;
     layer.layers = 4;
     layer.exponent = exponent;
-    const LoneNoise<SpotNoise> noise(layer, 5, 0, kDomain);
+    const LoneNoise<SpotNoise> noise(layer, 5, 0, kSpotDomain);
     double slope = 0.0, error = 0.0;
     std::vector<double> count;
     for (std::uint32_t j = 0; j < noise.noise().kinds.count; ++j) {
@@ -199,7 +199,7 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
   int tight = 0;
   for (int k = 0; k < 800; ++k) {
     const SpotLayer layer = random_layer(random);
-    const LoneNoise<SpotNoise> noise(layer, random.next(), 1, kDomain);
+    const LoneNoise<SpotNoise> noise(layer, random.next(), 1, kSpotDomain);
     const double size = layer.size * std::pow(10.0, random.uniform(-2.5, 0.5));
     const Vec3d corner{random.uniform(-52, 50), random.uniform(-20, 20), random.uniform(-20, 20)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};
@@ -222,7 +222,7 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
 TEST(SpotNoise, GroupsDoNotMatter) {
   CounterRandom random(9);
   for (int k = 0; k < 20; ++k) {
-    const LoneNoise<SpotNoise> noise(random_layer(random), 4, 0, kDomain);
+    const LoneNoise<SpotNoise> noise(random_layer(random), 4, 0, kSpotDomain);
     const double spread = std::pow(10.0, random.uniform(-1.0, 1.5));
     std::vector<float> x, y, z, h(300);
     for (std::size_t i = 0; i < h.size(); ++i) {
@@ -244,12 +244,12 @@ TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
   layer.kappa = -0.4;
   layer.gamma = 0.5;
   layer.parts = {{{1, 0, 0}, {2, 0.5, 1}, {0, 0, 30}, 0.75}, {{0, -2, 1}, {1, 1, 3}, {90, 0, 0}, -1.0}};
-  const LoneNoise<SpotNoise> noise(layer, 8, 0, kDomain);
+  const LoneNoise<SpotNoise> noise(layer, 8, 0, kSpotDomain);
   ASSERT_EQ(noise.noise().kinds.count, 2);
   SpotLayer plain = layer;
   plain.parts.clear();
   const SpotImpulse spot =
-      impulses_reaching(LoneNoise<SpotNoise>(plain, 8, 0, kDomain), 0, {{0, 0, 0}, {20, 20, 20}}).front();
+      impulses_reaching(LoneNoise<SpotNoise>(plain, 8, 0, kSpotDomain), 0, {{0, 0, 0}, {20, 20, 20}}).front();
   const auto kernel = [](const Vec3d& q) {
     const double q2 = squared_norm(q);
     return q2 <= 4.0 ? std::exp(-1.5 * q2) - 0.4 * std::exp(-10 * std::pow(std::log(0.5 * q2), 2)) : 0.0;
@@ -276,7 +276,7 @@ TEST(SpotNoise, AnEvenLatticeRepeats) {
   layer.reach = -0.5;
   layer.least_weight = 1.0;
   layer.lattice = {{1, 0, 0}, {0.5, 0.75, 0}, {0.25, 0, 1.25}};
-  const LoneNoise<SpotNoise> noise(layer, 5, 0, kDomain);
+  const LoneNoise<SpotNoise> noise(layer, 5, 0, kSpotDomain);
   CounterRandom random(2);
   double lowest = 0.0;
   for (int i = 0; i < 300; ++i) {
@@ -312,7 +312,7 @@ TEST(SpotNoise, DenseSpotsAreTheSameTogetherAndOneByOne) {
   layer.layers = 3;
   layer.reach = 0.5;
   layer.kappa = -0.5;
-  const LoneNoise<SpotNoise> noise(layer, 3, 1, kDomain);
+  const LoneNoise<SpotNoise> noise(layer, 3, 1, kSpotDomain);
   CounterRandom random(4);
   std::vector<float> x, y, z, height(700);
   for (std::size_t i = 0; i < height.size(); ++i) {
@@ -328,20 +328,20 @@ TEST(SpotNoise, DenseSpotsAreTheSameTogetherAndOneByOne) {
 
 TEST(SpotNoise, DrawsAtAPointAreCounted) {
   SpotLayer layer = small_spots(60.0);
-  const LoneNoise<SpotNoise> one(layer, 3, 1, kDomain);
+  const LoneNoise<SpotNoise> one(layer, 3, 1, kSpotDomain);
   const double draws = draws_at_a_point(one.noise(), one.arrays());
   EXPECT_GE(draws, 61.0);  // those of the point's own cell
   EXPECT_LE(draws, 27.0 * 61.0);
   layer.layers = 12;
   layer.lacunarity = 1.1;
-  const LoneNoise<SpotNoise> twelve(layer, 3, 1, kDomain);
+  const LoneNoise<SpotNoise> twelve(layer, 3, 1, kSpotDomain);
   EXPECT_NEAR(draws_at_a_point(twelve.noise(), twelve.arrays()), 12.0 * draws, 1e-6 * draws);
 }
 
 TEST(SpotNoise, NoDensityNoSpots) {
-  EXPECT_TRUE(
-      impulses_reaching(LoneNoise<SpotNoise>(small_spots(0.0), 3, 1, kDomain), 0, {{-9, -9, -9}, {9, 9, 9}})
-          .empty());
+  EXPECT_TRUE(impulses_reaching(LoneNoise<SpotNoise>(small_spots(0.0), 3, 1, kSpotDomain), 0,
+                                {{-9, -9, -9}, {9, 9, 9}})
+                  .empty());
 }
 
 }  // namespace
