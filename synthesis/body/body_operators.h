@@ -80,8 +80,8 @@ struct BodySample {
 
 // The combination of two samples. Its gradient is the sum of the operands' gradients, weighted by the partial
 // derivatives of the operator. Central differences with a step that suits floats give these derivatives.
-ASTROLITH_HD inline BodySample combined(const OperatorParameters<float>& o, const BodySample& a,
-                                        const BodySample& b) {
+ASTROLITH_KERNEL BodySample combined(const OperatorParameters<float>& o, const BodySample& a,
+                                     const BodySample& b) {
   const float f = a.distance, g = b.distance;
   const float h = 1e-3f * larger(math::abs(f), math::abs(g)) + 1e-20f;
   const float first = (combined(o, f + h, g) - combined(o, f - h, g)) / (2.0f * h);

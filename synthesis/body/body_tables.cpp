@@ -106,6 +106,17 @@ std::span<const MetaballSphere<float>> spheres_of(const LeafLists& lists, std::u
   return {lists.spheres + lists.first[leaf], lists.first[leaf + 1] - lists.first[leaf]};
 }
 
+ASTROLITH_SIMD_CLONES void divide_by_lengths(float floor, int n, float* __restrict gx, float* __restrict gy,
+                                             float* __restrict gz) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const float length = gradient_length(gx[i], gy[i], gz[i], floor);
+    gx[i] /= length;
+    gy[i] /= length;
+    gz[i] /= length;
+  }
+}
+
 // Evaluates a leaf as an operand of operations: its gradients are divided by their lengths.
 void evaluate_operand(const BodyLeaf& leaf, const ArrayView& arrays,
                       std::span<const MetaballSphere<float>> spheres, int n, const float* x, const float* y,
@@ -119,26 +130,29 @@ void evaluate_operand(const BodyLeaf& leaf, const ArrayView& arrays,
   } else {
     evaluate_metaballs(metaballs, n, x, y, z, out.at(0), gx, gy, gz);
   }
-  for (int i = 0; i < n; ++i) {
-    const float length = gradient_length(gx[i], gy[i], gz[i], leaf.metaballs.gradient_floor);
-    gx[i] /= length;
-    gy[i] /= length;
-    gz[i] /= length;
-  }
+  divide_by_lengths(leaf.metaballs.gradient_floor, n, gx, gy, gz);
 }
 
 // Replaces the distances and gradients of `body` by those of its combination with `other`.
-void combine(const OperatorParameters<float>& o, int n, Columns& body, Columns& other) {
-  float *distance = body.at(0), *gx = body.at(1), *gy = body.at(2), *gz = body.at(3);
-  const float *g = other.at(0), *ox = other.at(1), *oy = other.at(2), *oz = other.at(3);
+ASTROLITH_SIMD_CLONES void combine(const OperatorParameters<float>& parameters, int n,
+                                   float* __restrict distance, float* __restrict gx, float* __restrict gy,
+                                   float* __restrict gz, const float* __restrict other,
+                                   const float* __restrict ox, const float* __restrict oy,
+                                   const float* __restrict oz) {
+  const OperatorParameters<float> o = parameters;
+#pragma omp simd
   for (int i = 0; i < n; ++i) {
     const BodySample both =
-        combined(o, BodySample{distance[i], gx[i], gy[i], gz[i]}, BodySample{g[i], ox[i], oy[i], oz[i]});
+        combined(o, BodySample{distance[i], gx[i], gy[i], gz[i]}, BodySample{other[i], ox[i], oy[i], oz[i]});
     distance[i] = both.distance;
     gx[i] = both.gx;
     gy[i] = both.gy;
     gz[i] = both.gz;
   }
+}
+void combine(const OperatorParameters<float>& o, int n, Columns& body, Columns& other) {
+  combine(o, n, body.at(0), body.at(1), body.at(2), body.at(3), other.at(0), other.at(1), other.at(2),
+          other.at(3));
 }
 
 }  // namespace

@@ -27,6 +27,14 @@ struct GaborGround {
 
 using GaborCell = std::array<int, 3>;
 
+// The centres of cells, and the distance and gradient of the body there.
+struct GaborCellCenters {
+  std::vector<float> x, y, z, distance, gx, gy, gz;
+
+  // Replaces the centres by those of other cells, in the same memory.
+  void find(std::span<const GaborCell> cells, const SurfaceBand& band, const GaborGround& ground);
+};
+
 // The impulses of the given cells, in the order of the cells. The tangent frame of a cell is that of the
 // level set of the body through the centre of the cell.
 std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,

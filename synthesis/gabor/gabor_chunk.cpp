@@ -123,6 +123,16 @@ ASTROLITH_SIMD_CLONES float sum_of(const float* kernel, float amplitude, float s
 
 }  // namespace
 
+void set_lane(const GaborImpulse& impulse, std::size_t lane, ImpulseChunk& chunk) {
+  std::array<float, ImpulseChunk::kMembers> members;
+  std::memcpy(members.data(), &impulse, sizeof members);
+  for (std::size_t k = 0; k < members.size(); ++k) chunk.members[k * kLanes + lane] = members[k];
+}
+
+void empty_lanes(std::size_t first, ImpulseChunk& chunk) {
+  for (std::size_t lane = first; lane < kLanes; ++lane) set_lane(nowhere(), lane, chunk);
+}
+
 std::vector<ImpulseChunk> make_chunks(std::span<const GaborImpulse> impulses, double a) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::vector<ImpulseChunk> chunks((impulses.size() + kLanes - 1) / kLanes);
@@ -133,9 +143,7 @@ std::vector<ImpulseChunk> make_chunks(std::span<const GaborImpulse> impulses, do
       const std::size_t j = c * kLanes + i;
       const GaborImpulse impulse = j < impulses.size() ? impulses[j] : nowhere();
       if (j < impulses.size()) extend(impulse, a, chunks[c]);
-      std::array<float, ImpulseChunk::kMembers> members;
-      std::memcpy(members.data(), &impulse, sizeof members);
-      for (std::size_t k = 0; k < members.size(); ++k) chunks[c].members[k * kLanes + i] = members[k];
+      set_lane(impulse, i, chunks[c]);
     }
   }
   return chunks;
@@ -165,14 +173,14 @@ void add_to_group(std::span<const ImpulseLane> lanes, float amplitude, const flo
   }
 }
 
-void add_at_point(std::span<const ImpulseChunk* const> chunks, float amplitude, float x, float y, float z,
+void add_at_point(std::span<const ImpulseChunk> chunks, float amplitude, float x, float y, float z,
                   const HeightSums& sums) {
   std::array<float, kLanes> value, sx, sy, sz;
-  for (const ImpulseChunk* chunk : chunks) {
+  for (const ImpulseChunk& chunk : chunks) {
     if (sums.slope_x == nullptr) {
-      values_at_point(*chunk, x, y, z, value.data());
+      values_at_point(chunk, x, y, z, value.data());
     } else {
-      slopes_at_point(*chunk, x, y, z, value.data(), sx.data(), sy.data(), sz.data());
+      slopes_at_point(chunk, x, y, z, value.data(), sx.data(), sy.data(), sz.data());
       *sums.slope_x = sum_of(sx.data(), amplitude, *sums.slope_x);
       *sums.slope_y = sum_of(sy.data(), amplitude, *sums.slope_y);
       *sums.slope_z = sum_of(sz.data(), amplitude, *sums.slope_z);

@@ -24,6 +24,11 @@ struct ImpulseChunk {
   std::array<float, 3> low, high;
 };
 
+// Puts an impulse into a lane of a chunk, 0 .. kLanes - 1. The box of the chunk stays as it is.
+void set_lane(const GaborImpulse& impulse, std::size_t lane, ImpulseChunk& chunk);
+// Fills the lanes from `first` on with impulses whose kernels are 0 at every possible point.
+void empty_lanes(std::size_t first, ImpulseChunk& chunk);
+
 // The impulses in chunks, in the given order. `a` is their bandwidth, cycles per length unit.
 std::vector<ImpulseChunk> make_chunks(std::span<const GaborImpulse> impulses, double a);
 
@@ -62,7 +67,7 @@ void add_to_group(std::span<const ImpulseLane> lanes, float amplitude, const flo
 
 // Adds amplitude times each kernel of whole chunks to the sums at one point. The bits are those of
 // add_to_group().
-void add_at_point(std::span<const ImpulseChunk* const> chunks, float amplitude, float x, float y, float z,
+void add_at_point(std::span<const ImpulseChunk> chunks, float amplitude, float x, float y, float z,
                   const HeightSums& sums);
 
 }  // namespace astrolith

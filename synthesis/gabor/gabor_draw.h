@@ -83,14 +83,12 @@ ASTROLITH_HD inline GaborImpulse gabor_impulse(float a, const Vec3f& p, const Ta
           phase};
 }
 
-// Calls visit(impulse) for the impulses of one cell. The centre of the cell lies `height` length units
-// outside the surface of a body whose field grows along `inward` there.
+// Calls visit(impulse) for the impulses of one cell, whose tangent frame is given. The centre of the cell
+// lies `height` length units outside the surface of a body.
 template <typename Visit>
 ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeShare* lobes,
                                          std::uint32_t num_lobes, int cx, int cy, int cz, float height,
-                                         const Vec3f& inward, Visit&& visit) {
-  if (math::abs(height) > band.farthest + band.cell) return;
-  const TangentFrame frame = tangent_frame(inward);
+                                         const TangentFrame& frame, Visit&& visit) {
   const Vec3f center = gabor_cell_center(band, cx, cy, cz);
   const std::int64_t* first = band.first_cell;
   const std::uint32_t cell_hash = hash_wide_cell(band.seed, first[0] + cx, first[1] + cy, first[2] + cz);
@@ -104,6 +102,20 @@ ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeS
     const GaborLobeShare& lobe = drawn_lobe(lobes, num_lobes, static_cast<float>(bits >> 16) * 0x1p-16f);
     visit(gabor_impulse(band.a, p, frame, lobe, static_cast<float>(bits & 0xffffu) * 0x1p-16f));
   }
+}
+
+// Whether a cell is too far from the surface for all its impulses. `height` is that of its centre.
+ASTROLITH_HD inline bool is_far_gabor_cell(const GaborDraw& band, float height) {
+  return math::abs(height) > band.farthest + band.cell;
+}
+
+// The same for a cell at whose centre the field of the body grows along `inward`.
+template <typename Visit>
+ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeShare* lobes,
+                                         std::uint32_t num_lobes, int cx, int cy, int cz, float height,
+                                         const Vec3f& inward, Visit&& visit) {
+  if (is_far_gabor_cell(band, height)) return;
+  for_each_gabor_impulse(band, lobes, num_lobes, cx, cy, cz, height, tangent_frame(inward), visit);
 }
 
 // Slack factor for the rounding of positions and frames to float.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "synthesis/gabor/gabor_point_impulses.h"
+
 namespace astrolith {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr int kCluster = 4 * kGroup;
 // Points whose boxes have more cells than this are split, so that memory is bounded.
 constexpr std::int64_t kMostCells = 1 << 17;
 // If a range of points has at most this many cells per point, the impulses of all these cells are drawn once,
-// in tiles that are kept and shared. Otherwise only the cells around each point are drawn.
+// in tiles that are kept and shared. Otherwise the impulses are drawn for each point by itself.
 constexpr std::int64_t kCellsPerPoint = 300;
 
 // The cells whose impulses may reach a point of the box.
@@ -43,9 +45,6 @@ struct TileRange {
     return {first[0] + i % count[0], first[1] + i / count[0] % count[1],
             first[2] + i / (count[0] * count[1])};
   }
-  std::size_t number(int tx, int ty, int tz) const {
-    return static_cast<std::size_t>(((tz - first[2]) * count[1] + ty - first[1]) * count[0] + tx - first[0]);
-  }
 
   std::array<int, 3> first, count;
 };
@@ -57,19 +56,6 @@ HeldTiles whole_tiles(const GaborTiles& tiles, const TileRange& range) {
   held.reserve(range.size());
   for (std::size_t i = 0; i < range.size(); ++i) held.push_back(tiles.tile(range.index(i)));
   return held;
-}
-
-void mark(const CellRange& cells, const TileRange& range, std::vector<TileCells>& marks) {
-  for (int z = cells.first[2]; z <= cells.last[2]; ++z) {
-    for (int y = cells.first[1]; y <= cells.last[1]; ++y) {
-      for (int x = cells.first[0]; x <= cells.last[0]; ++x) {
-        const int tx = gabor_tile_of(x), ty = gabor_tile_of(y), tz = gabor_tile_of(z);
-        const int bit =
-            ((z - tz * kTileCells) * kTileCells + y - ty * kTileCells) * kTileCells + x - tx * kTileCells;
-        marks[range.number(tx, ty, tz)] |= TileCells{1} << bit;
-      }
-    }
-  }
 }
 
 using Chunks = std::vector<const ImpulseChunk*>;
@@ -86,7 +72,7 @@ void narrow(const Chunks& chunks, const PointBox& box, Chunks& kept) {
 void find_chunks(const HeldTiles& tiles, const PointBox& box, Chunks& chunks) {
   chunks.clear();
   for (const auto& tile : tiles) {
-    if (tile == nullptr || !overlap(box, tile->low, tile->high)) continue;
+    if (!overlap(box, tile->low, tile->high)) continue;
     for (const ImpulseChunk& chunk : tile->chunks) {
       if (overlap(box, chunk.low, chunk.high)) chunks.push_back(&chunk);
     }
@@ -179,7 +165,7 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
   } else if (whole_groups(begin, end) && range.cells() <= kCellsPerPoint * (end - begin)) {
     add_to_dense(tiles, range, begin, end);
   } else {
-    add_to_scattered(tiles, range, begin, end);
+    add_to_scattered(tiles, begin, end);
   }
 }
 
@@ -202,25 +188,12 @@ void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& 
   }
 }
 
-void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, const CellRange& range, int begin,
-                                          int end) {
-  const TileRange tile_range(range);
-  HeldTiles held;
-  std::vector<TileCells> marks(tile_range.size());
-  for (int i = begin; i < end; ++i) mark(cells_around(tiles.band(), box_of(i, i + 1)), tile_range, marks);
-  held.resize(marks.size());
-  for (std::size_t t = 0; t < marks.size(); ++t) {
-    if (marks[t] != 0) held[t] = tiles.draw(tile_range.index(t), marks[t]);
-  }
-  Chunks cluster_chunks, point_chunks;
-  for (int cluster = begin; cluster < end; cluster += kCluster) {
-    const int cluster_end = std::min(cluster + kCluster, end);
-    find_chunks(held, box_of(cluster, cluster_end), cluster_chunks);
-    for (int i = cluster; i < cluster_end; ++i) {
-      const auto p = static_cast<std::size_t>(i);
-      narrow(cluster_chunks, box_of(i, i + 1), point_chunks);
-      add_at_point(point_chunks, tiles.band().amplitude, x_[p], y_[p], z_[p], sums_from(i));
-    }
+void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, int begin, int end) {
+  GaborPointImpulses impulses(tiles.band(), tiles.ground());
+  for (int i = begin; i < end; ++i) {
+    const auto p = static_cast<std::size_t>(i);
+    add_at_point(impulses.around(x_[p], y_[p], z_[p]), tiles.band().amplitude, x_[p], y_[p], z_[p],
+                 sums_from(i));
   }
 }
 

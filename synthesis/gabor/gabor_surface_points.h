@@ -38,7 +38,7 @@ class GaborSurfacePoints {
   HeightSums sums_from(int begin);
   bool whole_groups(int begin, int end) const;
   void add_band(const GaborTiles& tiles, int begin, int end);
-  void add_to_scattered(const GaborTiles& tiles, const CellRange& range, int begin, int end);
+  void add_to_scattered(const GaborTiles& tiles, int begin, int end);
   void add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end);
 
   std::vector<int> index_;                    // number of each point before sorting

@@ -44,7 +44,7 @@ std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& inde
     const auto known = shelf.tiles.find(key);
     if (known != shelf.tiles.end()) return known->second;
   }
-  const std::shared_ptr<const GaborTile> made = draw(index, kWholeTile);
+  const std::shared_ptr<const GaborTile> made = draw(index);
   const std::lock_guard lock(shelf.mutex);
   const auto [place, is_new] = shelf.tiles.emplace(key, made);
   if (!is_new) return place->second;  // another thread was faster
@@ -61,10 +61,9 @@ std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& inde
   return made;
 }
 
-std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& index, TileCells wanted) const {
+std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& index) const {
   std::vector<GaborCell> cells;
   for (int i = 0; i < kTileCells * kTileCells * kTileCells; ++i) {
-    if ((wanted >> i & 1u) == 0) continue;
     cells.push_back({index[0] * kTileCells + i % kTileCells,
                      index[1] * kTileCells + i / kTileCells % kTileCells,
                      index[2] * kTileCells + i / (kTileCells * kTileCells)});

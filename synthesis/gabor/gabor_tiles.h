@@ -21,10 +21,6 @@ struct GaborTile {
   std::array<float, 3> low, high;
 };
 
-// A set of cells of a tile: bit (z * kTileCells + y) * kTileCells + x stands for the cell (x, y, z).
-using TileCells = std::uint64_t;
-inline constexpr TileCells kWholeTile = ~TileCells{0};
-
 // The kept tiles of one band. They lie on shelves with a lock each, so that threads seldom wait for each
 // other.
 struct GaborTileCache {
@@ -58,14 +54,14 @@ class GaborTiles {
       : band_(band), ground_(ground), cache_(cache) {}
 
   const SurfaceBand& band() const { return band_; }
+  const GaborGround& ground() const { return ground_; }
 
   // The tile whose first cell is kTileCells times the index. It is drawn unless the cache holds it.
   std::shared_ptr<const GaborTile> tile(const std::array<int, 3>& index) const;
 
-  // The tile with the impulses of the given cells only. It is drawn anew, and not kept.
-  std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index, TileCells cells) const;
-
  private:
+  std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index) const;
+
   const SurfaceBand& band_;
   const GaborGround& ground_;
   const GaborTileCache& cache_;
