@@ -143,7 +143,7 @@ struct GaborLayer {
   LayerUse use;
   double pixel_size = 1.0;       // length units per exemplar pixel, > 0
   double height_rms = 0.0;       // length units, >= 0; a photo does not show it, so the user states it
-  int impulses_per_kernel = 32;  // expected impulses under one kernel, for each bandwidth, 1 .. 1024
+  int impulses_per_kernel = 32;  // mean number of impulses under one kernel, for each bandwidth, 1 .. 1024
   double exemplar_mean = 0.0;    // mean grey value, full scale = 1
   double exemplar_rms = 0.0;     // standard deviation of grey values after the fit's preprocessing, >= 0
   std::optional<LayerColor> color;

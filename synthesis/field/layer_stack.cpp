@@ -31,6 +31,8 @@ std::vector<float> elevations_at(const FieldModel& model, std::span<const Vec3d>
 
 // A point takes about 0.1 ms where the spots of all layers take as many draws.
 constexpr double kMostSpotDraws = 8192.0;
+// A point far from all others takes about 0.1 ms where the Gabor layers take as many draws.
+constexpr double kMostGaborDraws = 65536.0;
 
 // Adds a recipe's layers to the field model in the recipe's order.
 class LayerStack {
@@ -81,6 +83,7 @@ class LayerStack {
     if (!(layer.height_rms > 0.0)) return;  // a layer of colour alone has no height
     const GaborSurfaceNoise noise =
         make_noise(layer, recipe_.seed, number_of(layer), supports_, model_.arrays);
+    check_work(layer);
     push(layer, noise, add_lists(noise.bands.count, model_.gabor_lists));
     model_.gabor_caches.resize(model_.gabor_lists.size());
   }
@@ -173,12 +176,23 @@ class LayerStack {
     const NoiseFrame whole(Box{{}, {}});
     const SpotNoise noise = make_noise(layer, recipe_.seed, number_of(layer), whole, discarded);
     spot_draws_ += draws_at_a_point(noise, discarded.view());
-    if (spot_draws_ <= kMostSpotDraws) return;
+    expect_few_draws("density: these spots", spot_draws_, kMostSpotDraws,
+                     "lower density, layers or size, or use larger cells or fewer parts");
+  }
+  // Throws InputError where the Gabor layers so far take too long to compute, with all bands of this layer.
+  void check_work(const GaborLayer& layer) {
+    ArrayStore discarded;
+    const GaborSurfaceNoise noise = make_noise(layer, recipe_.seed, number_of(layer), Box{{}, {}}, discarded);
+    gabor_draws_ += draws_at_a_point(noise, discarded.view());
+    expect_few_draws("impulses_per_kernel: these impulses", gabor_draws_, kMostGaborDraws,
+                     "lower impulses_per_kernel, or use lobes of fewer bandwidths");
+  }
+  void expect_few_draws(const std::string& what, double draws, double most, const std::string& remedy) const {
+    if (draws <= most) return;
     const auto whole_number = [](double v) { return std::to_string(std::llround(v)); };
-    throw InputError(place_of(index_) + ".density: these spots, with those of earlier layers, take " +
-                     whole_number(spot_draws_) + " random draws at each point, at most " +
-                     whole_number(kMostSpotDraws) +
-                     " are allowed; lower density, layers or size, or use larger cells or fewer parts");
+    throw InputError(place_of(index_) + "." + what + ", with those of earlier layers, take " +
+                     whole_number(draws) + " random draws at each point, at most " + whole_number(most) +
+                     " are allowed; " + remedy);
   }
 
   // The noise of a layer in a frame with an origin of its own.
@@ -352,8 +366,8 @@ class LayerStack {
   Vec3d displaced_;           // bound of the displacement of later layers along each axis, length units
   std::map<int, int> slots_;  // slot of the kept heights of each masking layer
   std::vector<PatchLayer> patch_layers_;
-  double spot_draws_ = 0.0;          // by draws_at_a_point()
-  std::optional<BareSurface> bare_;  // made for the first layer that needs it
+  double spot_draws_ = 0.0, gabor_draws_ = 0.0;  // by draws_at_a_point()
+  std::optional<BareSurface> bare_;              // made for the first layer that needs it
   int index_ = 0;
 };
 

@@ -114,6 +114,15 @@ double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double 
   return cells;
 }
 
+double draws_at_a_point(const GaborSurfaceNoise& noise, const ArrayView& arrays) {
+  double draws = 0.0;
+  for (const SurfaceBand& band : arrays.span(noise.bands)) {
+    const double across = 2.0 * double{band.reach} / double{band.cell} + 1.0;
+    draws += band.impulses_per_cell * portable::whole_power(across, 3);
+  }
+  return draws;
+}
+
 void evaluate_heights(const GaborSurfaceNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height) {
   add_bands(noise, ground, caches, n, x, y, z, false).store_heights(height);

@@ -62,6 +62,9 @@ GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int la
 // units.
 double cells_of(const GaborSurfaceNoise& noise, const ArrayView& arrays, double side);
 
+// The number of impulses that the cells around one point hold, in all bands.
+double draws_at_a_point(const GaborSurfaceNoise& noise, const ArrayView& arrays);
+
 // The height at a point of the bare surface, length units, from lists of impulses: band b has
 // impulses[first[b]] to impulses[first[b + 1] - 1].
 ASTROLITH_HD inline float height_at(const GaborSurfaceNoise& n, const ArrayView& arrays,

@@ -398,6 +398,23 @@ TEST_F(Synth, SpotsThatTakeTooLongAreRefused) {
                         "layers[0].density: these spots");
 }
 
+TEST_F(Synth, GaborLayersThatTakeTooLongAreRefused) {
+  std::string lobes;
+  for (int bandwidth = 1; bandwidth <= 12; ++bandwidth)
+    lobes += (bandwidth > 1 ? ", [" : "[") + std::to_string(bandwidth) + ", 0.1, 0.2, 1]";
+  const auto recipe = [&](const std::string& impulses) {
+    return R"({"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]},
+      "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.01, "impulses_per_kernel": )" +
+           impulses + R"(, "lobes": [)" + lobes + "]}]}";
+  };
+  expect_recipe_refused(recipe("1024"),
+                        "layers[0].impulses_per_kernel: these impulses, with those of earlier "
+                        "layers, take 520034");
+  const testing::Outcome made = run_program(kSynth, {folder_.write("r.json", recipe("32")), "-o",
+                                                     (folder_ / "m.ply").string(), "--resolution", "16"});
+  EXPECT_EQ(made.status, 0) << made.errors;
+}
+
 TEST_F(Synth, PredictionWritesNothing) {
   const std::string summary = (folder_ / "s.json").string();
   const testing::Outcome outcome =
