@@ -35,24 +35,59 @@ std::size_t nearest_sphere(std::span<const Sphere> spheres, const Vec3d& p) {
   return nearest;
 }
 
-InnerPoints inner_points(const ImplicitField& field, std::span<const Sphere> spheres, const Box& bounds,
-                         double step, int plane) {
-  InnerPoints inner;
-  const double z = bounds.min.z + (plane + 0.5) * step;
-  std::vector<float> x, y, zs, value;
-  for (double py = bounds.min.y + 0.5 * step; py < bounds.max.y; py += step) {
-    for (double px = bounds.min.x + 0.5 * step; px < bounds.max.x; px += step) {
-      x.push_back(static_cast<float>(px));
-      y.push_back(static_cast<float>(py));
+// A square of points of a plane, numbered from (x, y) on. Its points lie close together, so that it needs few
+// impulses at once and may be proved to lie inside or outside.
+constexpr int kSquare = 8;
+struct Square {
+  int x, y, end_x, end_y;
+};
+
+// Marks the points of a square that lie inside. Only the sign of the field matters.
+void mark_inside(const FieldBlock& plane, const Square& square, std::span<const float> xs,
+                 std::span<const float> ys, float z, double step, std::vector<char>& inside) {
+  std::vector<float> x, y;
+  std::vector<std::size_t> number;
+  Box box;
+  for (int iy = square.y; iy < square.end_y; ++iy) {
+    for (int ix = square.x; ix < square.end_x; ++ix) {
+      x.push_back(xs[static_cast<std::size_t>(ix)]);
+      y.push_back(ys[static_cast<std::size_t>(iy)]);
+      number.push_back(static_cast<std::size_t>(iy) * xs.size() + static_cast<std::size_t>(ix));
+      box.extend({x.back(), y.back(), z});
     }
   }
-  zs.assign(x.size(), static_cast<float>(z));
-  value.resize(x.size());
-  const Box slab{{bounds.min.x, bounds.min.y, z - step}, {bounds.max.x, bounds.max.y, z + step}};
-  field.gather(slab).evaluate(x, y, zs, value);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!(value[i] > 0.0f)) continue;
-    inner.points.push_back({x[i], y[i], z});
+  const FieldBlock block = plane.restricted_to(widened(box, 0.01 * step));
+  const BlockContent content = block.content();
+  std::vector<float> value(x.size(), content == BlockContent::kInside ? 1.0f : -1.0f);
+  if (content == BlockContent::kMixed) block.evaluate(x, y, std::vector<float>(x.size(), z), value, 0.0f);
+  for (std::size_t i = 0; i < value.size(); ++i) inside[number[i]] = value[i] > 0.0f ? 1 : 0;
+}
+
+std::vector<float> lattice_coordinates(double low, double high, double step) {
+  std::vector<float> coordinates;
+  for (double at = low + 0.5 * step; at < high; at += step) coordinates.push_back(static_cast<float>(at));
+  return coordinates;
+}
+
+InnerPoints inner_points(const ImplicitField& field, std::span<const Sphere> spheres, const Box& bounds,
+                         double step, int plane) {
+  const double z = bounds.min.z + (plane + 0.5) * step;
+  const std::vector<float> x = lattice_coordinates(bounds.min.x, bounds.max.x, step),
+                           y = lattice_coordinates(bounds.min.y, bounds.max.y, step);
+  const int columns = static_cast<int>(x.size()), rows = static_cast<int>(y.size());
+  const FieldBlock block =
+      field.gather({{bounds.min.x, bounds.min.y, z - step}, {bounds.max.x, bounds.max.y, z + step}});
+  std::vector<char> inside(x.size() * y.size(), 0);
+  for (int iy = 0; iy < rows; iy += kSquare) {
+    for (int ix = 0; ix < columns; ix += kSquare) {
+      const Square square{ix, iy, std::min(ix + kSquare, columns), std::min(iy + kSquare, rows)};
+      mark_inside(block, square, x, y, static_cast<float>(z), step, inside);
+    }
+  }
+  InnerPoints inner;
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    if (inside[i] == 0) continue;
+    inner.points.push_back({x[i % x.size()], y[i / x.size()], z});
     inner.owners.push_back(nearest_sphere(spheres, inner.points.back()));
   }
   return inner;
