@@ -76,7 +76,8 @@ std::string option_not_finite(const CLI::App& app) {
 }
 
 // The options that name a file to write, and those, beside the positional ones, that name a file to read.
-const std::vector<std::string> kOutputs{"output", "summary", "spectrum", "preview", "feature-list"};
+const std::vector<std::string> kOutputs{"output",  "summary",      "spectrum",
+                                        "preview", "feature-list", "write-recipe"};
 const std::vector<std::string> kInputs{"base", "target"};
 
 bool is_named(const CLI::Option& option, const std::vector<std::string>& names) {
@@ -218,8 +219,9 @@ void Program::report_failure(const std::string& line) {
 std::string Program::tool() const { return name_ + " " + kCodeVersion.text(); }
 
 std::vector<std::pair<std::string, std::string>> Program::given_options() const {
-  static const std::vector<std::string> kNoEffect{"output",   "threads",    "quiet", "summary", "report",
-                                                  "spectrum", "checkpoint", "help",  "version"};
+  static const std::vector<std::string> kNoEffect{"output",  "threads",     "quiet",      "summary",
+                                                  "report",  "spectrum",    "checkpoint", "help",
+                                                  "version", "write-recipe"};
   std::vector<std::pair<std::string, std::string>> given;
   for (const CLI::Option* option : parser_->get_options()) {
     if (option->count() == 0 || option->get_positional()) continue;

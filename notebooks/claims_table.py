@@ -1,8 +1,8 @@
 """The table of claims as Markdown: thesis's value, ours, a remark.
 
-    claims_table.py FOLDER                         prints it; FOLDER: what the notebooks claimed
-    claims_table.py FOLDER --keep CLAIMS README    writes it between the markers <!-- claims --> and <!-- end of claims --> of
-                                                   the two files, README without remarks; rows of notebooks that FOLDER lacks stay
+    claims_table.py FOLDER                  prints it; FOLDER: what the notebooks claimed
+    claims_table.py FOLDER --keep CLAIMS    writes it between the markers <!-- claims --> and <!-- end of claims --> of the
+                                            file; rows of notebooks that FOLDER lacks stay
 """
 import json
 import re
@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 HEAD = "| notebook | what | thesis | ours | remark |\n|---|---|---|---|---|\n"
-BRIEF_HEAD = "| notebook | what | thesis | ours |\n|---|---|---|---|\n"
 REGION = re.compile(r"(<!-- claims -->\n).*?(<!-- end of claims -->)", re.S)
 
 
@@ -44,11 +43,8 @@ def main():
     if sys.argv[2:3] != ["--keep"]:
         print(HEAD + joined(rows), end="")
         return
-    claims, readme = map(Path, sys.argv[3:])
-    rows = kept_rows(claims) | rows
-    write_between_markers(claims, HEAD + joined(rows))
-    brief = {number: [row.rsplit(" | ", 1)[0] + " |\n" for row in of_one] for number, of_one in rows.items()}
-    write_between_markers(readme, BRIEF_HEAD + joined(brief))
+    claims = Path(sys.argv[3])
+    write_between_markers(claims, HEAD + joined(kept_rows(claims) | rows))
 
 
 if __name__ == "__main__":

@@ -66,8 +66,10 @@ struct Provenance {
 
 struct Recipe {
   int format_version = kRecipeFormatVersion;
-  std::string description;         // for people
-  std::string length_unit = "km";  // "m", "km" or "px" (a texture without a physical scale)
+  std::string description;  // for people
+  std::string length_unit =
+      "km";  // "m", "km", "px" (a texture without a physical scale) or
+             // "body" (layers alone: shares of the longest side of the body they are laid on)
   std::string frame = "body-fixed, right-handed, +z spin pole, +x prime meridian";
   std::uint64_t seed = 1;  // below 2^53, so that every JSON reader keeps it exact
   Provenance provenance;

@@ -68,8 +68,9 @@ void check_origin(const Provenance& provenance, const Place& place) {
 
 void check_unit(const Recipe& recipe, const Place& place) {
   const std::string& unit = recipe.length_unit;
-  if (unit == "m" || unit == "km" || unit == "px") return;
-  place.field("length_unit").fail("must be \"m\", \"km\" or \"px\", is " + quote_text(unit));
+  if (unit != "m" && unit != "km" && unit != "px" && unit != "body") {
+    place.field("length_unit").fail("must be \"m\", \"km\", \"px\" or \"body\", is " + quote_text(unit));
+  }
 }
 
 void check_seed(const Recipe& recipe, const Place& place) {
@@ -79,6 +80,9 @@ void check_seed(const Recipe& recipe, const Place& place) {
 
 void check_parts_of_recipe(const Recipe& recipe, const Place& place) {
   if (!recipe.body && recipe.layers.empty()) place.fail("has neither a body nor layers; add one of them");
+  if (recipe.length_unit == "body" && recipe.body) {
+    place.field("length_unit").fail("is \"body\", which is for layers without a body; state \"m\" or \"km\"");
+  }
   if (recipe.erosion && !recipe.body) place.field("erosion").fail("needs a body; add one, or leave it out");
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Shows Astrolith's main work on real input. A measured asteroid becomes a recipe, a photo of gravel becomes a Gabor layer,
-# and both together become a watertight mesh with pictures. Installs missing packages, builds the programs and runs them.
+# and both together, with craters and boulders, become a watertight mesh with pictures. Installs missing packages, builds the programs and runs them.
 #   scripts/demo.sh [MESH]      MESH: any closed shape model, in place of the demo's own
 set -euo pipefail
 mesh=${1:+$(realpath "$1")}
@@ -28,10 +28,10 @@ echo "1/3  A shape model becomes a recipe: fit_shape $shape"
 "$bin/fit_shape" "$shape" -o "$out/body.json" --spheres 200 \
   --report "$out/body_report" --summary "$out/body_summary.json"
 
-# The gravel becomes as large as boulders: a pixel is a thousandth of the body, and the relief is three quarters of a pixel.
+# The gravel becomes as large as boulders: a pixel is a thousandth of the body, and the relief is half a pixel.
 diagonal_km=$(awk -F '[:,]' '/"diagonal"/ {print $2}' "$out/body_summary.json")
 mm_per_px=$(awk "BEGIN {print $diagonal_km * 1e6 / 1000}")
-height_km=$(awk "BEGIN {print $diagonal_km * 0.00075}")
+height_km=$(awk "BEGIN {print $diagonal_km * 0.0005}")
 echo "2/3  A photo becomes a Gabor layer: fit_gabor $photo"
 "$bin/fit_gabor" "$photo" -o "$out/gravel.json" --mm-per-px "$mm_per_px" --height-rms "$height_km" --unit km \
   --report "$out/gravel_report" --summary "$out/gravel_summary.json"
@@ -39,8 +39,9 @@ echo "2/3  A photo becomes a Gabor layer: fit_gabor $photo"
 echo "3/3  Recipes become meshes, pictures and a height map: synth"
 "$bin/synth" "$out/body.json" -o "$out/body.ply" --resolution 256 \
   --preview "$out/body.png" --summary "$out/body_mesh_summary.json"
-"$bin/synth" "$out/gravel.json" --base "$out/body.json" -o "$out/asteroid.ply" --resolution 320 \
-  --preview "$out/asteroid.png" --summary "$out/asteroid_summary.json"
+"$bin/synth" synthesis/layers/craters_and_boulders.json --base "$out/body.json" --write-recipe "$out/terrain.json"
+"$bin/synth" "$out/gravel.json" --base "$out/terrain.json" -o "$out/asteroid.ply" --resolution 400 \
+  --preview "$out/asteroid.png" --summary "$out/asteroid_summary.json" --write-recipe "$out/asteroid.json"
 "$bin/synth" "$out/gravel.json" --texture 1024x1024 -o "$out/gravel_height.tif"
 
 cat <<EOF
@@ -48,7 +49,7 @@ cat <<EOF
 Done. Look at
   $out/body_report/       the shape model, the fit and their differences
   $out/gravel_report/     the photo, the noise made from it, their spectra
-  $out/asteroid.png       the synthesised asteroid
+  $out/asteroid.png       the finished asteroid: fit, craters, boulders and gravel
   $out/asteroid.ply       its watertight mesh, for Blender, MeshLab, CloudCompare or ParaView
-  $out/body.json, $out/gravel.json   the recipes; docs/recipe.md explains every field
+  $out/asteroid.json      its recipe, made of body.json, gravel.json and synthesis/layers/; docs/recipe.md explains every field
 EOF

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Executes the notebooks headless: notebooks.sh [--full] [--jobs N] [NN ...]
 #   quick (default): small sizes, some minutes in all; results, figures and pages in build/notebooks/
-#   --full:          the thesis's sizes, hours in all; the figures go to docs/figures/, the claims to docs/claims.md and README.md
+#   --full:          the thesis's sizes, hours in all; the figures go to docs/figures/, the claims to docs/claims.md
 #   --jobs N:        so many at a time (default 1: seconds that are measured want a machine of their own)
 #   NN ...:          only the notebooks with these numbers, such as 01 12
 # Installs what is missing, builds the programs and benchmarks. Says which notebooks failed; exit status 1 if any did.
@@ -83,7 +83,7 @@ done
 
 if [[ $ASTROLITH_FULL == 1 ]]; then
   claims=docs/claims.md
-  /usr/bin/python3 notebooks/claims_table.py "$out/claims_full" --keep docs/claims.md README.md
+  /usr/bin/python3 notebooks/claims_table.py "$out/claims_full" --keep docs/claims.md
 else
   claims=$out/claims.md
   /usr/bin/python3 notebooks/claims_table.py "$out/claims" >"$claims"

@@ -25,6 +25,7 @@ struct Options {
   fs::path recipe;
   fs::path base;
   fs::path output;
+  fs::path written_recipe;  // where to write the recipe that is made; empty = nowhere
   TextureRequest texture;
   MeshRequest mesh;
   double vary = 0.0;  // 0 = the recipe itself
@@ -36,13 +37,13 @@ void declare_options(Program& program, Options& options) {
   program.app
       .add_option("-o,--output", options.output,
                   "the mesh: .ply (binary, streamed), .obj, .stl or .glb, in the recipe's length unit; with "
-                  "--texture .png or .tif")
-      .required();
+                  "--texture .png or .tif; needed unless --predict or --write-recipe is given")
+      .placeholder("FILE");
   declare_mesh_options(program, options.mesh);
   program.app
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
-                  "convert")
+                  "convert, and the unit \"body\" is the longest side of that body")
       .placeholder("BODY.json");
   Option vary =
       program.app
@@ -59,6 +60,11 @@ void declare_options(Program& program, Options& options) {
                   "fitted to")
       .needs(vary)
       .placeholder("MESH");
+  program.app
+      .add_option("--write-recipe", options.written_recipe,
+                  "also write the recipe that is made, with the layers of --base, the variation and the seed "
+                  "in it; without -o nothing else")
+      .placeholder("FILE.json");
   declare_texture_options(program, options.texture);
   for (const char* of_mesh : {"--resolution", "--triangles", "--max-memory", "--tile", "--patch",
                               "--feature-list", "--vary", "--target", "--min-component", "--predict",
@@ -112,7 +118,17 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
   return std::move(variation.recipe);
 }
 
+void check_outputs(const Options& options) {
+  if (!options.written_recipe.empty()) {
+    require_extension(options.written_recipe, {".json"});
+    require_writable(options.written_recipe);
+  }
+  if (!options.output.empty() || !options.written_recipe.empty() || options.mesh.size.only_predict) return;
+  throw InputError("--output: is required; name the file to make, such as -o body.ply");
+}
+
 void synthesize(Program& program, const Options& options) {
+  check_outputs(options);
   const Recipe recipe = read_input(program, options);
   if (!options.texture.size.empty()) return make_texture(program, options, recipe);
   if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
@@ -121,8 +137,11 @@ void synthesize(Program& program, const Options& options) {
                      ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
                      "with --texture WxH");
   }
-  make_mesh(program, options.mesh, options.vary > 0.0 ? varied(program, options, recipe) : recipe,
-            options.base.empty() ? options.recipe : options.base, options.output);
+  const Recipe made = options.vary > 0.0 ? varied(program, options, recipe) : recipe;
+  if (!options.written_recipe.empty()) write_recipe(made, options.written_recipe);
+  if (options.output.empty() && !options.mesh.size.only_predict) return;
+  make_mesh(program, options.mesh, made, options.base.empty() ? options.recipe : options.base,
+            options.output);
 }
 
 }  // namespace

@@ -60,9 +60,11 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
 }
 
 void check_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
-  check_mesh_extension(output);
-  if (request.points || request.labels) require_extension(output, {".ply"});
-  require_writable(output);
+  if (!output.empty()) {
+    check_mesh_extension(output);
+    if (request.points || request.labels) require_extension(output, {".ply"});
+    require_writable(output);
+  }
   check_preview(program, request.preview);
   if (request.landforms.empty()) return;
   require_extension(request.landforms, {".csv", ".json"});

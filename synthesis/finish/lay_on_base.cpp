@@ -1,15 +1,30 @@
 #include "synthesis/finish/lay_on_base.h"
 
+#include <algorithm>
+
 #include "numerics/errors.h"
+#include "synthesis/field/bare_body.h"
 
 namespace astrolith {
 namespace {
+
+constexpr int kSizeCells = 64;  // of the mesh that shows how long the base is: within some thousandths
+
+double longest_side(const Recipe& base, const std::string& base_name) {
+  const TriangleMesh mesh = bare_body(base).meshed_at(kSizeCells);
+  if (mesh.vertices.empty()) throw InputError(base_name + ": body: is empty; give a base with a surface");
+  Box box;
+  for (const Vec3d& v : mesh.vertices) box.extend(v);
+  const Vec3d extent = box.extent();
+  return std::max({extent.x, extent.y, extent.z});
+}
 
 // The length of one unit of the details in units of the base.
 double unit_ratio(const Recipe& details, const std::string& details_name, const Recipe& base,
                   const std::string& base_name) {
   const std::string &from = details.length_unit, &to = base.length_unit;
   if (from == to) return 1.0;
+  if (from == "body") return longest_side(base, base_name);
   if (from == "m" && to == "km") return 1e-3;
   if (from == "km" && to == "m") return 1e3;
   throw InputError(details_name + ": length_unit: \"" + from + "\" has no physical scale on " + base_name +

@@ -120,7 +120,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
        R"(layers[1].lobes[0].bandwidth: must be an integer)"},
       // Unknown words, and rules that depend on a word.
       {R"("format_version": 1)", R"("format_version": 2)", R"(format_version: is 2, this program reads 1)"},
-      {R"("km")", R"("Km")", R"(length_unit: must be "m", "km" or "px", is "Km")"},
+      {R"("km")", R"("Km")", R"(length_unit: must be "m", "km", "px" or "body", is "Km")"},
       {R"("metaballs")", R"("mesh")", R"(body.type: must be "metaballs")"},
       {R"("gaussian")", R"("gauss")", R"(body.kernel: must be "gaussian", "metaball", "soft_object")"},
       {R"("gaussian", "a": 1.5)", R"("wyvill", "a": 11)", R"(body.a: must be at most 10 for kernel "wyvill")",
