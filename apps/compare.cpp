@@ -4,10 +4,10 @@
 
 #include "apps/program.h"
 #include "apps/shape_options.h"
-#include "descriptor/histogram_distance.h"
 #include "geometry/io/mesh_io.h"
-#include "geometry/surface/surface_distance.h"
+#include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "tasks/synthesis/comparison.h"
 
 namespace astrolith {
 namespace {
@@ -34,55 +34,6 @@ void add_options(Program& program, Arguments& arguments) {
                "also say how alike two samplings of A are, and of B: more cannot be expected");
 }
 
-// Each sampling of a shape has a seed of its own.
-struct Shape {
-  Program& program;
-  const DescriptionOptions options;
-  const std::string& file;
-  const TriangleMesh& mesh;
-
-  ShapeHistogram sampled(std::uint64_t which) const {
-    DescriptionOptions own = options;
-    own.seed = options.seed + which * 0x9e3779b97f4a7c15u;
-    const ShapeDescription description = describe_file(file, mesh, own, program.progress("describe"));
-    if (which < 2) {
-      for (const std::string& remark : description.remarks) program.say(file + ": " + remark);
-    }
-    return description.histogram;
-  }
-};
-
-nlohmann::ordered_json figures(const DistanceFigures& d) {
-  return {{"mean", d.mean}, {"p99", d.p99}, {"max", d.max}};
-}
-
-void compare_histograms(const Shape& a, const Shape& b, bool with_floor, nlohmann::ordered_json& result) {
-  const ShapeHistogram ha = a.sampled(0), hb = b.sampled(1);
-  const HistogramDistances d = histogram_distances(ha, hb);
-  result["similarity"] = d.similarity;
-  if (with_floor) {
-    result["similarity_floor"] = {{"a", similarity(ha, a.sampled(2))}, {"b", similarity(hb, b.sampled(3))}};
-  }
-  result["l2"] = d.l2;
-  result["chi_square"] = d.chi_square;
-  result["jensen_shannon"] = d.jensen_shannon;
-  result["earth_movers"] = d.earth_movers;
-}
-
-// Compares the surfaces as they stand: neither is moved, turned or scaled.
-void compare_surfaces(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples, std::uint64_t seed,
-                      nlohmann::ordered_json& result) {
-  const SurfaceDistanceReport d = surface_distance(a, b, samples, seed);
-  const double diagonal = a.bounds().diagonal();
-  result["mean_distance"] = d.mean / diagonal;
-  result["p99_distance"] = d.p99 / diagonal;
-  result["max_distance"] = d.max / diagonal;
-  result["in_units_of_the_files"] = {{"diagonal_of_a", diagonal},
-                                     {"both", figures({d.mean, d.p99, d.max})},
-                                     {"from_a_to_b", figures(d.from_a_to_b)},
-                                     {"from_b_to_a", figures(d.from_b_to_a)}};
-}
-
 void print(const nlohmann::ordered_json& result, const std::string& output) {
   // File names need not be UTF-8.
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
@@ -107,9 +58,11 @@ void run(Program& program, const Arguments& arguments) {
                                 {"features", arguments.options.features},
                                 {"bins", options.bins},
                                 {"points", options.points}};
-  compare_histograms({program, options, arguments.a, a}, {program, options, arguments.b, b}, arguments.floor,
-                     result);
-  compare_surfaces(a, b, arguments.samples, program.seed, result);
+  const Comparison comparison =
+      compare_meshes({arguments.a, a}, {arguments.b, b}, options, arguments.samples, arguments.floor,
+                     [&](const std::string& stage) { return program.progress(stage); });
+  for (const std::string& remark : comparison.remarks) program.say(remark);
+  result.update(comparison.figures);
   print(result, arguments.output);
   program.summary = result;
 }

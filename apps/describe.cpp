@@ -7,6 +7,8 @@
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/npy_file.h"
+#include "numerics/files/output_file.h"
+#include "tasks/synthesis/describe_file.h"
 
 namespace astrolith {
 namespace {

@@ -14,11 +14,11 @@
 #include <new>
 
 #include "apps/help_formatter.h"
-#include "apps/version.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/printable_text.h"
+#include "numerics/version/code_version.h"
 
 namespace astrolith {
 namespace {
@@ -79,6 +79,16 @@ std::string option_not_finite(const CLI::App& app) {
 const std::vector<std::string> kOutputs{"output",  "summary",      "spectrum",
                                         "preview", "feature-list", "write-recipe"};
 const std::vector<std::string> kInputs{"base", "target"};
+
+// Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".
+// The result names the program's option of that name instead, if there is one.
+std::string naming_options(const std::string& message, const CLI::App& app) {
+  const std::string name = message.substr(0, message.find(':'));
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_positional() && option->check_lname(name)) return "--" + message;
+  }
+  return message;
+}
 
 bool is_named(const CLI::Option& option, const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(),
@@ -154,7 +164,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     end_bar();
     return part_failed_ ? 1 : 0;
   } catch (const InputError& e) {
-    print_line(fmt::format("{}: {}", name_, e.what()));
+    print_line(fmt::format("{}: {}", name_, naming_options(e.what(), *parser_)));
     return 2;
   } catch (const std::bad_alloc&) {
     print_line(fmt::format("{}: out of memory; try a smaller resolution or fewer samples", name_));

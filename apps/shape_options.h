@@ -5,7 +5,6 @@
 
 #include "apps/command_line.h"
 #include "descriptor/shape_description.h"
-#include "numerics/errors.h"
 
 namespace astrolith {
 
@@ -29,15 +28,5 @@ struct ShapeOptions {
     return options;
   }
 };
-
-// Calls describe_shape() and puts the file's name before an error message.
-template <typename... Arguments>
-ShapeDescription describe_file(const std::string& file, const Arguments&... arguments) {
-  try {
-    return describe_shape(arguments...);
-  } catch (const InputError& e) {
-    throw InputError(file + ": " + e.what());
-  }
-}
 
 }  // namespace astrolith

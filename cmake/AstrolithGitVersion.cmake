@@ -29,7 +29,7 @@ if(commit)
 endif()
 
 set(content "// Written by cmake/AstrolithGitVersion.cmake.
-#include \"apps/version.h\"
+#include \"numerics/version/code_version.h\"
 
 const astrolith::CodeVersion astrolith::kCodeVersion{\"${RELEASE}\", \"${commit}\", \"${changes}\"};
 ")

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "geometry/triangle_mesh.h"
 
@@ -27,6 +28,21 @@ class MeshDiscard : public MeshSink {
  public:
   void add_vertices(std::span<const MeshVertex>) override {}
   void add_triangles(std::span<const Triangle>) override {}
+};
+
+// Passes vertices and triangles on to several sinks.
+class SinkList : public MeshSink {
+ public:
+  void add(MeshSink& sink) { sinks_.push_back(&sink); }
+  void add_vertices(std::span<const MeshVertex> vertices) override {
+    for (MeshSink* sink : sinks_) sink->add_vertices(vertices);
+  }
+  void add_triangles(std::span<const Triangle> triangles) override {
+    for (MeshSink* sink : sinks_) sink->add_triangles(triangles);
+  }
+
+ private:
+  std::vector<MeshSink*> sinks_;
 };
 
 // Collects everything in memory.

@@ -7,6 +7,7 @@ cd "$(dirname "$0")/.."
 git grep -noE '#include "[a-z_]+/[^"]*"' -- '*.h' '*.cpp' '*.cu' ':!tests' | awk -F: -v rows='
 numerics                   -> numerics/.
 numerics/files             -> numerics
+numerics/version           -> numerics
 recipe                     -> numerics
 geometry                   -> numerics geometry/.
 geometry/io                -> numerics geometry/.
@@ -40,7 +41,10 @@ estimation/shape/refinement -> numerics recipe geometry estimation/shape/target 
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
 estimation/shape/report    -> numerics geometry synthesis/picture estimation/plot estimation/shape/target estimation/shape/fit
-apps                       -> numerics recipe geometry descriptor synthesis cuda estimation apps
+tasks/synthesis            -> numerics recipe geometry descriptor synthesis cuda
+tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
+apps                       -> numerics recipe geometry descriptor synthesis cuda estimation tasks apps
+python                     -> numerics recipe geometry descriptor synthesis cuda estimation tasks python
 ' '
   function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
   function row_of(folder) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/variation_reference.h"
 #include "cuda/candidate_evaluator.h"
 #include "cuda/candidates_on_gpu.h"
 #include "estimation/shape/details/residual_texture.h"
@@ -11,6 +10,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/lay_on_base.h"
+#include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith {
 namespace {

@@ -8,13 +8,13 @@
 #include "apps/program.h"
 #include "apps/synth/synth_mesh.h"
 #include "apps/synth/synth_texture.h"
-#include "apps/variation_reference.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
 #include "synthesis/finish/lay_on_base.h"
+#include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith {
 namespace {

@@ -2,19 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "synthesis/body/body_spheres.h"
-#include "synthesis/finish/erosion.h"
-#include "synthesis/finish/mascons.h"
+#include "tasks/synthesis/erode_body.h"
 
 namespace astrolith {
 
 void erode_mesh(Program& program, const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh) {
   const Erosion& erosion = *recipe.erosion;
-  const std::vector<Mascon> mascons = mascons_of(field, adding_spheres(*recipe.body));
-  const std::vector<Vec3d> up =
-      vertical_directions(mascons, {erosion.density, erosion.rotation_period}, mesh.vertices);
-  const ErosionStatistics done =
-      erode(mesh, up, erosion.talus_angle, erosion.iterations, program.progress("erosion"));
+  const ErosionStatistics done = erode_body(field, recipe, mesh, program.progress("erosion"));
   program.summary["erosion"] = {{"settled", done.settled},
                                 {"sweeps", done.sweeps},
                                 {"steepest_before", done.steepest_before},

@@ -19,24 +19,12 @@
 #include "recipe/sha256.h"
 #include "synthesis/field/landform_list.h"
 #include "synthesis/field/surface_labels.h"
-#include "synthesis/mesh/manifold_check.h"
-#include "synthesis/mesh/mesh_components.h"
+#include "tasks/synthesis/body_mesh.h"
 
 namespace astrolith {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Throws WorkError for a mesh that is not manifold or not closed. A tile or patch may be open where it was
-// cut.
-void require_closed_manifold(const ManifoldReport& report, const MeshStatistics& statistics) {
-  if (report.open_vertices != statistics.cut_vertices || report.late_triangles > 0 ||
-      report.non_manifold_vertices > 0) {
-    throw WorkError("the mesh is not a closed manifold (" + std::to_string(report.open_vertices) +
-                    " open and " + std::to_string(report.non_manifold_vertices) +
-                    " non-manifold vertices); nothing was written");
-  }
-}
 
 void check_request(const MeshRequest& request, const Region& region, const Recipe& recipe,
                    const fs::path& file) {
@@ -101,24 +89,6 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
          (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
 }
 
-// Meshes the region into a sink, without the pieces that are too small.
-MeshStatistics mesh_without_crumbs(Program& program, const ImplicitField& field, const Region& region,
-                                   int resolution, double least_component, MeshingDevice device,
-                                   MeshSink& sink) {
-  if (!(least_component > 0.0)) {
-    return mesh_region(field, region, resolution, sink, program.progress("mesh"), device);
-  }
-  ComponentSizes sizes;
-  mesh_region(field, region, resolution, sizes, program.progress("pieces"), device);
-  ComponentChoice choice = sizes.larger_than(least_component);
-  program.summary["dropped_components"] = choice.dropped_components;
-  ComponentFilter filter(std::move(choice), sink);
-  const MeshStatistics statistics =
-      mesh_region(field, region, resolution, filter, program.progress("mesh"), device);
-  filter.finish();
-  return statistics;
-}
-
 // Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
 // erosion changes the finished mesh. The other formats, erosion and the picture need the whole mesh in
 // memory.
@@ -132,7 +102,6 @@ class MeshOutput {
       labels_.emplace(recipe, file.string(), region.cube());
       info_.notes = labels_->legend();
     }
-    sinks_.add(check_);
     const bool streamed = output.extension() == ".ply" && !recipe.erosion;
     if (!streamed || !request.preview.file.empty()) sinks_.add(collector_);
     if (streamed) stream(region.center, request.points);
@@ -141,7 +110,6 @@ class MeshOutput {
   MeshOutput& operator=(const MeshOutput&) = delete;
 
   MeshSink& sink() { return sinks_; }
-  ManifoldReport finish_check() { return check_.finish(); }
   // The mesh in memory; empty where nothing needs it there.
   TriangleMesh& collected() { return collector_.mesh; }
 
@@ -168,7 +136,6 @@ class MeshOutput {
   fs::path output_;
   MeshFileInfo info_;
   std::optional<SurfaceLabels> labels_;
-  ManifoldCheck check_;
   MeshCollector collector_;
   std::unique_ptr<PlyStreamWriter> writer_;
   std::unique_ptr<PointsOnly> points_;
@@ -190,18 +157,18 @@ struct MeshJob {
 void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen) {
   const auto& [request, recipe, file, region, field, resolution, output] = job;
   MeshOutput result(program.tool(), request, recipe, file, region, output);
-  const MeshStatistics statistics =
-      mesh_without_crumbs(program, field, region, resolution, request.least_component,
-                          chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, result.sink());
-  const ManifoldReport report = result.finish_check();
-  if (report.triangles == 0) fail_empty(recipe, field, region, resolution, file);
-  require_closed_manifold(report, statistics);
+  const BodyMeshReport made =
+      make_body_mesh({recipe, field, file, region, resolution, request.least_component,
+                      chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu},
+                     result.sink(), [&](const std::string& stage) { return program.progress(stage); });
+  const ManifoldReport& report = made.manifold;
+  if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
   if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
 
   result.write();
   if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
   if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
-  summarize_mesh(program, region, statistics, report);
+  summarize_mesh(program, region, made.statistics, report);
   summarize_output(program, output);
   program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);
 }
@@ -255,10 +222,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   check_outputs(program, request, output);
   const Region region = parse_region(request.tile, request.patch);
   check_request(request, region, recipe, file);
-  const ImplicitField field(recipe, file.string(), region.cube());
-  if (field.bounds().empty()) {
-    throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
-  }
+  const ImplicitField field = field_of_region(recipe, file, region);
   const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), request.least_component > 0.0};
   const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});
   report_layers_left_out(program, field, recipe, file, region.is_patch);

@@ -11,13 +11,6 @@ namespace {
 
 Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
 
-// North is up, or +y where the view is along the pole.
-PreviewView view_from(const Direction& direction) {
-  const Vec3d from = normalized(vector_of(direction));
-  const bool polar = from.x * from.x + from.y * from.y < 1e-6;
-  return {from, polar ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}};
-}
-
 }  // namespace
 
 void declare_preview_options(Program& program, PreviewRequest& request) {
@@ -61,7 +54,7 @@ void write_preview(const Program& program, const PreviewRequest& request, const 
   options.sun = vector_of(request.sun);
   if (!request.views.empty()) {
     options.views.clear();
-    for (const Direction& view : request.views) options.views.push_back(view_from(view));
+    for (const Direction& view : request.views) options.views.push_back(view_from(vector_of(view)));
   }
   write_png8_rgb(render_preview(mesh, options, program.progress("preview")), request.file);
 }

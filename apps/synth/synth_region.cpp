@@ -1,137 +1,26 @@
 #include "apps/synth/synth_region.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 
-#include "cuda/mesher/backend_mesher.h"
-#include "cuda/mesher/gpu_obstacle.h"
-#include "cuda/mesher/mesh_field.h"
 #include "numerics/errors.h"
-#include "numerics/interval.h"
-#include "recipe/height_field.h"
-#include "synthesis/field/field_mesh.h"
 
 namespace astrolith {
 namespace {
 
-// The finest cell of a body made by operations, as a fraction of its largest coordinate.
-constexpr double kFinestCell = 0x1p-15;
-
-// The most cells along the longest side of a mesh that only looks whether there is a surface.
-constexpr int kLookAround = 64;
-
-MeshTile parse_tile(const std::string& text) {
-  if (text.empty()) return {};
-  MeshTile tile;
+Region parse_tile(const std::string& text) {
+  int number = 0, count = 0;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%6d/%6d%c", &tile.index, &tile.count, &rest) != 2 || tile.index < 1 ||
-      tile.index > tile.count) {
-    throw InputError("--tile: \"" + text + "\" is no tile; write I/N with I from 1 to N, such as 3/16");
+  if (std::sscanf(text.c_str(), "%6d/%6d%c", &number, &count, &rest) != 2) {
+    throw InputError("tile: \"" + text + "\" is no tile; write I/N with I from 1 to N, such as 3/16");
   }
-  --tile.index;
-  return tile;
-}
-
-// A point of the surface near p, found by Newton's steps along the gradient. Returns p where the steps do not
-// converge.
-Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
-  Vec3d q = p;
-  for (int step = 0; step < 64; ++step) {
-    const Vec3d gradient = field.gradient(q);
-    const double slope = squared_norm(gradient);
-    if (!(slope > 0.0)) return p;
-    q -= field.value(q) / slope * gradient;
-    if (!std::isfinite(squared_norm(q))) return p;
-  }
-  return q;
-}
-
-// A body made by operations is evaluated in float coordinates of its frame. Finer cells would show their
-// rounding.
-void check_cells(const ImplicitField& field, const Region& region, int resolution) {
-  const double finest = kFinestCell * largest_coordinate(field.bounds());
-  const double cell = region.size / resolution;
-  if (cell >= finest) return;
-  throw InputError(
-      fmt::format("--patch: body.operations: a combined body has cells of {:.3g} at least, these would be "
-                  "{:.3g}; lower --resolution or take a larger cube",
-                  finest, cell));
-}
-
-// Whether a mesh of so many cells shows nothing of the recipe's surface.
-bool is_empty(const Recipe& recipe, const std::filesystem::path& file, int cells) {
-  const ImplicitField field(recipe, file.string());
-  if (field.bounds().empty()) return true;
-  MeshDiscard sink;
-  return mesh_field(field, field.bounds(), cells, sink).triangles == 0;
-}
-
-// The layer that takes away what the body and the layers before it have of a surface; -1 where there is none.
-int emptying_layer(const Recipe& recipe, const std::filesystem::path& file, int cells) {
-  Recipe part = recipe;
-  if (!is_empty(part, file, cells)) return -1;
-  for (std::size_t i = recipe.layers.size(); i > 0; --i) {
-    part.layers.resize(i - 1);
-    if (!is_empty(part, file, cells)) return static_cast<int>(i) - 1;
-  }
-  return -1;
+  return tile_region(number, count);
 }
 
 }  // namespace
 
 Region parse_region(const std::string& tile, const std::vector<double>& patch) {
-  Region region{parse_tile(tile), !patch.empty(), {}, 0.0};
-  if (!region.is_patch) return region;
-  region.center = {patch[0], patch[1], patch[2]};
-  region.size = patch[3];
-  if (!(region.size >= kMinPositive) || !(region.size <= kMaxNumber) ||
-      !(squared_norm(region.center) <= kMaxNumber * kMaxNumber)) {
-    throw InputError(
-        "--patch: has no centre or no side above 0; write X Y Z SIDE in the recipe's length unit");
-  }
-  return region;
-}
-
-std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
-  if (region.is_patch) return "patches";
-  return obstacle_on_gpu(field.tables(), block_side(field.bounds(), resolution));
-}
-
-MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
-                           const Progress& progress, MeshingDevice device) {
-  if (region.is_patch && !field.has_local_form()) check_cells(field, region, resolution);
-  if (region.is_patch) {
-    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
-  }
-  return device == MeshingDevice::kGpu
-             ? mesh_field_on_gpu(field, field.bounds(), resolution, sink, progress, region.tile)
-             : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
-}
-
-void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,
-                const std::filesystem::path& file) {
-  const int cells = region.is_patch ? kLookAround : std::min(resolution, kLookAround);
-  if (const int layer = emptying_layer(recipe, file, cells); layer >= 0) {
-    throw InputError(
-        fmt::format("{}: layers[{}].{}: nothing of the body is left that a mesh of {} cells shows; make the "
-                    "layer's heights smaller{}",
-                    file.string(), layer, height_field(recipe.layers[static_cast<std::size_t>(layer)]), cells,
-                    region.is_patch ? "" : ", or raise --resolution"));
-  }
-  if (region.is_patch) {
-    const Vec3d p = nearby_surface_point(field, region.center);
-    throw InputError(fmt::format(
-        "--patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
-  }
-  if (region.is_cut()) {
-    throw InputError(fmt::format("--tile: no surface lies in tile {} of {}; take another",
-                                 region.tile.index + 1, region.tile.count));
-  }
-  throw InputError(fmt::format("{}: the whole body lies between the samples of --resolution {}; raise it",
-                               file.string(), resolution));
+  if (!patch.empty()) return patch_region({patch[0], patch[1], patch[2]}, patch[3]);
+  return tile.empty() ? Region{} : parse_tile(tile);
 }
 
 }  // namespace astrolith

@@ -1,26 +1,9 @@
-// Mesh sinks that pass a mesh on to other sinks.
+// A mesh sink that passes a part of a mesh on.
 #pragma once
-
-#include <vector>
 
 #include "geometry/mesh_sink.h"
 
 namespace astrolith {
-
-// Passes vertices and triangles on to several sinks.
-class SinkList : public MeshSink {
- public:
-  void add(MeshSink& sink) { sinks_.push_back(&sink); }
-  void add_vertices(std::span<const MeshVertex> vertices) override {
-    for (MeshSink* sink : sinks_) sink->add_vertices(vertices);
-  }
-  void add_triangles(std::span<const Triangle> triangles) override {
-    for (MeshSink* sink : sinks_) sink->add_triangles(triangles);
-  }
-
- private:
-  std::vector<MeshSink*> sinks_;
-};
 
 // Passes vertices on, not triangles.
 class PointsOnly : public MeshSink {

@@ -18,47 +18,9 @@ namespace {
 // Below this resolution a mesh is small and quick: predicting would cost more than it tells.
 constexpr int kWorthPredicting = 256;
 
-// A count in three characters or so: "1.2 M", "340 k".
-std::string rounded(double count) {
-  return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
-}
-
 struct Prediction {
   double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0, seconds = 0.0;
 };
-
-MeshEstimate sample(const PlannedMesh& mesh, const Region& region, int resolution, const SampleSize& size) {
-  return region.is_patch ? sample_patch(PatchField(mesh.field, region.center), region.size, resolution, size)
-                         : sample_field(mesh.field, mesh.field.bounds(), resolution, region.tile, size);
-}
-
-// The resolution at which the whole mesh, or the patch, has about so many triangles. The samples have a fixed
-// size, so that the resolution is the same on every machine.
-int resolution_for(double triangles, const PlannedMesh& mesh) {
-  constexpr SampleSize kSize{512, 192, false};
-  constexpr int kFirst = 96, kMostSteps = 3;
-  constexpr double kNearEnough = 0.02;
-  const Region whole = mesh.region.is_patch ? mesh.region : Region{};
-  int resolution = kFirst;
-  double found = 0.0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    found = sample(mesh, whole, resolution, kSize).triangles;
-    if (!(found > 0.0)) {
-      throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
-    }
-    const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
-    const int next =
-        static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
-    if (next == resolution || std::fabs(found / triangles - 1.0) < kNearEnough) break;
-    resolution = next;
-  }
-  if (resolution == kMaxResolution && found < 0.9 * triangles) {
-    throw InputError(
-        fmt::format("--triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
-                    resolution, rounded(found)));
-  }
-  return resolution;
-}
 
 int threads_of(const Program& program) {
   return program.threads > 0 ? program.threads
@@ -92,8 +54,9 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   const double seconds_before = program.seconds(), peak_before = static_cast<double>(peak_bytes());
   const bool gabor = mesh.field.tables().gabor_lists.count > 0;
   const MeshEstimate estimate = with_bare_body(
-      estimate_within([&](const SampleSize& size) { return sample(mesh, mesh.region, resolution, size); },
-                      gabor, care.sample),
+      estimate_within(
+          [&](const SampleSize& size) { return sample_region(mesh.field, mesh.region, resolution, size); },
+          gabor, care.sample),
       mesh, care.long_seconds);
   const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
   const OutputCost output = output_cost(mesh.output, mesh.use);
@@ -123,8 +86,8 @@ void check_memory(const MeshSizeRequest& request, int resolution, const PlannedM
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",
-      mesh.output.string(), rounded(predicted.triangles), resolution, predicted.peak_bytes / 1e9, limit / 1e9,
-      collected ? ", or write .ply without --preview, which is streamed" : ""));
+      mesh.output.string(), rounded_count(predicted.triangles), resolution, predicted.peak_bytes / 1e9,
+      limit / 1e9, collected ? ", or write .ply without --preview, which is streamed" : ""));
 }
 
 }  // namespace
@@ -159,7 +122,8 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
   const bool small = request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting;
   if (!by_triangles && !request.only_predict && small) return request.resolution;
 
-  const int resolution = by_triangles ? resolution_for(request.triangles, mesh) : request.resolution;
+  const int resolution = by_triangles ? resolution_for_triangles(mesh.field, mesh.region, request.triangles)
+                                      : request.resolution;
   const Prediction predicted = predict(program, resolution, mesh,
                                        request.only_predict ? kForFigures
                                        : by_triangles       ? kForTriangles
@@ -172,7 +136,7 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
   check_memory(request, resolution, mesh, predicted);
   program.say(
       fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, about {:.0f} s",
-                  resolution, rounded(predicted.triangles), predicted.file_bytes / 1e6,
+                  resolution, rounded_count(predicted.triangles), predicted.file_bytes / 1e6,
                   predicted.peak_bytes / 1e6, std::ceil(predicted.seconds)));
   return resolution;
 }

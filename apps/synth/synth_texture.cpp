@@ -8,9 +8,8 @@
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "synthesis/gabor/color_texture.h"
-#include "synthesis/gabor/gabor_texture.h"
 #include "synthesis/picture/image_file.h"
+#include "tasks/synthesis/plane_texture.h"
 
 namespace astrolith {
 namespace {
@@ -19,7 +18,6 @@ namespace fs = std::filesystem;
 
 // PNG heights map this many standard deviations either way to the full range.
 constexpr double kTextureRange = 4.0;
-constexpr int kMaxTextureSide = 16384;
 
 struct TextureSize {
   int width, height;
@@ -35,14 +33,6 @@ TextureSize parse_size(const std::string& text) {
                      std::to_string(kMaxTextureSide) + ", such as 1024x1024");
   }
   return size;
-}
-
-GaborLayer first_gabor_layer(const Recipe& recipe, const fs::path& file) {
-  for (const Layer& layer : recipe.layers) {
-    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) return *gabor;
-  }
-  throw InputError(file.string() +
-                   ": layers: hold no Gabor layer, which --texture draws; fit one with fit_gabor");
 }
 
 // Turns values into whole numbers from 0 to `top`: offset + scale * value, clamped to [0, 1], times `top`.
@@ -77,49 +67,30 @@ void write_picture(const Picture& p, int bits, const fs::path& output) {
   write_png16_grey(words, width, height, output);
 }
 
-TextureOptions texture_options(const Recipe& recipe, const TextureRequest& request, const TextureSize& size) {
-  TextureOptions options{recipe.seed};
-  if (request.tileable) {
-    options.period_width = size.width;
-    options.period_height = size.height;
-  }
-  return options;
-}
-
-void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe, GaborLayer layer,
-                   const fs::path& output) {
-  const TextureSize size = parse_size(request.size);
-  // A layer without a height is drawn in units of its own standard deviation.
-  const bool has_height = layer.height_rms > 0.0;
-  if (!has_height) layer.height_rms = 1.0;
-  const std::vector<float> heights = synthesize_texture(
-      layer, size.width, size.height, texture_options(recipe, request, size), program.progress("texture"));
-  if (Program::interrupted()) throw WorkError("stopped before the texture was complete");
-  write_picture({size, 1, heights, 0.5, 0.5 / (kTextureRange * layer.height_rms)}, request.bits, output);
+void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe,
+                   const PlaneTexture& texture, const TextureSize& size, const fs::path& output) {
+  const double rms = texture.height_rms;
+  write_picture({size, 1, texture.values, 0.5, 0.5 / (kTextureRange * rms)}, request.bits, output);
   program.summary["content"] = "height";
-  program.summary["height_unit"] = has_height ? recipe.length_unit : "standard deviations";
-  program.summary["height_rms"] = layer.height_rms;
+  program.summary["height_unit"] = texture.has_height ? recipe.length_unit : "standard deviations";
+  program.summary["height_rms"] = rms;
   if (output.extension() == ".png") {
-    program.summary["height_at_0"] = -kTextureRange * layer.height_rms;
-    program.summary[request.bits == 8 ? "height_at_255" : "height_at_65535"] =
-        kTextureRange * layer.height_rms;
+    program.summary["height_at_0"] = -kTextureRange * rms;
+    program.summary[request.bits == 8 ? "height_at_255" : "height_at_65535"] = kTextureRange * rms;
   }
   program.say(output.string() + ": height of a Gabor layer, " + request.size + " pixels");
 }
 
-void write_colors(Program& program, const TextureRequest& request, const Recipe& recipe,
-                  const std::vector<GaborLayer>& layers, const fs::path& output) {
-  const TextureSize size = parse_size(request.size);
-  const std::vector<float> rgb = synthesize_color_texture(
-      layers, size.width, size.height, texture_options(recipe, request, size), program.progress("texture"));
-  if (Program::interrupted()) throw WorkError("stopped before the texture was complete");
+void write_colors(Program& program, const TextureRequest& request, const PlaneTexture& texture,
+                  const TextureSize& size, const fs::path& output) {
+  const std::vector<float>& rgb = texture.values;
   write_picture({size, 3, rgb, 0.0, 1.0}, request.bits, output);
   const auto outside = std::count_if(rgb.begin(), rgb.end(), [](float v) { return v < 0.0f || v > 1.0f; });
   program.summary["content"] = "color";
-  program.summary["layers"] = layers.size();
+  program.summary["layers"] = texture.layers;
   program.summary["share_outside_full_scale"] =
       static_cast<double>(outside) / static_cast<double>(rgb.size());
-  program.say(output.string() + ": colours of " + std::to_string(layers.size()) + " Gabor layers, " +
+  program.say(output.string() + ": colours of " + std::to_string(texture.layers) + " Gabor layers, " +
               request.size + " pixels");
 }
 
@@ -145,19 +116,14 @@ void declare_texture_options(Program& program, TextureRequest& request) {
 void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,
                    const fs::path& file, const fs::path& output) {
   const TextureSize size = parse_size(request.size);
-  const std::vector<GaborLayer> layers = colored_layers(recipe);
-  if (request.content == "color" && layers.empty()) {
-    throw InputError(file.string() +
-                     ": layers: none has a color; fit a photo with fit_gabor --channels pca, or ask for "
-                     "--texture-of height");
-  }
   program.summary["width"] = size.width;
   program.summary["height"] = size.height;
   program.summary["tileable"] = request.tileable;
-  if (!layers.empty() && request.content != "height") {
-    return write_colors(program, request, recipe, layers, output);
-  }
-  write_heights(program, request, recipe, first_gabor_layer(recipe, file), output);
+  const PlaneTexture texture =
+      draw_texture(recipe, file.string(), {size.width, size.height, request.content, request.tileable},
+                   program.progress("texture"));
+  if (texture.channels == 3) return write_colors(program, request, texture, size, output);
+  write_heights(program, request, recipe, texture, size, output);
 }
 
 }  // namespace astrolith

@@ -224,6 +224,12 @@ void check(const PreviewOptions& options, const TriangleMesh& mesh) {
 
 }  // namespace
 
+PreviewView view_from(const Vec3d& direction) {
+  const Vec3d from = normalized(direction);
+  const bool polar = from.x * from.x + from.y * from.y < 1e-6;
+  return {from, polar ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}};
+}
+
 std::vector<PreviewView> standard_views() {
   return {
       {{1, 0, 0}, {0, 0, 1}}, {{0, 1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}}, {{1.0, -1.2, 0.8}, {0, 0, 1}}};

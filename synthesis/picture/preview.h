@@ -21,6 +21,9 @@ struct PreviewView {
 // The views from +x, from +y, from above the +z pole, and obliquely, as readers of shape models expect them.
 std::vector<PreviewView> standard_views();
 
+// The view from a direction of any length above 0. North is up, or +y where the view is along the pole.
+PreviewView view_from(const Vec3d& direction);
+
 struct PreviewOptions {
   int width = 1280;      // pixels, 16 .. 16384
   int height = 960;      // pixels, 16 .. 16384

@@ -48,11 +48,9 @@ struct ShapeFitResult {
   bool interrupted = false;                   // progress asked to stop; the body is the best so far
 };
 
-// Makes a progress callback for a stage: "pack", "search" or "refine".
-using StageProgress = std::function<Progress(const std::string& stage)>;
-
-// Equal targets, options and seeds give the same body for every number of threads. Throws InputError
-// "parameter: range" for an option out of range, and InputError for a body in which no sphere fits.
+// The stages of a fit are "pack", "search" and "refine". Equal targets, options and seeds give the same body
+// for every number of threads. Throws InputError "parameter: range" for an option out of range, and
+// InputError for a body in which no sphere fits.
 ShapeFitResult fit_shape(
     const TargetBody& target, const ShapeFitOptions& options,
     const StageProgress& progress = [](const std::string&) { return Progress(); });

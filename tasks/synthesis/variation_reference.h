@@ -1,4 +1,4 @@
-// What synth and fit_shape share about variations: the measure of similarity, and the words for the result.
+// Variations measured against a mesh: the measure of similarity, and the words for the result.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "apps/variation_reference.h"
+#include "tasks/synthesis/variation_reference.h"
 
 #include <fmt/format.h>
 

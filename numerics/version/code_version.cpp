@@ -1,4 +1,4 @@
-#include "apps/version.h"
+#include "numerics/version/code_version.h"
 
 namespace astrolith {
 

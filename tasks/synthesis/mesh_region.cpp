@@ -1,0 +1,164 @@
+#include "tasks/synthesis/mesh_region.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cuda/mesher/backend_mesher.h"
+#include "cuda/mesher/gpu_obstacle.h"
+#include "cuda/mesher/mesh_field.h"
+#include "numerics/errors.h"
+#include "numerics/interval.h"
+#include "recipe/height_field.h"
+#include "synthesis/field/field_mesh.h"
+
+namespace astrolith {
+namespace {
+
+// The finest cell of a body made by operations, as a fraction of its largest coordinate.
+constexpr double kFinestCell = 0x1p-15;
+
+// The most cells along the longest side of a mesh that only looks whether there is a surface.
+constexpr int kLookAround = 64;
+
+// A point of the surface near p, found by Newton's steps along the gradient. Returns p where the steps do not
+// converge.
+Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
+  Vec3d q = p;
+  for (int step = 0; step < 64; ++step) {
+    const Vec3d gradient = field.gradient(q);
+    const double slope = squared_norm(gradient);
+    if (!(slope > 0.0)) return p;
+    q -= field.value(q) / slope * gradient;
+    if (!std::isfinite(squared_norm(q))) return p;
+  }
+  return q;
+}
+
+// A body made by operations is evaluated in float coordinates of its frame. Finer cells would show their
+// rounding.
+void check_cells(const ImplicitField& field, const Region& region, int resolution) {
+  const double finest = kFinestCell * largest_coordinate(field.bounds());
+  const double cell = region.size / resolution;
+  if (cell >= finest) return;
+  throw InputError(
+      fmt::format("patch: body.operations: a combined body has cells of {:.3g} at least, these would be "
+                  "{:.3g}; lower the resolution or take a larger cube",
+                  finest, cell));
+}
+
+// Whether a mesh of so many cells shows nothing of the recipe's surface.
+bool is_empty(const Recipe& recipe, const std::filesystem::path& file, int cells) {
+  const ImplicitField field(recipe, file.string());
+  if (field.bounds().empty()) return true;
+  MeshDiscard sink;
+  return mesh_field(field, field.bounds(), cells, sink).triangles == 0;
+}
+
+// The layer that takes away what the body and the layers before it have of a surface; -1 where there is none.
+int emptying_layer(const Recipe& recipe, const std::filesystem::path& file, int cells) {
+  Recipe part = recipe;
+  if (!is_empty(part, file, cells)) return -1;
+  for (std::size_t i = recipe.layers.size(); i > 0; --i) {
+    part.layers.resize(i - 1);
+    if (!is_empty(part, file, cells)) return static_cast<int>(i) - 1;
+  }
+  return -1;
+}
+
+}  // namespace
+
+Region patch_region(const Vec3d& center, double side) {
+  Region region{{}, true, center, side};
+  if (!(side >= kMinPositive) || !(side <= kMaxNumber) ||
+      !(squared_norm(center) <= kMaxNumber * kMaxNumber)) {
+    throw InputError("patch: has no centre or no side above 0; write X Y Z SIDE in the recipe's length unit");
+  }
+  return region;
+}
+
+Region tile_region(int number, int count) {
+  if (number < 1 || number > count) {
+    throw InputError(
+        fmt::format("tile: {}/{} is no tile; write I/N with I from 1 to N, such as 3/16", number, count));
+  }
+  return {{number - 1, count}, false, {}, 0.0};
+}
+
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
+  if (region.is_patch) return "patches";
+  return obstacle_on_gpu(field.tables(), block_side(field.bounds(), resolution));
+}
+
+MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
+                           const Progress& progress, MeshingDevice device) {
+  if (region.is_patch && !field.has_local_form()) check_cells(field, region, resolution);
+  if (region.is_patch) {
+    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
+  }
+  return device == MeshingDevice::kGpu
+             ? mesh_field_on_gpu(field, field.bounds(), resolution, sink, progress, region.tile)
+             : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
+}
+
+MeshEstimate sample_region(const ImplicitField& field, const Region& region, int resolution,
+                           const SampleSize& size) {
+  return region.is_patch ? sample_patch(PatchField(field, region.center), region.size, resolution, size)
+                         : sample_field(field, field.bounds(), resolution, region.tile, size);
+}
+
+std::string rounded_count(double count) {
+  return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
+}
+
+int resolution_for_triangles(const ImplicitField& field, const Region& region, double triangles) {
+  constexpr SampleSize kSize{512, 192, false};
+  constexpr int kFirst = 96, kMostSteps = 3;
+  constexpr double kNearEnough = 0.02;
+  const Region whole = region.is_patch ? region : Region{};
+  int resolution = kFirst;
+  double found = 0.0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    found = sample_region(field, whole, resolution, kSize).triangles;
+    if (!(found > 0.0)) {
+      throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
+    }
+    const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
+    const int next =
+        static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
+    if (next == resolution || std::fabs(found / triangles - 1.0) < kNearEnough) break;
+    resolution = next;
+  }
+  if (resolution == kMaxResolution && found < 0.9 * triangles) {
+    throw InputError(
+        fmt::format("triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
+                    resolution, rounded_count(found)));
+  }
+  return resolution;
+}
+
+void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,
+                const std::filesystem::path& file) {
+  const int cells = region.is_patch ? kLookAround : std::min(resolution, kLookAround);
+  if (const int layer = emptying_layer(recipe, file, cells); layer >= 0) {
+    throw InputError(
+        fmt::format("{}: layers[{}].{}: nothing of the body is left that a mesh of {} cells shows; make the "
+                    "layer's heights smaller{}",
+                    file.string(), layer, height_field(recipe.layers[static_cast<std::size_t>(layer)]), cells,
+                    region.is_patch ? "" : ", or raise the resolution"));
+  }
+  if (region.is_patch) {
+    const Vec3d p = nearby_surface_point(field, region.center);
+    throw InputError(fmt::format(
+        "patch: no surface crosses this cube; there is some near {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z));
+  }
+  if (region.is_cut()) {
+    throw InputError(fmt::format("tile: no surface lies in tile {} of {}; take another",
+                                 region.tile.index + 1, region.tile.count));
+  }
+  throw InputError(fmt::format("{}: the whole body lies between the samples of resolution {}; raise it",
+                               file.string(), resolution));
+}
+
+}  // namespace astrolith

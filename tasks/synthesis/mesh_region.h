@@ -1,0 +1,63 @@
+// The region of a mesh: the whole surface, a tile or a patch.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "numerics/progress.h"
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesh_sample.h"
+#include "synthesis/mesh/mesher.h"
+
+namespace astrolith {
+
+struct Region {
+  MeshTile tile;
+  bool is_patch = false;
+  Vec3d center;       // centre of a patch
+  double size = 0.0;  // side of a patch, length units
+
+  bool is_cut() const { return is_patch || tile.count > 1; }
+  // The cube of a patch; none for the whole surface and for tiles.
+  std::optional<PatchCube> cube() const {
+    return is_patch ? std::optional(PatchCube{center, size}) : std::nullopt;
+  }
+};
+
+// A cube of this centre and side, in length units. Throws InputError for a side that is not above 0, and for
+// numbers that are not finite or beyond kMaxNumber.
+Region patch_region(const Vec3d& center, double side);
+
+// The tile `number` of `count`, counted from 1. Throws InputError for a tile that does not exist.
+Region tile_region(int number, int count);
+
+// Names the part of a field or region that the GPU cannot mesh, in a few words. Empty where the GPU can mesh
+// all.
+std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution);
+
+enum class MeshingDevice { kCpu, kGpu };
+
+// Meshes the region. Throws InputError for a patch whose cells are finer than the coordinates of a body made
+// by operations, and what mesh_field throws.
+MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
+                           const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
+
+// The estimate of the mesh of a region from a sample of its blocks.
+MeshEstimate sample_region(const ImplicitField& field, const Region& region, int resolution,
+                           const SampleSize& size);
+
+// The resolution at which the whole mesh, or the patch, has about so many triangles. The samples have a fixed
+// size, so that the resolution is the same on every machine. Throws InputError where the finest mesh has
+// fewer, and WorkError where the surface is too small for a sample.
+int resolution_for_triangles(const ImplicitField& field, const Region& region, double triangles);
+
+// A count in three characters or so: "1.2 M", "340 k".
+std::string rounded_count(double count);
+
+// Throws InputError for a region without surface at this resolution: the layer that takes the whole body
+// away, where there is one, or what to ask for instead. `file` is the recipe's file.
+[[noreturn]] void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region,
+                             int resolution, const std::filesystem::path& file);
+
+}  // namespace astrolith
