@@ -10,13 +10,15 @@ packages=(
 )
 fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev)
 # --synth leaves out the packages of the fits. --format and --lint add what CI checks the sources with, --package what makes a
-# Debian package, and --notebooks the packages of the notebooks.
+# Debian package, --python what builds the Python package, and --notebooks the packages of the
+# notebooks.
 for option in "$@"; do
   case $option in
     --synth) fitting=() ;;
     --format) packages+=(clang-format-14) ;;
     --lint) packages+=(clang-tidy-14) ;;
     --package) packages+=(help2man dpkg-dev) ;;
+    --python) packages+=(python3-dev python3-venv) ;;
     --notebooks) packages+=(python3-nbconvert python3-ipykernel python3-venv python3-numpy python3-scipy python3-matplotlib python3-sklearn) ;;
     *) echo "setup.sh: unknown option $option" >&2; exit 2 ;;
   esac

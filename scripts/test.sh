@@ -10,7 +10,12 @@ if [[ ${1:-} == --full ]]; then
   shift
 fi
 preset=${1:-release}
-scripts/setup.sh
+scripts/setup.sh --python
 scripts/fetch_data.sh
-scripts/build.sh "$preset" -DASTROLITH_CUDA=ON
+settings=(-DASTROLITH_CUDA=ON -DASTROLITH_PYTHON=OFF)
+# An interpreter without a sanitizer does not load a module with one.
+if [[ $preset != asan && $preset != tsan ]] && scripts/python_venv.sh; then
+  settings+=(-DASTROLITH_PYTHON=ON -DPython_EXECUTABLE="$PWD/build/python-venv/bin/python")
+fi
+scripts/build.sh "$preset" "${settings[@]}"
 ctest --preset "$preset"

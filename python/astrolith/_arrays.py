@@ -1,0 +1,114 @@
+"""Checks of the arrays that users pass in: a wrong one is a ValueError of one line that names the argument."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+# The largest coordinate, as mesh files and recipes have it.
+_LARGEST = 1e18
+
+
+def _array(value: Any, name: str) -> npt.NDArray[Any]:
+    if isinstance(value, np.ndarray):
+        array = value
+    else:
+        try:
+            array = np.asarray(value)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{name}: is no array of numbers ({type(value).__name__}); pass a NumPy array") from error
+    if not array.flags.c_contiguous:
+        raise ValueError(f"{name}: is not C-contiguous; pass numpy.ascontiguousarray({name})")
+    return array
+
+
+def _require_rows(array: npt.NDArray[Any], name: str, columns: int, empty: bool) -> None:
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise ValueError(f"{name}: has the shape {array.shape}; it must be (n, {columns})")
+    if not empty and len(array) == 0:
+        raise ValueError(f"{name}: is empty; it must have at least one row")
+
+
+def rows(value: Any, name: str, *, length: Optional[int] = None, empty: bool = False) -> npt.NDArray[np.float64]:
+    """(n, 3) finite numbers as float64. float64 passes without a copy."""
+    array = _array(value, name)
+    if isinstance(value, (list, tuple)) and array.dtype.kind in "iu":
+        array = array.astype(np.float64)
+    if array.dtype.kind != "f" or array.dtype.itemsize not in (4, 8):
+        raise ValueError(f"{name}: has the dtype {array.dtype}; it must be float64 or float32")
+    _require_rows(array, name, 3, empty)
+    if length is not None and len(array) != length:
+        raise ValueError(f"{name}: has {len(array)} rows; it must have {length}, one for each vertex")
+    # One pass without a temporary: the extremes are not finite where any number is not.
+    if array.size and not (np.abs(array.max()) <= _LARGEST and np.abs(array.min()) <= _LARGEST):
+        bad = int(np.argmax(~(np.abs(array) <= _LARGEST).all(axis=1)))
+        raise ValueError(f"{name}: row {bad} is {array[bad].tolist()}; numbers must be finite and at most 1e18")
+    return array.astype(np.float64, copy=False)
+
+
+def faces_of(value: Any, name: str, vertices: int, *, empty: bool = False) -> npt.NDArray[np.uint32]:
+    """(m, 3) indices of vertices as uint32. uint32 passes without a copy."""
+    array = _array(value, name)
+    if empty and array.size == 0:
+        return np.zeros((0, 3), np.uint32)
+    if array.dtype.kind not in "iu":
+        raise ValueError(f"{name}: has the dtype {array.dtype}; it must be an integer type, such as uint32")
+    _require_rows(array, name, 3, empty)
+    least, most = int(array.min()), int(array.max())
+    if least < 0:
+        raise ValueError(f"{name}: has the negative index {least}; indices must be 0 to {vertices - 1}")
+    if most >= vertices:
+        raise ValueError(f"{name}: has the index {most}; with {vertices} vertices it must be 0 to {vertices - 1}")
+    return array.astype(np.uint32, copy=False)
+
+
+def column(value: Any, name: str, dtype: Any, length: int) -> npt.NDArray[Any]:
+    """(n) numbers of this type, one for each vertex."""
+    array = _array(value, name)
+    if array.shape != (length,):
+        raise ValueError(f"{name}: has the shape {array.shape}; it must be ({length},), one for each vertex")
+    if array.dtype != np.dtype(dtype):
+        raise ValueError(f"{name}: has the dtype {array.dtype}; it must be {np.dtype(dtype)}")
+    return array
+
+
+def vector(value: Any, name: str, length: int = 3) -> tuple[float, ...]:
+    """`length` finite numbers."""
+    try:
+        numbers = tuple(float(x) for x in value)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: must be {length} numbers, and is {value!r}") from error
+    if len(numbers) != length or not all(np.isfinite(numbers)):
+        raise ValueError(f"{name}: must be {length} finite numbers, and is {value!r}")
+    return numbers
+
+
+def integer(value: Any, name: str, least: int, most: int) -> int:
+    """A whole number in [least, most]."""
+    try:
+        number = value.__index__()
+    except AttributeError:
+        raise ValueError(f"{name}: must be a whole number from {least} to {most}, and is {value!r}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name}: must be from {least} to {most}, and is {number}")
+    return int(number)
+
+
+def number(value: Any, name: str, least: float, most: float) -> float:
+    """A number in [least, most]."""
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: must be a number from {least:g} to {most:g}, and is {value!r}") from None
+    if not least <= result <= most:
+        raise ValueError(f"{name}: must be from {least:g} to {most:g}, and is {result:g}")
+    return result
+
+
+def choice(value: Any, name: str, words: tuple[str, ...]) -> str:
+    """One of the words."""
+    if value not in words:
+        raise ValueError(f"{name}: must be one of {', '.join(words)}, and is {value!r}")
+    return str(value)

@@ -1,0 +1,154 @@
+"""Triangle meshes: arrays with what is known about them."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from astrolith import _arrays, _synthesis
+from astrolith._recipe import PathLike, Record
+
+MeshLike = Any
+"""A Mesh, anything with ``vertices`` and ``faces`` (trimesh has both), a pair of arrays, or the name of a file."""
+
+
+@dataclasses.dataclass(eq=False)
+class Mesh:
+    """A triangle mesh.
+
+    Attributes
+    ----------
+    vertices
+        (n, 3) positions in `length_unit`: float32 from :func:`mesh`, float64 from :func:`read_mesh`.
+    faces
+        (m, 3) uint32 indices of vertices, counter-clockwise seen from outside. (0, 3) for points.
+    normals
+        (n, 3) outward unit vectors, or None.
+    labels
+        (n) int32: the layer that changed the surface most, 0 for the bare body, i + 1 for layer i; or None.
+    elevations
+        (n) float32 heights of all layers above the bare body in `length_unit`; or None.
+    origin
+        The place that vertices are relative to, in the recipe's frame; None: the frame's own origin.
+    figures
+        What ``synth --summary`` states: triangles, closed, genus, components, cell, layers_left_out and more.
+    """
+
+    vertices: npt.NDArray[Any]
+    faces: npt.NDArray[np.uint32]
+    normals: Optional[npt.NDArray[Any]] = None
+    labels: Optional[npt.NDArray[np.int32]] = None
+    elevations: Optional[npt.NDArray[np.float32]] = None
+    length_unit: str = ""
+    frame: str = ""
+    comment: str = ""
+    origin: Optional[tuple[float, float, float]] = None
+    legend: list[str] = dataclasses.field(default_factory=list)
+    figures: Record = dataclasses.field(default_factory=Record)
+
+    def __repr__(self) -> str:
+        unit = f", {self.length_unit}" if self.length_unit else ""
+        return f"<astrolith.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces{unit}>"
+
+
+@dataclasses.dataclass
+class Arrays:
+    """A mesh as the extension modules take it."""
+
+    name: str
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.uint32]
+    normals: Optional[npt.NDArray[np.float64]]
+
+
+def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
+    """Checks a mesh. With `points`, vertices with normals and without faces will do."""
+    if isinstance(mesh, (str, os.PathLike)):
+        read = _synthesis.read_mesh(os.fspath(mesh), points, None)
+        return Arrays(os.fspath(mesh), read["vertices"], read["faces"], read.get("normals"))
+    normals: Any = None
+    if isinstance(mesh, tuple) and len(mesh) == 2:
+        vertices, faces = mesh
+    elif hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        vertices, faces = mesh.vertices, mesh.faces
+        if isinstance(mesh, Mesh):
+            normals = mesh.normals
+    else:
+        raise ValueError(
+            f"{name}: must be a Mesh, a pair (vertices, faces), an object with both or a file, and is {type(mesh).__name__}"
+        )
+    checked = _arrays.rows(_plain(vertices), f"{name}.vertices")
+    faces = np.zeros((0, 3), np.uint32) if faces is None else _plain(faces)
+    if normals is not None:
+        normals = _arrays.rows(normals, f"{name}.normals", length=len(checked))
+    no_faces = points and normals is not None
+    return Arrays(name, checked, _arrays.faces_of(faces, f"{name}.faces", len(checked), empty=no_faces), normals)
+
+
+def _plain(array: Any) -> Any:
+    """The array itself where it belongs to a class derived from ndarray, such as trimesh's."""
+    return array.view(np.ndarray) if isinstance(array, np.ndarray) else array
+
+
+def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
+    """Read a mesh: obj, ply, stl, off, PDS plate .tab, ICQ or bmf.
+
+    Parameters
+    ----------
+    file
+        The file. Its content and its extension must agree on the format.
+    points
+        Whether a .ply of points with unit normals and without faces is welcome, too.
+
+    Returns
+    -------
+    Mesh
+        float64 vertices in the file's unit.
+
+    Raises
+    ------
+    ValueError
+        The file is missing, damaged or of another kind. The message names the place in the file.
+    """
+    read = _synthesis.read_mesh(os.fspath(file), points, None)
+    return Mesh(read["vertices"], read["faces"], read.get("normals"))
+
+
+def write_mesh(mesh: MeshLike, file: PathLike) -> None:
+    """Write .ply (binary, float32), .obj (text), .stl (binary) or .glb, whole or not at all.
+
+    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply.
+
+    Raises
+    ------
+    ValueError
+        The mesh is wrong, the extension is another one, or the folder cannot be written.
+    RuntimeError
+        The disk is full, or float32 cannot hold the coordinates.
+    """
+    arrays = arrays_of(mesh, "mesh")
+    made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces)
+    labels = elevations = None
+    if made.labels is not None and made.elevations is not None and os.fspath(file).endswith(".ply"):
+        if arrays.normals is None:
+            raise ValueError("mesh.normals: are missing; labels are written with normals only")
+        labels = _arrays.column(made.labels, "mesh.labels", np.int32, len(arrays.vertices))
+        elevations = _arrays.column(made.elevations, "mesh.elevations", np.float32, len(arrays.vertices))
+    origin = None if made.origin is None else _arrays.vector(made.origin, "mesh.origin")
+    _synthesis.write_mesh(
+        os.fspath(file),
+        arrays.vertices,
+        arrays.faces,
+        arrays.normals,
+        labels,
+        elevations,
+        made.length_unit,
+        made.frame,
+        made.comment,
+        origin,
+        made.legend if labels is not None else [],
+    )

@@ -1,0 +1,145 @@
+"""Recipes as Python objects: dictionaries whose keys are attributes, too."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Mapping, Union
+
+from astrolith import _synthesis
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+class Record(dict[str, Any]):
+    """A JSON object whose members are items and attributes alike.
+
+    An attribute that the object does not have cannot be set: a misspelt name is an AttributeError. Items can be added.
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"{name}: no such field; there are {', '.join(self) or 'none'}") from None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in self:
+            raise AttributeError(f"{name}: no such field; there are {', '.join(self) or 'none'}")
+        self[name] = value
+
+
+def records(text: str) -> Any:
+    """The JSON text with its objects as records."""
+    return json.loads(text, object_hook=Record)
+
+
+class Recipe(Record):
+    """A body and its layers: what ``synth`` turns into meshes, and what the fits write.
+
+    ``docs/recipe.md`` describes the fields. They are attributes that can be read and set at any depth, such as
+    ``recipe.seed = 7`` or ``recipe.layers[0].amplitude *= 2``. Every function that takes a recipe checks it first;
+    :meth:`validate` does so at once.
+
+    Examples
+    --------
+    >>> ball = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0, 0, 0, 1]]}
+    >>> recipe = Recipe.from_dict({"format_version": 1, "length_unit": "m", "body": ball})
+    >>> recipe.length_unit, len(recipe.body.spheres)
+    ('m', 1)
+    >>> recipe.seeed = 7
+    Traceback (most recent call last):
+    ...
+    AttributeError: seeed: no such field; there are ...
+    """
+
+    @classmethod
+    def from_json(cls, text: str, name: str = "recipe") -> "Recipe":
+        """Read a JSON text.
+
+        Parameters
+        ----------
+        text
+            The recipe as JSON.
+        name
+            What messages call the recipe.
+
+        Raises
+        ------
+        ValueError
+            The text breaks a rule of recipes; the message is the programs' own.
+        """
+        return cls(records(_synthesis.check_recipe(text, name)))
+
+    @classmethod
+    def from_dict(cls, fields: Mapping[str, Any], name: str = "recipe") -> "Recipe":
+        """Take a dictionary. Fields that are absent get their defaults. Raises ValueError as :meth:`from_json`."""
+        return cls.from_json(_dumped(fields, name), name)
+
+    @classmethod
+    def read(cls, file: PathLike) -> "Recipe":
+        """Read a JSON file of at most 64 MB. Raises ValueError as :meth:`from_json`."""
+        return cls(records(_synthesis.read_recipe(os.fspath(file))))
+
+    def validate(self, name: str = "recipe") -> None:
+        """Raise ValueError at the first field that breaks a rule."""
+        self.to_json(name)
+
+    def to_json(self, name: str = "recipe") -> str:
+        """Return the text that the programs write, with every field. Raises ValueError as :meth:`from_json`."""
+        return _synthesis.check_recipe(_dumped(self, name), name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain dictionaries and lists, with every field. Raises ValueError as :meth:`from_json`."""
+        plain: dict[str, Any] = json.loads(self.to_json())
+        return plain
+
+    def write(self, file: PathLike) -> None:
+        """Write the file whole or not at all, with the bytes that the programs write.
+
+        Raises
+        ------
+        ValueError
+            The recipe breaks a rule, or the file cannot be written.
+        RuntimeError
+            The disk is full.
+        """
+        _synthesis.write_recipe(_dumped(self, "recipe"), "recipe", os.fspath(file))
+
+    def copy(self) -> "Recipe":
+        """Return a copy that shares nothing with this recipe."""
+        return type(self)(records(json.dumps(self)))
+
+    def laid_on(self, base: "RecipeLike") -> "Recipe":
+        """Return `base` with this recipe's layers after its own, as ``synth --base`` does; m and km convert."""
+        details_name, base_name = "recipe", "base"
+        return Recipe(
+            records(_synthesis.lay_on_base(_dumped(self, details_name), details_name, json_of(base, base_name)[0], base_name))
+        )
+
+
+RecipeLike = Union[Recipe, Mapping[str, Any], str, "os.PathLike[str]"]
+
+
+def _dumped(fields: Mapping[str, Any], name: str) -> str:
+    try:
+        return json.dumps(fields, allow_nan=False, default=_plain)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: cannot be written as JSON: {error}") from None
+
+
+def _plain(value: Any) -> Any:
+    """NumPy's numbers and arrays as Python's."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is no number, text, list or dictionary")
+
+
+def json_of(recipe: RecipeLike, name: str = "recipe") -> tuple[str, str]:
+    """The JSON text of a recipe, a dictionary or a file, and what messages call it."""
+    if isinstance(recipe, Mapping):
+        return _dumped(recipe, name), name
+    if isinstance(recipe, (str, os.PathLike)):
+        file = os.fspath(recipe)
+        return _synthesis.read_recipe(file), file
+    raise ValueError(f"{name}: must be a Recipe, a dictionary or a file, and is {type(recipe).__name__}")

@@ -1,0 +1,142 @@
+#include "python/bindings/job.h"
+
+#include <nanobind/stl/string.h>
+
+#include <chrono>
+#include <list>
+
+#include "numerics/errors.h"
+#include "numerics/printable_text.h"
+
+namespace nb = nanobind;
+
+namespace astrolith::python {
+namespace {
+
+using namespace std::chrono_literals;
+
+// How often the calling thread looks for signals and progress.
+constexpr auto kLookEvery = 30ms;
+// How long work may take to stop before the caller goes on without it.
+constexpr auto kPatience = 700ms;
+
+// Threads of work that was asked to stop and had not ended when its caller went on.
+struct Background {
+  std::mutex mutex;
+  std::list<std::pair<std::shared_ptr<JobState>, std::thread>> jobs;
+};
+// Never destroyed: threads may outlive the module's static objects.
+Background& background() {
+  static auto* all = new Background;
+  return *all;
+}
+
+void forget_ended_work() {
+  const std::lock_guard lock(background().mutex);
+  background().jobs.remove_if([](auto& job) {
+    if (!job.first->wait(0ms)) return false;
+    job.second.join();
+    return true;
+  });
+}
+
+// Raises the exception of a signal, or of the callback. A callback that returns False asks to stop.
+void look_up(JobState& state, const nb::object& callback) {
+  if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  if (callback.is_none()) return;
+  const auto news = state.news();
+  if (!news) return;
+  if (callback(news->first, news->second).is(nb::handle(Py_False))) state.stop();
+}
+
+}  // namespace
+
+Progress JobState::progress(const std::string& stage) {
+  return [this, stage](double fraction, std::string_view words) {
+    const std::lock_guard lock(mutex_);
+    fraction_ = fraction;
+    words_ = words.empty() ? stage : stage + ": " + std::string(words);
+    new_ = true;
+    return !stop_;
+  };
+}
+
+void JobState::finish(std::exception_ptr error) {
+  const std::lock_guard lock(mutex_);
+  error_ = std::move(error);
+  done_ = true;
+  ended_.notify_all();
+}
+
+bool JobState::wait(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return ended_.wait_for(lock, time, [&] { return done_; });
+}
+
+std::optional<std::pair<double, std::string>> JobState::news() {
+  const std::lock_guard lock(mutex_);
+  if (!std::exchange(new_, false)) return std::nullopt;
+  return std::pair(fraction_, printable(words_));
+}
+
+void run(const std::shared_ptr<JobState>& state, nb::object callback, int threads, std::function<void()> work,
+         bool must_end) {
+  forget_ended_work();
+  std::thread worker([state, threads, work = std::move(work)]() mutable {
+    std::exception_ptr error;
+    try {
+      if (threads > 0) {
+        tbb::task_arena(threads).execute(work);
+      } else {
+        work();
+      }
+    } catch (...) {
+      error = std::current_exception();
+    }
+    work = nullptr;
+    state->finish(error);
+  });
+  const auto ended_within = [&](std::chrono::milliseconds time) {
+    const nb::gil_scoped_release release;
+    return state->wait(time);
+  };
+  try {
+    while (!ended_within(kLookEvery)) look_up(*state, callback);
+    worker.join();
+    if (state->error()) std::rethrow_exception(state->error());
+    if (!callback.is_none()) look_up(*state, callback);
+  } catch (...) {
+    state->stop();
+    if (worker.joinable()) {
+      while (!ended_within(kPatience) && must_end) {
+      }
+      const std::lock_guard lock(background().mutex);
+      background().jobs.emplace_back(state, std::move(worker));
+    }
+    throw;
+  }
+}
+
+void join_background_work() {
+  const nb::gil_scoped_release release;
+  const std::lock_guard lock(background().mutex);
+  for (auto& [state, thread] : background().jobs) thread.join();
+  background().jobs.clear();
+}
+
+void declare_common(nb::module_& module) {
+  nb::register_exception_translator([](const std::exception_ptr& error, void*) {
+    try {
+      std::rethrow_exception(error);
+    } catch (const InputError& e) {
+      PyErr_SetString(PyExc_ValueError, printable(e.what()).c_str());
+    } catch (const WorkError& e) {
+      PyErr_SetString(PyExc_RuntimeError, printable(e.what()).c_str());
+    }
+  });
+  module.def("join_background_work", &join_background_work,
+             "Waits for work that was stopped and has not ended yet.");
+  nb::module_::import_("atexit").attr("register")(module.attr("join_background_work"));
+}
+
+}  // namespace astrolith::python

@@ -1,0 +1,251 @@
+#include "python/bindings/mesh_bindings.h"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/ply_stream_writer.h"
+#include "numerics/version/code_version.h"
+#include "python/bindings/arrays.h"
+#include "python/bindings/job.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/field/surface_labels.h"
+#include "tasks/synthesis/body_mesh.h"
+#include "tasks/synthesis/erode_body.h"
+
+namespace astrolith::python {
+namespace {
+
+using Fields = nb::typed<nb::dict, nb::str, nb::any>;
+
+// Receives a mesh as arrays, with labels where a labeller is given.
+class ArraySink : public MeshSink {
+ public:
+  explicit ArraySink(VertexLabeller labeller) : labeller_(std::move(labeller)) {}
+
+  void add_vertices(std::span<const MeshVertex> batch) override {
+    for (const MeshVertex& v : batch) {
+      vertices.push_back(v.position);
+      normals.push_back(v.normal);
+    }
+    if (!labeller_) return;
+    std::vector<VertexLabel> made(batch.size());
+    labeller_(batch, made);
+    for (const VertexLabel& label : made) {
+      labels.push_back(label.label);
+      elevations.push_back(label.elevation);
+    }
+  }
+  void add_triangles(std::span<const Triangle> batch) override {
+    triangles.insert(triangles.end(), batch.begin(), batch.end());
+  }
+
+  std::vector<Vec3f> vertices, normals;
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> labels;
+  std::vector<float> elevations;
+
+ private:
+  VertexLabeller labeller_;
+};
+
+struct MeshArguments {
+  std::string json, name;
+  int resolution = 0;      // used where `triangles` is 0
+  double triangles = 0.0;  // 0: as the resolution gives
+  std::optional<std::array<double, 4>> patch;
+  std::optional<std::array<int, 2>> tile;
+  double min_component = 0.0;
+  bool labels = false;
+
+  Region region() const {
+    if (patch) return patch_region({(*patch)[0], (*patch)[1], (*patch)[2]}, (*patch)[3]);
+    return tile ? tile_region((*tile)[0], (*tile)[1]) : Region{};
+  }
+};
+
+struct MadeMesh {
+  ArraySink arrays;
+  BodyMeshReport report;
+  std::optional<ErosionStatistics> erosion;
+  int resolution = 0;
+  std::vector<std::string> legend;
+  std::vector<LayerLeftOut> left_out;
+};
+
+Vec3f narrowed(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+ErosionStatistics erode_arrays(const ImplicitField& field, const Recipe& recipe, ArraySink& arrays,
+                               const Progress& progress) {
+  TriangleMesh mesh;
+  mesh.triangles = std::move(arrays.triangles);
+  for (const Vec3f& v : arrays.vertices) mesh.vertices.push_back({v.x, v.y, v.z});
+  for (const Vec3f& v : arrays.normals) mesh.normals.push_back({v.x, v.y, v.z});
+  const ErosionStatistics done = erode_body(field, recipe, mesh, progress);
+  arrays.triangles = std::move(mesh.triangles);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    arrays.vertices[i] = narrowed(mesh.vertices[i]);
+    arrays.normals[i] = narrowed(mesh.normals[i]);
+  }
+  return done;
+}
+
+MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
+  const Recipe recipe = parse_recipe(arguments.json, arguments.name);
+  const std::filesystem::path file = arguments.name;
+  const Region region = arguments.region();
+  const ImplicitField field = field_of_region(recipe, file, region);
+  std::optional<SurfaceLabels> labels;
+  VertexLabeller labeller;
+  if (arguments.labels) {
+    labels.emplace(recipe, arguments.name, region.cube());
+    labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
+  }
+  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, {}, {}};
+  made.resolution = arguments.triangles > 0.0 ? resolution_for_triangles(field, region, arguments.triangles)
+                                              : arguments.resolution;
+  const auto stage = [&](const std::string& name) { return state.progress(name); };
+  made.report = make_body_mesh(
+      {recipe, field, file, region, made.resolution, arguments.min_component, MeshingDevice::kCpu},
+      made.arrays, stage);
+  if (recipe.erosion) made.erosion = erode_arrays(field, recipe, made.arrays, state.progress("erosion"));
+  if (labels) made.legend = labels->legend();
+  made.left_out.assign(field.left_out().begin(), field.left_out().end());
+  return made;
+}
+
+nb::dict figures(const MadeMesh& made, const Region& region) {
+  const BodyMeshReport& report = made.report;
+  nb::dict figures;
+  figures["resolution"] = made.resolution;
+  figures["vertices"] = report.manifold.vertices;
+  figures["triangles"] = report.manifold.triangles;
+  figures["closed"] = report.manifold.closed();
+  figures["manifold"] = report.manifold.manifold();
+  figures["genus"] = report.manifold.genus;
+  figures["components"] = report.manifold.components;
+  figures["dropped_components"] = report.dropped_components;
+  figures["evaluations"] = report.statistics.evaluations;
+  figures["cell"] = report.statistics.step;
+  if (region.is_patch) figures["origin"] = nb::make_tuple(region.center.x, region.center.y, region.center.z);
+  if (made.erosion) {
+    nb::dict erosion;
+    erosion["settled"] = made.erosion->settled;
+    erosion["sweeps"] = made.erosion->sweeps;
+    erosion["steepest_before"] = made.erosion->steepest_before;
+    erosion["steepest_after"] = made.erosion->steepest_after;
+    erosion["moved_vertices"] = made.erosion->moved_vertices;
+    erosion["rock_vertices"] = made.erosion->rock_vertices;
+    erosion["volume_moved"] = made.erosion->volume_moved;
+    figures["erosion"] = erosion;
+  }
+  nb::list left_out;
+  for (const LayerLeftOut& left : made.left_out) {
+    left_out.append(nb::make_tuple(left.layer, left.variance_share, left.finest));
+  }
+  figures["layers_left_out"] = left_out;
+  return figures;
+}
+
+Fields mesh(const std::string& json, const std::string& name, int resolution, double triangles,
+            std::optional<std::array<double, 4>> patch, std::optional<std::array<int, 2>> tile,
+            double min_component, bool labels, int threads, nb::object progress) {
+  const MeshArguments arguments{json, name, resolution, triangles, patch, tile, min_component, labels};
+  const Region region = arguments.region();
+  MadeMesh made =
+      run_job(std::move(progress), threads, [=](JobState& state) { return make_mesh(arguments, state); });
+  ArraySink& arrays = made.arrays;
+  const std::size_t n = arrays.vertices.size(), m = arrays.triangles.size();
+  Fields result;
+  result["figures"] = figures(made, region);
+  result["vertices"] = array_of<float>(std::move(arrays.vertices), {n, 3});
+  result["faces"] = array_of<std::uint32_t>(std::move(arrays.triangles), {m, 3});
+  result["normals"] = array_of<float>(std::move(arrays.normals), {n, 3});
+  if (labels) {
+    result["labels"] = array_of<std::int32_t>(std::move(arrays.labels), {n});
+    result["elevations"] = array_of<float>(std::move(arrays.elevations), {n});
+    result["legend"] = made.legend;
+  }
+  return result;
+}
+
+Fields read(const std::string& file, bool points_allowed, nb::object progress) {
+  TriangleMesh mesh = run_job(std::move(progress), 0, [=](JobState&) {
+    return points_allowed ? read_mesh_or_points(file) : read_mesh(file);
+  });
+  const std::size_t n = mesh.vertices.size(), m = mesh.triangles.size();
+  const bool with_normals = !mesh.normals.empty();
+  Fields result;
+  result["vertices"] = array_of<double>(std::move(mesh.vertices), {n, 3});
+  result["faces"] = array_of<std::uint32_t>(std::move(mesh.triangles), {m, 3});
+  if (with_normals) result["normals"] = array_of<double>(std::move(mesh.normals), {n, 3});
+  return result;
+}
+
+using Labels = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Elevations = nb::ndarray<const float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+// Writes a PLY file whose vertices have labels.
+void write_labelled(const TriangleMesh& mesh, const std::vector<VertexLabel>& labels,
+                    const std::filesystem::path& file, const MeshFileInfo& info) {
+  PlyStreamWriter writer(file, info,
+                         [&](auto, auto out) { std::copy(labels.begin(), labels.end(), out.begin()); });
+  std::vector<MeshVertex> vertices(mesh.vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i] = {narrowed(mesh.vertices[i]), narrowed(mesh.normals[i])};
+  }
+  writer.add_vertices(vertices);
+  writer.add_triangles(mesh.triangles);
+  writer.finish();
+}
+
+void write(const std::string& file, const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
+           const std::optional<Rows<double>>& normals, const std::optional<Labels>& labels,
+           const std::optional<Elevations>& elevations, const std::string& length_unit,
+           const std::string& frame, const std::string& comment,
+           const std::optional<std::array<double, 3>>& origin, const std::vector<std::string>& notes) {
+  MeshFileInfo info{length_unit, frame, comment, {}, notes};
+  if (origin) info.origin = Vec3d{(*origin)[0], (*origin)[1], (*origin)[2]};
+  std::vector<VertexLabel> of_vertices;
+  if (labels && elevations) {
+    for (std::size_t i = 0; i < labels->shape(0); ++i) {
+      of_vertices.push_back({labels->data()[i], elevations->data()[i]});
+    }
+  }
+  run_job(nb::none(), 0, [=, mesh = mesh_of(vertices, faces, normals)](JobState&) {
+    if (of_vertices.empty()) {
+      write_mesh(mesh, file, info);
+    } else {
+      write_labelled(mesh, of_vertices, file, info);
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
+void bind_meshes(nb::module_& module) {
+  module.def("mesh", &mesh, nb::arg("json"), nb::arg("name"), nb::arg("resolution"), nb::arg("triangles"),
+             nb::arg("patch").none(), nb::arg("tile").none(), nb::arg("min_component"), nb::arg("labels"),
+             nb::arg("threads"), nb::arg("progress").none());
+  module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"), nb::arg("progress").none());
+  module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
+             nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
+             nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),
+             nb::arg("length_unit"), nb::arg("frame"), nb::arg("comment"), nb::arg("origin").none(),
+             nb::arg("notes"));
+  module.def("version", [] { return kCodeVersion.text(); });
+}
+
+}  // namespace astrolith::python

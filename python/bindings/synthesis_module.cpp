@@ -1,0 +1,215 @@
+// The module astrolith._synthesis: recipes, fields, meshes, textures, pictures, descriptions. It links no
+// library of the fits.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "python/bindings/arrays.h"
+#include "python/bindings/field_bindings.h"
+#include "python/bindings/job.h"
+#include "python/bindings/mesh_bindings.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/finish/lay_on_base.h"
+#include "synthesis/picture/preview.h"
+#include "tasks/synthesis/comparison.h"
+#include "tasks/synthesis/describe_file.h"
+#include "tasks/synthesis/plane_texture.h"
+#include "tasks/synthesis/variation_reference.h"
+
+namespace astrolith::python {
+namespace {
+
+using OptionalRows = std::optional<Rows<double>>;
+
+void bind_recipes(nb::module_& module) {
+  const auto unlocked = nb::call_guard<nb::gil_scoped_release>();
+  module.def(
+      "check_recipe",
+      [](const std::string& json, const std::string& name) {
+        return recipe_to_json(parse_recipe(json, name));
+      },
+      nb::arg("json"), nb::arg("name"), unlocked);
+  module.def(
+      "read_recipe", [](const std::string& file) { return recipe_to_json(read_recipe(file)); },
+      nb::arg("file"), unlocked);
+  module.def(
+      "write_recipe",
+      [](const std::string& json, const std::string& name, const std::string& file) {
+        write_recipe(parse_recipe(json, name), file);
+      },
+      nb::arg("json"), nb::arg("name"), nb::arg("file"), unlocked);
+  module.def(
+      "lay_on_base",
+      [](const std::string& details, const std::string& details_name, const std::string& base,
+         const std::string& base_name) {
+        return recipe_to_json(lay_on_base(parse_recipe(details, details_name), details_name,
+                                          parse_recipe(base, base_name), base_name));
+      },
+      nb::arg("details"), nb::arg("details_name"), nb::arg("base"), nb::arg("base_name"), unlocked);
+}
+
+DescriptionOptions description_options(const std::string& features, int bins, std::int64_t points,
+                                       std::uint64_t seed) {
+  DescriptionOptions options;
+  options.features = features == "wahl" ? PairFeatures::wahl : PairFeatures::ahd;
+  options.bins = bins;
+  options.points = points;
+  options.seed = seed;
+  return options;
+}
+
+nb::typed<nb::dict, nb::str, nb::any> describe(const std::string& name, const Rows<double>& vertices,
+                                               const Rows<std::uint32_t>& faces, const OptionalRows& normals,
+                                               const std::string& features, int bins, std::int64_t points,
+                                               std::uint64_t seed, int threads, nb::object progress) {
+  const DescriptionOptions options = description_options(features, bins, points, seed);
+  const ShapeDescription shape =
+      run_job(std::move(progress), threads,
+              [name, options, mesh = mesh_of(vertices, faces, normals)](JobState& state) {
+                const Progress p = state.progress("describe");
+                return mesh.triangles.empty() ? describe_file(name, mesh.vertices, mesh.normals, options, p)
+                                              : describe_file(name, mesh, options, p);
+              });
+  std::vector<double> frequencies = shape.histogram.frequencies();
+  const std::size_t count = frequencies.size();
+  nb::typed<nb::dict, nb::str, nb::any> result;
+  result["frequencies"] = array_of<double>(std::move(frequencies), {count});
+  result["axes"] = dimensions(options.features);
+  result["points"] = shape.points;
+  result["pairs"] = shape.histogram.pairs;
+  result["max_distance"] = shape.histogram.max_distance;
+  result["vertices_left_out"] = shape.vertices_left_out;
+  result["undefined_curvatures"] = shape.undefined_curvatures;
+  result["remarks"] = shape.remarks;
+  return result;
+}
+
+std::string compare(const std::string& a_name, const Rows<double>& a_vertices,
+                    const Rows<std::uint32_t>& a_faces, const std::string& b_name,
+                    const Rows<double>& b_vertices, const Rows<std::uint32_t>& b_faces,
+                    const std::string& features, int bins, std::int64_t points, std::int64_t samples,
+                    bool floor, std::uint64_t seed, int threads, nb::object progress) {
+  const DescriptionOptions options = description_options(features, bins, points, seed);
+  return run_job(
+      std::move(progress), threads,
+      [=, a = mesh_of(a_vertices, a_faces, {}), b = mesh_of(b_vertices, b_faces, {})](JobState& state) {
+        return compare_meshes({a_name, a}, {b_name, b}, options, samples, floor,
+                              [&](const std::string& stage) { return state.progress(stage); })
+            .figures.dump();
+      });
+}
+
+struct VariedRecipe {
+  std::string json, figures;
+};
+
+VariedRecipe vary(const std::string& json, const std::string& name, double delta, std::uint64_t seed,
+                  const std::optional<TriangleMesh>& target, const Progress& progress) {
+  const Recipe recipe = parse_recipe(json, name);
+  const TriangleMesh like = target ? *target : mesh_for_comparison(recipe);
+  const SimilarityMeasure similarity = like.triangles.empty() ? SimilarityMeasure() : similarity_with(like);
+  const Variation variation = find_variation(recipe, similarity, delta, seed, progress);
+  return {recipe_to_json(variation.recipe), figures_of(variation).dump()};
+}
+
+std::pair<std::string, std::string> vary_in_job(const std::string& json, const std::string& name,
+                                                double delta, std::uint64_t seed,
+                                                const OptionalRows& vertices,
+                                                const std::optional<Rows<std::uint32_t>>& faces, int threads,
+                                                nb::object progress) {
+  std::optional<TriangleMesh> target;
+  if (vertices && faces) target = mesh_of(*vertices, *faces, {});
+  const VariedRecipe varied =
+      run_job(std::move(progress), threads, [=, target = std::move(target)](JobState& state) {
+        return vary(json, name, delta, seed, target, state.progress("vary"));
+      });
+  return {varied.json, varied.figures};
+}
+
+NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
+                                const OptionalRows& normals, const OptionalRows& colors,
+                                const std::vector<std::array<double, 3>>& views,
+                                const std::array<double, 3>& sun, int width, int height, std::uint64_t seed,
+                                int threads, nb::object progress) {
+  PreviewOptions options;
+  options.width = width;
+  options.height = height;
+  options.seed = seed;
+  options.sun = {sun[0], sun[1], sun[2]};
+  if (!views.empty()) options.views.clear();
+  for (const auto& view : views) options.views.push_back(view_from({view[0], view[1], view[2]}));
+  if (colors) {
+    for (const Vec3d& c : points_of(*colors)) {
+      options.vertex_colors.push_back(
+          {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)});
+    }
+  }
+  RgbImage image = run_job(std::move(progress), threads,
+                           [options, mesh = mesh_of(vertices, faces, normals)](JobState& state) {
+                             return render_preview(mesh, options, state.progress("preview"));
+                           });
+  return array_of<std::uint8_t>(std::move(image.pixels), {static_cast<std::size_t>(image.height),
+                                                          static_cast<std::size_t>(image.width), 3});
+}
+
+std::tuple<NumpyArray<float>, double, bool> texture(const std::string& json, const std::string& name,
+                                                    int width, int height, const std::string& content,
+                                                    bool tileable, int threads, nb::object progress) {
+  PlaneTexture drawn = run_job(std::move(progress), threads, [=](JobState& state) {
+    return draw_texture(parse_recipe(json, name), name, {width, height, content, tileable},
+                        state.progress("texture"));
+  });
+  const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);
+  return std::make_tuple(drawn.channels == 3 ? array_of<float>(std::move(drawn.values), {rows, columns, 3})
+                                             : array_of<float>(std::move(drawn.values), {rows, columns}),
+                         drawn.height_rms, drawn.has_height);
+}
+
+void bind_shapes(nb::module_& module) {
+  module.def("describe", &describe, nb::arg("name"), nb::arg("vertices").noconvert(),
+             nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(), nb::arg("features"),
+             nb::arg("bins"), nb::arg("points"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
+  module.def("compare", &compare, nb::arg("a_name"), nb::arg("a_vertices").noconvert(),
+             nb::arg("a_faces").noconvert(), nb::arg("b_name"), nb::arg("b_vertices").noconvert(),
+             nb::arg("b_faces").noconvert(), nb::arg("features"), nb::arg("bins"), nb::arg("points"),
+             nb::arg("samples"), nb::arg("floor"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
+}
+
+void bind_products(nb::module_& module) {
+  module.def("vary", &vary_in_job, nb::arg("json"), nb::arg("name"), nb::arg("delta"), nb::arg("seed"),
+             nb::arg("vertices").noconvert().none(), nb::arg("faces").noconvert().none(), nb::arg("threads"),
+             nb::arg("progress").none());
+  module.def("render", &render, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert(),
+             nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("views"),
+             nb::arg("sun"), nb::arg("width"), nb::arg("height"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
+  module.def("texture", &texture, nb::arg("json"), nb::arg("name"), nb::arg("width"), nb::arg("height"),
+             nb::arg("content"), nb::arg("tileable"), nb::arg("threads"), nb::arg("progress").none());
+}
+
+}  // namespace
+}  // namespace astrolith::python
+
+NB_MODULE(_synthesis, module) {
+  using namespace astrolith::python;
+  declare_common(module);
+  bind_recipes(module);
+  bind_field(module);
+  bind_meshes(module);
+  bind_shapes(module);
+  bind_products(module);
+}

@@ -1,0 +1,154 @@
+"""Recipes, fields, meshes and textures: analytic truth, and the bytes of the programs."""
+
+import json
+
+import astrolith
+import numpy as np
+import pytest
+
+BALL = {"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[1.0, 0.0, 0.0, 2.0]]}}
+
+
+@pytest.fixture
+def ball():
+    return astrolith.Recipe.from_dict(BALL)
+
+
+def test_the_field_of_a_ball_is_the_distance_from_its_surface(ball):
+    points = np.array([[1.0, 0.0, 0.0], [1.0, 2.0, 0.0], [1.0, 0.0, 2.1], [1.0, 0.0, -1.9]])
+    field = astrolith.Field(ball)
+    values = field.value(points)
+    assert values.dtype == np.float64 and values.shape == (4,)
+    np.testing.assert_allclose(values[1:], [0.0, -0.1, 0.1], atol=4e-3)
+    assert abs(values[1]) < 1e-6
+    assert field.inside(points).tolist() == [True, bool(values[1] > 0), False, True]
+    np.testing.assert_allclose(field.gradient(points[2:]), [[0, 0, -1], [0, 0, 1]], atol=0.06)
+    assert (field.bounds[0] <= [-1, -2, -2]).all() and (field.bounds[1] >= [3, 2, 2]).all()
+    assert field.left_out == []
+
+
+def test_values_do_not_depend_on_threads_or_on_the_type_of_exact_points(example):
+    field = astrolith.Field(example("itokawa_details"))
+    points = np.random.default_rng(1).uniform(*field.bounds, (5000, 3)).astype(np.float32)
+    values = field.value(points)
+    assert (field.value(points, threads=1) == values).all()
+    assert (field.value(points.astype(np.float64)) == values).all()
+    assert field.value(np.zeros((0, 3))).shape == (0,)
+
+
+def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):
+    mesh = astrolith.mesh(ball, resolution=48)
+    assert mesh.vertices.dtype == np.float32 and mesh.faces.dtype == np.uint32
+    assert mesh.figures.closed and mesh.figures.manifold and mesh.figures.genus == 0
+    radii = np.linalg.norm(mesh.vertices - [1, 0, 0], axis=1)
+    np.testing.assert_allclose(radii, 2.0, atol=5e-3)
+    np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-5)
+    a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(float) for k in range(3))
+    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(4 / 3 * np.pi * 8, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "name, options, arguments",
+    [
+        ("itokawa_details", {"resolution": 40}, ["--resolution", "40"]),
+        ("itokawa_details", {"resolution": 40, "labels": True}, ["--resolution", "40", "--labels"]),
+        ("boulders", {"triangles": 6000, "threads": 1}, ["--triangles", "6000"]),
+        ("rubble_pile", {"resolution": 40, "seed": 7, "min_component": 0.01},
+         ["--resolution", "40", "--seed", "7", "--min-component", "0.01"]),
+        ("craters_power_law", {"resolution": 48, "tile": (2, 3)}, ["--resolution", "48", "--tile", "2/3"]),
+        ("eroded_slopes", {"resolution": 32}, ["--resolution", "32"]),
+    ],
+)  # fmt: skip
+def test_meshes_have_the_bytes_of_synth(example, program, tmp_path, name, options, arguments):
+    program("synth", example(name), "-o", "synth.ply", "--device", "cpu", *arguments)
+    astrolith.write_mesh(astrolith.mesh(example(name), **options), tmp_path / "package.ply")
+    assert (tmp_path / "package.ply").read_bytes() == (tmp_path / "synth.ply").read_bytes()
+
+
+@pytest.mark.parametrize("extension", ["obj", "stl", "glb"])
+def test_other_formats_and_patches_have_the_bytes_of_synth(ball, program, tmp_path, extension):
+    ball.write(tmp_path / "ball.json")
+    patch = (-1.0, 0.0, 0.0, 0.5)
+    program("synth", "ball.json", "-o", f"synth.{extension}", "--resolution", "24", "--patch", *patch)
+    astrolith.write_mesh(astrolith.mesh(ball, resolution=24, patch=patch), tmp_path / f"package.{extension}")
+    assert (tmp_path / f"package.{extension}").read_bytes() == (tmp_path / f"synth.{extension}").read_bytes()
+
+
+@pytest.mark.parametrize("tileable", [False, True])
+def test_textures_have_the_floats_of_synth(example, program, tmp_path, tileable):
+    drawn = astrolith.texture(example("photo_textures"), 300, 200, content="height", tileable=tileable)
+    assert drawn.values.shape == (200, 300) and drawn.values.dtype == np.float32
+    program("synth", example("photo_textures"), "-o", "t.tif", "--texture", "300x200", "--texture-of", "height",
+            *(["--tileable"] if tileable else []))  # fmt: skip
+    assert drawn.values.tobytes() in (tmp_path / "t.tif").read_bytes()
+
+
+def test_descriptions_and_comparisons_have_the_figures_of_the_programs(example, program, tmp_path):
+    a, b = astrolith.mesh(example("itokawa_details"), resolution=32), astrolith.mesh(example("steins"), resolution=32)
+    astrolith.write_mesh(a, tmp_path / "a.ply")
+    astrolith.write_mesh(b, tmp_path / "b.ply")
+    program("describe", "a.ply", "-o", "h.npy", "--points", "1000", "--device", "cpu")
+    described = astrolith.describe(a, points=1000)
+    assert described.histogram.tobytes() == np.load(tmp_path / "h.npy").tobytes()
+    assert described.histogram.shape == (5,) * 6 and described.points == 1000
+    options = ["--points", "500", "--samples", "1000", "--floor"]
+    said = json.loads(program("compare", "a.ply", "b.ply", *options))
+    compared = astrolith.compare(a, b, points=500, samples=1000, floor=True)
+    assert compared == {key: value for key, value in said.items() if key not in ("a", "b", "features", "bins", "points")}
+
+
+def test_variations_have_the_bytes_of_synth(program, example, tmp_path):
+    program("synth", example("itokawa_metaballs"), "-o", "synth.ply", "--resolution", "24", "--vary", "0.3",
+            "--seed", "4", "--summary", "s.json")  # fmt: skip
+    varied = astrolith.vary(example("itokawa_metaballs"), 0.3, seed=4)
+    astrolith.write_mesh(astrolith.mesh(varied.recipe, resolution=24), tmp_path / "package.ply")
+    assert (tmp_path / "package.ply").read_bytes() == (tmp_path / "synth.ply").read_bytes()
+    assert json.loads((tmp_path / "s.json").read_text())["variation"]["strength"] == varied.strength
+
+
+def test_a_picture_shows_a_bright_ball_on_black(ball):
+    picture = astrolith.render(astrolith.mesh(ball, resolution=24), views=[(1, 0, 0)], width=64, height=48)
+    assert picture.shape == (48, 64, 3) and picture.dtype == np.uint8
+    assert picture[24, 32].mean() > 60 and picture[0, 0].max() < 60
+
+
+def test_recipes_are_edited_as_attributes_and_checked(ball, tmp_path):
+    ball.seed = 5
+    ball.body.spheres[0][3] = 3.0
+    assert astrolith.Recipe.from_json(ball.to_json()) == ball and ball.to_dict()["seed"] == 5
+    ball.write(tmp_path / "r.json")
+    assert astrolith.Recipe.read(tmp_path / "r.json") == ball
+    other = ball.copy()
+    other.body.spheres[0][3] = -1.0
+    with pytest.raises(ValueError, match=r"^recipe: body\.spheres\[0\]"):
+        other.validate()
+    assert ball.body.spheres[0][3] == 3.0
+    with pytest.raises(AttributeError, match="sed"):
+        ball.sed = 5
+    with pytest.raises(ValueError, match="NaN|nan|Out of range"):
+        astrolith.Recipe.from_dict({**BALL, "seed": float("nan")})
+
+
+def test_a_written_recipe_is_the_text_of_the_recipe(example, tmp_path):
+    recipe = astrolith.Recipe.read(example("itokawa_details"))
+    recipe.write(tmp_path / "r.json")
+    assert astrolith.Recipe.read(tmp_path / "r.json").to_json() == (tmp_path / "r.json").read_text()
+
+
+def test_read_meshes_keep_their_digits(ball, tmp_path):
+    mesh = astrolith.mesh(ball, resolution=16)
+    astrolith.write_mesh(mesh, tmp_path / "m.ply")
+    read = astrolith.read_mesh(tmp_path / "m.ply")
+    assert (read.vertices == mesh.vertices).all() and (read.faces == mesh.faces).all()
+    with pytest.raises(ValueError, match="absent.ply"):
+        astrolith.read_mesh(tmp_path / "absent.ply")
+
+
+def test_the_synthesis_module_links_nothing_of_the_fits():
+    import subprocess
+
+    from astrolith import _synthesis
+
+    linked = subprocess.run(["ldd", _synthesis.__file__], capture_output=True, text=True, check=True).stdout
+    assert "tbb" in linked
+    assert not [name for name in ("fftw", "ceres", "opencv", "nlopt", "cholmod") if name in linked]
