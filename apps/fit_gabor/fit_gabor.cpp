@@ -13,6 +13,7 @@
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
+#include "tasks/estimation/photo_recipe.h"
 
 namespace astrolith {
 namespace {
@@ -150,94 +151,14 @@ void predict_memory(Program& program, const Options& o, const PhotoFitOptions& p
   }
 }
 
-GaborLayer make_layer(const Options& o, const FittedChannel& channel, bool first) {
-  GaborLayer layer = layer_of(channel, first);
-  layer.name = std::filesystem::path(o.image).stem().string();
-  const double per_unit = o.unit == "km" ? 1e6 : 1e3;  // millimetres
-  layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / per_unit : 1.0;
-  if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
-  return layer;
-}
-
 Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& photo) {
-  Recipe recipe;
-  recipe.length_unit = o.mm_per_px > 0.0 ? o.unit : "px";
-  recipe.seed = program.seed;
+  Recipe recipe = photo_recipe(photo, {std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit,
+                                       o.height_rms, program.seed});
   recipe.provenance.tool = program.tool();
   recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
   recipe.provenance.input_sha256 = sha256_of_file(o.image);
   recipe.provenance.options = program.given_options();
-  recipe.provenance.achieved = {{"band_overlap", photo.band_overlap()},
-                                {"pursuit_gap", photo.pursuit_gap()},
-                                {"spectrum_distance", photo.spectrum_distance()},
-                                {"spectrum_residual", photo.spectrum_residual()}};
-  for (const FittedChannel& channel : photo.channels)
-    recipe.layers.push_back(make_layer(o, channel, recipe.layers.empty()));
   return recipe;
-}
-
-nlohmann::ordered_json details(const Gaussianity& g) {
-  return {{"plausible", g.plausible()},           {"skewness", g.skewness},
-          {"excess_kurtosis", g.excess_kurtosis}, {"edge_kurtosis", g.edge_kurtosis},
-          {"variance_spread", g.variance_spread}, {"sentence", g.sentence}};
-}
-
-nlohmann::ordered_json details(const std::vector<BandVariance>& bands) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const BandVariance& band : bands) {
-    list.push_back(
-        {{"cycles_per_pixel", {band.lowest, band.highest}}, {"photo", band.photo}, {"noise", band.noise}});
-  }
-  return list;
-}
-
-nlohmann::ordered_json details(const FittedChannel& channel) {
-  const GaborFit& fit = channel.fit;
-  const LobeQuality& q = fit.quality;
-  return {{"lobes", fit.lobes.size()},
-          {"pursuit_lobes", fit.pursuit_lobes},
-          {"pursuit_gap", fit.pursuit.relative_gap},
-          {"pursuit_reached", fit.pursuit.reached},
-          {"refinement_reached", fit.refinement_reached},
-          {"spectrum_distance", fit.spectrum_distance},
-          {"periodogram_distance", q.periodogram_distance},
-          {"perfect_periodogram_distance", q.perfect_distance},
-          {"spectrum_residual", q.residual},
-          {"weak_above", q.weak_above},
-          {"weak", q.weak()},
-          {"band_overlap", q.band_overlap},
-          {"bands", details(q.bands)},
-          {"variance", channel.variance()},
-          {"pixel_variance", channel.pixel_variance()},
-          {"variance_ratio_before_scaling", fit.variance_before_scaling},
-          {"gaussianity", channel.gaussianity.p_value}};
-}
-
-void summarize(const PhotoFit& photo, Program& program) {
-  auto& s = program.summary;
-  const Gaussianity gaussianity = photo.gaussianity();
-  s["lobes"] = photo.lobes();
-  s["pursuit_gap"] = photo.pursuit_gap();
-  s["pursuit_reached"] = photo.pursuit_reached();
-  s["refinement_reached"] = photo.refinement_reached();
-  s["spectrum_distance"] = photo.spectrum_distance();
-  s["spectrum_residual"] = photo.spectrum_residual();
-  s["weak_above"] = photo.weak_above();
-  s["weak"] = photo.weak();
-  s["band_overlap"] = photo.band_overlap();
-  s["variance_in_spectrum"] = photo.variance_in_spectrum();
-  s["gaussianity"] = gaussianity.p_value;
-  s["gaussianity_details"] = details(gaussianity);
-  int iterations = 0;
-  double before_scaling = 0.0, variance = 0.0;
-  for (const FittedChannel& channel : photo.channels) {
-    iterations += channel.fit.pursuit.iterations;
-    before_scaling += channel.fit.variance_before_scaling * channel.variance();
-    variance += channel.variance();
-    s["channels"].push_back(details(channel));
-  }
-  s["variance_ratio_before_scaling"] = before_scaling / variance;
-  s["iterations"] = iterations;
 }
 
 PhotoFitOptions photo_options(const Program& program, const Options& o) {
@@ -300,7 +221,7 @@ void work(Program& program, const Options& o) {
   for (const std::string& remark : photo.remarks) program.say(o.image + ": " + remark);
   const Recipe recipe = make_recipe(program, o, photo);
   write_recipe(recipe, o.output);
-  summarize(photo, program);
+  program.summary.update(photo_figures(photo));
   if (Program::interrupted()) {
     program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
     return;

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/fit_shape/fit_checkpoint.h"
 #include "apps/fit_shape/fit_shape_details.h"
 #include "apps/fit_shape/fit_shape_options.h"
 #include "apps/fit_shape/fit_shape_packing.h"
@@ -20,20 +19,11 @@
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
+#include "tasks/estimation/fit_checkpoint.h"
+#include "tasks/estimation/shape_recipe.h"
 
 namespace astrolith {
 namespace {
-
-// Fractions of the bounding-box diagonal, except counts and ratios.
-std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) {
-  const SurfaceDistanceReport& d = fit.check.distance;
-  return {{"max_distance", d.max},
-          {"mean_distance", d.mean},
-          {"p99_distance", d.p99},
-          {"similarity", fit.similarity},
-          {"similarity_floor", fit.similarity_floor},
-          {"volume_ratio", fit.check.volume_ratio}};
-}
 
 // The recipe of a fitted body, without layers and without the figures that the fit achieved.
 Recipe recipe_of(const Program& program, const FitArguments& arguments, const ShapeFitResult& fit) {
@@ -46,28 +36,6 @@ Recipe recipe_of(const Program& program, const FitArguments& arguments, const Sh
   recipe.provenance.options = program.given_options();
   recipe.body = fit.body;
   return recipe;
-}
-
-void note_achieved(const ShapeFitResult& fit, Recipe& recipe) {
-  recipe.provenance.achieved.clear();
-  for (auto [name, value] : achieved(fit)) {
-    recipe.provenance.achieved.emplace_back(name, round_to_seven_digits(value));
-  }
-}
-
-// The finished base from the checkpoint, or a new one.
-ShapeFitResult fit_base(const Program& program, const FitArguments& arguments, const TargetBody& target,
-                        TimeLimit& limit, FitCheckpoint& checkpoint) {
-  if (checkpoint.base() != nullptr) {
-    ShapeFitResult base = *checkpoint.base();
-    measure_fit(target, arguments.fit, base);
-    return base;
-  }
-  const ShapeFitResult fit = fit_shape(target, arguments.fit, [&](const std::string& stage) {
-    return limit.guard(program.progress(stage), stage);
-  });
-  if (!Program::interrupted() && !fit.interrupted) checkpoint.keep_base(fit);
-  return fit;
 }
 
 // Adds details to the recipe, and to the summary; the fit's figures become those of both together.
@@ -89,26 +57,7 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
     program.summary["details"] = details_json(details);
   }
   if (!wanted.micro.empty() && wanted.micro != "auto") add_micro_layers(wanted, recipe);
-  fit.check = check_recipe(target, recipe, arguments.fit);
-  measure_similarity(target, arguments.fit, fit);
-}
-
-void summarize(Program& program, const ShapeFitResult& fit, bool stopped) {
-  nlohmann::ordered_json& summary = program.summary;
-  summary["spheres"] = fit.body.num_metaballs();
-  summary["subtracting_spheres"] = fit.body.subtract.size();
-  for (const auto& [name, value] : achieved(fit)) summary[name] = value;
-  summary["closed"] = fit.check.topology.closed;
-  summary["manifold"] = fit.check.topology.manifold;
-  summary["components"] = fit.check.topology.components;
-  summary["genus"] = fit.check.topology.genus;
-  summary["similarity_features"] = "ahd";
-  summary["filling_rate"] = fit.filling_rate;
-  summary["base_spheres"] = fit.base_spheres;
-  summary["base_similarity"] = fit.base_similarity;
-  summary["sharpness"] = fit.body.blend_exponent * fit.body.a;
-  summary["evaluations"] = fit.evaluations;
-  summary["stopped_early"] = stopped;
+  measure_recipe(target, recipe, arguments.fit, fit);
 }
 
 void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
@@ -160,7 +109,10 @@ void run(Program& program, FitArguments& arguments) {
   FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes,
                                                   sha256_of_file(arguments.mesh), program.given_options()});
   if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
-  ShapeFitResult fit = fit_base(program, arguments, target, limit, checkpoint);
+  ShapeFitResult fit = fit_base(
+      target, arguments.fit, checkpoint,
+      [&](const std::string& stage) { return limit.guard(program.progress(stage), stage); },
+      Program::interrupted);
   Recipe recipe = recipe_of(program, arguments, fit);
   const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
   if (with_details && !Program::interrupted() && limit.allows_more()) {
@@ -174,7 +126,8 @@ void run(Program& program, FitArguments& arguments) {
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),
                      arguments.report);
   }
-  summarize(program, fit, Program::interrupted() || limit.reached());
+  program.summary.update(fit_figures(fit));
+  program.summary["stopped_early"] = Program::interrupted() || limit.reached();
   program.summary["diagonal"] = target.diagonal;  // distances are fractions of it
   program.summary["length_unit"] = arguments.unit;
   if (!variations.empty() && !Program::interrupted() && !limit.allows_more()) {

@@ -10,12 +10,11 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/lay_on_base.h"
+#include "tasks/estimation/shape_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith {
 namespace {
-
-constexpr std::int64_t kSimilarityPoints = 5000;
 
 // Diagonal of the bare body's box, in the recipe's unit.
 double size_of(const Recipe& recipe) {
@@ -36,10 +35,6 @@ Recipe read_details(const std::string& file) {
   }
   if (other.layers.empty()) throw InputError(file + ": layers: none; give a recipe with details");
   return other;
-}
-
-nlohmann::ordered_json score_json(const DetailScore& score) {
-  return {{"histogram_similarity", score.similarity}, {"roughness_misfit", score.roughness_misfit}};
 }
 
 void declare_micro_options(Program& program, DetailArguments& arguments) {
@@ -112,21 +107,11 @@ void check_detail_inputs(const DetailArguments& arguments) {
 DetailsFitResult search_details(Program& program, const TargetBody& target, const ShapeFitOptions& options,
                                 const DetailArguments& arguments, EvaluationLog& log,
                                 const Progress& progress, Recipe& recipe) {
-  DetailsFitOptions details;
-  details.optimizer = options.optimizer;
-  details.population = options.population;
-  details.generations = arguments.generations;
-  details.seed = options.seed;
-  details.fitness.seed = options.seed;
-  details.fitness.recipe_seed = recipe.seed;
-  details.log = &log;
   const ChosenDevice chosen = arguments.device.choose(program);
   const std::unique_ptr<CandidateEvaluator> evaluator =
       chosen ? candidates_on_gpu() : std::unique_ptr<CandidateEvaluator>();
-  details.evaluator = evaluator.get();
-  DetailsFitResult result = fit_details(target, in_target_frame(target, *recipe.body), details, progress);
-  for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))
-    recipe.layers.push_back(layer);
+  DetailsFitResult result =
+      add_searched_details(target, options, arguments.generations, log, evaluator.get(), progress, recipe);
   program.say(fmt::format("details: {} candidates {}", result.optimization.evaluations, chosen.words));
   return result;
 }
@@ -206,28 +191,6 @@ nlohmann::ordered_json write_variations(const Program& program, const TargetBody
     if (Program::interrupted()) break;
   }
   return figures;
-}
-
-FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options) {
-  return check_recipe(target, recipe, options.check_resolution, options.check_samples, options.seed);
-}
-
-void measure_similarity(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& fit) {
-  const MeasuredSimilarity measured =
-      measure_similarity(target.surface, fit.check.mesh, PairFeatures::ahd, kSimilarityPoints, options.seed);
-  fit.similarity = measured.similarity;
-  fit.similarity_floor = measured.floor;
-}
-
-nlohmann::ordered_json details_json(const DetailsFitResult& details) {
-  nlohmann::ordered_json roughness = nlohmann::ordered_json::array();
-  for (std::size_t k = 0; k < details.lags.size(); ++k) {
-    roughness.push_back(
-        {{"lag", details.lags[k]}, {"target", details.target_roughness[k]}, {"fit", details.roughness[k]}});
-  }
-  return {{"evaluations", details.optimization.evaluations}, {"base", score_json(details.base_score)},
-          {"start", score_json(details.start_score)},        {"best", score_json(details.score)},
-          {"history", details.optimization.history},         {"roughness", roughness}};
 }
 
 }  // namespace astrolith

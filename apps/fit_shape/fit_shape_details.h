@@ -39,13 +39,6 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
 // Adds the layers of another recipe, scaled by the ratio of the two bodies' bounding-box diagonals.
 void transfer_details(const Program& program, const std::string& file, Recipe& recipe);
 
-// Checks a whole recipe, in the target's frame, as fit_shape checks its base.
-FitCheck check_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options);
-
-// Sets the similarity of the mesh in the fit's check with the target, and its floor. Both are measured by the
-// descriptor that `compare` uses by default (ahd), with 5,000 points for each mesh.
-void measure_similarity(const TargetBody& target, const ShapeFitOptions& options, ShapeFitResult& fit);
-
 // Adds the Gabor layers of --micro RECIPE to the recipe, as its finest detail.
 void add_micro_layers(const DetailArguments& arguments, Recipe& recipe);
 
@@ -62,8 +55,5 @@ std::vector<std::filesystem::path> variation_files(const std::filesystem::path& 
 nlohmann::ordered_json write_variations(const Program& program, const TargetBody& target,
                                         const Recipe& recipe, const DetailArguments& arguments,
                                         const std::vector<std::filesystem::path>& files);
-
-// The summary of a search: its evaluations and scores, and the roughness of target and details at each lag.
-nlohmann::ordered_json details_json(const DetailsFitResult& details);
 
 }  // namespace astrolith

@@ -18,13 +18,11 @@ void detrend(GreyImage& image, const std::string& name, const PhotoFitOptions& o
   remove_trend(image, options.detrend_degree, options.trend, name);
 }
 
-PhotoFit grey_channels(const std::filesystem::path& file, const PhotoFitOptions& options) {
+PhotoFit grey_channels(GreyImage image, const std::string& name, const PhotoFitOptions& options) {
   PhotoFit photo;
-  ImageFile read = read_grey_image(file);
-  detrend(read.image, file.string(), options);
-  photo.remarks = std::move(read.remarks);
+  detrend(image, name, options);
   photo.channels.emplace_back();
-  photo.channels.front().exemplar = std::move(read.image);
+  photo.channels.front().exemplar = std::move(image);
   return photo;
 }
 
@@ -32,16 +30,15 @@ Vec3d rounded(const Vec3d& v) {
   return {round_to_seven_digits(v.x), round_to_seven_digits(v.y), round_to_seven_digits(v.z)};
 }
 
-PhotoFit color_channels(const std::filesystem::path& file, const PhotoFitOptions& options) {
+PhotoFit color_channels(std::vector<GreyImage> planes, const std::string& name,
+                        const PhotoFitOptions& options) {
   PhotoFit photo;
-  ColorImageFile read = read_color_image(file);
-  for (GreyImage& plane : read.planes) detrend(plane, file.string(), options);
-  photo.remarks = std::move(read.remarks);
-  for (ImageChannel& channel : principal_channels(read.planes)) {
+  for (GreyImage& plane : planes) detrend(plane, name, options);
+  for (ImageChannel& channel : principal_channels(planes)) {
     const bool first = photo.channels.empty();
     FittedChannel& fitted = photo.channels.emplace_back();
     fitted.exemplar = std::move(channel.image);
-    fitted.color = LayerColor{rounded(channel.axis), first ? rounded(mean_color(read.planes)) : Vec3d{}};
+    fitted.color = LayerColor{rounded(channel.axis), first ? rounded(mean_color(planes)) : Vec3d{}};
   }
   return photo;
 }
@@ -139,18 +136,34 @@ Gaussianity PhotoFit::gaussianity() const {
   return worst;
 }
 
-PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& options,
-                   const Progress& progress) {
-  PhotoFit photo = options.colors ? color_channels(file, options) : grey_channels(file, options);
+PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, const PhotoFitOptions& options,
+                    const Progress& progress) {
+  PhotoFit photo = planes.size() > 1 ? color_channels(std::move(planes), name, options)
+                                     : grey_channels(std::move(planes.front()), name, options);
   const auto count = static_cast<double>(photo.channels.size());
   for (std::size_t k = 0; k < photo.channels.size(); ++k) {
     FittedChannel& channel = photo.channels[k];
     const auto share = [&](double done, std::string_view words) {
       return report(progress, (static_cast<double>(k) + done) / count, words);
     };
-    channel.fit = fit_gabor_lobes(channel.exemplar, file.string(), options.fit, share);
+    channel.fit = fit_gabor_lobes(channel.exemplar, name, options.fit, share);
     channel.gaussianity = test_gaussianity(channel.exemplar, options.seed);
   }
+  return photo;
+}
+
+PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& options,
+                   const Progress& progress) {
+  ColorImageFile read;
+  if (options.colors) {
+    read = read_color_image(file);
+  } else {
+    ImageFile grey = read_grey_image(file);
+    read.planes.push_back(std::move(grey.image));
+    read.remarks = std::move(grey.remarks);
+  }
+  PhotoFit photo = fit_planes(std::move(read.planes), file.string(), options, progress);
+  photo.remarks = std::move(read.remarks);
   return photo;
 }
 

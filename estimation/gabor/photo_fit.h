@@ -60,6 +60,11 @@ struct PhotoFit {
 PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& options,
                    const Progress& progress = {});
 
+// Fits an image in memory, which messages call `name`: one plane of grey, or red, green and blue, all of one
+// size. Throws as remove_trend and fit_gabor_lobes do.
+PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, const PhotoFitOptions& options,
+                    const Progress& progress = {});
+
 // The recipe's layer of a channel, without name and physical scale. Lengths are pixels. The height is the
 // exemplar's own deviation in the first channel and 0 in the others.
 GaborLayer layer_of(const FittedChannel& channel, bool first);

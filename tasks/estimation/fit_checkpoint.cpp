@@ -1,4 +1,4 @@
-#include "apps/fit_shape/fit_checkpoint.h"
+#include "tasks/estimation/fit_checkpoint.h"
 
 #include <bit>
 #include <cmath>

@@ -1,0 +1,27 @@
+// The recipe of a photo's Gabor layers, and the figures of the fit.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "estimation/gabor/photo_fit.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+struct PhotoRecipeOptions {
+  std::string layer_name;    // of all layers
+  double mm_per_px = 0.0;    // size of a pixel on the ground; 0: none, and lengths are pixels
+  std::string unit = "m";    // "m" or "km", where mm_per_px is given
+  double height_rms = -1.0;  // of the first layer, length units; negative: the exemplar's own contrast
+  std::uint64_t seed = 1;
+};
+
+// The recipe, whose provenance states what the fit achieved. Tool, input and options of the provenance are
+// the caller's.
+Recipe photo_recipe(const PhotoFit& photo, const PhotoRecipeOptions& options);
+
+// The figures of the fit, for summaries.
+nlohmann::ordered_json photo_figures(const PhotoFit& photo);
+
+}  // namespace astrolith

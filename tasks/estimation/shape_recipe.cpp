@@ -1,0 +1,107 @@
+#include "tasks/estimation/shape_recipe.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimation/shape/details/detailed_check.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::int64_t kSimilarityPoints = 5000;
+
+// Fractions of the bounding-box diagonal, except counts and ratios.
+std::vector<std::pair<std::string, double>> achieved(const ShapeFitResult& fit) {
+  const SurfaceDistanceReport& d = fit.check.distance;
+  return {{"max_distance", d.max},
+          {"mean_distance", d.mean},
+          {"p99_distance", d.p99},
+          {"similarity", fit.similarity},
+          {"similarity_floor", fit.similarity_floor},
+          {"volume_ratio", fit.check.volume_ratio}};
+}
+
+nlohmann::ordered_json score_json(const DetailScore& score) {
+  return {{"histogram_similarity", score.similarity}, {"roughness_misfit", score.roughness_misfit}};
+}
+
+}  // namespace
+
+ShapeFitResult fit_base(const TargetBody& target, const ShapeFitOptions& options, FitCheckpoint& checkpoint,
+                        const StageProgress& progress, const std::function<bool()>& interrupted) {
+  if (checkpoint.base() != nullptr) {
+    ShapeFitResult base = *checkpoint.base();
+    measure_fit(target, options, base);
+    return base;
+  }
+  ShapeFitResult fit = fit_shape(target, options, progress);
+  if (!interrupted() && !fit.interrupted) checkpoint.keep_base(fit);
+  return fit;
+}
+
+DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOptions& options,
+                                      int generations, EvaluationLog& log, CandidateEvaluator* evaluator,
+                                      const Progress& progress, Recipe& recipe) {
+  DetailsFitOptions details;
+  details.optimizer = options.optimizer;
+  details.population = options.population;
+  details.generations = generations;
+  details.seed = options.seed;
+  details.fitness.seed = options.seed;
+  details.fitness.recipe_seed = recipe.seed;
+  details.log = &log;
+  details.evaluator = evaluator;
+  DetailsFitResult result = fit_details(target, in_target_frame(target, *recipe.body), details, progress);
+  for (const FractalLayer& layer : layers_in_file_frame(result.layers, target))
+    recipe.layers.push_back(layer);
+  return result;
+}
+
+void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options,
+                    ShapeFitResult& fit) {
+  fit.check = check_recipe(target, recipe, options.check_resolution, options.check_samples, options.seed);
+  const MeasuredSimilarity measured =
+      measure_similarity(target.surface, fit.check.mesh, PairFeatures::ahd, kSimilarityPoints, options.seed);
+  fit.similarity = measured.similarity;
+  fit.similarity_floor = measured.floor;
+}
+
+void note_achieved(const ShapeFitResult& fit, Recipe& recipe) {
+  recipe.provenance.achieved.clear();
+  for (auto [name, value] : achieved(fit)) {
+    recipe.provenance.achieved.emplace_back(name, round_to_seven_digits(value));
+  }
+}
+
+nlohmann::ordered_json fit_figures(const ShapeFitResult& fit) {
+  nlohmann::ordered_json summary;
+  summary["spheres"] = fit.body.num_metaballs();
+  summary["subtracting_spheres"] = fit.body.subtract.size();
+  for (const auto& [name, value] : achieved(fit)) summary[name] = value;
+  summary["closed"] = fit.check.topology.closed;
+  summary["manifold"] = fit.check.topology.manifold;
+  summary["components"] = fit.check.topology.components;
+  summary["genus"] = fit.check.topology.genus;
+  summary["similarity_features"] = "ahd";
+  summary["filling_rate"] = fit.filling_rate;
+  summary["base_spheres"] = fit.base_spheres;
+  summary["base_similarity"] = fit.base_similarity;
+  summary["sharpness"] = fit.body.blend_exponent * fit.body.a;
+  summary["evaluations"] = fit.evaluations;
+  return summary;
+}
+
+nlohmann::ordered_json details_json(const DetailsFitResult& details) {
+  nlohmann::ordered_json roughness = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < details.lags.size(); ++k) {
+    roughness.push_back(
+        {{"lag", details.lags[k]}, {"target", details.target_roughness[k]}, {"fit", details.roughness[k]}});
+  }
+  return {{"evaluations", details.optimization.evaluations}, {"base", score_json(details.base_score)},
+          {"start", score_json(details.start_score)},        {"best", score_json(details.score)},
+          {"history", details.optimization.history},         {"roughness", roughness}};
+}
+
+}  // namespace astrolith
