@@ -1,4 +1,4 @@
-"""Procedural recipes for small bodies and rock: synthesis and description.
+"""Procedural recipes for small bodies and rock: synthesis, fitting, description.
 
 >>> import astrolith
 >>> ball = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0, 0, 0, 1]]}
@@ -7,11 +7,16 @@
 (3, True)
 
 Arrays are NumPy arrays. Lengths are in the recipe's ``length_unit``. Positions are in the body-fixed frame. The same
-options and seed give the bytes that the programs ``synth``, ``describe`` and ``compare`` give, for any number of threads.
-``astrolith.synthesis`` needs no library of the fits.
+options and seed give the bytes that the programs ``synth``, ``fit_shape``, ``fit_gabor``, ``describe`` and ``compare``
+give, for any number of threads.
+
+``astrolith.synthesis`` needs no library of the fits. ``astrolith.estimation`` links FFTW, which is under the GPL; it is
+loaded when one of its names is first used.
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 
 from astrolith.synthesis import (
@@ -32,20 +37,40 @@ from astrolith.synthesis import (
     write_mesh,
 )
 
+if TYPE_CHECKING:
+    from astrolith.estimation import ShapeFit, TextureFit, classify, fit_shape, fit_texture, train_classifier
+
 __all__ = [
     "Description",
     "Field",
     "Mesh",
     "Recipe",
+    "ShapeFit",
     "Texture",
+    "TextureFit",
     "Variation",
     "__version__",
+    "classify",
     "compare",
     "describe",
+    "fit_shape",
+    "fit_texture",
     "mesh",
     "read_mesh",
     "render",
     "texture",
+    "train_classifier",
     "vary",
     "write_mesh",
 ]
+
+_ESTIMATION = ("ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "train_classifier")
+
+
+def __getattr__(name: str) -> Any:
+    """Load the fits when one of their names is first used."""
+    if name in _ESTIMATION:
+        import astrolith.estimation
+
+        return getattr(astrolith.estimation, name)
+    raise AttributeError(f"module 'astrolith' has no attribute {name!r}")

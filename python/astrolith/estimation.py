@@ -1,0 +1,332 @@
+"""Fits: shapes to recipes of metaballs and noise, photos to layers of Gabor noise, meshes to classes.
+
+This module's extension links FFTW, which is under the GPL-2.0-or-later: whoever passes on a program together with it
+does so under the GPL. ``astrolith.synthesis`` alone is free of it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from astrolith import _arrays, _estimation
+from astrolith._mesh import MeshLike, arrays_of
+from astrolith._recipe import PathLike, Recipe, Record, records
+from astrolith.synthesis import Progress, _seed, _threads
+
+__all__ = ["ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "train_classifier"]
+
+
+@dataclasses.dataclass(eq=False)
+class ShapeFit:
+    """A fitted shape: its recipe, and the figures of ``fit_shape --summary``.
+
+    Distances in `figures` are fractions of the diagonal of the target's bounding box: mean_distance, p99_distance,
+    max_distance. similarity is that of ``compare``; more than similarity_floor cannot be expected.
+    """
+
+    recipe: Recipe
+    figures: Record
+
+
+@dataclasses.dataclass(eq=False)
+class TextureFit:
+    """A fitted photo: its recipe, and the figures of ``fit_gabor --summary``.
+
+    spectrum_residual is the distance from the photo's spectrum, weak where it is above weak_above; band_overlap is
+    the share of the variance in the right octave.
+    """
+
+    recipe: Recipe
+    figures: Record
+
+
+def _given(**arguments: Any) -> list[tuple[str, str]]:
+    """The arguments that were given, as a program states its options in the provenance."""
+    return sorted(
+        (name.replace("_", "-"), "true" if value is True else str(value))
+        for name, value in arguments.items()
+        if value is not None and value is not False
+    )
+
+
+_KERNELS = ("gaussian", "metaball", "soft_object", "wyvill", "cauchy")
+_OPTIMIZERS = ("pso", "crs2", "isres", "esch", "sbplx", "cmaes")
+
+
+def fit_shape(
+    mesh: Union[MeshLike, npt.ArrayLike],
+    faces: Optional[npt.ArrayLike] = None,
+    *,
+    spheres: Optional[int] = None,
+    kernel: Optional[str] = None,
+    subtract: Optional[float] = None,
+    points: Optional[int] = None,
+    tolerance: Optional[float] = None,
+    optimizer: Optional[str] = None,
+    population: Optional[int] = None,
+    generations: Optional[int] = None,
+    base_only: bool = False,
+    unit: Optional[str] = None,
+    seed: Optional[int] = None,
+    checkpoint: Optional[PathLike] = None,
+    threads: int = 0,
+    progress: Progress = None,
+) -> ShapeFit:
+    """Fit metaballs and noise to a closed mesh, as the program ``fit_shape`` does.
+
+    Parameters
+    ----------
+    mesh
+        The name of a file, a mesh, or (n, 3) float vertices; then `faces` are (m, 3) indices. The recipe of a file
+        states the file's name and hash, and has the bytes that the program writes.
+    spheres
+        Largest number of metaballs, 1 to 10000; default 200.
+    kernel
+        "gaussian" (default), "metaball", "soft_object", "wyvill" or "cauchy".
+    subtract
+        Largest share of the metaballs that may be subtractive, 0 to 0.9; default 0.5, and 0 for other kernels.
+    points
+        Samples of the surface that the refinement sees; default 120 a metaball.
+    tolerance
+        No more metaballs once the mean distance is below this fraction of the diagonal.
+    optimizer
+        "pso" (default), "crs2", "isres", "esch", "sbplx" or "cmaes".
+    population, generations
+        Of the search for details: default 20 and 100.
+    base_only
+        Metaballs alone, without a search for details.
+    unit
+        The unit of the vertices, "km" (default) or "m".
+    seed
+        0 to 2**53 - 1; default 1.
+    checkpoint
+        Keep the progress in this file; where it exists, go on from there.
+    progress
+        Called with the share done of a stage and a few words. Returning False ends the fit with its best so far.
+
+    Returns
+    -------
+    ShapeFit
+
+    Raises
+    ------
+    ValueError
+        The mesh is open, not manifold, flat or passes through itself; an argument is out of range; the checkpoint
+        belongs to another fit.
+    KeyboardInterrupt
+        Ctrl-C was pressed. It is raised within a second; the checkpoint is whole then.
+    """
+    file = os.fspath(mesh) if isinstance(mesh, (str, os.PathLike)) else ""
+    arrays = None
+    if not file:
+        arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
+    given = _given(
+        spheres=spheres, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
+        population=population, generations=generations, base_only=base_only, unit=unit, seed=seed,
+    )  # fmt: skip
+    if kernel not in (None, "gaussian") and subtract:
+        raise ValueError("subtract: only Gaussian metaballs may be subtractive; leave it out, or kernel")
+    json, figures = _estimation.fit_shape(
+        file or "mesh",
+        None if arrays is None else arrays.vertices,
+        None if arrays is None else arrays.faces,
+        _arrays.choice(kernel or "gaussian", "kernel", _KERNELS),
+        200 if spheres is None else _arrays.integer(spheres, "spheres", 1, 10000),
+        0.5 if subtract is None else _arrays.number(subtract, "subtract", 0.0, 0.9),
+        0 if points is None else _arrays.integer(points, "points", 0, 10**7),
+        0.0 if tolerance is None else _arrays.number(tolerance, "tolerance", 0.0, 1e18),
+        _arrays.choice(optimizer or "pso", "optimizer", _OPTIMIZERS),
+        20 if population is None else _arrays.integer(population, "population", 1, 10000),
+        100 if generations is None else _arrays.integer(generations, "generations", 1, 100000),
+        bool(base_only),
+        _arrays.choice(unit or "km", "unit", ("km", "m")),
+        "" if checkpoint is None else os.fspath(checkpoint),
+        given,
+        1 if seed is None else _seed(seed),
+        _threads(threads),
+        progress,
+    )
+    return ShapeFit(Recipe(records(json)), records(figures))
+
+
+def _planes(image: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """(planes, height, width) float64, full scale 1."""
+    array = np.asarray(image)
+    if array.ndim not in (2, 3) or array.ndim == 3 and array.shape[2] != 3:
+        raise ValueError(f"image: has the shape {array.shape}; it must be (height, width) or (height, width, 3)")
+    if not array.flags.c_contiguous:
+        raise ValueError("image: is not C-contiguous; pass numpy.ascontiguousarray(image)")
+    if array.dtype in (np.uint8, np.uint16):
+        array = array / float(np.iinfo(array.dtype).max)
+    elif array.dtype not in (np.float32, np.float64):
+        raise ValueError(f"image: has the dtype {array.dtype}; it must be uint8, uint16, float32 or float64")
+    if array.size == 0:
+        raise ValueError("image: is empty; it must have at least 32 x 32 pixels")
+    if array.size > 3 * 2**26:
+        raise ValueError(f"image: has {array.size} values; it must have at most 2**26 pixels")
+    if not (np.abs(array.max()) <= 1e5 and np.abs(array.min()) <= 1e5):
+        raise ValueError("image: holds values that are not finite or beyond 1e5")
+    planes = array[None] if array.ndim == 2 else np.moveaxis(array, 2, 0)
+    return np.ascontiguousarray(planes, dtype=np.float64)
+
+
+def _luma(planes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    luma: npt.NDArray[np.float64] = 0.2126 * planes[0] + 0.7152 * planes[1] + 0.0722 * planes[2]
+    return np.ascontiguousarray(luma[None])
+
+
+def fit_texture(
+    image: Union[PathLike, npt.ArrayLike],
+    *,
+    channels: Optional[str] = None,
+    detrend: Optional[int] = None,
+    detrend_by: Optional[str] = None,
+    lobes: Optional[int] = None,
+    mm_per_px: Optional[float] = None,
+    unit: Optional[str] = None,
+    height_rms: Optional[float] = None,
+    spectrum_estimate: Optional[str] = None,
+    solver: Optional[str] = None,
+    penalty: Optional[float] = None,
+    gap: Optional[float] = None,
+    seed: Optional[int] = None,
+    threads: int = 0,
+    progress: Progress = None,
+) -> TextureFit:
+    """Fit layers of Gabor noise to a photo of rock or to a height map, as the program ``fit_gabor`` does.
+
+    Parameters
+    ----------
+    image
+        The name of a PNG, JPEG or TIFF file, or (height, width) or (height, width, 3) uint8, uint16 (full scale
+        becomes 1) or floats, at least 32 x 32. The recipe of a file has the bytes that the program writes.
+    channels
+        "luminance" (default; one layer) or "pca" (a layer for each principal axis of the colours).
+    detrend, detrend_by
+        Degree of a polynomial that is taken out first (0 to 6; default 0), by "subtraction" (default) or "division".
+    lobes
+        At most this many lobes in a layer, 1 to 1000; default 80.
+    mm_per_px, unit
+        Size of a pixel on the ground in millimetres, and the recipe's unit then: "m" (default) or "km".
+    height_rms
+        Standard deviation of the height in the recipe's unit; default: the image's own contrast.
+    spectrum_estimate
+        "smoothed" (default) or "periodogram".
+    solver
+        "working-set" (default) or "fista".
+    penalty, gap
+        Sparsity penalty over the largest useful one (default 0.03), and the certified gap (default 1e-4).
+
+    Returns
+    -------
+    TextureFit
+
+    Raises
+    ------
+    ValueError
+        The image is wrong, too small or constant, or an argument is out of range.
+    """
+    colors = _arrays.choice(channels or "luminance", "channels", ("luminance", "pca")) == "pca"
+    file = os.fspath(image) if isinstance(image, (str, os.PathLike)) else ""
+    planes = None
+    if not isinstance(image, (str, os.PathLike)):
+        planes = _planes(image)
+        if colors and len(planes) == 1:
+            raise ValueError("channels: a grey image has no colours; leave it out")
+        if not colors and len(planes) == 3:
+            planes = _luma(planes)
+    given = _given(
+        channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
+        height_rms=height_rms, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty, gap=gap, seed=seed,
+    )  # fmt: skip
+    json, figures = _estimation.fit_texture(
+        file or "image",
+        planes,
+        colors,
+        0 if detrend is None else _arrays.integer(detrend, "detrend", 0, 6),
+        _arrays.choice(detrend_by or "subtraction", "detrend_by", ("subtraction", "division")) == "division",
+        80 if lobes is None else _arrays.integer(lobes, "lobes", 1, 1000),
+        0.0 if mm_per_px is None else _arrays.number(mm_per_px, "mm_per_px", 1e-12, 1e12),
+        _arrays.choice(unit or "m", "unit", ("m", "km")),
+        -1.0 if height_rms is None else _arrays.number(height_rms, "height_rms", 0.0, 1e12),
+        _arrays.choice(spectrum_estimate or "smoothed", "spectrum_estimate", ("smoothed", "periodogram")) != "smoothed",
+        _arrays.choice(solver or "working-set", "solver", ("working-set", "fista")) == "fista",
+        0.03 if penalty is None else _arrays.number(penalty, "penalty", 1e-4, 0.99),
+        1e-4 if gap is None else _arrays.number(gap, "gap", 1e-8, 0.5),
+        given,
+        1 if seed is None else _seed(seed),
+        _threads(threads),
+        progress,
+    )
+    return TextureFit(Recipe(records(json)), records(figures))
+
+
+_CLASS_FEATURES = ("ahd", "wahl", "d2", "shapedna")
+
+
+def train_classifier(
+    folders: Sequence[PathLike],
+    output: PathLike,
+    *,
+    features: str = "ahd",
+    bins: Optional[int] = None,
+    points: int = 5000,
+    eigenvalues: int = 20,
+    trees: int = 500,
+    depth: int = 25,
+    components: int = 0,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> None:
+    """Learn classes of shapes and write the classifier, as ``classify train --folds 0`` does.
+
+    Parameters
+    ----------
+    folders
+        Folders of meshes, one class each, or folders of such folders.
+    output
+        The file to write (JSON).
+    features
+        What the classes are told apart by: "ahd", "wahl", "d2" or "shapedna".
+    bins
+        Of each axis; default 5, and 64 for "d2".
+
+    Raises
+    ------
+    ValueError
+        A mesh cannot be used, a class has none, or an argument is out of range.
+    """
+    kind = _arrays.choice(features, "features", _CLASS_FEATURES)
+    _estimation.train_classifier(
+        [os.fspath(folder) for folder in folders],
+        os.fspath(output),
+        kind,
+        (64 if kind == "d2" else 5) if bins is None else _arrays.integer(bins, "bins", 2, 1024),
+        _arrays.integer(points, "points", 16, 100000),
+        _arrays.integer(eigenvalues, "eigenvalues", 1, 500),
+        _arrays.integer(trees, "trees", 1, 10000),
+        _arrays.integer(depth, "depth", 1, 60),
+        _arrays.integer(components, "components", 0, 100000),
+        _seed(seed),
+        _threads(threads),
+        progress,
+    )
+
+
+def classify(model: PathLike, mesh: MeshLike, *, threads: int = 0, progress: Progress = None) -> dict[str, float]:
+    """Return the share of the votes for each class of a classifier, as ``classify predict`` does.
+
+    Raises
+    ------
+    ValueError
+        The file is no classifier, or the mesh has no area.
+    """
+    arrays = arrays_of(mesh, "mesh")
+    classes, votes = _estimation.classify(os.fspath(model), arrays.vertices, arrays.faces, _threads(threads), progress)
+    return dict(zip(classes, votes))
