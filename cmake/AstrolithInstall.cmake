@@ -20,7 +20,7 @@ endforeach()
 
 install(TARGETS ${core_libraries} EXPORT astrolithTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT astrolithTargets NAMESPACE astrolith:: DESTINATION ${package_folder})
-set(header_folders numerics recipe geometry descriptor synthesis)
+set(header_folders numerics recipe geometry gravity descriptor synthesis)
 if(ASTROLITH_ESTIMATION)
   install(TARGETS ${estimation_libraries} EXPORT astrolithEstimationTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -13,6 +13,7 @@ geometry                   -> numerics geometry/.
 geometry/io                -> numerics geometry/.
 geometry/points            -> numerics
 geometry/surface           -> numerics geometry/. geometry/points
+gravity                    -> numerics geometry
 descriptor                 -> numerics geometry
 descriptor/spectrum        -> numerics geometry
 descriptor/classification  -> numerics geometry descriptor
@@ -43,7 +44,7 @@ estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda
 estimation/shape/report    -> numerics geometry synthesis/picture estimation/plot estimation/shape/target estimation/shape/fit
 tasks/synthesis            -> numerics recipe geometry descriptor synthesis cuda
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
-apps                       -> numerics recipe geometry descriptor synthesis cuda estimation tasks apps
+apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
 python                     -> numerics recipe geometry descriptor synthesis cuda estimation tasks python
 ' '
   function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }

@@ -1,0 +1,179 @@
+#include "gravity/body_mass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gravity/gauss_rule.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+std::array<double, 3> components(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+// Sums of y y^T over tetrahedra become the inertia tensor of their union.
+Matrix3 inertia_of(const Matrix3& second) {
+  const double trace = second[0][0] + second[1][1] + second[2][2];
+  Matrix3 inertia{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) inertia[i][j] = (i == j ? trace : 0.0) - second[i][j];
+  }
+  return inertia;
+}
+
+// R_lm without the sign of Condon and Shortley, l <= degree: place l (l + 1) / 2 + m, real and imaginary
+// parts.
+struct RegularSums {
+  explicit RegularSums(int n) : degree(n), re(count(n)), im(count(n)) {}
+  static std::size_t count(int n) { return static_cast<std::size_t>((n + 1) * (n + 2) / 2); }
+  static std::size_t place(int l, int m) { return static_cast<std::size_t>(l * (l + 1) / 2 + m); }
+
+  void add(const Vec3d& y, double weight) {
+    const double square = squared_norm(y);
+    double diagonal_re = weight, diagonal_im = 0.0;
+    for (int m = 0; m <= degree; ++m) {
+      if (m > 0) {
+        const double c = 0.5 / m, x = diagonal_re;
+        diagonal_re = c * (y.x * x - y.y * diagonal_im);
+        diagonal_im = c * (y.y * x + y.x * diagonal_im);
+      }
+      double now_re = diagonal_re, now_im = diagonal_im, last_re = 0.0, last_im = 0.0;
+      for (int l = m; l <= degree; ++l) {
+        if (l > m) {
+          const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale,
+                       down = square * scale;
+          const double next_re = up * now_re - down * last_re, next_im = up * now_im - down * last_im;
+          last_re = now_re, last_im = now_im;
+          now_re = next_re, now_im = next_im;
+        }
+        re[place(l, m)] += now_re;
+        im[place(l, m)] += now_im;
+      }
+    }
+  }
+
+  int degree;
+  std::vector<double> re, im;
+};
+
+// The integral of a homogeneous polynomial of degree l over the tetrahedron of a facet and the origin is that
+// over the facet times height / (l + 3).
+void add_facet(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::span<const TrianglePoint> rule,
+               RegularSums& sums) {
+  const double twice_area_by_height = dot(a, cross(b - a, c - a));
+  for (const TrianglePoint& t : rule) {
+    sums.add(a + t.b * (b - a) + t.c * (c - a), 0.5 * twice_area_by_height * t.weight);
+  }
+}
+
+RegularSums volume_sums(const TriangleMesh& mesh, const Vec3d& center, double radius, int degree) {
+  constexpr std::int64_t kFacetsOfTask = 1024;
+  const std::vector<TrianglePoint> rule = triangle_rule(degree);
+  const auto facets = static_cast<std::int64_t>(mesh.triangles.size());
+  std::vector<RegularSums> parts(static_cast<std::size_t>((facets + kFacetsOfTask - 1) / kFacetsOfTask),
+                                 RegularSums(degree));
+  parallel_for(0, static_cast<std::int64_t>(parts.size()), [&](std::int64_t part) {
+    for (std::int64_t i = part * kFacetsOfTask; i < std::min((part + 1) * kFacetsOfTask, facets); ++i) {
+      const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(i)];
+      const auto scaled = [&](std::uint32_t v) { return (mesh.vertices[v] - center) * (1.0 / radius); };
+      add_facet(scaled(a), scaled(b), scaled(c), rule, parts[static_cast<std::size_t>(part)]);
+    }
+  });
+  RegularSums sums(degree);
+  for (const RegularSums& part : parts) {
+    for (std::size_t i = 0; i < sums.re.size(); ++i) sums.re[i] += part.re[i], sums.im[i] += part.im[i];
+  }
+  return sums;
+}
+
+double factorial(int n) {
+  double product = 1.0;
+  for (int i = 2; i <= n; ++i) product *= i;
+  return product;
+}
+
+void rotate(Matrix3& m, Matrix3& vectors, std::size_t p, std::size_t q) {
+  if (m[p][q] == 0.0) return;
+  const double theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
+  const double size =
+      std::fabs(theta) > 1e150 ? 2.0 * std::fabs(theta) : std::fabs(theta) + std::sqrt(theta * theta + 1.0);
+  const double t = (theta < 0.0 ? -1.0 : 1.0) / size;
+  const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = m[k][p], b = m[k][q];
+    m[k][p] = c * a - s * b, m[k][q] = s * a + c * b;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = m[p][k], b = m[q][k];
+    m[p][k] = c * a - s * b, m[q][k] = s * a + c * b;
+    const double v = vectors[k][p], w = vectors[k][q];
+    vectors[k][p] = c * v - s * w, vectors[k][q] = s * v + c * w;
+  }
+}
+
+}  // namespace
+
+BodyMass body_mass(const TriangleMesh& mesh) {
+  const Vec3d origin = mesh.bounds().center();
+  BodyMass body;
+  Vec3d first;
+  Matrix3 second{};
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3d a = mesh.vertices[i] - origin, b = mesh.vertices[j] - origin, c = mesh.vertices[k] - origin;
+    const double v = dot(a, cross(b, c)) / 6.0;
+    const Vec3d sum = a + b + c;
+    body.volume += v;
+    first += 0.25 * v * sum;
+    for (const Vec3d& y : {a, b, c, sum}) {
+      const std::array<double, 3> e = components(y);
+      for (std::size_t p = 0; p < 3; ++p) {
+        for (std::size_t q = 0; q < 3; ++q) second[p][q] += 0.05 * v * e[p] * e[q];
+      }
+    }
+  }
+  const Vec3d center = body.volume != 0.0 ? first * (1.0 / body.volume) : Vec3d{};
+  const std::array<double, 3> e = components(center);
+  for (std::size_t p = 0; p < 3; ++p) {
+    for (std::size_t q = 0; q < 3; ++q) second[p][q] -= body.volume * e[p] * e[q];
+  }
+  body.center = origin + center;
+  body.inertia = inertia_of(second);
+  return body;
+}
+
+PrincipalAxes principal_axes(const Matrix3& symmetric) {
+  Matrix3 m = symmetric, vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (int sweep = 0; sweep < 30; ++sweep) {
+    rotate(m, vectors, 0, 1);
+    rotate(m, vectors, 0, 2);
+    rotate(m, vectors, 1, 2);
+  }
+  std::array<std::size_t, 3> order{0, 1, 2};
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return m[a][a] < m[b][b]; });
+  PrincipalAxes axes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    axes.moments[k] = m[order[k]][order[k]];
+    axes.axes[k] = {vectors[0][order[k]], vectors[1][order[k]], vectors[2][order[k]]};
+  }
+  axes.axes[2] = cross(axes.axes[0], axes.axes[1]);
+  return axes;
+}
+
+std::vector<GravityCoefficient> gravity_coefficients(const TriangleMesh& mesh, const Vec3d& center,
+                                                     double radius, int degree) {
+  const RegularSums sums = volume_sums(mesh, center, radius, degree);
+  const double volume = sums.re[0] / 3.0;
+  std::vector<GravityCoefficient> coefficients;
+  for (int l = 0; l <= degree; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      const double twice = m == 0 ? 1.0 : 2.0;
+      const double scale =
+          std::sqrt(twice * factorial(l - m) * factorial(l + m) / (2 * l + 1)) / (l + 3) / volume;
+      const std::size_t i = RegularSums::place(l, m);
+      coefficients.push_back({l, m, scale * sums.re[i], scale * sums.im[i]});
+    }
+  }
+  return coefficients;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,137 @@
+// The potential of a plane triangle that is covered with a layer of unit density, exactly.
+//
+// Werner & Scheeres, "Exterior gravitation of a polyhedron derived and compared with harmonic and mascon
+// gravitation representations of asteroid 4769 Castalia", Celestial Mechanics 65, 1997, sum over edges and
+// faces. The edge of two faces stands in their sum twice, once for each face; the terms of one face with its
+// three edges are
+//   I = integral of dS / r = sum over edges (m_e . r_e) L_e - (n . r) w,
+// where r goes from the field point to a point of the face, n is the face's unit normal, m_e the unit normal
+// of an edge in the plane of the face, L_e the potential of the edge as a wire and w the signed solid angle.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "numerics/host_device.h"
+#include "numerics/vec3.h"
+
+namespace astrolith::layer {
+
+// log((r1 + r2 + e) / (r1 + r2 - e)) without loss of digits: `above` / `below` is the quotient, free of
+// cancellation, and is used where it is above sqrt(2). Below that the series has e / (r1 + r2) as its
+// argument. Error at most 2 ulp of the logarithm; finite for below = 0.
+ASTROLITH_KERNEL double wire_potential(double above, double below, double edge, double distances) {
+  constexpr double kTiny = 1e-290, kHuge = 1e290;
+  const double quotient = above / (below > kTiny ? below : kTiny);
+  const double at_least_one = quotient > 1.0 ? quotient : 1.0;
+  const double q = at_least_one < kHuge ? at_least_one : kHuge;
+  // q = 2^exponent * mantissa, mantissa in [sqrt(1/2), sqrt(2)); the exponent becomes a double by its bits.
+  const std::uint64_t bits = std::bit_cast<std::uint64_t>(q);
+  const std::uint64_t exponent = (bits - 0x3fe6a09e667f3bcdu) >> 52;
+  const double mantissa = std::bit_cast<double>(bits - (exponent << 52));
+  const double k = std::bit_cast<double>(exponent | 0x4330000000000000u) - 4503599627370496.0;
+  const bool near_one = exponent == 0;
+  const double sum = distances > kTiny ? distances : kTiny;
+  const double s = (near_one ? edge : mantissa - 1.0) / (near_one ? sum : mantissa + 1.0), z = s * s;
+  double p = 1.0 / 21.0;  // 2 atanh(s), |s| <= 0.172; leaves a remainder below 1e-17 of s
+  p = p * z + 1.0 / 19.0;
+  p = p * z + 1.0 / 17.0;
+  p = p * z + 1.0 / 15.0;
+  p = p * z + 1.0 / 13.0;
+  p = p * z + 1.0 / 11.0;
+  p = p * z + 1.0 / 9.0;
+  p = p * z + 1.0 / 7.0;
+  p = p * z + 1.0 / 5.0;
+  p = p * z + 1.0 / 3.0;
+  const double log_mantissa = 2.0 * s * z * p + 2.0 * s;
+  return k * 6.93147180369123816490e-01 + (k * 1.90821492927058770002e-10 + log_mantissa);
+}
+
+// The angle of (x, y) in [-pi, pi] within 2 ulp and 1e-290; 0 at the origin.
+ASTROLITH_KERNEL double angle_of(double y, double x) {
+  constexpr double kTangent = 0.41421356237309504880, kPi = 3.14159265358979323846;  // tan(pi / 8)
+  const double a = std::fabs(x), b = std::fabs(y);
+  const double low = a < b ? a : b, high = a < b ? b : a;
+  const bool third = low > 0.66817863791929891999 * high, second = low > 0.2553 * high;
+  const double c = third ? 1.0 : second ? kTangent : 0.0;
+  const double begin = third ? kPi / 4 : second ? kPi / 8 : 0.0;
+  const double under = high + c * low;
+  const double u = (low - c * high) / (under > 1e-290 ? under : 1e-290), z = u * u;
+  double p = -1.0 / 27.0;  // Taylor; |u| <= 0.2553 leaves a remainder below 1e-17 of u
+  p = p * z + 1.0 / 25.0;
+  p = p * z - 1.0 / 23.0;
+  p = p * z + 1.0 / 21.0;
+  p = p * z - 1.0 / 19.0;
+  p = p * z + 1.0 / 17.0;
+  p = p * z - 1.0 / 15.0;
+  p = p * z + 1.0 / 13.0;
+  p = p * z - 1.0 / 11.0;
+  p = p * z + 1.0 / 9.0;
+  p = p * z - 1.0 / 7.0;
+  p = p * z + 1.0 / 5.0;
+  p = p * z - 1.0 / 3.0;
+  const double octant = begin + (u + u * z * p);
+  const double quadrant = a < b ? kPi / 2 - octant : octant;
+  const double half = x < 0.0 ? kPi - quadrant : quadrant;
+  return y < 0.0 ? -half : half;
+}
+
+// What the sums need of one triangle. A triangle without area has zero vectors, and contributes nothing.
+struct Facet {
+  Vec3d corner[3];
+  Vec3d normal;
+  Vec3d along[3];    // unit vectors from corner k to corner k + 1
+  Vec3d outward[3];  // unit normals of these edges in the plane of the facet
+  double edge[3];    // their lengths
+  double twice_area;
+};
+
+ASTROLITH_HD inline Facet make_facet(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  Facet f{{a, b, c}, {}, {}, {}, {}, 0.0};
+  const Vec3d area = cross(b - a, c - a);
+  f.twice_area = norm(area);
+  f.normal = f.twice_area > 0.0 ? area * (1.0 / f.twice_area) : Vec3d{};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d side = f.corner[(k + 1) % 3] - f.corner[k];
+    f.edge[k] = norm(side);
+    f.along[k] = f.edge[k] > 0.0 ? side * (1.0 / f.edge[k]) : Vec3d{};
+    f.outward[k] = cross(f.along[k], f.normal);
+  }
+  return f;
+}
+
+struct LayerValue {
+  double potential;  // I, in length units
+  double height;     // n . r: the distance of the field point below the plane
+};
+
+// I at p. Finite and right at points on the facet, on its edges and at its corners.
+ASTROLITH_KERNEL LayerValue layer_potential(const Facet& f, double px, double py, double pz) {
+  const double ax = f.corner[0].x - px, ay = f.corner[0].y - py, az = f.corner[0].z - pz;
+  const double bx = f.corner[1].x - px, by = f.corner[1].y - py, bz = f.corner[1].z - pz;
+  const double cx = f.corner[2].x - px, cy = f.corner[2].y - py, cz = f.corner[2].z - pz;
+  const double ra = __builtin_sqrt(ax * ax + ay * ay + az * az);
+  const double rb = __builtin_sqrt(bx * bx + by * by + bz * bz);
+  const double rc = __builtin_sqrt(cx * cx + cy * cy + cz * cz);
+  const double height = f.normal.x * ax + f.normal.y * ay + f.normal.z * az;
+  const auto edge = [&](int k, double x, double y, double z, double r1, double x2, double y2, double z2,
+                        double r2) {
+    const Vec3d &u = f.along[k], &m = f.outward[k];
+    const double t1 = u.x * x + u.y * y + u.z * z, t2 = u.x * x2 + u.y * y2 + u.z * z2;
+    const double out = m.x * x + m.y * y + m.z * z;
+    const double beside = out * out + height * height;  // squared distance to the line of the edge
+    const bool before = t1 > 0.0, behind = t2 <= 0.0;
+    const double above = before ? r2 + t2 : behind ? r1 - t1 : (r2 + t2) * (r1 - t1);
+    const double below = before ? r1 + t1 : behind ? r2 - t2 : beside;
+    return out * wire_potential(above, below, f.edge[k], r1 + r2);
+  };
+  const double wires = edge(0, ax, ay, az, ra, bx, by, bz, rb) + edge(1, bx, by, bz, rb, cx, cy, cz, rc) +
+                       edge(2, cx, cy, cz, rc, ax, ay, az, ra);
+  const double ab = ax * bx + ay * by + az * bz, bc = bx * cx + by * cy + bz * cz,
+               ca = cx * ax + cy * ay + cz * az;
+  const double solid = 2.0 * angle_of(height * f.twice_area, ra * rb * rc + ra * bc + rb * ca + rc * ab);
+  return {wires - height * solid, height};
+}
+
+}  // namespace astrolith::layer

@@ -1,0 +1,66 @@
+// The surface of a body as a tree of facets, with multipoles of the surface about the centre of each node.
+//
+// By Gauss' theorem the gravity of a homogeneous body is that of layers on its surface (Werner & Scheeres
+// 1997):
+//   acceleration = -G rho sum over facets of n I,   potential = G rho / 2 sum over facets of (n . r) I,
+// with I the integral of dS / r over a facet. A node holds multipoles of four layers: the components of n and
+// n . (y - c), c being the node's centre.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+#include "gravity/solid_harmonics.h"
+
+namespace astrolith {
+
+// One node. The facets of a node follow each other in the order of the tree.
+struct GravityNode {
+  Vec3d center;
+  double radius = 0.0;  // of a ball about the centre that holds the node's facets
+  double area = 0.0;
+  std::uint32_t first = 0, count = 0;  // facets
+  std::uint32_t next = 0;              // node to go on with when this one is not opened
+  std::uint32_t leaf = 0;              // 1 where the node has no children; its first child stands behind it
+  // spread[q] is no less than the integral of |y - c|^(q + 1) over the node's facets. It bounds the error of
+  // the multipoles to order q by spread[q] / (d^(q + 1) (d - radius)) at distance d.
+  std::array<double, kMostOrder + 1> spread{};
+};
+
+// The multipoles of one node: four layers for each harmonic, real parts and then imaginary parts.
+struct GravityMultipoles {
+  std::array<std::array<double, 8>, kHarmonics> terms;
+};
+
+// The tables; lengths are in units of `scale` and relative to `origin`. Nodes are in depth-first order.
+struct GravityTree {
+  Vec3d origin;
+  double scale = 1.0;
+  double area = 0.0, volume = 0.0;  // of the whole, in the tables' units
+  std::vector<std::array<Vec3d, 3>> facets;
+  std::vector<GravityNode> nodes;
+  std::vector<GravityMultipoles> multipoles;
+};
+
+// Builds the tables of a mesh with indices in range and at least one triangle of positive area. Throws
+// InputError where there is none.
+GravityTree make_gravity_tree(const TriangleMesh& mesh);
+
+// Sums over all facets for points in the tables' units, arrays of `count` <= 16 points, added to: layers[k]
+// is the sum of n_k I, work the sum of (n . r) I.
+constexpr int kPointBatch = 16;
+struct PointBatch {
+  std::array<double, kPointBatch> x{}, y{}, z{};
+};
+struct BatchSums {
+  std::array<std::array<double, kPointBatch>, 3> layers{};
+  std::array<double, kPointBatch> work{};
+};
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const PointBatch& points, BatchSums& sums);
+void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, int order,
+                    const PointBatch& points, BatchSums& sums);
+
+}  // namespace astrolith

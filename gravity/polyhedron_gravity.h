@@ -1,0 +1,55 @@
+// The gravity of a homogeneous polyhedron, for G times density = 1: potentials in squared length units,
+// accelerations in length units. Multiply both by G times the density.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+#include "gravity/gravity_tree.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+struct Attraction {
+  double potential = 0.0;  // positive, zero at infinity
+  Vec3d acceleration;      // its gradient
+};
+
+// A closed mesh whose faces are counter-clockwise seen from outside has the attraction of its volume. Points
+// may lie anywhere: inside, outside, on facets, edges and vertices. Values are the same for any number of
+// threads.
+class PolyhedronGravity {
+ public:
+  // Indices of the mesh must be in range. Throws InputError for a mesh without a facet that has an area.
+  explicit PolyhedronGravity(const TriangleMesh& mesh) : tree_(make_gravity_tree(mesh)) {}
+
+  // Near facets exactly, the others by multipoles. The sum of the bounds of all multipoles' errors is at most
+  // `tolerance` times the acceleration at a point. Where the acceleration nearly vanishes, as at the centre
+  // of a body, 0.05 of that of a ball of equal volume takes its place. tolerance in [1e-12, 0.1]. Throws
+  // WorkError when progress asks to stop.
+  std::vector<Attraction> at(std::span<const Vec3d> points, double tolerance,
+                             const Progress& progress = {}) const;
+
+  // All facets exactly. Takes time in proportion to points times facets.
+  std::vector<Attraction> exactly_at(std::span<const Vec3d> points, const Progress& progress = {}) const;
+
+  const GravityTree& tables() const { return tree_; }
+
+ private:
+  GravityTree tree_;
+};
+
+// The difference of accelerations from exact ones, as fractions of the exact ones.
+struct AchievedError {
+  int points = 0;
+  double largest = 0.0, rms = 0.0;
+  double largest_of_potential = 0.0;
+};
+
+// Compares the values at `sample` of the points, chosen at random by the seed, with exact ones.
+AchievedError achieved_error(const PolyhedronGravity& gravity, std::span<const Vec3d> points,
+                             std::span<const Attraction> values, int sample, std::uint64_t seed,
+                             const Progress& progress = {});
+
+}  // namespace astrolith

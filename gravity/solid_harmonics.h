@@ -1,0 +1,58 @@
+// Solid harmonics without square roots:
+//   R_lm = r^l P_lm(cos t) e^(i m f) / (l + m)!   and   S_lm = (l - m)! P_lm(cos t) e^(i m f) / r^(l + 1),
+// with the sign of Condon and Shortley. For |y| < |x|
+//   1 / |x - y| = sum over l, m of conj(R_lm(y)) S_lm(x),   R_lm(a + b) = sum R_jk(a) R_(l-j)(m-k)(b).
+// (Hobson 1931; the scaling is that of White & Head-Gordon 1994.)
+#pragma once
+
+#include <array>
+
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+constexpr int kMostOrder = 10;
+constexpr int kHarmonics = (kMostOrder + 1) * (kMostOrder + 2) / 2;
+
+// The place of l, m among the stored ones, 0 <= m <= l <= kMostOrder. All l of one m follow each other.
+constexpr int harmonic_index(int l, int m) { return m * (kMostOrder + 1) - m * (m - 1) / 2 + (l - m); }
+
+struct Complex {
+  double re = 0.0, im = 0.0;
+};
+inline Complex operator*(const Complex& a, const Complex& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+using Harmonics = std::array<Complex, kHarmonics>;
+
+// R_lm(y) for all stored l, m.
+inline void regular_harmonics(const Vec3d& y, Harmonics& r) {
+  const double square = squared_norm(y);
+  Complex diagonal{1.0, 0.0};
+  for (int m = 0; m <= kMostOrder; ++m) {
+    if (m > 0) {
+      const double c = -0.5 / m;
+      diagonal = Complex{c * y.x, c * y.y} * diagonal;
+    }
+    Complex last{}, now = diagonal;
+    for (int l = m; l <= kMostOrder; ++l) {
+      if (l > m) {
+        const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale, down = square * scale;
+        const Complex next{up * now.re - down * last.re, up * now.im - down * last.im};
+        last = now;
+        now = next;
+      }
+      r[static_cast<std::size_t>(harmonic_index(l, m))] = now;
+    }
+  }
+}
+
+// One coefficient of any sign of m, by X_l(-m) = (-1)^m conj(X_lm).
+inline Complex signed_harmonic(const Complex* x, int l, int m) {
+  if (m >= 0) return x[harmonic_index(l, m)];
+  const Complex c = x[harmonic_index(l, -m)];
+  return m % 2 == 0 ? Complex{c.re, -c.im} : Complex{-c.re, c.im};
+}
+
+}  // namespace astrolith
