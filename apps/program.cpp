@@ -78,7 +78,7 @@ std::string option_not_finite(const CLI::App& app) {
 // The options that name a file to write, and those, beside the positional ones, that name a file to read.
 const std::vector<std::string> kOutputs{"output",  "summary",      "spectrum",
                                         "preview", "feature-list", "write-recipe"};
-const std::vector<std::string> kInputs{"base", "target"};
+const std::vector<std::string> kInputs{"base", "target", "points"};
 
 // Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".
 // The result names the program's option of that name instead, if there is one.

@@ -1,0 +1,215 @@
+// gravity: potential, slope and elevation of a body of uniform density that turns.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <tuple>
+
+#include "apps/gravity/gravity_body.h"
+#include "apps/gravity/gravity_outputs.h"
+#include "apps/gravity/gravity_summary.h"
+#include "apps/output_names.h"
+#include "apps/program.h"
+#include "geometry/io/points_io.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_normals.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+namespace {
+
+struct Arguments {
+  std::string shape, output, preview, points, unit, at = "facets", color = "slope_deg";
+  double density = 0.0, period = 0.0, tolerance = 1e-6, radius = 0.0;
+  std::tuple<double, double, double> axis{0, 0, 1};
+  int resolution = 128, degree = 4, sample = 100;
+  bool exact = false;
+};
+
+void add_options(Program& program, Arguments& a) {
+  CommandLine& app = program.app;
+  app.add_option("shape", a.shape,
+                 "closed mesh (obj, ply, stl, off, PDS plate .tab, ICQ, bmf) or recipe (.json)")
+      .required()
+      .placeholder("SHAPE");
+  app.add_option("-o,--output", a.output, "table of all places (.csv, .npy), or the mesh with values (.ply)")
+      .placeholder("FILE");
+  app.add_option("--density", a.density, "kg/m3, of the whole body").placeholder("N").default_text("");
+  app.add_option("--period", a.period, "of rotation, hours; without it the body is at rest")
+      .placeholder("N")
+      .default_text("");
+  app.add_option("--axis", a.axis, "axis of rotation, through the centre of mass")
+      .placeholder("X Y Z (default 0 0 1)")
+      .default_text("");
+  app.add_option("--unit", a.unit, "length unit of the mesh's coordinates; km where nothing is said")
+      .check(one_of({"m", "km", "cm", "mm"}))
+      .default_text("");
+  app.add_option("--at", a.at, "places: centres of facets, or vertices")
+      .check(one_of({"facets", "vertices"}));
+  app.add_option("--points", a.points, "places: lines of x, y, z in the body's unit, inside or outside")
+      .placeholder("FILE");
+  app.add_option("--tolerance", a.tolerance, "bound of the error of each acceleration, relative")
+      .check(in_range(1e-12, 0.1));
+  app.add_flag("--exact", a.exact, "sum over all facets exactly; takes minutes for 50,000 facets");
+  app.add_option("--sample", a.sample, "places that are also computed exactly, to state the error achieved")
+      .check(in_range(0, 100000));
+  app.add_option("--degree", a.degree, "of the spherical harmonics of gravity")
+      .check(in_range(0, kMostDegree));
+  app.add_option("--radius", a.radius,
+                 "reference radius of the harmonics, in the body's unit; 0 = farthest vertex")
+      .check(zero_or_more());
+  app.add_option("--resolution", a.resolution, "cells along the longest side of a recipe's body")
+      .check(in_range(8, 4096));
+  app.add_option("--preview", a.preview, "also a picture in colours, with a bar").placeholder("FILE.png");
+  app.add_option("--color", a.color, "what the colours of the picture say")
+      .check(one_of(
+          {"slope_deg", "elevation_m", "potential_J_kg", "geopotential_J_kg", "effective_gravity_m_s2"}));
+}
+
+Vec3d axis_of(const Arguments& a) {
+  const auto& [x, y, z] = a.axis;
+  const Vec3d axis = normalized(Vec3d{x, y, z});
+  if (!(norm(axis) > 0.5)) throw InputError("--axis: 0 0 0 is no direction; give another");
+  return axis;
+}
+
+void check(const Program& program, const Arguments& a) {
+  if (!(a.density > 0.0)) {
+    throw InputError("--density: must be above 0 kg/m3; give one, such as 2000 for an asteroid of rubble");
+  }
+  if (program.app.option("--period").count() > 0 && !(a.period > 0.0)) {
+    throw InputError("--period: must be above 0 hours; leave it out for a body at rest");
+  }
+  axis_of(a);
+  if (!a.points.empty() && (!a.preview.empty() || program.app.option("--at").count() > 0)) {
+    throw InputError("--points: gives places of its own; leave out --at and --preview");
+  }
+  if (!a.output.empty()) {
+    require_extension(a.output, {".csv", ".npy", ".ply"});
+    if (a.output.ends_with(".ply") && (a.at != "vertices" || !a.points.empty())) {
+      throw InputError(a.output +
+                       ": a PLY holds values of vertices; add --at vertices, or write .csv or .npy");
+    }
+    require_writable(a.output);
+  }
+  if (!a.preview.empty()) {
+    require_extension(a.preview, {".png"});
+    require_writable(a.preview);
+  }
+}
+
+GravityPlaces facet_places(const TriangleMesh& mesh) {
+  GravityPlaces places;
+  places.normals = triangle_normals(mesh);
+  for (const Triangle& t : mesh.triangles) {
+    places.points.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) * (1.0 / 3.0));
+    places.areas.push_back(triangle_area(mesh, t));
+  }
+  return places;
+}
+
+GravityPlaces vertex_places(const TriangleMesh& mesh) {
+  GravityPlaces places{mesh.vertices, vertex_normals(mesh), std::vector<double>(mesh.vertices.size())};
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) places.areas[v] += triangle_area(mesh, t) / 3.0;
+  }
+  return places;
+}
+
+GravityPlaces places_of(const Arguments& a, const TriangleMesh& mesh) {
+  if (!a.points.empty()) return {read_points(a.points), {}, {}};
+  return a.at == "vertices" ? vertex_places(mesh) : facet_places(mesh);
+}
+
+std::vector<Vec3d> in_metres(std::span<const Vec3d> points, double metres) {
+  std::vector<Vec3d> scaled;
+  for (const Vec3d& p : points) scaled.push_back(metres * p);
+  return scaled;
+}
+
+Rotation rotation_of(const Arguments& a, const GravityBody& body, const BodyMass& mass) {
+  const double rate = a.period > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * a.period) : 0.0;
+  return {body.metres * mass.center, axis_of(a), rate};
+}
+
+void print(const nlohmann::ordered_json& result) {
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  const std::string text = result.dump(2, ' ', false, replace) + "\n";
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    throw WorkError("stdout: writing failed; is the disk full?");
+  }
+}
+
+struct Evaluation {
+  std::vector<Attraction> attractions;
+  AchievedError error;
+};
+
+Evaluation evaluated(const Program& program, const Arguments& a, const GravityBody& body,
+                     const GravityPlaces& places) {
+  const PolyhedronGravity gravity(body.mesh);
+  const Progress progress = program.progress("gravity");
+  Evaluation result;
+  if (a.exact) {
+    result.attractions = gravity.exactly_at(places.points, progress);
+    return result;
+  }
+  result.attractions = gravity.at(places.points, a.tolerance, progress);
+  result.error = achieved_error(gravity, places.points, result.attractions, a.sample, program.seed,
+                                program.progress("check"));
+  return result;
+}
+
+void write_outputs(Program& program, const Arguments& a, const GravityBody& body,
+                   const std::vector<GravityColumn>& columns) {
+  if (!a.output.empty()) write_gravity(columns, body, a.output, program.tool());
+  if (a.preview.empty()) return;
+  for (const GravityColumn& column : columns) {
+    if (column.name == a.color) write_gravity_preview(program, body, column, a.preview);
+  }
+}
+
+void run(Program& program, const Arguments& a) {
+  check(program, a);
+  const GravityBody body = read_gravity_body(program, a.shape, a.unit, a.resolution);
+  const GravityPlaces places = places_of(a, body.mesh);
+  const BodyMass mass = body_mass(body.mesh);
+  const Evaluation evaluation = evaluated(program, a, body, places);
+  const std::vector<PointGravity> values =
+      point_gravity(in_metres(places.points, body.metres), evaluation.attractions, a.density, body.metres,
+                    rotation_of(a, body, mass));
+  const SurfaceMeans means =
+      surface_means(values, places.areas.empty() ? std::vector<double>(values.size()) : places.areas);
+  nlohmann::ordered_json result{{"shape", a.shape},
+                                {"unit", body.unit},
+                                {"facets", body.mesh.triangles.size()},
+                                {"density_kg_m3", a.density},
+                                {"period_h", a.period}};
+  result["body"] = mass_json(body, mass, a.density);
+  result["harmonics"] = coefficients_json(body, mass, a.radius, a.degree);
+  result["places"] = a.points.empty() ? a.at : "points";
+  result["count"] = values.size();
+  result["values"] = surface_json(places, values, means);
+  if (!a.exact && a.sample > 0) result["achieved_error"] = error_json(evaluation.error, a.tolerance);
+  write_outputs(program, a, body, gravity_columns(places, values, means));
+  print(result);
+  program.summary = result;
+}
+
+}  // namespace
+}  // namespace astrolith
+
+int main(int argc, char** argv) {
+  astrolith::Program program("gravity",
+                             "Computes gravitational potential, acceleration, geopotential, slope and "
+                             "elevation of a body of uniform "
+                             "density that turns: at its facets, at its vertices, or at points inside and "
+                             "outside. Prints mass, moments "
+                             "and gravity harmonics as JSON.");
+  astrolith::Arguments arguments;
+  astrolith::add_options(program, arguments);
+  return program.run(argc, argv, [&] { astrolith::run(program, arguments); });
+}

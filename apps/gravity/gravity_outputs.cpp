@@ -1,0 +1,112 @@
+#include "apps/gravity/gravity_outputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "geometry/io/ply_values.h"
+#include "numerics/files/npy_file.h"
+#include "synthesis/picture/color_bar.h"
+#include "synthesis/picture/colormap.h"
+#include "synthesis/picture/preview.h"
+
+namespace astrolith {
+namespace {
+
+void write_csv(const std::vector<GravityColumn>& columns, const std::filesystem::path& file) {
+  OutputFile out(file);
+  std::string text;
+  for (const GravityColumn& c : columns) text += (text.empty() ? "" : ",") + c.name;
+  text += '\n';
+  for (std::size_t i = 0; i < columns.front().values.size(); ++i) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      std::array<char, 32> digits{};
+      const char* const end =
+          std::to_chars(digits.data(), digits.data() + digits.size(), columns[k].values[i]).ptr;
+      if (k > 0) text += ',';
+      text.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
+    }
+    text += '\n';
+    if (text.size() > 65536) {
+      out.write(text.data(), text.size());
+      text.clear();
+    }
+  }
+  out.write(text.data(), text.size());
+  out.commit();
+}
+
+void write_table(const std::vector<GravityColumn>& columns, const std::filesystem::path& file) {
+  const std::size_t rows = columns.front().values.size();
+  std::vector<double> table;
+  table.reserve(rows * columns.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (const GravityColumn& c : columns) table.push_back(c.values[i]);
+  }
+  const std::array<int, 2> shape{static_cast<int>(rows), static_cast<int>(columns.size())};
+  write_npy(table, shape, file);
+}
+
+// Values of facets become those of vertices: means over the facets around each.
+std::vector<double> values_of_vertices(const TriangleMesh& mesh, const std::vector<double>& values) {
+  if (values.size() == mesh.vertices.size()) return values;
+  std::vector<double> sums(mesh.vertices.size()), counts(mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t v : mesh.triangles[i]) sums[v] += values[i], counts[v] += 1.0;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(counts[i], 1.0);
+  return sums;
+}
+
+}  // namespace
+
+std::vector<GravityColumn> gravity_columns(const GravityPlaces& places, std::span<const PointGravity> values,
+                                           const SurfaceMeans& means) {
+  std::vector<GravityColumn> columns;
+  const auto add = [&](const char* name, const auto& value_of) {
+    GravityColumn column{name, {}};
+    for (std::size_t i = 0; i < values.size(); ++i) column.values.push_back(value_of(i));
+    columns.push_back(std::move(column));
+  };
+  add("x", [&](std::size_t i) { return places.points[i].x; });
+  add("y", [&](std::size_t i) { return places.points[i].y; });
+  add("z", [&](std::size_t i) { return places.points[i].z; });
+  add("potential_J_kg", [&](std::size_t i) { return values[i].potential; });
+  add("acceleration_x_m_s2", [&](std::size_t i) { return values[i].acceleration.x; });
+  add("acceleration_y_m_s2", [&](std::size_t i) { return values[i].acceleration.y; });
+  add("acceleration_z_m_s2", [&](std::size_t i) { return values[i].acceleration.z; });
+  add("geopotential_J_kg", [&](std::size_t i) { return values[i].geopotential; });
+  add("effective_gravity_m_s2", [&](std::size_t i) { return norm(values[i].effective); });
+  if (places.normals.empty()) return columns;
+  add("slope_deg", [&](std::size_t i) { return slope_degrees(places.normals[i], values[i].effective); });
+  add("elevation_m", [&](std::size_t i) { return elevation(values[i], means); });
+  return columns;
+}
+
+void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody& body,
+                   const std::filesystem::path& file, const std::string& tool) {
+  if (file.extension() == ".csv") return write_csv(columns, file);
+  if (file.extension() == ".npy") return write_table(columns, file);
+  std::vector<VertexValues> quantities;
+  for (std::size_t k = 3; k < columns.size(); ++k) quantities.push_back({columns[k].name, columns[k].values});
+  write_ply_values(body.mesh, quantities, file, {body.unit, "as the input's", "gravity by " + tool, {}});
+}
+
+void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
+                           const std::filesystem::path& file) {
+  const std::vector<double> values = values_of_vertices(body.mesh, column.values);
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  const double low = *least, high = *most > *least ? *most : *least + 1.0;
+  PreviewOptions options;
+  options.seed = program.seed;
+  options.fill_light = 0.5;
+  options.vertex_colors = sequential_colors(values, low, high);
+  RgbImage image = render_preview(body.mesh, options, program.progress("preview"));
+  draw_color_bar(image, low, high);
+  write_png8_rgb(image, file);
+  program.say(fmt::format("{}: {} from {:.4g} to {:.4g}", file.string(), column.name, low, high));
+}
+
+}  // namespace astrolith

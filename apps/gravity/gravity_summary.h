@@ -1,0 +1,28 @@
+// The figures of a whole body, as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "apps/gravity/gravity_body.h"
+#include "apps/gravity/gravity_outputs.h"
+#include "gravity/body_mass.h"
+
+namespace astrolith {
+
+// Volume, area, mass, centre of mass, moments and axes. SI units; the centre in metres of the body's frame.
+nlohmann::ordered_json mass_json(const GravityBody& body, const BodyMass& mass, double density);
+
+// Coefficients about the centre of mass for the reference radius in the body's unit; 0 stands for the
+// distance of the farthest vertex.
+nlohmann::ordered_json coefficients_json(const GravityBody& body, const BodyMass& mass, double radius,
+                                         int degree);
+
+// Means over the surface and the ranges of potential, geopotential, gravity, slope, elevation and escape
+// speed.
+nlohmann::ordered_json surface_json(const GravityPlaces& places, std::span<const PointGravity> values,
+                                    const SurfaceMeans& means);
+
+nlohmann::ordered_json error_json(const AchievedError& error, double tolerance);
+
+}  // namespace astrolith

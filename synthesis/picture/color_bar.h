@@ -1,0 +1,14 @@
+// A bar that says which colour stands for which number.
+#pragma once
+
+#include <string>
+
+#include "synthesis/picture/image_file.h"
+
+namespace astrolith {
+
+// Draws the colours of sequential_color() from `low` at the left to `high` at the right along the lower edge
+// of the picture, with both numbers below, to four digits. Does nothing to pictures under 160 x 120 pixels.
+void draw_color_bar(RgbImage& image, double low, double high);
+
+}  // namespace astrolith
