@@ -66,7 +66,7 @@ ASTROLITH_SIMD_CLONES void sum_harmonics(const GravityMultipoles& multipoles, in
 
 }  // namespace
 
-void add_facets(std::span<const std::array<Vec3d, 3>> facets, const PointBatch& points, BatchSums& sums) {
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, GravitySums& sums) {
   for (const auto& [a, b, c] : facets) {
     add_facet(layer::make_facet(a, b, c), points.x.data(), points.y.data(), points.z.data(),
               sums.layers[0].data(), sums.layers[1].data(), sums.layers[2].data(), sums.work.data());
@@ -74,7 +74,7 @@ void add_facets(std::span<const std::array<Vec3d, 3>> facets, const PointBatch& 
 }
 
 void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, int order,
-                    const PointBatch& points, BatchSums& sums) {
+                    const GravityBatch& points, GravitySums& sums) {
   HarmonicRows rows;
   Row dx, dy, dz;
   for (std::size_t i = 0; i < kPointBatch; ++i) {

@@ -116,9 +116,9 @@ void add_shifted(const GravityMultipoles& child, const Vec3d& step, GravityMulti
       std::array<double, 8>& to = out.terms[static_cast<std::size_t>(harmonic_index(l, m))];
       for (int j = 0; j <= l; ++j) {
         for (int k = std::max(-j, m - (l - j)); k <= std::min(j, m + (l - j)); ++k) {
-          const Complex by = signed_harmonic(shift.data(), j, k);
+          const HarmonicValue by = signed_harmonic(shift.data(), j, k);
           for (std::size_t n = 0; n < 4; ++n) {
-            const Complex term = by * signed_harmonic(layers[n].data(), l - j, m - k);
+            const HarmonicValue term = by * signed_harmonic(layers[n].data(), l - j, m - k);
             to[n] += term.re;
             to[n + 4] += term.im;
           }

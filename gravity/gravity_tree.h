@@ -52,15 +52,15 @@ GravityTree make_gravity_tree(const TriangleMesh& mesh);
 // Sums over all facets for points in the tables' units, arrays of `count` <= 16 points, added to: layers[k]
 // is the sum of n_k I, work the sum of (n . r) I.
 constexpr int kPointBatch = 16;
-struct PointBatch {
+struct GravityBatch {
   std::array<double, kPointBatch> x{}, y{}, z{};
 };
-struct BatchSums {
+struct GravitySums {
   std::array<std::array<double, kPointBatch>, 3> layers{};
   std::array<double, kPointBatch> work{};
 };
-void add_facets(std::span<const std::array<Vec3d, 3>> facets, const PointBatch& points, BatchSums& sums);
+void add_facets(std::span<const std::array<Vec3d, 3>> facets, const GravityBatch& points, GravitySums& sums);
 void add_multipoles(const GravityNode& node, const GravityMultipoles& multipoles, int order,
-                    const PointBatch& points, BatchSums& sums);
+                    const GravityBatch& points, GravitySums& sums);
 
 }  // namespace astrolith

@@ -56,7 +56,7 @@ std::vector<Target> ordered_targets(const GravityTree& tree, std::span<const Vec
 
 // A batch with its ball. Places behind the last point repeat that point.
 struct Batch {
-  PointBatch points;
+  GravityBatch points;
   Vec3d center;
   double radius = 0.0;
 };
@@ -92,8 +92,8 @@ int least_order(const GravityNode& node, double d, double allowed) {
 // Walks the tree. order_of(node, distance of the batch from the node's centre) says to what order a node's
 // multipoles may be taken, or -1 where the node must be opened.
 template <typename OrderOf>
-BatchSums walk(const GravityTree& tree, const Batch& batch, const OrderOf& order_of) {
-  BatchSums sums;
+GravitySums walk(const GravityTree& tree, const Batch& batch, const OrderOf& order_of) {
+  GravitySums sums;
   for (std::uint32_t i = 0; i < tree.nodes.size();) {
     const GravityNode& node = tree.nodes[i];
     const int order = order_of(node, norm(node.center - batch.center) - batch.radius);
@@ -113,7 +113,7 @@ BatchSums walk(const GravityTree& tree, const Batch& batch, const OrderOf& order
 
 // The acceleration that tolerances refer to: the least of a batch, within some ten percent.
 double least_acceleration(const GravityTree& tree, const Batch& batch) {
-  const BatchSums sums = walk(tree, batch, [](const GravityNode& node, double d) {
+  const GravitySums sums = walk(tree, batch, [](const GravityNode& node, double d) {
     return node.radius < kCrudeOpening * d ? kCrudeOrder : -1;
   });
   const double radius = portable::cbrt(std::fabs(tree.volume) * 0.75 / std::numbers::pi);
@@ -127,14 +127,14 @@ double least_acceleration(const GravityTree& tree, const Batch& batch) {
   return least;
 }
 
-BatchSums sums_within(const GravityTree& tree, const Batch& batch, double tolerance) {
+GravitySums sums_within(const GravityTree& tree, const Batch& batch, double tolerance) {
   const double allowed = tolerance * least_acceleration(tree, batch) / tree.area;
   return walk(tree, batch,
               [&](const GravityNode& node, double d) { return least_order(node, d, allowed * node.area); });
 }
 
-BatchSums exact_sums(const GravityTree& tree, const Batch& batch) {
-  BatchSums sums;
+GravitySums exact_sums(const GravityTree& tree, const Batch& batch) {
+  GravitySums sums;
   add_facets(tree.facets, batch.points, sums);
   return sums;
 }
@@ -151,7 +151,7 @@ std::vector<Attraction> evaluate(const GravityTree& tree, std::span<const Vec3d>
       const std::size_t first = static_cast<std::size_t>(i) * kPointBatch;
       const std::span own =
           std::span(targets).subspan(first, std::min<std::size_t>(kPointBatch, targets.size() - first));
-      const BatchSums sums = sums_of(make_batch(own));
+      const GravitySums sums = sums_of(make_batch(own));
       for (std::size_t k = 0; k < own.size(); ++k) {
         values[own[k].place] = {0.5 * tree.scale * tree.scale * sums.work[k],
                                 -tree.scale * Vec3d{sums.layers[0][k], sums.layers[1][k], sums.layers[2][k]}};

@@ -17,29 +17,29 @@ constexpr int kHarmonics = (kMostOrder + 1) * (kMostOrder + 2) / 2;
 // The place of l, m among the stored ones, 0 <= m <= l <= kMostOrder. All l of one m follow each other.
 constexpr int harmonic_index(int l, int m) { return m * (kMostOrder + 1) - m * (m - 1) / 2 + (l - m); }
 
-struct Complex {
+struct HarmonicValue {
   double re = 0.0, im = 0.0;
 };
-inline Complex operator*(const Complex& a, const Complex& b) {
+inline HarmonicValue operator*(const HarmonicValue& a, const HarmonicValue& b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-using Harmonics = std::array<Complex, kHarmonics>;
+using Harmonics = std::array<HarmonicValue, kHarmonics>;
 
 // R_lm(y) for all stored l, m.
 inline void regular_harmonics(const Vec3d& y, Harmonics& r) {
   const double square = squared_norm(y);
-  Complex diagonal{1.0, 0.0};
+  HarmonicValue diagonal{1.0, 0.0};
   for (int m = 0; m <= kMostOrder; ++m) {
     if (m > 0) {
       const double c = -0.5 / m;
-      diagonal = Complex{c * y.x, c * y.y} * diagonal;
+      diagonal = HarmonicValue{c * y.x, c * y.y} * diagonal;
     }
-    Complex last{}, now = diagonal;
+    HarmonicValue last{}, now = diagonal;
     for (int l = m; l <= kMostOrder; ++l) {
       if (l > m) {
         const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale, down = square * scale;
-        const Complex next{up * now.re - down * last.re, up * now.im - down * last.im};
+        const HarmonicValue next{up * now.re - down * last.re, up * now.im - down * last.im};
         last = now;
         now = next;
       }
@@ -49,10 +49,10 @@ inline void regular_harmonics(const Vec3d& y, Harmonics& r) {
 }
 
 // One coefficient of any sign of m, by X_l(-m) = (-1)^m conj(X_lm).
-inline Complex signed_harmonic(const Complex* x, int l, int m) {
+inline HarmonicValue signed_harmonic(const HarmonicValue* x, int l, int m) {
   if (m >= 0) return x[harmonic_index(l, m)];
-  const Complex c = x[harmonic_index(l, -m)];
-  return m % 2 == 0 ? Complex{c.re, -c.im} : Complex{-c.re, c.im};
+  const HarmonicValue c = x[harmonic_index(l, -m)];
+  return m % 2 == 0 ? HarmonicValue{c.re, -c.im} : HarmonicValue{-c.re, c.im};
 }
 
 }  // namespace astrolith
