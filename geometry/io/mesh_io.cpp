@@ -88,7 +88,11 @@ MeshWriter writer_for(const std::filesystem::path& file) {
   if (extension == ".obj") return write_obj;
   if (extension == ".stl") return write_stl;
   if (extension == ".glb") return write_glb;
-  throw InputError(file.string() + ": meshes are written as .ply, .obj, .stl or .glb; choose one of these");
+  if (extension == ".icq") return write_icq;
+  if (extension == ".tab") return write_plate;
+  throw InputError(file.string() +
+                   ": meshes are written as .ply, .obj, .stl, .glb, .icq or .tab; choose one of "
+                   "these");
 }
 
 }  // namespace
