@@ -10,11 +10,10 @@
 #include "apps/gravity/gravity_body.h"
 #include "apps/gravity/gravity_outputs.h"
 #include "apps/gravity/gravity_summary.h"
+#include "apps/gravity_table.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "geometry/io/points_io.h"
-#include "geometry/mesh_measure.h"
-#include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 
@@ -101,33 +100,9 @@ void check(const Program& program, const Arguments& a) {
   }
 }
 
-GravityPlaces facet_places(const TriangleMesh& mesh) {
-  GravityPlaces places;
-  places.normals = triangle_normals(mesh);
-  for (const Triangle& t : mesh.triangles) {
-    places.points.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) * (1.0 / 3.0));
-    places.areas.push_back(triangle_area(mesh, t));
-  }
-  return places;
-}
-
-GravityPlaces vertex_places(const TriangleMesh& mesh) {
-  GravityPlaces places{mesh.vertices, vertex_normals(mesh), std::vector<double>(mesh.vertices.size())};
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) places.areas[v] += triangle_area(mesh, t) / 3.0;
-  }
-  return places;
-}
-
 GravityPlaces places_of(const Arguments& a, const TriangleMesh& mesh) {
   if (!a.points.empty()) return {read_points(a.points), {}, {}};
   return a.at == "vertices" ? vertex_places(mesh) : facet_places(mesh);
-}
-
-std::vector<Vec3d> in_metres(std::span<const Vec3d> points, double metres) {
-  std::vector<Vec3d> scaled;
-  for (const Vec3d& p : points) scaled.push_back(metres * p);
-  return scaled;
 }
 
 Rotation rotation_of(const Arguments& a, const GravityBody& body, const BodyMass& mass) {

@@ -1,5 +1,6 @@
 #include "apps/gravity/gravity_body.h"
 
+#include "apps/gravity_table.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
@@ -9,10 +10,6 @@
 
 namespace astrolith {
 namespace {
-
-double metres_of(const std::string& unit) {
-  return unit == "km" ? 1000.0 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : 1.0;
-}
 
 void require_closed(const std::string& name, const TriangleMesh& mesh) {
   const MeshTopology topology = analyze_topology(mesh);

@@ -62,29 +62,6 @@ std::vector<double> values_of_vertices(const TriangleMesh& mesh, const std::vect
 
 }  // namespace
 
-std::vector<GravityColumn> gravity_columns(const GravityPlaces& places, std::span<const PointGravity> values,
-                                           const SurfaceMeans& means) {
-  std::vector<GravityColumn> columns;
-  const auto add = [&](const char* name, const auto& value_of) {
-    GravityColumn column{name, {}};
-    for (std::size_t i = 0; i < values.size(); ++i) column.values.push_back(value_of(i));
-    columns.push_back(std::move(column));
-  };
-  add("x", [&](std::size_t i) { return places.points[i].x; });
-  add("y", [&](std::size_t i) { return places.points[i].y; });
-  add("z", [&](std::size_t i) { return places.points[i].z; });
-  add("potential_J_kg", [&](std::size_t i) { return values[i].potential; });
-  add("acceleration_x_m_s2", [&](std::size_t i) { return values[i].acceleration.x; });
-  add("acceleration_y_m_s2", [&](std::size_t i) { return values[i].acceleration.y; });
-  add("acceleration_z_m_s2", [&](std::size_t i) { return values[i].acceleration.z; });
-  add("geopotential_J_kg", [&](std::size_t i) { return values[i].geopotential; });
-  add("effective_gravity_m_s2", [&](std::size_t i) { return norm(values[i].effective); });
-  if (places.normals.empty()) return columns;
-  add("slope_deg", [&](std::size_t i) { return slope_degrees(places.normals[i], values[i].effective); });
-  add("elevation_m", [&](std::size_t i) { return elevation(values[i], means); });
-  return columns;
-}
-
 void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody& body,
                    const std::filesystem::path& file, const std::string& tool) {
   if (file.extension() == ".csv") return write_csv(columns, file);

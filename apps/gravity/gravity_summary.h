@@ -2,10 +2,8 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "apps/gravity/gravity_body.h"
-#include "apps/gravity/gravity_outputs.h"
 #include "gravity/body_mass.h"
 
 namespace astrolith {
@@ -17,12 +15,5 @@ nlohmann::ordered_json mass_json(const GravityBody& body, const BodyMass& mass, 
 // distance of the farthest vertex.
 nlohmann::ordered_json coefficients_json(const GravityBody& body, const BodyMass& mass, double radius,
                                          int degree);
-
-// Means over the surface and the ranges of potential, geopotential, gravity, slope, elevation and escape
-// speed.
-nlohmann::ordered_json surface_json(const GravityPlaces& places, std::span<const PointGravity> values,
-                                    const SurfaceMeans& means);
-
-nlohmann::ordered_json error_json(const AchievedError& error, double tolerance);
 
 }  // namespace astrolith

@@ -36,8 +36,9 @@ void declare_options(Program& program, Options& options) {
   program.app.add_option("recipe", options.recipe, "the recipe, a JSON file").required();
   program.app
       .add_option("-o,--output", options.output,
-                  "the mesh: .ply (binary, streamed), .obj, .stl or .glb, in the recipe's length unit; with "
-                  "--texture .png or .tif; needed unless --predict or --write-recipe is given")
+                  "the mesh: .ply (binary, streamed), .obj, .stl, .glb, .icq or .tab (PDS plates), in the "
+                  "recipe's length unit; with --texture .png or .tif; needed unless --predict or "
+                  "--write-recipe is given")
       .placeholder("FILE");
   declare_mesh_options(program, options.mesh);
   program.app
@@ -66,9 +67,10 @@ void declare_options(Program& program, Options& options) {
                   "in it; without -o nothing else")
       .placeholder("FILE.json");
   declare_texture_options(program, options.texture);
-  for (const char* of_mesh : {"--resolution", "--triangles", "--max-memory", "--tile", "--patch",
-                              "--feature-list", "--vary", "--target", "--min-component", "--predict",
-                              "--device", "--points", "--labels", "--preview", "--view", "--sun"}) {
+  for (const char* of_mesh :
+       {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
+        "--target", "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view",
+        "--sun", "--gravity", "--height-map"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   program.app.option("--seed")

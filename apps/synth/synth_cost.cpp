@@ -65,7 +65,9 @@ OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use) 
   // Half a vertex and half a normal as doubles, and a triangle; half of one array is copied as it grows.
   const double collected = 36.0 + 6.0;
   // Verticals, areas, heights and edges; they are gone before a picture is drawn.
-  const double rendered = std::max(use.preview ? 120.0 : 0.0, use.erosion ? 90.0 : 0.0);
+  // Facets and multipoles of the tree of gravity, and eight columns of values at half a vertex.
+  const double attracted = use.gravity ? 72.0 + 740.0 + 8.0 * 8.0 : 0.0;
+  const double rendered = std::max({use.preview ? 120.0 : 0.0, use.erosion ? 90.0 : 0.0, attracted});
   if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
   if (extension == ".stl") return {50.0, collected + rendered};
   if (extension == ".glb") return {24.0, collected + 24.0 + rendered};

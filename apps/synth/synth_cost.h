@@ -14,6 +14,7 @@ struct MeshUse {
   bool preview = false;
   bool erosion = false;
   bool twice = false;  // small pieces are left out, for which the mesh is made twice
+  bool gravity = false;
 };
 
 // What a format takes for each triangle and its half vertex, bytes.

@@ -9,6 +9,7 @@
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/synth/synth_erosion.h"
+#include "apps/synth/synth_height_map.h"
 #include "apps/synth/synth_left_out.h"
 #include "apps/synth/synth_region.h"
 #include "apps/synth/synth_sinks.h"
@@ -40,6 +41,10 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
                      ": erosion: moves what layers made; leave out --labels, or take erosion out of the "
                      "recipe");
   }
+  if (request.gravity.wanted() && (region.is_cut() || request.points || request.labels)) {
+    throw InputError("--gravity: is of the whole mesh; leave out --tile, --patch, --points and --labels");
+  }
+  check_gravity(request.gravity, recipe);
   if (request.least_component > 0.0 && region.is_cut()) {
     throw InputError(
         "--min-component: the size of a piece that is cut is not known; leave out --tile and "
@@ -50,7 +55,7 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
 void check_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
   if (!output.empty()) {
     check_mesh_extension(output);
-    if (request.points || request.labels) require_extension(output, {".ply"});
+    if (request.points || request.labels || request.gravity.wanted()) require_extension(output, {".ply"});
     require_writable(output);
   }
   check_preview(program, request.preview);
@@ -102,8 +107,8 @@ class MeshOutput {
       labels_.emplace(recipe, file.string(), region.cube());
       info_.notes = labels_->legend();
     }
-    const bool streamed = output.extension() == ".ply" && !recipe.erosion;
-    if (!streamed || !request.preview.file.empty()) sinks_.add(collector_);
+    const bool streamed = output.extension() == ".ply" && !recipe.erosion && !request.gravity.wanted();
+    if (!streamed || !request.preview.file.empty() || !request.height_map.empty()) sinks_.add(collector_);
     if (streamed) stream(region.center, request.points);
   }
   MeshOutput(const MeshOutput&) = delete;
@@ -113,10 +118,12 @@ class MeshOutput {
   // The mesh in memory; empty where nothing needs it there.
   TriangleMesh& collected() { return collector_.mesh; }
 
-  // Completes the file. Before that it does not exist.
-  void write() {
+  // Completes the file. Before that it does not exist. Quantities, if any, are properties of its vertices.
+  void write(const std::vector<VertexValues>& quantities) {
     if (writer_) {
       writer_->finish();
+    } else if (!quantities.empty()) {
+      write_ply_values(collector_.mesh, quantities, output_, info_);
     } else {
       write_mesh(collector_.mesh, output_, info_);
     }
@@ -165,8 +172,13 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
   if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
 
-  result.write();
+  std::vector<VertexValues> quantities;
+  if (request.gravity.wanted())
+    quantities = vertex_gravity(program, request.gravity, recipe, result.collected());
+  result.write(quantities);
   if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
+  if (!request.height_map.empty())
+    write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
   if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   summarize_output(program, output);
@@ -200,6 +212,11 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
           "then made twice")
       .check(in_range(0.0, 1.0))
       .default_text("0, all stay");
+  program.app
+      .add_option(
+          "--height-map", request.height_map,
+          "also the patch as a GeoTIFF of metres over its mean plane, and its frame beside it as JSON")
+      .placeholder("FILE.tif");
   program.app.add_flag("--points", request.points,
                        "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
                        "(.ply without faces)");
@@ -210,6 +227,13 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       "all layers (.ply)");
   request.device.add_to(program.app);
   declare_preview_options(program, request.preview);
+  program.app
+      .add_option(
+          "--gravity", request.gravity.density_and_period,
+          "with each vertex potential, acceleration, slope and elevation for this density and this period of "
+          "rotation about z, 0 = at rest (.ply)")
+      .expected(2)
+      .placeholder("KG_M3 HOURS");
   program.app
       .add_option("--feature-list", request.landforms,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
@@ -223,8 +247,10 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   const Region region = parse_region(request.tile, request.patch);
   check_request(request, region, recipe, file);
   const ImplicitField field = field_of_region(recipe, file, region);
-  const MeshUse use{!request.preview.file.empty(), recipe.erosion.has_value(), request.least_component > 0.0};
+  const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(), recipe.erosion.has_value(),
+                    request.least_component > 0.0, request.gravity.wanted()};
   const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});
+  check_height_map(request.height_map, region, recipe, resolution);
   report_layers_left_out(program, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
   const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));

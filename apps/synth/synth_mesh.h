@@ -7,6 +7,7 @@
 
 #include "apps/device_option.h"
 #include "apps/program.h"
+#include "apps/synth/synth_gravity.h"
 #include "apps/synth/synth_preview.h"
 #include "apps/synth/synth_size.h"
 #include "recipe/recipe.h"
@@ -16,10 +17,12 @@ namespace astrolith {
 struct MeshRequest {
   MeshSizeRequest size;
   PreviewRequest preview;
-  std::filesystem::path landforms;  // list of craters and boulders; empty = none
-  std::string tile;                 // "3/16"; empty = the whole
-  std::vector<double> patch;        // centre and side; empty = the whole
-  double least_component = 0.0;     // share of the largest one's volume; 0 = all stay
+  GravityRequest gravity;
+  std::filesystem::path height_map;  // GeoTIFF of a patch; empty = none
+  std::filesystem::path landforms;   // list of craters and boulders; empty = none
+  std::string tile;                  // "3/16"; empty = the whole
+  std::vector<double> patch;         // centre and side; empty = the whole
+  double least_component = 0.0;      // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
   DeviceOption device;

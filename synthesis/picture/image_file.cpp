@@ -1,9 +1,12 @@
 #include "synthesis/picture/image_file.h"
 
+#include "synthesis/picture/geotiff.h"
+
 #include <png.h>
 #include <tiffio.h>
 #include <unistd.h>
 
+#include <array>
 #include <bit>
 #include <csetjmp>
 #include <memory>
@@ -76,6 +79,38 @@ struct CloseTiff {
   void operator()(TIFF* tiff) const { TIFFClose(tiff); }
 };
 
+// The tags of GeoTIFF 1.1 and of GDAL that libtiff does not know by itself.
+constexpr std::uint32_t kPixelScale = 33550, kTiePoint = 33922, kGeoKeys = 34735, kGeoText = 34737,
+                        kNoData = 42113;
+
+void declare_geo_tags(TIFF* tiff) {
+  static char names[5][20] = {"ModelPixelScale", "ModelTiepoint", "GeoKeyDirectory", "GeoAsciiParams",
+                              "GDAL_NODATA"};
+  const std::array<TIFFFieldInfo, 5> fields{{{kPixelScale, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, names[0]},
+                                             {kTiePoint, -1, -1, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, names[1]},
+                                             {kGeoKeys, -1, -1, TIFF_SHORT, FIELD_CUSTOM, 1, 1, names[2]},
+                                             {kGeoText, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, names[3]},
+                                             {kNoData, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, names[4]}}};
+  TIFFMergeFieldInfo(tiff, fields.data(), static_cast<std::uint32_t>(fields.size()));
+}
+
+void set_geo_tags(TIFF* tiff, int width, int height, double pixel, const std::string& description) {
+  declare_geo_tags(tiff);
+  const std::array<double, 3> scale{pixel, pixel, 0.0};
+  const std::array<double, 6> tie{0, 0, 0, -0.5 * width * pixel, 0.5 * height * pixel, 0};
+  static constexpr char kCitation[] = "local plane in metres|";
+  // Model projected and user-defined, pixels are areas, lengths in metres.
+  const std::array<std::uint16_t, 24> keys{1,    1,     0,  5, 1024, 0, 1, 1,     1025, 0, 1, 1,
+                                           1026, 34737, 22, 0, 3072, 0, 1, 32767, 3076, 0, 1, 9001};
+  static_assert(sizeof kCitation - 1 == 22);
+  TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, description.c_str());
+  TIFFSetField(tiff, kPixelScale, 3, scale.data());
+  TIFFSetField(tiff, kTiePoint, 6, tie.data());
+  TIFFSetField(tiff, kGeoKeys, static_cast<int>(keys.size()), keys.data());
+  TIFFSetField(tiff, kGeoText, kCitation);
+  TIFFSetField(tiff, kNoData, "nan");
+}
+
 bool write_tiff_rows(TIFF* tiff, std::span<const float> values, int width, int height, int channels) {
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(width));
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(height));
@@ -120,8 +155,12 @@ void write_png16_rgb(std::span<const std::uint16_t> rgb, int width, int height,
   write_png({width, height, 16, PNG_COLOR_TYPE_RGB, 6 * static_cast<std::size_t>(width)}, rgb.data(), file);
 }
 
-void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
-                      int channels) {
+namespace {
+
+// Opens the file, lets set_tags() add tags and writes the rows.
+template <typename SetTags>
+void write_floats(std::span<const float> values, int width, int height, const std::filesystem::path& file,
+                  int channels, const SetTags& set_tags) {
   check_size(values.size(), static_cast<std::size_t>(channels), width, height, file);
   OutputFile target(file);
   TIFFSetErrorHandler(nullptr);  // libraries never print; failures are returned as statuses
@@ -129,11 +168,25 @@ void write_tiff_float(std::span<const float> values, int width, int height, cons
   const int descriptor = target.duplicate_descriptor();
   std::unique_ptr<TIFF, CloseTiff> tiff(TIFFFdOpen(descriptor, file.c_str(), "w"));
   if (tiff == nullptr) ::close(descriptor);
+  if (tiff != nullptr) set_tags(tiff.get());
   if (tiff == nullptr || !write_tiff_rows(tiff.get(), values, width, height, channels)) {
     throw WorkError(file.string() + ": writing failed; is the disk full?");
   }
   tiff.reset();
   target.commit();
+}
+
+}  // namespace
+
+void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
+                      int channels) {
+  write_floats(values, width, height, file, channels, [](TIFF*) {});
+}
+
+void write_geotiff(std::span<const float> values, int width, int height, double pixel,
+                   const std::string& description, const std::filesystem::path& file) {
+  write_floats(values, width, height, file, 1,
+               [&](TIFF* tiff) { set_geo_tags(tiff, width, height, pixel, description); });
 }
 
 }  // namespace astrolith

@@ -1,6 +1,8 @@
 // synth, run as a user runs it.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/memory_use.h"
@@ -127,6 +129,110 @@ TEST_F(Synth, MeshIsClosedAndManifold) {
   EXPECT_TRUE(topology.closed);
   EXPECT_TRUE(topology.manifold);
   EXPECT_EQ(topology.components, 1);
+}
+
+TEST_F(Synth, GravityComesWithTheMesh) {
+  const std::string summary = (folder_ / "s.json").string();
+  const std::string plain = synthesise("plain.ply", {});
+  const std::string text = synthesise("g.ply", {"--gravity", "2000", "6", "--summary", summary});
+  for (const char* name : {"potential_J_kg", "geopotential_J_kg", "slope_deg", "elevation_m"}) {
+    EXPECT_NE(text.find(std::string("property float ") + name + "\n"), std::string::npos) << name;
+  }
+  const TriangleMesh mesh = read_mesh(folder_ / "g.ply"), same = read_mesh(folder_ / "plain.ply");
+  EXPECT_TRUE(mesh.vertices == same.vertices);
+  EXPECT_TRUE(mesh.triangles == same.triangles);
+  const auto gravity = nlohmann::json::parse(text_of(summary))["gravity"];
+  // Two balls of 1 and 0.75 km: U at the surface is about G M / r.
+  EXPECT_NEAR(gravity["potential_J_kg"]["mean"].get<double>(), -0.65, 0.15);
+  EXPECT_GT(gravity["slope_deg"]["max"].get<double>(), 10.0);
+  EXPECT_LE(gravity["achieved_error"]["largest"].get<double>(), 1e-6);
+  EXPECT_EQ(synthesise("one.ply", {"--gravity", "2000", "6", "--threads", "1"}), text);
+}
+
+TEST_F(Synth, GravityThatMakesNoSenseIsRefused) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres);
+  const auto refuse = [&](const std::string& output, std::vector<std::string> more,
+                          const std::string& culprit) {
+    std::vector<std::string> arguments{recipe, "-o", (folder_ / output).string(), "--resolution", "16"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_refusal(folder_, kSynth, arguments, culprit);
+  };
+  refuse("a.ply", {"--gravity", "0", "6"}, "--gravity: the density");
+  refuse("a.ply", {"--gravity", "2000", "-1"}, "--gravity: the period");
+  refuse("a.ply", {"--gravity", "2000", "6", "--points"}, "--gravity: is of the whole");
+  refuse("a.ply", {"--gravity", "2000", "6", "--tile", "1/2"}, "--gravity: is of the whole");
+  refuse("a.obj", {"--gravity", "2000", "6"}, "a.obj");
+}
+
+TEST_F(Synth, HeightMapOfAPatch) {
+  const std::string ball = folder_.write("ball.json", R"({"format_version": 1, "length_unit": "km",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}})");
+  const std::string map = (folder_ / "h.tif").string();
+  const testing::Outcome outcome =
+      run_program(kSynth, {ball, "-o", (folder_ / "p.ply").string(), "--patch", "0", "0.6", "0.8", "0.1",
+                           "--resolution", "32", "--height-map", map});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto frame = nlohmann::json::parse(text_of(folder_ / "h.json"));
+  EXPECT_EQ(frame["pixels"], 32);
+  EXPECT_NEAR(frame["metres_per_pixel"].get<double>(), 100.0 / 32, 1e-9);
+  EXPECT_NEAR(frame["up"][1].get<double>(), 0.6, 5e-3);
+  EXPECT_NEAR(frame["up"][2].get<double>(), 0.8, 5e-3);
+  // A reader after TIFF 6.0 and GeoTIFF 1.1: the directory's entries are 12 bytes each.
+  const std::string bytes = text_of(map);
+  const auto number = [&](std::size_t at, int count) {
+    std::uint64_t value = 0;
+    for (int k = count - 1; k >= 0; --k)
+      value = value << 8 | static_cast<unsigned char>(bytes.at(at + static_cast<std::size_t>(k)));
+    return value;
+  };
+  const auto real = [&](std::size_t at) {
+    double value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+  };
+  ASSERT_EQ(bytes.substr(0, 4), std::string("II*\0", 4));
+  const std::size_t directory = number(4, 4);
+  std::map<std::uint64_t, std::size_t> entries;
+  for (std::size_t k = 0; k < number(directory, 2); ++k)
+    entries[number(directory + 2 + 12 * k, 2)] = directory + 2 + 12 * k;
+  EXPECT_EQ(number(entries.at(256) + 8, 2), 32u);
+  EXPECT_EQ(number(entries.at(258) + 8, 2), 32u);
+  EXPECT_EQ(number(entries.at(339) + 8, 2), 3u);  // floats
+  EXPECT_NEAR(real(number(entries.at(33550) + 8, 4)), 100.0 / 32, 1e-9);
+  EXPECT_NEAR(real(number(entries.at(33922) + 8, 4) + 24), -50.0, 1e-9);
+  EXPECT_NEAR(real(number(entries.at(33922) + 8, 4) + 32), 50.0, 1e-9);
+  EXPECT_EQ(bytes.substr(entries.at(42113) + 8, 3), "nan");
+  // The pixel beside the middle lies 1 km from the ball's centre.
+  float height = 0;
+  const std::size_t strip = entries.at(273), strips = number(strip + 4, 4);
+  const std::size_t first = strips == 1 ? number(strip + 8, 4) : number(number(strip + 8, 4), 4);
+  std::memcpy(&height, bytes.data() + first + 4 * (16 * 32 + 16), sizeof height);
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = [&](const char* name) {
+      return frame[name][static_cast<std::size_t>(k)].get<double>();
+    };
+    const double p =
+        axis("origin_m") + 0.5 * 3.125 * (axis("right") - axis("ahead")) + double{height} * axis("up");
+    square += p * p;
+  }
+  EXPECT_NEAR(std::sqrt(square), 1000.0, 0.1);
+  expect_refusal(folder_, kSynth,
+                 {ball, "-o", (folder_ / "q.ply").string(), "--resolution", "32", "--height-map", map},
+                 "--height-map");
+}
+
+TEST_F(Synth, WritesIcqAndPlates) {
+  synthesise("a.tab", {});
+  EXPECT_TRUE(analyze_topology(read_mesh(folder_ / "a.tab")).closed);
+  const std::string ball = folder_.write("ball.json", R"({"format_version": 1, "length_unit": "km",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}})");
+  const std::string icq = (folder_ / "a.icq").string();
+  ASSERT_EQ(run_program(kSynth, {ball, "-o", icq, "--resolution", "32"}).status, 0);
+  EXPECT_TRUE(analyze_topology(read_mesh(icq)).closed);
+  const std::string apart = folder_.write("apart.json", R"({"format_version": 1, "length_unit": "km",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [9, 0, 0, 1]]}})");
+  expect_refusal(folder_, kSynth, {apart, "-o", (folder_ / "b.icq").string(), "--resolution", "32"}, "b.icq");
 }
 
 TEST_F(Synth, ABodyThatTheIsoValueErasesIsAnInputError) {
