@@ -89,6 +89,7 @@ print(resident() - before)
 def test_an_interpreter_that_ends_during_work_ends_in_order(example):
     code = f"""
 import astrolith, threading, os, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 try:
     astrolith.mesh({example("itokawa_details")!r}, resolution=1024)
