@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-folders=(numerics recipe geometry gravity descriptor synthesis cuda apps cmake scripts tests)
+folders=(numerics recipe geometry gravity descriptor synthesis cuda tasks apps cmake scripts tests)
 build=build/synth-only
 programs=("$build/bin/synth" "$build/bin/describe" "$build/tests/cuda/cuda_tests" "$build/tests/cuda/gpu_benchmark")
 
