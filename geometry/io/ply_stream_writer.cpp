@@ -7,6 +7,7 @@
 
 #include "geometry/io/mesh_writers_internal.h"
 #include "geometry/io/ply_layout_internal.h"
+#include "geometry/io/ply_values.h"
 #include "geometry/io/polygon_fan_internal.h"
 
 namespace astrolith {
@@ -119,20 +120,7 @@ void PlyStreamWriter::fail_spill() const {
 }
 
 void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
-  OutputFile out(file);
-  BufferedOutput buffer(out);
-  const bool with_normals = !mesh.normals.empty();
-  buffer.append(ply_header(info, mesh.vertices.size(), mesh.triangles.size(), with_normals, false));
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    buffer.append_value(to_float(mesh.vertices[i]));
-    if (with_normals) buffer.append_value(to_float(mesh.normals[i]));
-  }
-  for (const Triangle& triangle : mesh.triangles) {
-    const auto bytes = ply_triangle(triangle);
-    buffer.append({bytes.data(), bytes.size()});
-  }
-  buffer.flush();
-  out.commit();
+  write_ply_values(mesh, {}, file, info);
 }
 
 }  // namespace astrolith

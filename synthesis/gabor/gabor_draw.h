@@ -109,7 +109,8 @@ ASTROLITH_HD inline bool is_far_gabor_cell(const GaborDraw& band, float height) 
   return math::abs(height) > band.farthest + band.cell;
 }
 
-// The same for a cell at whose centre the field of the body grows along `inward`.
+// Calls visit(impulse) for the impulses of one cell, whose tangent frame follows from `inward`. The body's
+// field grows along `inward` at the centre of the cell.
 template <typename Visit>
 ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeShare* lobes,
                                          std::uint32_t num_lobes, int cx, int cy, int cz, float height,
