@@ -12,16 +12,16 @@ namespace {
 
 constexpr std::int64_t kRowsPerChunk = 64;
 constexpr std::size_t kMostDistancePoints = std::size_t{1} << 24;
-constexpr int kMaxBins = 65536;
+constexpr int kMostDistanceBins = 65536;
 
 void check(std::span<const Vec3d> points, int bins) {
   if (points.size() < 2 || points.size() > kMostDistancePoints) {
     throw InputError("shape distribution: " + std::to_string(points.size()) + " points; give between 2 and " +
                      std::to_string(kMostDistancePoints));
   }
-  if (bins < 1 || bins > kMaxBins) {
+  if (bins < 1 || bins > kMostDistanceBins) {
     throw InputError("shape distribution: " + std::to_string(bins) + " bins; give between 1 and " +
-                     std::to_string(kMaxBins));
+                     std::to_string(kMostDistanceBins));
   }
   for (const Vec3d& p : points) {
     if (!std::isfinite(squared_norm(p))) throw InputError("shape distribution: a point is not finite");
