@@ -4,7 +4,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # dense linear algebra
 find_package(nlohmann_json 3.11 REQUIRED)  # recipes and summaries
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256
 find_package(embree 3 REQUIRED)            # rays for previews, closest points on surfaces
-find_package(OpenMesh REQUIRED)            # half-edges for curvature
+find_package(OpenMesh REQUIRED)            # half-edges for curvature, decimation
 find_package(nanoflann REQUIRED)            # nearest points of a cloud
 find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
@@ -18,6 +18,7 @@ if(ASTROLITH_ESTIMATION)
   find_package(PkgConfig REQUIRED)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
   pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # figures
+  find_path(THREE_JS_FOLDER build/three.min.js PATHS /usr/share/javascript/three REQUIRED NO_CACHE)  # reports in 3-D (libjs-three)
 endif()
 
 # The architectures of this machine's GPUs as CMake names them, such as "90-real". Where nvidia-smi finds no GPU, the result

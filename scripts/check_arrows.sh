@@ -30,7 +30,8 @@ cuda                       -> numerics descriptor synthesis cuda/.
 cuda/mesher                -> numerics synthesis cuda/.
 estimation/optimize        -> numerics
 estimation/plot            -> numerics synthesis/picture
-estimation/gabor           -> numerics recipe synthesis/picture estimation/plot estimation/gabor
+estimation/page            -> numerics geometry synthesis/picture
+estimation/gabor           -> numerics recipe geometry synthesis/picture estimation/plot estimation/page estimation/gabor
 estimation/gabor/image     -> numerics
 estimation/gabor/spectrum  -> numerics estimation/gabor/image
 estimation/gabor/pursuit   -> numerics recipe estimation/gabor/spectrum
@@ -41,7 +42,7 @@ estimation/shape/model     -> numerics recipe geometry synthesis
 estimation/shape/refinement -> numerics recipe geometry estimation/shape/target estimation/shape/model
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
-estimation/shape/report    -> numerics geometry synthesis/picture estimation/plot estimation/shape/target estimation/shape/fit
+estimation/shape/report    -> numerics geometry synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
 tasks/synthesis            -> numerics recipe geometry descriptor synthesis cuda
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps

@@ -113,9 +113,11 @@ void add_output_options(CommandLine& app, Options& o) {
                  "of the machine's")
       .check(above_zero())
       .default_text("");
-  app.add_option("--report", o.report_folder,
-                 "folder for a figure of the fit, report.png and report.svg: exemplar, synthesis, both "
-                 "spectra, lobes, gap of the pursuit; and its pictures pixel by pixel")
+  app.add_option(
+         "--report", o.report_folder,
+         "folder for a page, index.html, with photo and noise as reliefs to turn; for a figure, "
+         "report.png and report.svg, of exemplar, synthesis, both spectra, lobes, gap of the pursuit; "
+         "and for its pictures pixel by pixel")
       .placeholder("DIR");
   app.add_option(
          "--spectrum", o.spectrum_file,

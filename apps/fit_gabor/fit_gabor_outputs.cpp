@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/gabor/gabor_page.h"
 #include "estimation/gabor/gabor_report.h"
 #include "numerics/files/npy_file.h"
 #include "synthesis/gabor/gabor_texture.h"
@@ -93,10 +94,11 @@ void write_reports(const std::filesystem::path& image, const PhotoFit& photo,
       synthesis = color_picture(photo, noises);
     }
     const bool alone = photo.channels.size() == 1;
-    write_gabor_report(
-        exemplar, synthesis, channel.fit,
-        image.filename().string() + (alone ? "" : fmt::format(", principal channel {}", k + 1)),
-        k == 0 ? folder : folder / fmt::format("channel{}", k + 1));
+    const std::string title =
+        image.filename().string() + (alone ? "" : fmt::format(", principal channel {}", k + 1));
+    const std::filesystem::path here = k == 0 ? folder : folder / fmt::format("channel{}", k + 1);
+    write_gabor_report(exemplar, synthesis, channel.fit, title, here);
+    write_gabor_page(exemplar, synthesis, channel, title, here);
   }
 }
 

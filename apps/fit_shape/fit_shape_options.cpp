@@ -80,8 +80,10 @@ void declare_packing_options(CommandLine& app, FitArguments& arguments) {
       .check(above_zero())
       .needs(packing_only)
       .default_text("");
-  app.add_option("--report", arguments.report,
-                 "write a page, index.html, with pictures of target, fit, distances and convergence here")
+  app.add_option(
+         "--report", arguments.report,
+         "write a page, index.html, with target and fit to turn, and pictures of both, of distances and "
+         "convergence here")
       .excludes(packing_only)
       .placeholder("DIR");
 }

@@ -86,6 +86,7 @@ TEST_F(FitGabor, APhotoOfGravelKeepsItsVariance) {
   EXPECT_FALSE(summary["weak"].get<bool>());
   EXPECT_NEAR(summary["variance_ratio_synthesized"].get<double>(), 1.0, 0.02);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "report.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / "index.html"));
 }
 
 // Two lobes are too few for the noise of the photo, and the program says what to do.

@@ -17,9 +17,9 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "recipe/recipe_json.h"
-#include "tests/benchmarks/decimated_mesh.h"
 #include "tests/benchmarks/processor_seconds.h"
 #include "tests/benchmarks/spherical_harmonics.h"
 

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimation/page/report_page.h"
 #include "estimation/shape/report/captioned_picture.h"
 #include "estimation/shape/report/convergence_plot.h"
 #include "estimation/shape/report/error_histogram.h"
-#include "estimation/shape/report/report_page.h"
+#include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
@@ -25,14 +27,14 @@ PreviewOptions small_preview() {
   return options;
 }
 
-// The distance of every vertex of the fit from the target, as a fraction of the diagonal.
-std::vector<double> vertex_distances(const TargetBody& target, const TriangleMesh& mesh) {
+// The distance of every vertex of the mesh from another surface, as a fraction of the diagonal.
+std::vector<double> vertex_distances(const SurfaceTree& other, const TriangleMesh& mesh) {
   std::vector<double> distances(mesh.vertices.size());
   parallel_for(
       0, static_cast<std::int64_t>(distances.size()),
       [&](std::int64_t i) {
         const auto v = static_cast<std::size_t>(i);
-        distances[v] = target.tree.closest(mesh.vertices[v]).distance;
+        distances[v] = other.closest(mesh.vertices[v]).distance;
       },
       64);
   return distances;
@@ -56,12 +58,36 @@ void write_target_and_fit(const TargetBody& target, const ShapeFitResult& fit,
 void write_distance_map(const TargetBody& target, const ShapeFitResult& fit,
                         const std::filesystem::path& file) {
   PreviewOptions options = small_preview();
-  options.vertex_colors = sequential_colors(vertex_distances(target, fit.check.mesh), 0.0,
+  options.vertex_colors = sequential_colors(vertex_distances(target.tree, fit.check.mesh), 0.0,
                                             std::max(fit.check.distance.p99, 1e-9));
   options.fill_light = 0.5;  // keeps colours readable in the shadows
   write_picture_with_scale(
       {render_preview(fit.check.mesh, options), "distance from the fit to the target, of the diagonal"},
       {"0", percent(fit.check.distance.p99)}, file);
+}
+
+TurnableSurface colored_surface(const std::string& caption, const TriangleMesh& mesh,
+                                const SurfaceTree& other, double largest) {
+  TurnableSurface surface{caption, mesh, {}};
+  if (mesh.vertices.size() > kMostPageVertices) surface.mesh = decimated(mesh, kMostPageVertices);
+  for (const Vec3<float>& c : sequential_colors(vertex_distances(other, surface.mesh), 0.0, largest)) {
+    surface.rgb.insert(surface.rgb.end(), {srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
+  }
+  return surface;
+}
+
+// Target and fit, each coloured by its distance from the other. Nothing where a body of very many small parts
+// cannot be decimated for a page.
+std::optional<TurnableSurfaces> target_beside_fit(const TargetBody& target, const ShapeFitResult& fit) {
+  const double largest = std::max(fit.check.distance.p99, 1e-9);
+  TurnableSurfaces surfaces{colored_surface("target", target.mesh, SurfaceTree(fit.check.mesh), largest),
+                            colored_surface("fit", fit.check.mesh, target.tree, largest),
+                            "the distance from the other body, of the bounding-box diagonal", "0",
+                            percent(largest)};
+  for (const TurnableSurface* surface : {&surfaces.left, &surfaces.right}) {
+    if (surface->mesh.vertices.size() > kMostPageVertices) return std::nullopt;
+  }
+  return surfaces;
 }
 
 // Signed distances from the target at points spread evenly over the fit, as fractions of the diagonal.
@@ -124,6 +150,7 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
   ReportPage page{title,
                   std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
                       percent(fit.check.distance.mean) + " of the bounding-box diagonal.",
+                  target_beside_fit(target, fit),
                   {distance_table(fit.check.distance), likeness_table(fit), body_table(target, fit)},
                   {{"target_and_fit.png", "Target and fit, from four sides, under the same sun."},
                    {"distance_map.png", "Distance from the fit to the target, on the fit."},

@@ -1,28 +1,16 @@
-#include "tests/benchmarks/decimated_mesh.h"
+#include "geometry/surface/decimated_mesh.h"
 
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+
+#include "geometry/surface/half_edge_mesh_internal.h"
 
 namespace astrolith {
 namespace {
 
-struct Traits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-  using Normal = OpenMesh::Vec3d;
-};
-using HalfEdges = OpenMesh::TriMesh_ArrayKernelT<Traits>;
-
-}  // namespace
-
-TriangleMesh decimated(const TriangleMesh& mesh, std::size_t vertices) {
-  HalfEdges half_edges;
+void collapse_edges(HalfEdges& half_edges, std::size_t vertices) {
   half_edges.request_face_normals();
-  std::vector<HalfEdges::VertexHandle> handles;
-  for (const Vec3d& p : mesh.vertices) handles.push_back(half_edges.add_vertex({p.x, p.y, p.z}));
-  for (const Triangle& t : mesh.triangles) half_edges.add_face(handles[t[0]], handles[t[1]], handles[t[2]]);
   half_edges.update_face_normals();
-
   OpenMesh::Decimater::DecimaterT<HalfEdges> decimater(half_edges);
   OpenMesh::Decimater::ModQuadricT<HalfEdges>::Handle quadric;
   decimater.add(quadric);
@@ -30,7 +18,13 @@ TriangleMesh decimated(const TriangleMesh& mesh, std::size_t vertices) {
   decimater.initialize();
   decimater.decimate_to(vertices);
   half_edges.garbage_collection();
+}
 
+}  // namespace
+
+TriangleMesh decimated(const TriangleMesh& mesh, std::size_t vertices) {
+  HalfEdges half_edges = half_edge_mesh(mesh).half_edges;
+  collapse_edges(half_edges, vertices);
   TriangleMesh result;
   for (const auto v : half_edges.vertices()) {
     const auto& p = half_edges.point(v);

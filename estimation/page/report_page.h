@@ -1,15 +1,18 @@
-// The HTML page of a fit's report, with tables and with pictures that lie beside the page.
+// The HTML page of a report: one file that needs no other, with tables, pictures and surfaces to turn.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "estimation/page/turnable_surfaces.h"
+
 namespace astrolith {
 
 struct PagePicture {
-  std::string file;  // name of a file in the folder of the page
+  std::string file;  // name of a PNG file in the folder of the page, which takes a copy of it
   std::string caption;
 };
 
@@ -21,11 +24,12 @@ struct PageTable {
 struct ReportPage {
   std::string title;
   std::string summary;  // one sentence
+  std::optional<TurnableSurfaces> surfaces;
   std::vector<PageTable> tables;
   std::vector<PagePicture> pictures;
 };
 
-// Writes one HTML file that needs nothing but its pictures. Text is escaped. Throws as OutputFile does.
+// Writes the page. Text is escaped. Throws InputError where a picture cannot be read, and as OutputFile does.
 void write_report_page(const ReportPage& page, const std::filesystem::path& file);
 
 }  // namespace astrolith
