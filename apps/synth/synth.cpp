@@ -132,6 +132,7 @@ void check_outputs(const Options& options) {
 void synthesize(Program& program, const Options& options) {
   check_outputs(options);
   const Recipe recipe = read_input(program, options);
+  program.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(program, options, recipe);
   if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
   if (!recipe.body) {

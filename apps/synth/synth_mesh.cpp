@@ -70,7 +70,7 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
   program.summary["triangles"] = report.triangles;
   program.summary["closed"] = report.closed();
   program.summary["manifold"] = report.manifold();
-  program.summary["genus"] = report.genus;
+  if (!region.is_cut()) program.summary["genus"] = report.genus;
   program.summary["components"] = report.components;
   program.summary["evaluations"] = statistics.evaluations;
   program.summary["cell"] = statistics.step;
@@ -179,7 +179,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
   if (!request.height_map.empty())
     write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
-  if (!request.landforms.empty()) write_landform_list(field, recipe.length_unit, request.landforms);
+  if (!request.landforms.empty()) write_landform_list(field, recipe, region.cube(), request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   summarize_output(program, output);
   program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);

@@ -118,7 +118,7 @@ TEST_F(Synth, FeaturesAreListedAsDrawn) {
   EXPECT_EQ(document["features"][0]["depth"], 0.03);
   const std::string text = text_of(csv);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 23);
-  EXPECT_EQ(text.rfind("layer,kind,x,y,z,diameter,depth,rim_height,age,axis_b,", 0), 0u) << text;
+  EXPECT_EQ(text.rfind("layer,kind,x,y,z,mesh_x,mesh_y,mesh_z,center_x,", 0), 0u) << text;
   expect_recipe_refused(replaced(craters, "\"diameter\": 0.5", "\"diameter\": 50"),
                         "layers[0].craters[0].diameter: is 50");
 }

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Holds apps/summary_fields.json to what the programs write: every field of a summary or feature list is there.
+
+    summary_fields_test.py FOLDER_OF_PROGRAMS [FIELDS.json]
+
+Fields that are there and were written by no run are printed; they need options that these runs do not take.
+"""
+import json
+import math
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+LAYERS = """[{"type": "craters", "craters": [{"direction": [0, 0, 1], "diameter": 0.4}]},
+  {"type": "boulders", "boulders": [{"direction": [1, 0, 0], "axes": [0.3, 0.2, 0.1]}]}]"""
+BODY = """{"format_version": 1, "length_unit": "km",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [0.7, 0, 0, 0.6]]}, "layers": %s%s}"""
+
+
+def paths(value, path=""):
+    """The paths of all figures in a document, such as "channels[].bands[].photo"."""
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from paths(inner, f"{path}.{name}" if path else name)
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for inner in value:
+            yield from paths(inner, path + "[]")
+    else:
+        yield path
+
+
+def patterns(fields):
+    """A regular expression for each path of the table, which may end in several names: "features[].x, y, z"."""
+    for path in fields:
+        stem, _, names = path.rpartition(".")
+        for name in names.split(", "):
+            whole = f"{stem}.{name}" if stem else name
+            yield path, re.compile(re.escape(whole).replace(r"\*", r"[^.\[]+") + "$")
+
+
+def write_ball(file, length=1.4):
+    """A ball of meridians and parallels, stretched along x: a closed mesh of 168 facets."""
+    rings, around = 8, 12
+    points = [(0.0, 0.0, 1.0)]
+    for i in range(1, rings):
+        for k in range(around):
+            a, b = math.pi * i / rings, 2 * math.pi * k / around
+            points.append((length * math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)))
+    points.append((0.0, 0.0, -1.0))
+    at = lambda i, k: 1 + (i - 1) * around + k % around
+    faces = []
+    for k in range(around):
+        faces.append((0, at(1, k), at(1, k + 1)))
+        for i in range(1, rings - 1):
+            faces += [(at(i, k), at(i + 1, k), at(i + 1, k + 1)), (at(i, k), at(i + 1, k + 1), at(i, k + 1))]
+        faces.append((len(points) - 1, at(rings - 1, k + 1), at(rings - 1, k)))
+    lines = ["v %r %r %r" % p for p in points] + ["f %d %d %d" % tuple(v + 1 for v in f) for f in faces]
+    file.write_text("\n".join(lines) + "\n")
+
+
+def write_photo(file, channels):
+    """A PNG of 64 x 64 pixels of waves with a little noise."""
+    side, state, rows = 64, 1, b""
+    for y in range(side):
+        rows += b"\0"
+        for x in range(side):
+            for c in range(channels):
+                state = (1103515245 * state + 12345) % 2**31
+                wave = math.sin(0.9 * x + 0.4 * y + c) + math.sin(0.7 * y - 0.5 * x)
+                rows += bytes([int(128 + 30 * wave + state / 2**31 * 40)])
+    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    header = struct.pack(">IIBBBBB", side, side, 8, 0 if channels == 1 else 2, 0, 0, 0)
+    file.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    )
+
+
+def runs(folder):
+    """The program, its inputs and options for each run."""
+    body, plain, eroded = folder / "body.json", folder / "plain.json", folder / "eroded.json"
+    body.write_text(BODY % (LAYERS, ""))
+    plain.write_text(BODY % ("[]", ""))
+    eroded.write_text(BODY % (LAYERS, ', "erosion": {"talus_angle": 30}'))
+    ball, other = folder / "ball.obj", folder / "other.obj"
+    write_ball(ball)
+    write_ball(other, 1.5)
+    grey, color = folder / "grey.png", folder / "color.png"
+    write_photo(grey, 1)
+    write_photo(color, 3)
+    for name, length in (("one", 1.2), ("two", 2.0)):
+        (folder / name).mkdir()
+        for k in range(3):
+            write_ball(folder / name / f"{k}.obj", length + 0.1 * k)
+    mesh = ["-o", folder / "mesh.ply", "--resolution", "16"]
+    features = ["--feature-list", folder / "features.json"]
+    yield ["synth", body, *mesh, *features, "--min-component", "0.1"]
+    yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
+    yield ["synth", body, *mesh, "--gravity", "2000", "5"]
+    yield ["synth", body, "--predict", "--resolution", "16"]
+    yield ["synth", plain, *mesh, "--vary", "0.3", "--seed", "2"]
+    yield ["synth", eroded, *mesh]
+    yield ["fit_gabor", grey, "-o", folder / "grey.json"]
+    yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
+    yield ["synth", folder / "grey.json", "-o", folder / "grey_texture.png", "--texture", "64x64"]
+    yield ["synth", folder / "color.json", "-o", folder / "color_texture.png", "--texture", "64x64"]
+    fit = ["fit_shape", ball, "--spheres", "6", "-o"]
+    yield [*fit, folder / "base.json", "--base-only"]
+    yield [*fit, folder / "fit.json", "--population", "4", "--generations", "2", "--variations", "1"]
+    yield [*fit, folder / "packing.csv", "--packing-only"]
+    yield ["describe", ball, "-o", folder / "description.json"]
+    yield ["compare", ball, other, "--floor", "-o", folder / "comparison.json"]
+    yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3"]
+    yield ["classify", "predict", folder / "model.json", ball]
+    yield ["gravity", ball, "--density", "2000", "--period", "5", "-o", folder / "gravity.csv"]
+
+
+def main():
+    programs = pathlib.Path(sys.argv[1])
+    table = json.loads((pathlib.Path(sys.argv[2]) if sys.argv[2:] else ROOT / "apps/summary_fields.json").read_text())
+    unused = {program: set(fields) for program, fields in table.items()}
+    missing = set()
+
+    def account(document, *sections):
+        known = [(section, *pair) for section in sections for pair in patterns(table[section])]
+        for path in paths(document):
+            hits = [(section, entry) for section, entry, pattern in known if pattern.match(path)]
+            if not hits:
+                missing.add(f"{sections[0]}: {path}")
+            for section, entry in hits:
+                unused[section].discard(entry)
+
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        summary = folder / "summary.json"
+        for program, *options in runs(folder):
+            command = [programs / program, *options, "--summary", summary, "--quiet"]
+            done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+            if done.returncode != 0:
+                print(f"{' '.join(map(str, command))}: status {done.returncode}: {done.stderr.strip()}")
+                return 1
+            account(json.loads(summary.read_text()), program, "every program")
+            if "--feature-list" in options:
+                account(json.loads((folder / "features.json").read_text()), "synth --feature-list")
+    for program, fields in unused.items():
+        for field in sorted(fields):
+            print(f"not seen in these runs: {program}: {field}")
+    for field in sorted(missing):
+        print(f"written, and not in apps/summary_fields.json: {field}")
+    return 1 if missing else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
