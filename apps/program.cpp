@@ -162,7 +162,8 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   try {
     timed(work);
     end_bar();
-    return part_failed_ ? 1 : 0;
+    if (part_failed_) return 1;
+    return interrupted() ? 3 : 0;
   } catch (const InputError& e) {
     print_line(fmt::format("{}: {}", name_, naming_options(e.what(), *parser_)));
     return 2;

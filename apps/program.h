@@ -1,6 +1,6 @@
 // The frame of every program: the common options, progress bars on a terminal, one-line errors,
-// Ctrl-C, exit status 0 (done), 1 (the work failed) or 2 (the command line or an input is wrong), and
-// --summary.
+// Ctrl-C, --summary, and the exit status: 0 (done), 1 (the work failed), 2 (the command line or an input is
+// wrong) or 3 (stopped by Ctrl-C; the output holds the best so far).
 //
 //   int main(int argc, char** argv) {
 //     Program program("synth", "Turns a recipe into a mesh.");
@@ -32,7 +32,8 @@ class Program {
   ~Program();
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
-  // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. The summary is
+  // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. Work that ends
+  // after Ctrl-C without an exception has kept its best so far and gives 3. The summary is
   // written only when the work is done; it holds "seconds", and "interrupted" after a Ctrl-C that left a best
   // result so far.
   int run(int argc, char** argv, const std::function<void()>& work);

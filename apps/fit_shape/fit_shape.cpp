@@ -57,7 +57,7 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
     program.summary["details"] = details_json(details);
   }
   if (!wanted.micro.empty() && wanted.micro != "auto") add_micro_layers(wanted, recipe);
-  measure_recipe(target, recipe, arguments.fit, fit);
+  if (!Program::interrupted()) measure_recipe(target, recipe, arguments.fit, fit);
 }
 
 void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
@@ -84,6 +84,33 @@ void say_wrong_unit(const Program& program, const FitArguments& arguments, const
   if (!remark.empty()) program.say("note: " + arguments.mesh + ": " + remark);
 }
 
+// Writes what Ctrl-C left. Nobody waits for figures after it, which may take longer than the fit took.
+void keep_best_so_far(Program& program, const FitArguments& arguments, const FitCheckpoint& checkpoint,
+                      const TargetBody& target, const ShapeFitResult& fit, const Recipe& recipe) {
+  write_recipe(recipe, arguments.output);
+  std::string line =
+      fmt::format("stopped by Ctrl-C: {} holds the best so far, {} metaballs{}, not measured",
+                  arguments.output, fit.body.num_metaballs(), recipe.layers.empty() ? "" : " and details");
+  if (!arguments.checkpoint.empty()) {
+    line += checkpoint.has_base() ? "; the same command goes on from " + arguments.checkpoint
+                                  : "; no checkpoint yet, since the metaballs were not finished";
+  }
+  program.say(line);
+  program.summary["spheres"] = fit.body.num_metaballs();
+  program.summary["subtracting_spheres"] = fit.body.subtract.size();
+  program.summary["stopped_early"] = true;
+  program.summary["diagonal"] = target.diagonal;
+  program.summary["length_unit"] = arguments.unit;
+}
+
+// Without a checked mesh there is nothing to keep.
+Progress heeding_ctrl_c(Progress progress) {
+  return [progress = std::move(progress)](double fraction, std::string_view words) {
+    if (Program::interrupted()) throw WorkError("stopped while the mesh was checked; nothing was fitted yet");
+    return report(progress, fraction, words);
+  };
+}
+
 void run(Program& program, FitArguments& arguments) {
   // A result that cannot be written should be refused before minutes of work.
   require_writable(arguments.output);
@@ -100,8 +127,9 @@ void run(Program& program, FitArguments& arguments) {
   // Reading takes about as long as a quarter of the checks.
   constexpr double kReadShare = 0.2;
   TriangleMesh mesh = read_mesh(arguments.mesh);
-  report(limit.preparation(0.0), kReadShare, "read");
-  const TargetBody target = prepare_target(std::move(mesh), arguments.mesh, limit.preparation(kReadShare));
+  report(heeding_ctrl_c(limit.preparation(0.0)), kReadShare, "read");
+  const TargetBody target =
+      prepare_target(std::move(mesh), arguments.mesh, heeding_ctrl_c(limit.preparation(kReadShare)));
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
@@ -118,7 +146,7 @@ void run(Program& program, FitArguments& arguments) {
   if (with_details && !Program::interrupted() && limit.allows_more()) {
     add_details(program, arguments, target, limit, checkpoint, fit, recipe);
   }
-  if (Program::interrupted()) program.say("stopped by Ctrl-C: this is the best so far");
+  if (Program::interrupted()) return keep_best_so_far(program, arguments, checkpoint, target, fit, recipe);
   if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
   note_achieved(fit, recipe);
   write_recipe(recipe, arguments.output);
@@ -127,7 +155,7 @@ void run(Program& program, FitArguments& arguments) {
                      arguments.report);
   }
   program.summary.update(fit_figures(fit));
-  program.summary["stopped_early"] = Program::interrupted() || limit.reached();
+  program.summary["stopped_early"] = limit.reached();
   program.summary["diagonal"] = target.diagonal;  // distances are fractions of it
   program.summary["length_unit"] = arguments.unit;
   if (!variations.empty() && !Program::interrupted() && !limit.allows_more()) {

@@ -246,7 +246,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   check_outputs(program, request, output);
   const Region region = parse_region(request.tile, request.patch);
   check_request(request, region, recipe, file);
-  const ImplicitField field = field_of_region(recipe, file, region);
+  const ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));
   const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(), recipe.erosion.has_value(),
                     request.least_component > 0.0, request.gravity.wanted()};
   const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});

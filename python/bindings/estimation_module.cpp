@@ -79,6 +79,7 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, JobState& s
   const auto stage = [&](const std::string& name) { return state.progress(name); };
   const auto stopped = [&] { return state.stopped(); };
   ShapeFitResult fit = fit_base(target, arguments.fit, checkpoint, stage, stopped);
+  if (fit.interrupted && stopped()) measure_fit(target, arguments.fit, fit);
   Recipe recipe;
   recipe.length_unit = arguments.unit;
   recipe.seed = arguments.fit.seed;

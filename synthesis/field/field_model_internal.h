@@ -54,7 +54,8 @@ struct FieldModel {
 };
 
 // Adds a recipe's layers to a model that holds its body. Throws InputError as ImplicitField does.
-void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model);
+void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model,
+                const Progress& progress = {});
 
 // F at a point.
 float value_at(const FieldModel& model, const Vec3d& p);

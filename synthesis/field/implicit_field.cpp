@@ -125,7 +125,7 @@ void FieldBlock::evaluate_local_tetrahedra(const Vec3d& origin, std::span<const 
 }
 
 ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
-                             const std::optional<PatchCube>& patch) {
+                             const std::optional<PatchCube>& patch, const Progress& progress) {
   if (!recipe.body || recipe.body->spheres.empty()) {
     throw InputError(name + ": body: is missing; give a body, or lay these layers on one");
   }
@@ -134,7 +134,7 @@ ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
   model->body = make_body(*recipe.body, recipe.seed, model->arrays);
   model->update();
   model->metaballs = all_metaballs(model->body, model->tables.arrays);
-  add_layers(recipe, name, *model);
+  add_layers(recipe, name, *model, progress);
   model->finish();
   model->bounds = surface_bounds(*model);
   model_ = std::move(model);

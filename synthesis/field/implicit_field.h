@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "numerics/progress.h"
 #include "recipe/recipe.h"
 #include "synthesis/body/body_tables.h"
 #include "synthesis/mesh/block_field.h"
@@ -102,13 +103,14 @@ class FieldBlock {
 class ImplicitField {
  public:
   // Expects a recipe that validation accepts; `name` begins the messages of errors. Throws InputError for a
-  // recipe without a body, and for craters and boulders that have no place on it or are wider than it.
+  // recipe without a body, and for craters and boulders that have no place on it or are wider than it;
+  // WorkError where `progress` asks to stop.
   //
   // Layers too fine for float coordinates of the body's frame are left out. With `patch`, evaluate_local()
   // has them within the cube, if the body has_local_form(). Blocks of such a field must lie in the cube or
   // within its side of it. The functions that take points of the body's frame never have the fine layers.
   explicit ImplicitField(const Recipe& recipe, const std::string& name = "recipe",
-                         const std::optional<PatchCube>& patch = {});
+                         const std::optional<PatchCube>& patch = {}, const Progress& progress = {});
 
   double value(const Vec3d& p) const;
   bool inside(const Vec3d& p) const { return value(p) > 0.0; }

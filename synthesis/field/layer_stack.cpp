@@ -48,7 +48,7 @@ class LayerStack {
     if (model.body.plain() && first.warped) domain_ = widened(supports_, first.warp.bound);
   }
 
-  void add_all() {
+  void add_all(const Progress& progress) {
     const BodyLeaf& first = model_.tables.leaf(0);
     if (first.warped) report_left_out(-1, first.warp.detail);
     if (!(height_limit_ > 0.0)) {
@@ -66,7 +66,7 @@ class LayerStack {
     add_patch_noises();
     sum_changes();
     model_.update();
-    add_boulders();
+    add_boulders(progress);
   }
 
  private:
@@ -111,15 +111,15 @@ class LayerStack {
   // Boulders are added by add_boulders(), when all layers have made the surface that they lie on.
   void add(const BoulderLayer&) {}
 
-  void add_boulders() {
+  void add_boulders(const Progress& progress) {
     const Terrain terrain{[this](const Vec3d& p) { return static_cast<double>(value_at(model_, p)); },
                           model_.height_bound};
     std::vector<FieldBoulder> all;
     for (int i = 0; i < static_cast<int>(recipe_.layers.size()); ++i) {
       const auto* layer = std::get_if<BoulderLayer>(&recipe_.layers[static_cast<std::size_t>(i)]);
       if (layer == nullptr) continue;
-      std::vector<PlacedBoulder> placed =
-          place_boulders(*layer, bare(), terrain, recipe_.seed, layer_number(layer->seed, i), place_of(i));
+      std::vector<PlacedBoulder> placed = place_boulders(*layer, bare(), terrain, recipe_.seed,
+                                                         layer_number(layer->seed, i), place_of(i), progress);
       const std::vector<FieldBoulder> boulders = field_boulders(*layer, placed);
       all.insert(all.end(), boulders.begin(), boulders.end());
       model_.placed_boulders.push_back({i, std::move(placed)});
@@ -395,8 +395,8 @@ void FieldModel::update() {
   if (patch) tables.patch_origin = patch->center;
 }
 
-void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model) {
-  LayerStack(recipe, name, model).add_all();
+void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model, const Progress& progress) {
+  LayerStack(recipe, name, model).add_all(progress);
 }
 
 }  // namespace astrolith

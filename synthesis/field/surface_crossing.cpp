@@ -17,8 +17,7 @@ struct Stretch {
 
 using Values = std::array<float, kPoints>;
 
-Values values_along(const ImplicitField& field, const Vec3d& from, const Vec3d& direction,
-                    const Stretch& t) {
+Values values_along(const ImplicitField& field, const Vec3d& from, const Vec3d& direction, const Stretch& t) {
   Values x, y, z, values;
   Box box;
   for (std::size_t k = 0; k < kPoints; ++k) {

@@ -15,6 +15,7 @@ namespace astrolith {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::int64_t kBouldersBetweenReports = 4096;
 
 void expect_boulder_fits(double axis, const BareSurface& surface, const std::string& where) {
   if (axis <= surface.longest_side()) return;
@@ -147,18 +148,24 @@ ASTROLITH_SIMD_CLONES void join_boulder_loop(const BoulderKernel& kernel, int n,
 
 std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareSurface& surface,
                                           const Terrain& terrain, std::uint64_t seed, int layer_index,
-                                          const std::string& where) {
+                                          const std::string& where, const Progress& progress) {
   if (surface.empty()) return {};
   std::vector<Placement> placements;
   find_listed(layer, surface, where, placements);
   if (layer.population) draw(layer, surface, seed, layer_index, where + ".population", placements);
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
-  parallel_for(0, static_cast<std::int64_t>(placements.size()), [&](std::int64_t i) {
-    Placement& p = placements[static_cast<std::size_t>(i)];
-    const Vec3d normal = surface.normal(p.bare);
-    p.boulder.noise_seed = hash_append(layer_seed, static_cast<std::uint32_t>(i));
-    settle(layer, on_terrain(p.bare, normal, terrain), normal, p.boulder);
-  });
+  const auto count = static_cast<std::int64_t>(placements.size());
+  for (std::int64_t first = 0; first < count; first += kBouldersBetweenReports) {
+    if (!report(progress, static_cast<double>(first) / static_cast<double>(count), "boulders")) {
+      throw WorkError("boulders: stopped before all were placed");
+    }
+    parallel_for(first, std::min(first + kBouldersBetweenReports, count), [&](std::int64_t i) {
+      Placement& p = placements[static_cast<std::size_t>(i)];
+      const Vec3d normal = surface.normal(p.bare);
+      p.boulder.noise_seed = hash_append(layer_seed, static_cast<std::uint32_t>(i));
+      settle(layer, on_terrain(p.bare, normal, terrain), normal, p.boulder);
+    });
+  }
   std::vector<PlacedBoulder> boulders;
   for (const Placement& p : placements) boulders.push_back(p.boulder);
   return boulders;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "numerics/progress.h"
 #include "numerics/vec3.h"
 #include "recipe/recipe.h"
 #include "synthesis/landforms/bare_surface.h"
@@ -35,11 +36,11 @@ struct Terrain {
 };
 
 // The layer's listed boulders, then its drawn ones. Throws InputError, naming `where` in the recipe, for a
-// boulder that has no place on the body or is longer than it. The result is empty for a body without a
-// surface.
+// boulder that has no place on the body or is longer than it, and WorkError where progress asks to stop. The
+// result is empty for a body without a surface.
 std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareSurface& surface,
                                           const Terrain& terrain, std::uint64_t seed, int layer_index,
-                                          const std::string& where);
+                                          const std::string& where, const Progress& progress = {});
 
 // A boulder as it joins a field, and the box that it reaches. Outside the box it changes nothing.
 struct FieldBoulder {

@@ -30,6 +30,7 @@ class FitCheckpoint {
 
   bool resumed() const { return resumed_; }
   // A finished base from the file; body, history and figures are set, the check is not.
+  bool has_base() const { return has_base_; }
   const ShapeFitResult* base() const { return has_base_ ? &base_ : nullptr; }
   EvaluationLog& log() { return log_; }
 

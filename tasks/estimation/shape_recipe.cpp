@@ -37,7 +37,12 @@ ShapeFitResult fit_base(const TargetBody& target, const ShapeFitOptions& options
     return base;
   }
   ShapeFitResult fit = fit_shape(target, options, progress);
-  if (!interrupted() && !fit.interrupted) checkpoint.keep_base(fit);
+  if (interrupted()) return fit;
+  if (fit.interrupted) {
+    measure_fit(target, options, fit);
+  } else {
+    checkpoint.keep_base(fit);
+  }
   return fit;
 }
 

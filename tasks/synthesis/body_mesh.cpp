@@ -55,8 +55,9 @@ BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const Stag
   return result;
 }
 
-ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region) {
-  ImplicitField field(recipe, file.string(), region.cube());
+ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region,
+                              const Progress& progress) {
+  ImplicitField field(recipe, file.string(), region.cube(), progress);
   if (field.bounds().empty()) {
     throw InputError(file.string() + ": body.iso_value: no point of the body reaches it; lower it");
   }

@@ -35,6 +35,7 @@ BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const Stag
 
 // The field of a recipe's body in a region. Throws InputError for a body that no point of space reaches, and
 // what ImplicitField throws.
-ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region);
+ImplicitField field_of_region(const Recipe& recipe, const std::filesystem::path& file, const Region& region,
+                              const Progress& progress = {});
 
 }  // namespace astrolith

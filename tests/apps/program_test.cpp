@@ -137,7 +137,7 @@ TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
     std::raise(SIGINT);
     if (progress(0.2, "")) std::exit(11);
   };
-  EXPECT_EXIT(std::exit(status_of({"--summary", file.string()}, work)), ::testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(std::exit(status_of({"--summary", file.string()}, work)), ::testing::ExitedWithCode(3), "");
   EXPECT_TRUE(nlohmann::json::parse(std::ifstream(file)).at("interrupted").get<bool>());
   std::filesystem::remove(file);
 }

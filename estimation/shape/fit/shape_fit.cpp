@@ -132,7 +132,7 @@ ShapeFitResult fit_shape(const TargetBody& target, const ShapeFitOptions& option
   result.search_history = base.optimization.history;
   result.convergence = std::move(fit.convergence);
   result.interrupted = packing.interrupted || fit.interrupted;
-  measure_fit(target, options, result);
+  if (!result.interrupted) measure_fit(target, options, result);
   return result;
 }
 

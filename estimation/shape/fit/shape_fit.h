@@ -45,7 +45,8 @@ struct ShapeFitResult {
   std::int64_t evaluations = 0;               // of the search's fitness
   std::vector<double> search_history;         // the least 1 - similarity after each generation
   std::vector<ConvergencePoint> convergence;  // after every refinement
-  bool interrupted = false;                   // progress asked to stop; the body is the best so far
+  // Progress asked to stop: the body is the best so far, and nothing has measured it yet (measure_fit).
+  bool interrupted = false;
 };
 
 // The stages of a fit are "pack", "search" and "refine". Equal targets, options and seeds give the same body
