@@ -10,8 +10,6 @@
 namespace astrolith {
 namespace {
 
-constexpr std::uint32_t kLeafFacets = 24;
-
 using Corners = std::array<Vec3d, 3>;
 
 Vec3d area_vector(const Corners& f) { return 0.5 * cross(f[1] - f[0], f[2] - f[0]); }
@@ -19,7 +17,7 @@ Vec3d area_vector(const Corners& f) { return 0.5 * cross(f[1] - f[0], f[2] - f[0
 // Splits the facets of nodes by the median of their centres along the longest side of the box of the centres.
 class Splitter {
  public:
-  explicit Splitter(GravityTree& tree) : tree_(tree) {}
+  Splitter(GravityTree& tree, std::uint32_t leaf_facets) : tree_(tree), leaf_facets_(leaf_facets) {}
 
   void split(std::uint32_t first, std::uint32_t count) {
     const std::size_t self = tree_.nodes.size();
@@ -27,7 +25,7 @@ class Splitter {
     GravityNode node;
     node.first = first;
     node.count = count;
-    node.leaf = count <= kLeafFacets ? 1 : 0;
+    node.leaf = count <= leaf_facets_ ? 1 : 0;
     if (node.leaf == 0) {
       const std::uint32_t half = count / 2;
       order_about(first, half, count);
@@ -51,6 +49,7 @@ class Splitter {
   }
 
   GravityTree& tree_;
+  std::uint32_t leaf_facets_;
 };
 
 void measure_node(const GravityTree& tree, GravityNode& node) {
@@ -70,21 +69,37 @@ void measure_node(const GravityTree& tree, GravityNode& node) {
   }
 }
 
-void expand_leaf(std::span<const Corners> facets, const Vec3d& center, std::span<const TrianglePoint> rule,
+// The places of all harmonics to an order.
+std::vector<std::size_t> places_to(int order) {
+  std::vector<std::size_t> places;
+  for (int m = 0; m <= order; ++m) {
+    for (int l = m; l <= order; ++l) places.push_back(static_cast<std::size_t>(harmonic_index(l, m)));
+  }
+  return places;
+}
+
+// The rule is exact for harmonics to `order`, whose places are given.
+struct Expansion {
+  int order;
+  std::vector<TrianglePoint> rule;
+  std::vector<std::size_t> places;
+};
+
+void expand_leaf(std::span<const Corners> facets, const Vec3d& center, const Expansion& expansion,
                  GravityMultipoles& out) {
   Harmonics at, mean;
   for (const Corners& f : facets) {
     mean.fill({});
-    for (const TrianglePoint& t : rule) {
-      regular_harmonics(f[0] + t.b * (f[1] - f[0]) + t.c * (f[2] - f[0]) - center, at);
-      for (std::size_t i = 0; i < mean.size(); ++i) {
+    for (const TrianglePoint& t : expansion.rule) {
+      regular_harmonics(f[0] + t.b * (f[1] - f[0]) + t.c * (f[2] - f[0]) - center, expansion.order, at);
+      for (const std::size_t i : expansion.places) {
         mean[i].re += t.weight * at[i].re;
         mean[i].im += t.weight * at[i].im;
       }
     }
     const Vec3d n = area_vector(f);
     const std::array<double, 4> layers{n.x, n.y, n.z, dot(n, f[0] - center)};
-    for (std::size_t i = 0; i < mean.size(); ++i) {
+    for (const std::size_t i : expansion.places) {
       for (std::size_t k = 0; k < 4; ++k) {
         out.terms[i][k] += layers[k] * mean[i].re;
         out.terms[i][k + 4] += layers[k] * mean[i].im;
@@ -107,11 +122,11 @@ Layers recentred(const GravityMultipoles& child, const Vec3d& step) {
   return layers;
 }
 
-void add_shifted(const GravityMultipoles& child, const Vec3d& step, GravityMultipoles& out) {
+void add_shifted(const GravityMultipoles& child, const Vec3d& step, int order, GravityMultipoles& out) {
   Harmonics shift;
-  regular_harmonics(step, shift);
+  regular_harmonics(step, order, shift);
   const Layers layers = recentred(child, step);
-  for (int l = 0; l <= kMostOrder; ++l) {
+  for (int l = 0; l <= order; ++l) {
     for (int m = 0; m <= l; ++m) {
       std::array<double, 8>& to = out.terms[static_cast<std::size_t>(harmonic_index(l, m))];
       for (int j = 0; j <= l; ++j) {
@@ -143,19 +158,20 @@ std::vector<std::vector<std::uint32_t>> nodes_by_depth(const GravityTree& tree) 
 
 void make_multipoles(GravityTree& tree) {
   tree.multipoles.assign(tree.nodes.size(), GravityMultipoles{});
-  const std::vector<TrianglePoint> rule = triangle_rule(kMostOrder);
+  const Expansion expansion{tree.most_order, triangle_rule(tree.most_order), places_to(tree.most_order)};
   const std::vector<std::vector<std::uint32_t>> depths = nodes_by_depth(tree);
   for (auto depth = depths.rbegin(); depth != depths.rend(); ++depth) {
     parallel_for(0, static_cast<std::int64_t>(depth->size()), [&](std::int64_t i) {
       const std::uint32_t at = (*depth)[static_cast<std::size_t>(i)];
       const GravityNode& node = tree.nodes[at];
       if (node.leaf != 0) {
-        expand_leaf(std::span(tree.facets).subspan(node.first, node.count), node.center, rule,
+        expand_leaf(std::span(tree.facets).subspan(node.first, node.count), node.center, expansion,
                     tree.multipoles[at]);
         return;
       }
       for (const std::uint32_t child : {at + 1, tree.nodes[at + 1].next}) {
-        add_shifted(tree.multipoles[child], tree.nodes[child].center - node.center, tree.multipoles[at]);
+        add_shifted(tree.multipoles[child], tree.nodes[child].center - node.center, tree.most_order,
+                    tree.multipoles[at]);
       }
     });
   }
@@ -170,8 +186,9 @@ void make_multipoles(GravityTree& tree) {
 
 }  // namespace
 
-GravityTree make_gravity_tree(const TriangleMesh& mesh) {
+GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail) {
   GravityTree tree;
+  tree.most_order = detail.most_order;
   const Box bounds = mesh.bounds();
   tree.origin = bounds.center();
   tree.scale = 0.5 * bounds.diagonal();
@@ -189,7 +206,7 @@ GravityTree make_gravity_tree(const TriangleMesh& mesh) {
     tree.volume += dot(area_vector(f), f[0]) / 3.0;
   }
   if (tree.facets.empty()) throw InputError("gravity: the mesh has no facet with an area; give another mesh");
-  Splitter(tree).split(0, static_cast<std::uint32_t>(tree.facets.size()));
+  Splitter(tree, detail.leaf_facets).split(0, static_cast<std::uint32_t>(tree.facets.size()));
   parallel_for(0, static_cast<std::int64_t>(tree.nodes.size()),
                [&](std::int64_t i) { measure_node(tree, tree.nodes[static_cast<std::size_t>(i)]); });
   make_multipoles(tree);

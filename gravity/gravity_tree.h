@@ -35,11 +35,18 @@ struct GravityMultipoles {
   std::array<std::array<double, 8>, kHarmonics> terms;
 };
 
+// How fine a tree is. A coarse tree is made faster.
+struct GravityDetail {
+  int most_order = kMostOrder;     // of its multipoles, in [0, kMostOrder]
+  std::uint32_t leaf_facets = 24;  // a node with at most this many facets is not split, >= 1
+};
+
 // The tables; lengths are in units of `scale` and relative to `origin`. Nodes are in depth-first order.
 struct GravityTree {
   Vec3d origin;
   double scale = 1.0;
   double area = 0.0, volume = 0.0;  // of the whole, in the tables' units
+  int most_order = kMostOrder;      // terms of higher orders are zero
   std::vector<std::array<Vec3d, 3>> facets;
   std::vector<GravityNode> nodes;
   std::vector<GravityMultipoles> multipoles;
@@ -47,7 +54,7 @@ struct GravityTree {
 
 // Builds the tables of a mesh with indices in range and at least one triangle of positive area. Throws
 // InputError where there is none.
-GravityTree make_gravity_tree(const TriangleMesh& mesh);
+GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail = {});
 
 // Sums over all facets for points in the tables' units, arrays of `count` <= 16 points, added to: layers[k]
 // is the sum of n_k I, work the sum of (n . r) I.

@@ -18,6 +18,7 @@ namespace {
 constexpr double kHarmonicsOfFacet = 8.0;
 constexpr double kCrudeOpening = 0.6;
 constexpr int kCrudeOrder = 3;
+constexpr double kRoughOpening = 0.7;  // radius of a node over its distance
 constexpr double kLeastAcceleration = 0.05;
 constexpr std::int64_t kBatchesBetweenReports = 256;
 
@@ -78,11 +79,11 @@ constexpr double harmonics_to(int order) { return 0.5 * (order + 1) * (order + 2
 
 // The least order whose error at distance d of the node's centre is at most `allowed`; -1 where there is
 // none.
-int least_order(const GravityNode& node, double d, double allowed) {
+int least_order(const GravityNode& node, int most_order, double d, double allowed) {
   if (!(d > node.radius)) return -1;
   const double inverse = 1.0 / d, limit = allowed * (d - node.radius);
   double power = 1.0;
-  for (int order = 0; order <= kMostOrder; ++order) {
+  for (int order = 0; order <= most_order; ++order) {
     power *= inverse;
     if (node.spread[static_cast<std::size_t>(order)] * power <= limit) return order;
   }
@@ -111,11 +112,17 @@ GravitySums walk(const GravityTree& tree, const Batch& batch, const OrderOf& ord
   return sums;
 }
 
+// Takes all nodes whose radius is below `opening` times their distance by few multipoles.
+GravitySums sums_opened_at(const GravityTree& tree, const Batch& batch, double opening) {
+  const int order = std::min(kCrudeOrder, tree.most_order);
+  return walk(tree, batch, [opening, order](const GravityNode& node, double d) {
+    return node.radius < opening * d ? order : -1;
+  });
+}
+
 // The acceleration that tolerances refer to: the least of a batch, within some ten percent.
 double least_acceleration(const GravityTree& tree, const Batch& batch) {
-  const GravitySums sums = walk(tree, batch, [](const GravityNode& node, double d) {
-    return node.radius < kCrudeOpening * d ? kCrudeOrder : -1;
-  });
+  const GravitySums sums = sums_opened_at(tree, batch, kCrudeOpening);
   const double radius = portable::cbrt(std::fabs(tree.volume) * 0.75 / std::numbers::pi);
   double least = 1e300;
   for (std::size_t i = 0; i < kPointBatch; ++i) {
@@ -129,8 +136,9 @@ double least_acceleration(const GravityTree& tree, const Batch& batch) {
 
 GravitySums sums_within(const GravityTree& tree, const Batch& batch, double tolerance) {
   const double allowed = tolerance * least_acceleration(tree, batch) / tree.area;
-  return walk(tree, batch,
-              [&](const GravityNode& node, double d) { return least_order(node, d, allowed * node.area); });
+  return walk(tree, batch, [&](const GravityNode& node, double d) {
+    return least_order(node, tree.most_order, d, allowed * node.area);
+  });
 }
 
 GravitySums exact_sums(const GravityTree& tree, const Batch& batch) {
@@ -170,6 +178,11 @@ std::vector<Attraction> PolyhedronGravity::at(std::span<const Vec3d> points, dou
                                               const Progress& progress) const {
   return evaluate(tree_, points, progress,
                   [&](const Batch& batch) { return sums_within(tree_, batch, tolerance); });
+}
+
+std::vector<Attraction> PolyhedronGravity::roughly_at(std::span<const Vec3d> points) const {
+  return evaluate(tree_, points, {},
+                  [&](const Batch& batch) { return sums_opened_at(tree_, batch, kRoughOpening); });
 }
 
 std::vector<Attraction> PolyhedronGravity::exactly_at(std::span<const Vec3d> points,

@@ -22,7 +22,8 @@ struct Attraction {
 class PolyhedronGravity {
  public:
   // Indices of the mesh must be in range. Throws InputError for a mesh without a facet that has an area.
-  explicit PolyhedronGravity(const TriangleMesh& mesh) : tree_(make_gravity_tree(mesh)) {}
+  explicit PolyhedronGravity(const TriangleMesh& mesh, const GravityDetail& detail = {})
+      : tree_(make_gravity_tree(mesh, detail)) {}
 
   // Near facets exactly, the others by multipoles. The sum of the bounds of all multipoles' errors is at most
   // `tolerance` times the acceleration at a point. Where the acceleration nearly vanishes, as at the centre
@@ -30,6 +31,10 @@ class PolyhedronGravity {
   // WorkError when progress asks to stop.
   std::vector<Attraction> at(std::span<const Vec3d> points, double tolerance,
                              const Progress& progress = {}) const;
+
+  // Without a bound: nodes at more than 1 / 0.7 of their radius are taken by their multipoles to order 3.
+  // Directions are right to some hundredths of a degree.
+  std::vector<Attraction> roughly_at(std::span<const Vec3d> points) const;
 
   // All facets exactly. Takes time in proportion to points times facets.
   std::vector<Attraction> exactly_at(std::span<const Vec3d> points, const Progress& progress = {}) const;

@@ -26,17 +26,17 @@ inline HarmonicValue operator*(const HarmonicValue& a, const HarmonicValue& b) {
 
 using Harmonics = std::array<HarmonicValue, kHarmonics>;
 
-// R_lm(y) for all stored l, m.
-inline void regular_harmonics(const Vec3d& y, Harmonics& r) {
+// R_lm(y) for l <= order; the others are left as they are. order in [0, kMostOrder].
+inline void regular_harmonics(const Vec3d& y, int order, Harmonics& r) {
   const double square = squared_norm(y);
   HarmonicValue diagonal{1.0, 0.0};
-  for (int m = 0; m <= kMostOrder; ++m) {
+  for (int m = 0; m <= order; ++m) {
     if (m > 0) {
       const double c = -0.5 / m;
       diagonal = HarmonicValue{c * y.x, c * y.y} * diagonal;
     }
     HarmonicValue last{}, now = diagonal;
-    for (int l = m; l <= kMostOrder; ++l) {
+    for (int l = m; l <= order; ++l) {
       if (l > m) {
         const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale, down = square * scale;
         const HarmonicValue next{up * now.re - down * last.re, up * now.im - down * last.im};

@@ -6,11 +6,10 @@
 #include <string>
 
 #include "geometry/io/ply_stream_writer.h"
-#include "synthesis/body/body_spheres.h"
+#include "gravity/vertical_directions.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/finish/erosion.h"
-#include "synthesis/finish/mascons.h"
 #include "synthesis/gabor/gabor_tiles.h"
 #include "synthesis/mesh/manifold_check.h"
 
@@ -42,13 +41,6 @@ double draws_of_tile(const SurfaceBand& band, const MeshEstimate& mesh, double b
 const SurfaceBand& band_of(const FieldView& field, const ImpulseList& list) {
   const GaborSurfaceNoise& noise = *field.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
   return field.arrays[noise.bands][list.element];
-}
-
-// The spheres as mascons, without the work of finding the volume of each.
-std::vector<Mascon> balls_of(std::span<const Sphere> spheres) {
-  std::vector<Mascon> mascons;
-  for (const Sphere& sphere : spheres) mascons.push_back({sphere.center, sphere.radius});
-  return mascons;
 }
 
 Recipe ball() {
@@ -97,24 +89,28 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
 
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
   constexpr int kCoarser = 6, kFewestCells = 16;
+  // Gravity is that of a lattice of this many cells; each triangle then adds a little.
+  constexpr int kCellsOfGravity = 48;
+  constexpr double kSecondsOfVertical = 8e-8;
   // An edge that rests costs this much in a sweep.
   constexpr double kSecondsOfEdge = 1.2e-9;
   const Erosion& erosion = *recipe.erosion;
-  const std::vector<Sphere> spheres = adding_spheres(*recipe.body);
-  const double mascon_seconds = seconds_of_mascons(field, spheres);
   const int cells = std::min(std::max(mesh.resolution / kCoarser, kFewestCells), mesh.resolution);
   MeshCollector coarse;
   mesh_field(field, field.bounds(), cells, coarse);
-  if (coarse.mesh.triangles.empty()) return {mascon_seconds, 0.0};
-  const std::vector<Vec3d> up = vertical_directions(
-      balls_of(spheres), {erosion.density, erosion.rotation_period}, coarse.mesh.vertices);
+  if (coarse.mesh.triangles.empty()) return {};
+  const ProcessorClock clock_of_verticals;
+  const std::vector<Vec3d> up = vertical_directions(coarse.mesh, {erosion.density, erosion.rotation_period});
   const double triangles = static_cast<double>(coarse.mesh.triangles.size());
+  const double seconds_of_verticals = clock_of_verticals.seconds();
   const ProcessorClock clock;
   const ErosionStatistics done = erode(coarse.mesh, up, erosion.talus_angle, erosion.iterations);
   const double ratio = std::max(mesh.triangles / triangles, 1.0);
   const double most_sweeps = 1.5 * mesh.triangles * erosion.iterations * kSecondsOfEdge;
   const double growing = clock.seconds() * (done.sweeps > 2 ? ratio * ratio : ratio);
-  return {mascon_seconds, std::min(growing, clock.seconds() * ratio + most_sweeps)};
+  const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
+  const double verticals = seconds_of_verticals * finer * finer + kSecondsOfVertical * mesh.triangles;
+  return {verticals, std::min(growing, clock.seconds() * ratio + most_sweeps)};
 }
 
 double meshing_bytes(const MeshEstimate& mesh) {

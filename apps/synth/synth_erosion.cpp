@@ -6,9 +6,8 @@
 
 namespace astrolith {
 
-void erode_mesh(Program& program, const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh) {
-  const Erosion& erosion = *recipe.erosion;
-  const ErosionStatistics done = erode_body(field, recipe, mesh, program.progress("erosion"));
+void erode_mesh(Program& program, const Erosion& erosion, TriangleMesh& mesh) {
+  const ErosionStatistics done = erode_body(erosion, mesh, program.progress("erosion"));
   program.summary["erosion"] = {{"settled", done.settled},
                                 {"sweeps", done.sweeps},
                                 {"steepest_before", done.steepest_before},

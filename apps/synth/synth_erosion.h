@@ -4,11 +4,10 @@
 #include "apps/program.h"
 #include "geometry/triangle_mesh.h"
 #include "recipe/recipe.h"
-#include "synthesis/field/implicit_field.h"
 
 namespace astrolith {
 
-// Erodes the whole mesh of a field as its recipe says. The summary and a line on stderr state the result.
-void erode_mesh(Program& program, const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh);
+// Erodes the mesh of a whole body as its recipe says. The summary and a line on stderr state the result.
+void erode_mesh(Program& program, const Erosion& erosion, TriangleMesh& mesh);
 
 }  // namespace astrolith

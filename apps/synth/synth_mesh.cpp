@@ -170,7 +170,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
                      result.sink(), [&](const std::string& stage) { return program.progress(stage); });
   const ManifoldReport& report = made.manifold;
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
-  if (recipe.erosion) erode_mesh(program, field, recipe, result.collected());
+  if (recipe.erosion) erode_mesh(program, *recipe.erosion, result.collected());
 
   std::vector<VertexValues> quantities;
   if (request.gravity.wanted())

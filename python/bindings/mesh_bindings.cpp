@@ -86,13 +86,12 @@ Vec3f narrowed(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-ErosionStatistics erode_arrays(const ImplicitField& field, const Recipe& recipe, ArraySink& arrays,
-                               const Progress& progress) {
+ErosionStatistics erode_arrays(const Erosion& erosion, ArraySink& arrays, const Progress& progress) {
   TriangleMesh mesh;
   mesh.triangles = std::move(arrays.triangles);
   for (const Vec3f& v : arrays.vertices) mesh.vertices.push_back({v.x, v.y, v.z});
   for (const Vec3f& v : arrays.normals) mesh.normals.push_back({v.x, v.y, v.z});
-  const ErosionStatistics done = erode_body(field, recipe, mesh, progress);
+  const ErosionStatistics done = erode_body(erosion, mesh, progress);
   arrays.triangles = std::move(mesh.triangles);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     arrays.vertices[i] = narrowed(mesh.vertices[i]);
@@ -119,7 +118,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   made.report = make_body_mesh(
       {recipe, field, file, region, made.resolution, arguments.min_component, MeshingDevice::kCpu},
       made.arrays, stage);
-  if (recipe.erosion) made.erosion = erode_arrays(field, recipe, made.arrays, state.progress("erosion"));
+  if (recipe.erosion) made.erosion = erode_arrays(*recipe.erosion, made.arrays, state.progress("erosion"));
   if (labels) made.legend = labels->legend();
   made.left_out.assign(field.left_out().begin(), field.left_out().end());
   return made;

@@ -4,14 +4,12 @@
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
-#include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/erosion.h"
 
 namespace astrolith {
 
-// Erodes the whole mesh of a field as its recipe says, which must have an erosion. Throws what erode()
-// throws.
-ErosionStatistics erode_body(const ImplicitField& field, const Recipe& recipe, TriangleMesh& mesh,
-                             const Progress& progress);
+// Erodes a whole body as a recipe says, against the gravity of its mesh, which must be closed. Throws what
+// erode() throws, and InputError for a mesh without a facet that has an area.
+ErosionStatistics erode_body(const Erosion& erosion, TriangleMesh& mesh, const Progress& progress);
 
 }  // namespace astrolith

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
+#include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
-#include "numerics/parallel_for.h"
 #include "synthesis/field/field_mesh.h"
-#include "synthesis/finish/mascons.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -37,7 +35,7 @@ Eroded eroded(const Recipe& recipe, int resolution, double talus_angle, int most
   MeshCollector collector;
   mesh_field(field, field.bounds(), resolution, collector);
   Eroded result{collector.mesh, collector.mesh, {}, {}};
-  result.up = vertical_directions(mascons_of(field, recipe.body->spheres), motion, result.before.vertices);
+  result.up = vertical_directions(result.before, motion);
   result.statistics = erode(result.after, result.up, talus_angle, most_sweeps);
   return result;
 }
@@ -67,44 +65,6 @@ double steepest_edge(const TriangleMesh& mesh, const std::vector<Vec3d>& up,
     }
   }
   return steepest * kDegrees;
-}
-
-TEST(Mascons, OverlapsCountOnce) {
-  Recipe recipe = testing::sphere_recipe(1.0);
-  recipe.body->blend_exponent = 40.0;
-  recipe.body->spheres = {{{0, 0, 0}, 1.0}, {{0, 0, 0}, 0.9}, {{0.05, 0, 0}, 0.9}, {{3, 0, 0}, 0.5}};
-  double volume = 0.0;
-  for (const Mascon& m : mascons_of(ImplicitField(recipe), recipe.body->spheres)) {
-    volume += 4.0 / 3.0 * std::numbers::pi * std::pow(m.radius, 3);
-  }
-  EXPECT_NEAR(volume, 4.0 / 3.0 * std::numbers::pi * (1.0 + 0.125), 0.15);
-}
-
-TEST(Mascons, VerticalsOfASphereAreItsNormalsAndTiltWithRotation) {
-  const Recipe recipe = testing::sphere_recipe(100.0, {10, -20, 30});
-  const std::vector<Mascon> mascons = mascons_of(ImplicitField(recipe), recipe.body->spheres);
-  ASSERT_EQ(mascons.size(), 1u);
-  const Vec3d normal = normalized(Vec3d{1.0, 0.5, 1.0});
-  const std::vector<Vec3d> points{Vec3d{10, -20, 30} + 100.0 * normal};
-  EXPECT_LT(norm(vertical_directions(mascons, {}, points)[0] - normal), 1e-3);
-  // Compares g = 4/3 pi G rho r with w^2 times the distance from the axis.
-  const double period = 3.0, turn = 2 * std::numbers::pi / (3600 * period);
-  const double gravity = 4.0 / 3.0 * std::numbers::pi * 6.674e-11 * 2500.0 * 100.0;
-  const Vec3d force = gravity * normal - turn * turn * 100.0 * Vec3d{normal.x, normal.y, 0.0};
-  EXPECT_LT(norm(vertical_directions(mascons, {2500.0, period}, points)[0] - normalized(force)), 5e-3);
-}
-
-TEST(Mascons, SameBitsForAnyThreads) {
-  const Recipe recipe = hilly_ball();
-  const ImplicitField field(recipe);
-  std::vector<Vec3d> points;
-  for (int i = 0; i < 1000; ++i) points.push_back({std::sin(i), std::cos(1.7 * i), std::sin(2.9 * i + 1)});
-  const std::vector<Mascon> mascons = mascons_of(field, recipe.body->spheres);
-  const std::vector<Vec3d> many = vertical_directions(mascons, {2000.0, 4.0}, points);
-  const ThreadLimit limit(1);
-  const std::vector<Vec3d> one =
-      vertical_directions(mascons_of(field, recipe.body->spheres), {2000.0, 4.0}, points);
-  EXPECT_EQ(std::memcmp(one.data(), many.data(), one.size() * sizeof(Vec3d)), 0);
 }
 
 TEST(Erosion, EndsWithoutASlopeAboveTheTalusAngle) {

@@ -1,0 +1,26 @@
+// The verticals of a body's surface, for work that needs no more than some tenths of a degree.
+#pragma once
+
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+// The density and the rotation of a body.
+struct BodyMotion {
+  double density = 2000.0;      // kg / m^3, > 0
+  double rotation_hours = 0.0;  // period about +z through the centre of mass; 0 = at rest
+};
+
+// For each vertex of a closed mesh the unit vector against gravity and centrifugal force, or the zero vector
+// where the two cancel. Faces are counter-clockwise seen from outside.
+//
+// Gravity is that of a coarse mesh of the same volume, computed at its vertices and continued to the vertices
+// of the mesh by its gradient. Hills smaller than 1/48 of the body therefore do not turn the verticals. On
+// smooth bodies they are within 0.1 degrees of the truth on average, on rough ones within 0.7. Time grows
+// with the vertices only by some 0.1 microseconds each. The bits are the same for any number of threads.
+// Throws InputError for a mesh without a facet that has an area.
+std::vector<Vec3d> vertical_directions(const TriangleMesh& mesh, const BodyMotion& motion);
+
+}  // namespace astrolith
