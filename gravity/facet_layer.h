@@ -9,73 +9,11 @@
 // of an edge in the plane of the face, L_e the potential of the edge as a wire and w the signed solid angle.
 #pragma once
 
-#include <bit>
-#include <cmath>
-#include <cstdint>
-
+#include "numerics/branch_free.h"
 #include "numerics/host_device.h"
 #include "numerics/vec3.h"
 
 namespace astrolith::layer {
-
-// log((r1 + r2 + e) / (r1 + r2 - e)) without loss of digits: `above` / `below` is the quotient, free of
-// cancellation, and is used where it is above sqrt(2). Below that the series has e / (r1 + r2) as its
-// argument. Error at most 2 ulp of the logarithm; finite for below = 0.
-ASTROLITH_KERNEL double wire_potential(double above, double below, double edge, double distances) {
-  constexpr double kTiny = 1e-290, kHuge = 1e290;
-  const double quotient = above / (below > kTiny ? below : kTiny);
-  const double at_least_one = quotient > 1.0 ? quotient : 1.0;
-  const double q = at_least_one < kHuge ? at_least_one : kHuge;
-  // q = 2^exponent * mantissa, mantissa in [sqrt(1/2), sqrt(2)); the exponent becomes a double by its bits.
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(q);
-  const std::uint64_t exponent = (bits - 0x3fe6a09e667f3bcdu) >> 52;
-  const double mantissa = std::bit_cast<double>(bits - (exponent << 52));
-  const double k = std::bit_cast<double>(exponent | 0x4330000000000000u) - 4503599627370496.0;
-  const bool near_one = exponent == 0;
-  const double sum = distances > kTiny ? distances : kTiny;
-  const double s = (near_one ? edge : mantissa - 1.0) / (near_one ? sum : mantissa + 1.0), z = s * s;
-  double p = 1.0 / 21.0;  // 2 atanh(s), |s| <= 0.172; leaves a remainder below 1e-17 of s
-  p = p * z + 1.0 / 19.0;
-  p = p * z + 1.0 / 17.0;
-  p = p * z + 1.0 / 15.0;
-  p = p * z + 1.0 / 13.0;
-  p = p * z + 1.0 / 11.0;
-  p = p * z + 1.0 / 9.0;
-  p = p * z + 1.0 / 7.0;
-  p = p * z + 1.0 / 5.0;
-  p = p * z + 1.0 / 3.0;
-  const double log_mantissa = 2.0 * s * z * p + 2.0 * s;
-  return k * 6.93147180369123816490e-01 + (k * 1.90821492927058770002e-10 + log_mantissa);
-}
-
-// The angle of (x, y) in [-pi, pi] within 2 ulp and 1e-290; 0 at the origin.
-ASTROLITH_KERNEL double angle_of(double y, double x) {
-  constexpr double kTangent = 0.41421356237309504880, kPi = 3.14159265358979323846;  // tan(pi / 8)
-  const double a = std::fabs(x), b = std::fabs(y);
-  const double low = a < b ? a : b, high = a < b ? b : a;
-  const bool third = low > 0.66817863791929891999 * high, second = low > 0.2553 * high;
-  const double c = third ? 1.0 : second ? kTangent : 0.0;
-  const double begin = third ? kPi / 4 : second ? kPi / 8 : 0.0;
-  const double under = high + c * low;
-  const double u = (low - c * high) / (under > 1e-290 ? under : 1e-290), z = u * u;
-  double p = -1.0 / 27.0;  // Taylor; |u| <= 0.2553 leaves a remainder below 1e-17 of u
-  p = p * z + 1.0 / 25.0;
-  p = p * z - 1.0 / 23.0;
-  p = p * z + 1.0 / 21.0;
-  p = p * z - 1.0 / 19.0;
-  p = p * z + 1.0 / 17.0;
-  p = p * z - 1.0 / 15.0;
-  p = p * z + 1.0 / 13.0;
-  p = p * z - 1.0 / 11.0;
-  p = p * z + 1.0 / 9.0;
-  p = p * z - 1.0 / 7.0;
-  p = p * z + 1.0 / 5.0;
-  p = p * z - 1.0 / 3.0;
-  const double octant = begin + (u + u * z * p);
-  const double quadrant = a < b ? kPi / 2 - octant : octant;
-  const double half = x < 0.0 ? kPi - quadrant : quadrant;
-  return y < 0.0 ? -half : half;
-}
 
 // What the sums need of one triangle. A triangle without area has zero vectors, and contributes nothing.
 struct Facet {
@@ -124,13 +62,14 @@ ASTROLITH_KERNEL LayerValue layer_potential(const Facet& f, double px, double py
     const bool before = t1 > 0.0, behind = t2 <= 0.0;
     const double above = before ? r2 + t2 : behind ? r1 - t1 : (r2 + t2) * (r1 - t1);
     const double below = before ? r1 + t1 : behind ? r2 - t2 : beside;
-    return out * wire_potential(above, below, f.edge[k], r1 + r2);
+    return out * branch_free::log_ratio(above, below, f.edge[k], r1 + r2);
   };
   const double wires = edge(0, ax, ay, az, ra, bx, by, bz, rb) + edge(1, bx, by, bz, rb, cx, cy, cz, rc) +
                        edge(2, cx, cy, cz, rc, ax, ay, az, ra);
   const double ab = ax * bx + ay * by + az * bz, bc = bx * cx + by * cy + bz * cz,
                ca = cx * ax + cy * ay + cz * az;
-  const double solid = 2.0 * angle_of(height * f.twice_area, ra * rb * rc + ra * bc + rb * ca + rc * ab);
+  const double solid =
+      2.0 * branch_free::atan2(height * f.twice_area, ra * rb * rc + ra * bc + rb * ca + rc * ab);
   return {wires - height * solid, height};
 }
 
