@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gravity/gauss_rule.h"
-#include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -66,22 +66,34 @@ void add_facet(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::span<const T
   }
 }
 
-RegularSums volume_sums(const TriangleMesh& mesh, const Vec3d& center, double radius, int degree) {
-  constexpr std::int64_t kFacetsOfTask = 1024;
+// Facets of one task: as many as take some milliseconds, since the program stops between tasks only.
+std::int64_t facets_of_task(int degree, std::size_t rule_points) {
+  const auto terms = static_cast<std::int64_t>(rule_points * RegularSums::count(degree));
+  return std::clamp<std::int64_t>(20'000'000 / terms, 1, 1024);
+}
+
+// Tasks are done in stretches, so that the sums of few tasks are held at a time.
+RegularSums volume_sums(const TriangleMesh& mesh, const Vec3d& center, double radius, int degree,
+                        const Progress& progress) {
+  constexpr std::int64_t kTasksOfStretch = 256;
   const std::vector<TrianglePoint> rule = triangle_rule(degree);
   const auto facets = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<RegularSums> parts(static_cast<std::size_t>((facets + kFacetsOfTask - 1) / kFacetsOfTask),
-                                 RegularSums(degree));
-  parallel_for(0, static_cast<std::int64_t>(parts.size()), [&](std::int64_t part) {
-    for (std::int64_t i = part * kFacetsOfTask; i < std::min((part + 1) * kFacetsOfTask, facets); ++i) {
-      const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(i)];
-      const auto scaled = [&](std::uint32_t v) { return (mesh.vertices[v] - center) * (1.0 / radius); };
-      add_facet(scaled(a), scaled(b), scaled(c), rule, parts[static_cast<std::size_t>(part)]);
-    }
-  });
+  const std::int64_t size = facets_of_task(degree, rule.size()), tasks = (facets + size - 1) / size;
   RegularSums sums(degree);
-  for (const RegularSums& part : parts) {
-    for (std::size_t i = 0; i < sums.re.size(); ++i) sums.re[i] += part.re[i], sums.im[i] += part.im[i];
+  for (std::int64_t first = 0; first < tasks; first += kTasksOfStretch) {
+    const std::int64_t end = std::min(first + kTasksOfStretch, tasks);
+    std::vector<RegularSums> parts(static_cast<std::size_t>(end - first), RegularSums(degree));
+    reported_parallel_for({first, end, tasks}, progress, "harmonics", [&](std::int64_t task) {
+      RegularSums& part = parts[static_cast<std::size_t>(task - first)];
+      for (std::int64_t i = task * size; i < std::min((task + 1) * size, facets); ++i) {
+        const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(i)];
+        const auto scaled = [&](std::uint32_t v) { return (mesh.vertices[v] - center) * (1.0 / radius); };
+        add_facet(scaled(a), scaled(b), scaled(c), rule, part);
+      }
+    });
+    for (const RegularSums& part : parts) {
+      for (std::size_t i = 0; i < sums.re.size(); ++i) sums.re[i] += part.re[i], sums.im[i] += part.im[i];
+    }
   }
   return sums;
 }
@@ -160,8 +172,8 @@ PrincipalAxes principal_axes(const Matrix3& symmetric) {
 }
 
 std::vector<GravityCoefficient> gravity_coefficients(const TriangleMesh& mesh, const Vec3d& center,
-                                                     double radius, int degree) {
-  const RegularSums sums = volume_sums(mesh, center, radius, degree);
+                                                     double radius, int degree, const Progress& progress) {
+  const RegularSums sums = volume_sums(mesh, center, radius, degree, progress);
   const double volume = sums.re[0] / 3.0;
   std::vector<GravityCoefficient> coefficients;
   for (int l = 0; l <= degree; ++l) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -41,7 +42,9 @@ constexpr int kMostDegree = 50;
 
 // All coefficients to `degree` in [0, kMostDegree] about `center` for the reference radius a > 0, in units of
 // the mesh. Every coefficient is an exact sum over facets; rounding leaves some 1e-14.
+// Throws WorkError when progress asks to stop.
 std::vector<GravityCoefficient> gravity_coefficients(const TriangleMesh& mesh, const Vec3d& center,
-                                                     double radius, int degree);
+                                                     double radius, int degree,
+                                                     const Progress& progress = {});
 
 }  // namespace astrolith

@@ -6,6 +6,7 @@
 #include "gravity/gauss_rule.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -156,13 +157,16 @@ std::vector<std::vector<std::uint32_t>> nodes_by_depth(const GravityTree& tree) 
   return depths;
 }
 
-void make_multipoles(GravityTree& tree) {
+void make_multipoles(GravityTree& tree, const Progress& progress) {
   tree.multipoles.assign(tree.nodes.size(), GravityMultipoles{});
   const Expansion expansion{tree.most_order, triangle_rule(tree.most_order), places_to(tree.most_order)};
   const std::vector<std::vector<std::uint32_t>> depths = nodes_by_depth(tree);
+  const auto all = static_cast<std::int64_t>(tree.nodes.size());
+  std::int64_t done = 0;
   for (auto depth = depths.rbegin(); depth != depths.rend(); ++depth) {
-    parallel_for(0, static_cast<std::int64_t>(depth->size()), [&](std::int64_t i) {
-      const std::uint32_t at = (*depth)[static_cast<std::size_t>(i)];
+    const auto end = done + static_cast<std::int64_t>(depth->size());
+    reported_parallel_for({done, end, all}, progress, "tree of gravity", [&](std::int64_t i) {
+      const std::uint32_t at = (*depth)[static_cast<std::size_t>(i - done)];
       const GravityNode& node = tree.nodes[at];
       if (node.leaf != 0) {
         expand_leaf(std::span(tree.facets).subspan(node.first, node.count), node.center, expansion,
@@ -174,6 +178,7 @@ void make_multipoles(GravityTree& tree) {
                     tree.multipoles[at]);
       }
     });
+    done = end;
   }
   // m and -m give equal terms; the sums take m > 0 only.
   parallel_for(0, static_cast<std::int64_t>(tree.nodes.size()), [&](std::int64_t i) {
@@ -186,7 +191,8 @@ void make_multipoles(GravityTree& tree) {
 
 }  // namespace
 
-GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail) {
+GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail,
+                              const Progress& progress) {
   GravityTree tree;
   tree.most_order = detail.most_order;
   const Box bounds = mesh.bounds();
@@ -209,7 +215,7 @@ GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& det
   Splitter(tree, detail.leaf_facets).split(0, static_cast<std::uint32_t>(tree.facets.size()));
   parallel_for(0, static_cast<std::int64_t>(tree.nodes.size()),
                [&](std::int64_t i) { measure_node(tree, tree.nodes[static_cast<std::size_t>(i)]); });
-  make_multipoles(tree);
+  make_multipoles(tree, progress);
   return tree;
 }
 

@@ -14,6 +14,7 @@
 
 #include "geometry/triangle_mesh.h"
 #include "gravity/solid_harmonics.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -53,8 +54,9 @@ struct GravityTree {
 };
 
 // Builds the tables of a mesh with indices in range and at least one triangle of positive area. Throws
-// InputError where there is none.
-GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail = {});
+// InputError where there is none, and WorkError when progress asks to stop.
+GravityTree make_gravity_tree(const TriangleMesh& mesh, const GravityDetail& detail = {},
+                              const Progress& progress = {});
 
 // Sums over all facets for points in the tables' units, arrays of `count` <= 16 points, added to: layers[k]
 // is the sum of n_k I, work the sum of (n . r) I.

@@ -7,8 +7,8 @@
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -20,7 +20,6 @@ constexpr double kCrudeOpening = 0.6;
 constexpr int kCrudeOrder = 3;
 constexpr double kRoughOpening = 0.7;  // radius of a node over its distance
 constexpr double kLeastAcceleration = 0.05;
-constexpr std::int64_t kBatchesBetweenReports = 256;
 
 // Points in the tables' units, and their places in the caller's array.
 struct Target {
@@ -153,22 +152,16 @@ std::vector<Attraction> evaluate(const GravityTree& tree, std::span<const Vec3d>
   const std::vector<Target> targets = ordered_targets(tree, points);
   std::vector<Attraction> values(points.size());
   const auto batches = static_cast<std::int64_t>((points.size() + kPointBatch - 1) / kPointBatch);
-  for (std::int64_t begin = 0; begin < batches; begin += kBatchesBetweenReports) {
-    const std::int64_t end = std::min(begin + kBatchesBetweenReports, batches);
-    parallel_for(begin, end, [&](std::int64_t i) {
-      const std::size_t first = static_cast<std::size_t>(i) * kPointBatch;
-      const std::span own =
-          std::span(targets).subspan(first, std::min<std::size_t>(kPointBatch, targets.size() - first));
-      const GravitySums sums = sums_of(make_batch(own));
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        values[own[k].place] = {0.5 * tree.scale * tree.scale * sums.work[k],
-                                -tree.scale * Vec3d{sums.layers[0][k], sums.layers[1][k], sums.layers[2][k]}};
-      }
-    });
-    if (!report(progress, static_cast<double>(end) / static_cast<double>(batches), "gravity")) {
-      throw WorkError("gravity: stopped");
+  reported_parallel_for({0, batches, batches}, progress, "sums of gravity", [&](std::int64_t i) {
+    const std::size_t first = static_cast<std::size_t>(i) * kPointBatch;
+    const std::span own =
+        std::span(targets).subspan(first, std::min<std::size_t>(kPointBatch, targets.size() - first));
+    const GravitySums sums = sums_of(make_batch(own));
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      values[own[k].place] = {0.5 * tree.scale * tree.scale * sums.work[k],
+                              -tree.scale * Vec3d{sums.layers[0][k], sums.layers[1][k], sums.layers[2][k]}};
     }
-  }
+  });
   return values;
 }
 

@@ -21,9 +21,11 @@ struct Attraction {
 // threads.
 class PolyhedronGravity {
  public:
-  // Indices of the mesh must be in range. Throws InputError for a mesh without a facet that has an area.
-  explicit PolyhedronGravity(const TriangleMesh& mesh, const GravityDetail& detail = {})
-      : tree_(make_gravity_tree(mesh, detail)) {}
+  // Indices of the mesh must be in range. Throws InputError for a mesh without a facet that has an area,
+  // and WorkError when progress asks to stop.
+  explicit PolyhedronGravity(const TriangleMesh& mesh, const GravityDetail& detail = {},
+                             const Progress& progress = {})
+      : tree_(make_gravity_tree(mesh, detail, progress)) {}
 
   // Near facets exactly, the others by multipoles. The sum of the bounds of all multipoles' errors is at most
   // `tolerance` times the acceleration at a point. Where the acceleration nearly vanishes, as at the centre

@@ -125,7 +125,7 @@ struct Evaluation {
 
 Evaluation evaluated(const Program& program, const Arguments& a, const GravityBody& body,
                      const GravityPlaces& places) {
-  const PolyhedronGravity gravity(body.mesh);
+  const PolyhedronGravity gravity(body.mesh, {}, program.progress("tree"));
   const Progress progress = program.progress("gravity");
   Evaluation result;
   if (a.exact) {
@@ -164,7 +164,7 @@ void run(Program& program, const Arguments& a) {
                                 {"density_kg_m3", a.density},
                                 {"period_h", a.period}};
   result["body"] = mass_json(body, mass, a.density);
-  result["harmonics"] = coefficients_json(body, mass, a.radius, a.degree);
+  result["harmonics"] = coefficients_json(body, mass, a.radius, a.degree, program.progress("harmonics"));
   result["places"] = a.points.empty() ? a.at : "points";
   result["count"] = values.size();
   result["values"] = surface_json(places, values, means);

@@ -38,10 +38,12 @@ Json mass_json(const GravityBody& body, const BodyMass& mass, double density) {
           {"principal_axes", axes}};
 }
 
-Json coefficients_json(const GravityBody& body, const BodyMass& mass, double radius, int degree) {
+Json coefficients_json(const GravityBody& body, const BodyMass& mass, double radius, int degree,
+                       const Progress& progress) {
   const double reference = radius > 0.0 ? radius : farthest_vertex(body.mesh, mass.center);
   Json rows = Json::array();
-  for (const GravityCoefficient& k : gravity_coefficients(body.mesh, mass.center, reference, degree)) {
+  for (const GravityCoefficient& k :
+       gravity_coefficients(body.mesh, mass.center, reference, degree, progress)) {
     rows.push_back({k.degree, k.order, k.c, k.s});
   }
   return {{"normalisation", "4 pi, without the sign of Condon and Shortley"},

@@ -14,6 +14,6 @@ nlohmann::ordered_json mass_json(const GravityBody& body, const BodyMass& mass, 
 // Coefficients about the centre of mass for the reference radius in the body's unit; 0 stands for the
 // distance of the farthest vertex.
 nlohmann::ordered_json coefficients_json(const GravityBody& body, const BodyMass& mass, double radius,
-                                         int degree);
+                                         int degree, const Progress& progress);
 
 }  // namespace astrolith

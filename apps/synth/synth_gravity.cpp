@@ -29,7 +29,7 @@ std::vector<VertexValues> vertex_gravity(Program& program, const GravityRequest&
   const double density = request.density_and_period[0], period = request.density_and_period[1];
   const double metres = metres_of(recipe.length_unit);
   const GravityPlaces places = vertex_places(mesh);
-  const PolyhedronGravity gravity(mesh);
+  const PolyhedronGravity gravity(mesh, {}, program.progress("tree"));
   const std::vector<Attraction> attractions =
       gravity.at(places.points, kTolerance, program.progress("gravity"));
   const Rotation rotation{metres * body_mass(mesh).center,
@@ -39,8 +39,9 @@ std::vector<VertexValues> vertex_gravity(Program& program, const GravityRequest&
       point_gravity(in_metres(places.points, metres), attractions, density, metres, rotation);
   const SurfaceMeans means = surface_means(values, places.areas);
   program.summary["gravity"] = surface_json(places, values, means);
-  program.summary["gravity"]["achieved_error"] =
-      error_json(achieved_error(gravity, places.points, attractions, kSample, program.seed), kTolerance);
+  program.summary["gravity"]["achieved_error"] = error_json(
+      achieved_error(gravity, places.points, attractions, kSample, program.seed, program.progress("check")),
+      kTolerance);
   std::vector<VertexValues> quantities;
   const std::vector<GravityColumn> columns = gravity_columns(places, values, means);
   for (std::size_t k = 3; k < columns.size(); ++k) quantities.push_back({columns[k].name, columns[k].values});

@@ -1,7 +1,11 @@
 // gravity, run as a user runs it.
+#include <signal.h>
+
+#include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <thread>
 
 #include "geometry/io/mesh_io.h"
 #include "tests/apps/inputs.h"
@@ -124,6 +128,34 @@ TEST_F(Gravity, SameOutputForAnyThreadCount) {
   gravity({ball_, "--density", "2000", "--period", "5", "-o", a, "--threads", "1"});
   gravity({ball_, "--density", "2000", "--period", "5", "-o", b, "--threads", "2"});
   EXPECT_EQ(text_of(a), text_of(b));
+}
+
+// Ctrl-C after the program has begun its longest work.
+TEST_F(Gravity, CtrlCStopsItWithinASecondAndLeavesNoFile) {
+  using Clock = std::chrono::steady_clock;
+  const std::string fine = folder_.write("fine.obj", ellipsoid_obj(3, 2, 1, 101, 200));
+  const std::string point = folder_.write("point.csv", "9 0 0\n");
+  const std::set<std::string> before = folder_.files();
+  const std::vector<std::string> harmonics{"--points", point, "--degree", "50"}, exact{"--exact"};
+  for (const std::vector<std::string>& longest : {harmonics, exact}) {
+    std::vector<std::string> words{kGravity,   fine, "--density", "2000", "-o", folder_ / "fine.csv",
+                                   "--sample", "0",  "--quiet"};
+    words.insert(words.end(), longest.begin(), longest.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    ASSERT_EQ(::posix_spawn(&child, argv[0], nullptr, nullptr, argv.data(), environ), 0);
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    ASSERT_EQ(::waitpid(child, nullptr, WNOHANG), 0) << longest[0] << " ended before it could be stopped";
+    const auto pressed = Clock::now();
+    ::kill(child, SIGINT);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_LT(std::chrono::duration<double>(Clock::now() - pressed).count(), 1.0) << longest[0];
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << longest[0];
+    EXPECT_EQ(folder_.files(), before) << longest[0];
+  }
 }
 
 TEST_F(Gravity, BadInputIsRefused) {
