@@ -9,6 +9,7 @@
 
 #include "apps/gravity/gravity_body.h"
 #include "apps/gravity/gravity_outputs.h"
+#include "apps/gravity/gravity_parts.h"
 #include "apps/gravity/gravity_summary.h"
 #include "apps/gravity_table.h"
 #include "apps/output_names.h"
@@ -21,7 +22,7 @@ namespace astrolith {
 namespace {
 
 struct Arguments {
-  std::string shape, output, preview, points, unit, at = "facets", color = "slope_deg";
+  std::string shape, output, preview, points, unit, parts, at = "facets", color = "slope_deg";
   double density = 0.0, period = 0.0, tolerance = 1e-6, radius = 0.0;
   std::tuple<double, double, double> axis{0, 0, 1};
   int resolution = 128, degree = 4, sample = 100;
@@ -37,6 +38,12 @@ void add_options(Program& program, Arguments& a) {
   app.add_option("-o,--output", a.output, "table of all places (.csv, .npy), or the mesh with values (.ply)")
       .placeholder("FILE");
   app.add_option("--density", a.density, "kg/m3, of the whole body").placeholder("N").default_text("");
+  app.add_option(
+         "--density-of", a.parts,
+         "closed parts inside the body with densities of their own, in the body's unit and frame: lobes, "
+         "boulders, a core, a cavity of 0")
+      .placeholder("FILE=N,FILE=N ...")
+      .default_text("");
   app.add_option("--period", a.period, "of rotation, hours; without it the body is at rest")
       .placeholder("N")
       .default_text("");
@@ -124,17 +131,19 @@ struct Evaluation {
 };
 
 Evaluation evaluated(const Program& program, const Arguments& a, const GravityBody& body,
-                     const GravityPlaces& places) {
+                     const std::vector<BodyPart>& parts, const GravityPlaces& places) {
   const PolyhedronGravity gravity(body.mesh, {}, program.progress("tree"));
   const Progress progress = program.progress("gravity");
   Evaluation result;
   if (a.exact) {
     result.attractions = gravity.exactly_at(places.points, progress);
+    add_parts(parts, places.points, a.tolerance, true, program.progress("parts"), result.attractions);
     return result;
   }
   result.attractions = gravity.at(places.points, a.tolerance, progress);
   result.error = achieved_error(gravity, places.points, result.attractions, a.sample, program.seed,
                                 program.progress("check"));
+  add_parts(parts, places.points, a.tolerance, false, program.progress("parts"), result.attractions);
   return result;
 }
 
@@ -151,8 +160,9 @@ void run(Program& program, const Arguments& a) {
   check(program, a);
   const GravityBody body = read_gravity_body(program, a.shape, a.unit, a.resolution);
   const GravityPlaces places = places_of(a, body.mesh);
-  const BodyMass mass = body_mass(body.mesh);
-  const Evaluation evaluation = evaluated(program, a, body, places);
+  const std::vector<BodyPart> parts = read_parts(program, a.parts, body, a.density, a.resolution);
+  const BodyMass homogeneous = body_mass(body.mesh), mass = with_parts(homogeneous, parts);
+  const Evaluation evaluation = evaluated(program, a, body, parts, places);
   const std::vector<PointGravity> values =
       point_gravity(in_metres(places.points, body.metres), evaluation.attractions, a.density, body.metres,
                     rotation_of(a, body, mass));
@@ -163,8 +173,10 @@ void run(Program& program, const Arguments& a) {
                                 {"facets", body.mesh.triangles.size()},
                                 {"density_kg_m3", a.density},
                                 {"period_h", a.period}};
-  result["body"] = mass_json(body, mass, a.density);
-  result["harmonics"] = coefficients_json(body, mass, a.radius, a.degree, program.progress("harmonics"));
+  result["body"] = mass_json(body, mass, homogeneous.volume, a.density);
+  if (!parts.empty()) result["parts"] = parts_json(body, parts);
+  result["harmonics"] =
+      coefficients_json(body, mass, parts, a.radius, a.degree, program.progress("harmonics"));
   result["places"] = a.points.empty() ? a.at : "points";
   result["count"] = values.size();
   result["values"] = surface_json(places, values, means);

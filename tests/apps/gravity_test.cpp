@@ -130,6 +130,76 @@ TEST_F(Gravity, SameOutputForAnyThreadCount) {
   EXPECT_EQ(text_of(a), text_of(b));
 }
 
+// The places of an OBJ's vertices, scaled and shifted.
+std::string moved_obj(const std::string& obj, double scale, double x) {
+  std::istringstream lines(obj);
+  std::ostringstream text;
+  text.precision(17);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    double p[3];
+    if (words >> kind && kind == "v" && words >> p[0] >> p[1] >> p[2]) {
+      text << "v " << scale * p[0] + x << " " << scale * p[1] << " " << scale * p[2] << "\n";
+    } else {
+      text << line << "\n";
+    }
+  }
+  return text.str();
+}
+
+// A ball of 1 km and 2,000 kg/m3 with a ball of 0.3 km and 5,000 kg/m3 at x = 0.5 km, and a hollow of 0.2 km
+// at x = -0.6 km. Mass, centre, moments, coefficients and fields are those of balls.
+TEST_F(Gravity, PartsOfOtherDensities) {
+  const std::string fine = ellipsoid_obj(1, 1, 1, 61, 120);
+  const std::string ball = folder_.write("fine.obj", fine);
+  const std::string heavy = folder_.write("heavy.obj", moved_obj(fine, 0.3, 0.5)),
+                    hollow = folder_.write("hollow.obj", moved_obj(fine, 0.2, -0.6));
+  const std::string points = folder_.write("p.csv", "30 0 40\n0.5 0 0\n-0.6 0 0\n0 3 0\n");
+  const auto result = gravity({ball, "--density", "2000", "--density-of", heavy + "=5000," + hollow + "=0",
+                               "--points", points, "--degree", "2", "-o", (folder_ / "o.csv").string()});
+  struct Ball {
+    double radius, x, surplus;
+  };
+  const Ball balls[] = {{1000, 0, 2000}, {300, 500, 3000}, {200, -600, -2000}};
+  double mass = 0, first = 0, about_x = 0, about_z = 0;
+  for (const Ball& b : balls) mass += b.surplus * 4 * std::numbers::pi / 3 * std::pow(b.radius, 3);
+  for (const Ball& b : balls) first += b.surplus * 4 * std::numbers::pi / 3 * std::pow(b.radius, 3) * b.x;
+  const double center = first / mass;
+  for (const Ball& b : balls) {
+    const double own = b.surplus * 4 * std::numbers::pi / 3 * std::pow(b.radius, 3);
+    about_x += 0.4 * own * b.radius * b.radius;
+    about_z += 0.4 * own * b.radius * b.radius + own * (b.x - center) * (b.x - center);
+  }
+  EXPECT_NEAR(result["body"]["mass_kg"].get<double>() / mass, 1, 3e-3);
+  EXPECT_NEAR(result["body"]["volume_m3"].get<double>() / (4e9 * std::numbers::pi / 3), 1, 3e-3);
+  EXPECT_NEAR(result["body"]["center_of_mass_m"][0].get<double>(), center, 0.02);
+  EXPECT_NEAR(result["body"]["inertia_kg_m2"][0][0].get<double>() / about_x, 1, 4e-3);
+  EXPECT_NEAR(result["body"]["inertia_kg_m2"][2][2].get<double>() / about_z, 1, 4e-3);
+  EXPECT_EQ(result["parts"].size(), 2u);
+  // C_20 sqrt(5) = (A + B - 2 C) / (2 M a^2) with moments A, B and C about x, y and z (MacCullagh).
+  const double a = result["harmonics"]["reference_radius_m"].get<double>();
+  const auto moment = [&](std::size_t i) { return result["body"]["inertia_kg_m2"][i][i].get<double>(); };
+  const double c20 = (moment(0) + moment(1) - 2 * moment(2)) /
+                     (2 * std::sqrt(5.0) * result["body"]["mass_kg"].get<double>() * a * a);
+  for (const auto& row : result["harmonics"]["degree_order_c_s"]) {
+    const int degree = row[0].get<int>(), order = row[1].get<int>();
+    if (degree == 2 && order > 0) continue;
+    EXPECT_NEAR(row[2].get<double>(), degree == 0 ? 1.0 : degree == 1 ? 0.0 : c20, 1e-12) << degree;
+  }
+  const auto rows = rows_of("o.csv");
+  ASSERT_EQ(rows.size(), 4u);
+  for (const auto& row : rows) {
+    double potential = 0;
+    for (const Ball& b : balls) {
+      const double r = 1000 * std::hypot(row[0] - b.x / 1000, row[1], row[2]), s = b.radius;
+      potential -= kConstant * b.surplus * 4 * std::numbers::pi / 3 *
+                   (r > s ? s * s * s / r : (3 * s * s - r * r) / 2);
+    }
+    EXPECT_NEAR(row[3] / potential, 1, 3e-3) << row[0];
+  }
+}
+
 // Ctrl-C after the program has begun its longest work.
 TEST_F(Gravity, CtrlCStopsItWithinASecondAndLeavesNoFile) {
   using Clock = std::chrono::steady_clock;
@@ -179,6 +249,13 @@ TEST_F(Gravity, BadInputIsRefused) {
   const std::string inside_out =
       folder_.write("turned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
   refuse({inside_out, "--density", "2000"}, "turned.obj");
+  refuse({ball_, "--density", "2000", "--density-of", ball_}, "--density-of");
+  refuse({ball_, "--density", "2000", "--density-of", ball_ + "=-1"}, "0 to 1e6");
+  refuse({ball_, "--density", "2000", "--density-of", ball_ + "=1e3x"}, "0 to 1e6");
+  refuse({ball_, "--density", "2000", "--density-of", open + "=1000"}, "open.obj");
+  refuse({ball_, "--density", "2000", "--density-of", ball_ + "=0"}, "no mass");
+  const std::string beside = folder_.write("beside.obj", moved_obj(ellipsoid_obj(1, 1, 1, 9, 12), 1.0, 0.5));
+  refuse({ball_, "--density", "2000", "--density-of", beside + "=1000"}, "leaves the body");
   const std::string nan = folder_.write("nan.csv", "1 2 3\n1 nan 3\n");
   refuse({ball_, "--density", "2000", "--points", nan}, "nan.csv: line 2");
   const std::string few = folder_.write("few.csv", "1 2 3\n1 2\n");
