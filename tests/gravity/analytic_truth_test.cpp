@@ -97,7 +97,7 @@ std::vector<Node> gauss(int n) {
   return nodes;
 }
 
-LongVector wide(const Vec3d& v) { return {v.x, v.y, v.z}; }
+LongVector long_vector(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 // A polyhedron is the signed sum of the tetrahedra of its facets with the point p. With q = s f, f on the
 // facet, the integral of 1 / |q| over one is that of s ds times h dA / |f|, smooth unless p lies in the
@@ -106,8 +106,9 @@ Truth by_quadrature(const TriangleMesh& mesh, const Vec3d& p) {
   const std::vector<Node> rule = gauss(80);
   Truth truth;
   for (const auto& [ia, ib, ic] : mesh.triangles) {
-    const LongVector a = wide(mesh.vertices[ia] - p), u = wide(mesh.vertices[ib] - mesh.vertices[ia]),
-                     v = wide(mesh.vertices[ic] - mesh.vertices[ia]);
+    const LongVector a = long_vector(mesh.vertices[ia] - p),
+                     u = long_vector(mesh.vertices[ib] - mesh.vertices[ia]),
+                     v = long_vector(mesh.vertices[ic] - mesh.vertices[ia]);
     const Long height_by_area = dot(a, cross(u, v));
     if (std::fabs(static_cast<double>(height_by_area)) < 1e-15) continue;
     for (const Node& i : rule) {
@@ -187,7 +188,7 @@ Truth limit_of_ellipsoids(const Vec3d& half, const Vec3d& p) {
     TriangleMesh mesh = octasphere(n);
     for (Vec3d& v : mesh.vertices) v = {half.x * v.x, half.y * v.y, half.z * v.z};
     const Attraction at = PolyhedronGravity(mesh, kNoTree).exactly_at(std::vector<Vec3d>{p})[0];
-    return Truth{at.potential, wide(at.acceleration)};
+    return Truth{at.potential, long_vector(at.acceleration)};
   });
 }
 
@@ -207,7 +208,7 @@ TEST(AnalyticTruth, BallAsTheLimitOfPolyhedra) {
 
 // Potential and pull of a homogeneous ellipsoid inside and outside (MacMillan 1930): integrals over u from
 // lambda, the ellipsoid through the point, to infinity. u = lambda + (t / (1 - t))^2 makes them smooth.
-Truth ellipsoid(const Vec3d& half, const Vec3d& p) {
+Truth truth_of_ellipsoid(const Vec3d& half, const Vec3d& p) {
   const LongVector square{Long(half.x) * half.x, Long(half.y) * half.y, Long(half.z) * half.z};
   const LongVector point{Long(p.x) * p.x, Long(p.y) * p.y, Long(p.z) * p.z};
   const auto beyond = [&](Long u) {
@@ -238,7 +239,7 @@ TEST(AnalyticTruth, EllipsoidAsTheLimitOfPolyhedra) {
   const Vec3d half{1.5, 1.25, 1.0};
   for (const Vec3d& p :
        {Vec3d{0.2, -0.3, 0.25}, Vec3d{0.5, 0.25, -0.125}, Vec3d{2, 1, 1.5}, Vec3d{-4, 3, 5}}) {
-    expect_equal(limit_of_ellipsoids(half, p), ellipsoid(half, p), 1e-10);
+    expect_equal(limit_of_ellipsoids(half, p), truth_of_ellipsoid(half, p), 1e-10);
   }
 }
 
