@@ -116,7 +116,8 @@ def runs(folder):
     yield ["compare", ball, other, "--floor", "-o", folder / "comparison.json"]
     yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3"]
     yield ["classify", "predict", folder / "model.json", ball]
-    yield ["gravity", ball, "--density", "2000", "--period", "5", "-o", folder / "gravity.csv"]
+    gravity = ["gravity", ball, "--density", "2000", "--period", "5", "-o", folder / "gravity.csv"]
+    yield [*gravity, "--density-of", f"{ball}=2500"]
 
 
 def main():
