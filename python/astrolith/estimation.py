@@ -13,10 +13,10 @@ from typing import Any, Optional, Sequence, Union
 import numpy as np
 import numpy.typing as npt
 
-from astrolith import _arrays, _estimation
+from astrolith import _arrays, _estimation, _options
 from astrolith._mesh import MeshLike, arrays_of
+from astrolith._options import Progress
 from astrolith._recipe import PathLike, Recipe, Record, records
-from astrolith.synthesis import Progress, _seed, _threads
 
 __all__ = ["ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "train_classifier"]
 
@@ -147,8 +147,8 @@ def fit_shape(
         _arrays.choice(unit or "km", "unit", ("km", "m")),
         "" if checkpoint is None else os.fspath(checkpoint),
         given,
-        1 if seed is None else _seed(seed),
-        _threads(threads),
+        1 if seed is None else _options.seed(seed),
+        _options.threads(threads),
         progress,
     )
     return ShapeFit(Recipe(records(json)), records(figures))
@@ -259,8 +259,8 @@ def fit_texture(
         0.03 if penalty is None else _arrays.number(penalty, "penalty", 1e-4, 0.99),
         1e-4 if gap is None else _arrays.number(gap, "gap", 1e-8, 0.5),
         given,
-        1 if seed is None else _seed(seed),
-        _threads(threads),
+        1 if seed is None else _options.seed(seed),
+        _options.threads(threads),
         progress,
     )
     return TextureFit(Recipe(records(json)), records(figures))
@@ -313,8 +313,8 @@ def train_classifier(
         _arrays.integer(trees, "trees", 1, 10000),
         _arrays.integer(depth, "depth", 1, 60),
         _arrays.integer(components, "components", 0, 100000),
-        _seed(seed),
-        _threads(threads),
+        _options.seed(seed),
+        _options.threads(threads),
         progress,
     )
 
@@ -328,5 +328,5 @@ def classify(model: PathLike, mesh: MeshLike, *, threads: int = 0, progress: Pro
         The file is no classifier, or the mesh has no area.
     """
     arrays = arrays_of(mesh, "mesh")
-    classes, votes = _estimation.classify(os.fspath(model), arrays.vertices, arrays.faces, _threads(threads), progress)
+    classes, votes = _estimation.classify(os.fspath(model), arrays.vertices, arrays.faces, _options.threads(threads), progress)
     return dict(zip(classes, votes))

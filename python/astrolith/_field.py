@@ -1,0 +1,79 @@
+"""The field of a recipe at points."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from astrolith import _arrays, _options, _synthesis
+from astrolith._options import Progress
+from astrolith._recipe import RecipeLike, json_of
+
+
+class Field:
+    """The field F of a recipe: positive inside, about a distance near the surface, whose F = 0 is the surface.
+
+    Parameters
+    ----------
+    recipe
+        A recipe with a body.
+
+    Raises
+    ------
+    ValueError
+        The recipe breaks a rule, or has no body.
+
+    Notes
+    -----
+    Layers too fine for float coordinates of the body's frame are left out (:attr:`left_out`); a ``patch`` of
+    :func:`mesh` has them.
+    """
+
+    def __init__(self, recipe: RecipeLike) -> None:
+        json, name = json_of(recipe)
+        self._field = _synthesis.Field(json, name)
+
+    def value(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.float64]:
+        """Evaluate F, in length units.
+
+        Parameters
+        ----------
+        points
+            (n, 3) float64 or float32 positions in the body-fixed frame. float64 is read in place.
+        threads
+            Threads to use; 0: all. They do not change the result.
+
+        Returns
+        -------
+        ndarray
+            (n) float64.
+
+        Raises
+        ------
+        ValueError
+            `points` has another shape or type, or a number that is not finite.
+        """
+        return self._field.value(_arrays.rows(points, "points", empty=True), _options.threads(threads), progress)
+
+    def gradient(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.float64]:
+        """Evaluate the gradient of F, (n, 3) float64 without a unit; it points inwards. As :meth:`value` otherwise."""
+        return self._field.gradient(_arrays.rows(points, "points", empty=True), _options.threads(threads), progress)
+
+    def inside(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.bool_]:
+        """Return (n) bool: whether F > 0. As :meth:`value` otherwise."""
+        return self._field.inside(_arrays.rows(points, "points", empty=True), _options.threads(threads), progress)
+
+    @property
+    def bounds(self) -> npt.NDArray[np.float64]:
+        """(2, 3) float64: the lower and the upper corner of a box that holds the whole surface, length units."""
+        return np.array(self._field.bounds())
+
+    @property
+    def gradient_step(self) -> float:
+        """The step of the central differences of :meth:`gradient`, length units."""
+        return self._field.gradient_step()
+
+    @property
+    def left_out(self) -> list[tuple[int, float, float]]:
+        """What float coordinates cannot resolve: layer (-1: the body's warp), share of variance, finest length."""
+        return self._field.left_out()

@@ -1,0 +1,117 @@
+"""The mesh of a recipe."""
+
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence, Union
+
+from astrolith import _arrays, _options, _synthesis
+from astrolith._mesh import Mesh
+from astrolith._options import Progress
+from astrolith._recipe import RecipeLike, Record, records
+
+
+def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[int]]) -> tuple[Any, Any]:
+    if patch is not None and tile is not None:
+        raise ValueError("tile: excludes patch; leave one of them out")
+    if patch is not None:
+        return _arrays.vector(patch, "patch", 4), None
+    if tile is None:
+        return None, None
+    parts = tile.split("/") if isinstance(tile, str) else list(tile)
+    try:
+        number, count = (int(part) for part in parts)
+    except (TypeError, ValueError):
+        raise ValueError(f"tile: {tile!r} is no tile; give (I, N) with I from 1 to N, such as (3, 16)") from None
+    return None, (_arrays.integer(number, "tile", 1, 2**31 - 1), _arrays.integer(count, "tile", 1, 2**31 - 1))
+
+
+def mesh(
+    recipe: RecipeLike,
+    *,
+    resolution: Optional[int] = None,
+    triangles: Optional[float] = None,
+    patch: Optional[Sequence[float]] = None,
+    tile: Union[None, str, Sequence[int]] = None,
+    seed: Optional[int] = None,
+    min_component: float = 0.0,
+    labels: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Mesh:
+    """Mesh the surface of a recipe's body: closed and 2-manifold, but for the cuts of patches and tiles.
+
+    Parameters
+    ----------
+    recipe
+        A recipe with a body, a dictionary or a file.
+    resolution
+        Cells along the longest side of the body, or of the patch; 256 unless `triangles` is given.
+    triangles
+        Choose the resolution that gives about this many triangles, 100 to 1e10.
+    patch
+        (x, y, z, side): only what this cube holds of the surface. Vertices are relative to its centre.
+    tile
+        (I, N) or "I/N": only the I-th of N slabs along z. Tiles fit without cracks.
+    seed
+        Replaces the recipe's seed.
+    min_component
+        Leave out pieces and cavities of less volume than this share of the largest piece's; 0: all stay.
+    labels
+        Whether the mesh gets labels and elevations.
+    threads
+        Threads to use; 0: all. They do not change the result.
+    progress
+        Called with the share done and a few words.
+
+    Returns
+    -------
+    Mesh
+        float32 vertices and normals, uint32 faces.
+
+    Raises
+    ------
+    ValueError
+        The recipe or an argument is wrong, or there is no surface in the region.
+    RuntimeError
+        The mesh is no closed manifold, or `progress` returned False.
+    KeyboardInterrupt
+        Ctrl-C was pressed; it is raised within a second.
+    """
+    if resolution is not None and triangles is not None:
+        raise ValueError("triangles: excludes resolution; leave one of them out")
+    cells = 256 if resolution is None else _arrays.integer(resolution, "resolution", 4, 8192)
+    count = 0.0 if triangles is None else _arrays.number(triangles, "triangles", 100.0, 1e10)
+    cube, slab = _region(patch, tile)
+    json, name = _options.seeded(recipe, seed)
+    fields = records(json)
+    if fields.get("erosion") is not None and (cube is not None or slab is not None or labels):
+        culprit = "labels" if labels else "patch" if cube is not None else "tile"
+        raise ValueError(f"{name}: erosion: is of the whole mesh; leave out {culprit}, or take erosion out of the recipe")
+    if min_component and (cube is not None or slab is not None):
+        raise ValueError("min_component: the size of a piece that is cut is not known; leave out tile and patch")
+    made = _synthesis.mesh(
+        json,
+        name,
+        cells,
+        count,
+        cube,
+        slab,
+        _arrays.number(min_component, "min_component", 0.0, 1.0),
+        bool(labels),
+        _options.threads(threads),
+        progress,
+    )
+    figures = Record(made["figures"])
+    return Mesh(
+        made["vertices"],
+        made["faces"],
+        made["normals"],
+        made.get("labels"),
+        made.get("elevations"),
+        length_unit=fields["length_unit"] if "length_unit" in fields else "km",
+        frame=fields["frame"] if "frame" in fields else "",
+        comment="made by synth " + _synthesis.version(),
+        origin=figures.get("origin"),
+        legend=made.get("legend", []),
+        figures=figures,
+    )
