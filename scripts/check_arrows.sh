@@ -43,10 +43,11 @@ estimation/shape/refinement -> numerics recipe geometry estimation/shape/target 
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
 estimation/shape/report    -> numerics geometry synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
+tasks/gravity              -> numerics recipe geometry gravity synthesis
 tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
-python                     -> numerics recipe geometry descriptor synthesis cuda estimation tasks python
+python                     -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks python
 ' '
   function folder_of(path) { sub(/\/[^\/]*$/, "", path); return path }
   function row_of(folder) {

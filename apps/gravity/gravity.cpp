@@ -1,22 +1,18 @@
 // gravity: potential, slope and elevation of a body of uniform density that turns.
-#include <fmt/format.h>
-
-#include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <string>
 #include <tuple>
 
 #include "apps/gravity/gravity_body.h"
 #include "apps/gravity/gravity_outputs.h"
 #include "apps/gravity/gravity_parts.h"
-#include "apps/gravity/gravity_summary.h"
-#include "apps/gravity_table.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "geometry/io/points_io.h"
+#include "gravity/body_mass.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "tasks/gravity/body_gravity.h"
 
 namespace astrolith {
 namespace {
@@ -108,13 +104,8 @@ void check(const Program& program, const Arguments& a) {
 }
 
 GravityPlaces places_of(const Arguments& a, const TriangleMesh& mesh) {
-  if (!a.points.empty()) return {read_points(a.points), {}, {}};
+  if (!a.points.empty()) return {read_points(a.points), {}, {}, "points"};
   return a.at == "vertices" ? vertex_places(mesh) : facet_places(mesh);
-}
-
-Rotation rotation_of(const Arguments& a, const GravityBody& body, const BodyMass& mass) {
-  const double rate = a.period > 0.0 ? 2.0 * std::numbers::pi / (3600.0 * a.period) : 0.0;
-  return {body.metres * mass.center, axis_of(a), rate};
 }
 
 void print(const nlohmann::ordered_json& result) {
@@ -125,26 +116,12 @@ void print(const nlohmann::ordered_json& result) {
   }
 }
 
-struct Evaluation {
-  std::vector<Attraction> attractions;
-  AchievedError error;
-};
-
-Evaluation evaluated(const Program& program, const Arguments& a, const GravityBody& body,
-                     const std::vector<BodyPart>& parts, const GravityPlaces& places) {
-  const PolyhedronGravity gravity(body.mesh, {}, program.progress("tree"));
-  const Progress progress = program.progress("gravity");
-  Evaluation result;
-  if (a.exact) {
-    result.attractions = gravity.exactly_at(places.points, progress);
-    add_parts(parts, places.points, a.tolerance, true, program.progress("parts"), result.attractions);
-    return result;
-  }
-  result.attractions = gravity.at(places.points, a.tolerance, progress);
-  result.error = achieved_error(gravity, places.points, result.attractions, a.sample, program.seed,
-                                program.progress("check"));
-  add_parts(parts, places.points, a.tolerance, false, program.progress("parts"), result.attractions);
-  return result;
+BodyGravityOptions options_of(const Program& program, const Arguments& a, const GravityBody& body) {
+  return {a.density,    a.period,
+          axis_of(a),   a.tolerance,
+          a.exact,      a.sample,
+          program.seed, a.degree,
+          a.radius,     read_parts(program, a.parts, body, a.density, a.resolution)};
 }
 
 void write_outputs(Program& program, const Arguments& a, const GravityBody& body,
@@ -160,28 +137,11 @@ void run(Program& program, const Arguments& a) {
   check(program, a);
   const GravityBody body = read_gravity_body(program, a.shape, a.unit, a.resolution);
   const GravityPlaces places = places_of(a, body.mesh);
-  const std::vector<BodyPart> parts = read_parts(program, a.parts, body, a.density, a.resolution);
-  const BodyMass homogeneous = body_mass(body.mesh), mass = with_parts(homogeneous, parts);
-  const Evaluation evaluation = evaluated(program, a, body, parts, places);
-  const std::vector<PointGravity> values =
-      point_gravity(in_metres(places.points, body.metres), evaluation.attractions, a.density, body.metres,
-                    rotation_of(a, body, mass));
-  const SurfaceMeans means =
-      surface_means(values, places.areas.empty() ? std::vector<double>(values.size()) : places.areas);
-  nlohmann::ordered_json result{{"shape", a.shape},
-                                {"unit", body.unit},
-                                {"facets", body.mesh.triangles.size()},
-                                {"density_kg_m3", a.density},
-                                {"period_h", a.period}};
-  result["body"] = mass_json(body, mass, homogeneous.volume, a.density);
-  if (!parts.empty()) result["parts"] = parts_json(body, parts);
-  result["harmonics"] =
-      coefficients_json(body, mass, parts, a.radius, a.degree, program.progress("harmonics"));
-  result["places"] = a.points.empty() ? a.at : "points";
-  result["count"] = values.size();
-  result["values"] = surface_json(places, values, means);
-  if (!a.exact && a.sample > 0) result["achieved_error"] = error_json(evaluation.error, a.tolerance);
-  write_outputs(program, a, body, gravity_columns(places, values, means));
+  const BodyGravity made = body_gravity(body, places, options_of(program, a, body),
+                                        [&](const std::string& stage) { return program.progress(stage); });
+  nlohmann::ordered_json result{{"shape", a.shape}};
+  result.update(made.figures);
+  write_outputs(program, a, body, made.columns);
   print(result);
   program.summary = result;
 }

@@ -39,14 +39,9 @@ void write_csv(const std::vector<GravityColumn>& columns, const std::filesystem:
 }
 
 void write_table(const std::vector<GravityColumn>& columns, const std::filesystem::path& file) {
-  const std::size_t rows = columns.front().values.size();
-  std::vector<double> table;
-  table.reserve(rows * columns.size());
-  for (std::size_t i = 0; i < rows; ++i) {
-    for (const GravityColumn& c : columns) table.push_back(c.values[i]);
-  }
-  const std::array<int, 2> shape{static_cast<int>(rows), static_cast<int>(columns.size())};
-  write_npy(table, shape, file);
+  const std::array<int, 2> shape{static_cast<int>(columns.front().values.size()),
+                                 static_cast<int>(columns.size())};
+  write_npy(rows_of(columns), shape, file);
 }
 
 // Values of facets become those of vertices: means over the facets around each.

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/gravity/gravity_body.h"
-#include "apps/gravity_table.h"
 #include "apps/program.h"
+#include "tasks/gravity/gravity_body.h"
+#include "tasks/gravity/gravity_table.h"
 
 namespace astrolith {
 

@@ -1,36 +1,18 @@
-// Parts of a body that have densities of their own: a lobe, a boulder, a core, a cavity.
+// Reads the parts that --density-of names.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "apps/gravity/gravity_body.h"
-#include "gravity/body_mass.h"
-#include "gravity/polyhedron_gravity.h"
+#include "apps/program.h"
+#include "tasks/gravity/body_parts.h"
 
 namespace astrolith {
-
-struct BodyPart {
-  std::string name;
-  GravityBody body;      // in the unit of the whole
-  double density = 0.0;  // kg/m3
-  double share = 0.0;    // (density - that of the whole) / that of the whole
-  BodyMass mass;         // for density 1
-};
 
 // Reads parts given as FILE=DENSITY,FILE=DENSITY. A file is a closed mesh in the body's unit and frame, or a
 // recipe of that unit. Throws InputError for a word of another form, a negative density, and a part whose box
 // leaves that of the body.
 std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const GravityBody& whole,
                                  double density, int resolution);
-
-// Mass and moments of the whole with its parts, as multiples of the density of the whole: the volume is that
-// of a homogeneous body of equal mass. Throws InputError where parts leave no mass.
-BodyMass with_parts(const BodyMass& whole, const std::vector<BodyPart>& parts);
-
-// Adds the attraction of the parts' surplus to that of the homogeneous whole at the points. Each part is
-// computed within the tolerance, or exactly.
-void add_parts(const std::vector<BodyPart>& parts, const std::vector<Vec3d>& points, double tolerance,
-               bool exact, const Progress& progress, std::vector<Attraction>& attractions);
 
 }  // namespace astrolith

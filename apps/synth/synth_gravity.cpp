@@ -2,9 +2,9 @@
 
 #include <numbers>
 
-#include "apps/gravity_table.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
+#include "tasks/gravity/gravity_table.h"
 
 namespace astrolith {
 namespace {

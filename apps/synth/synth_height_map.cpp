@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "apps/gravity_table.h"
 #include "apps/output_names.h"
 #include "geometry/surface/height_map.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/geotiff.h"
+#include "tasks/gravity/gravity_table.h"
 
 namespace astrolith {
 namespace {

@@ -7,8 +7,8 @@
 (3, True)
 
 Arrays are NumPy arrays. Lengths are in the recipe's ``length_unit``. Positions are in the body-fixed frame. The same
-options and seed give the bytes that the programs ``synth``, ``fit_shape``, ``fit_gabor``, ``describe`` and ``compare``
-give, for any number of threads.
+options and seed give the bytes that the programs ``synth``, ``fit_shape``, ``fit_gabor``, ``describe``, ``compare``
+and ``gravity`` give, for any number of threads.
 
 ``astrolith.synthesis`` needs no library of the fits. ``astrolith.estimation`` links FFTW, which is under the GPL; it is
 loaded when one of its names is first used.
@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 from astrolith.synthesis import (
     Description,
     Field,
+    Gravity,
     Mesh,
     Recipe,
     Texture,
@@ -29,6 +30,7 @@ from astrolith.synthesis import (
     __version__,
     compare,
     describe,
+    gravity,
     mesh,
     read_mesh,
     render,
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Description",
     "Field",
+    "Gravity",
     "Mesh",
     "Recipe",
     "ShapeFit",
@@ -55,6 +58,7 @@ __all__ = [
     "describe",
     "fit_shape",
     "fit_texture",
+    "gravity",
     "mesh",
     "read_mesh",
     "render",

@@ -107,6 +107,14 @@ def number(value: Any, name: str, least: float, most: float) -> float:
     return result
 
 
+def positive(value: Any, name: str, most: float) -> float:
+    """A number in (0, most]."""
+    result = number(value, name, 0.0, most)
+    if result == 0.0:
+        raise ValueError(f"{name}: must be above 0, and is {result:g}")
+    return result
+
+
 def choice(value: Any, name: str, words: tuple[str, ...]) -> str:
     """One of the words."""
     if value not in words:

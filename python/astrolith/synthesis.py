@@ -1,4 +1,5 @@
-"""Recipes to fields, meshes, textures and pictures, and descriptions of shapes.
+"""Recipes to fields, meshes, textures and pictures, descriptions of shapes, and gravity.
+
 This module and its extension link no library of the fits: nothing of it is under the GPL.
 """
 
@@ -7,6 +8,7 @@ from __future__ import annotations
 from astrolith import _synthesis
 from astrolith._description import Description, compare, describe
 from astrolith._field import Field
+from astrolith._gravity import Gravity, gravity
 from astrolith._mesh import Mesh, read_mesh, write_mesh
 from astrolith._meshing import mesh
 from astrolith._picture import render
@@ -17,12 +19,14 @@ from astrolith._variation import Variation, vary
 __all__ = [
     "Description",
     "Field",
+    "Gravity",
     "Mesh",
     "Recipe",
     "Texture",
     "Variation",
     "compare",
     "describe",
+    "gravity",
     "mesh",
     "read_mesh",
     "render",

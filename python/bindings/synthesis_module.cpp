@@ -1,4 +1,4 @@
-// The module astrolith._synthesis: recipes, fields, meshes, textures, pictures, descriptions. It links no
+// The module astrolith._synthesis: recipes, fields, meshes, textures, pictures, descriptions, gravity. It links no
 // library of the fits.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>
@@ -18,6 +18,7 @@
 
 #include "python/bindings/arrays.h"
 #include "python/bindings/field_bindings.h"
+#include "python/bindings/gravity_bindings.h"
 #include "python/bindings/job.h"
 #include "python/bindings/mesh_bindings.h"
 #include "recipe/recipe_json.h"
@@ -212,4 +213,5 @@ NB_MODULE(_synthesis, module) {
   bind_meshes(module);
   bind_shapes(module);
   bind_products(module);
+  bind_gravity(module);
 }

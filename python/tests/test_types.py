@@ -8,7 +8,7 @@ import sys
 
 import astrolith
 import pytest
-from astrolith import _recipe
+from astrolith import _gravity, _recipe
 
 
 def test_mypy_finds_nothing(tmp_path):
@@ -23,7 +23,7 @@ def test_mypy_finds_nothing(tmp_path):
     assert run.returncode == 0, run.stdout + run.stderr
 
 
-@pytest.mark.parametrize("module", [astrolith, _recipe, astrolith.synthesis])
+@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity])
 def test_examples_of_docstrings(module):
     assert doctest.testmod(module, optionflags=doctest.ELLIPSIS).failed == 0
 

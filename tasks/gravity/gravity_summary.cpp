@@ -1,4 +1,4 @@
-#include "apps/gravity/gravity_summary.h"
+#include "tasks/gravity/gravity_summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/gravity/gravity_parts.h"
 #include "gravity/body_mass.h"
+#include "tasks/gravity/body_parts.h"
+#include "tasks/gravity/gravity_body.h"
 
 namespace astrolith {
 

@@ -1,4 +1,4 @@
-#include "apps/gravity_table.h"
+#include "tasks/gravity/gravity_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +33,7 @@ class Range {
 
 GravityPlaces facet_places(const TriangleMesh& mesh) {
   GravityPlaces places;
+  places.kind = "facets";
   places.normals = triangle_normals(mesh);
   for (const Triangle& t : mesh.triangles) {
     places.points.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) * (1.0 / 3.0));
@@ -42,7 +43,8 @@ GravityPlaces facet_places(const TriangleMesh& mesh) {
 }
 
 GravityPlaces vertex_places(const TriangleMesh& mesh) {
-  GravityPlaces places{mesh.vertices, vertex_normals(mesh), std::vector<double>(mesh.vertices.size())};
+  GravityPlaces places{mesh.vertices, vertex_normals(mesh), std::vector<double>(mesh.vertices.size()),
+                       "vertices"};
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) places.areas[v] += triangle_area(mesh, t) / 3.0;
   }
@@ -106,6 +108,16 @@ Json surface_json(const GravityPlaces& places, std::span<const PointGravity> val
   json["slope_deg"] = slope.json();
   json["elevation_m"] = height.json();
   return json;
+}
+
+std::vector<double> rows_of(std::span<const GravityColumn> columns) {
+  const std::size_t rows = columns.front().values.size();
+  std::vector<double> table;
+  table.reserve(rows * columns.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (const GravityColumn& c : columns) table.push_back(c.values[i]);
+  }
+  return table;
 }
 
 Json error_json(const AchievedError& error, double tolerance) {

@@ -1,4 +1,4 @@
-// Gravity at many places as columns of numbers and as ranges, for gravity and synth.
+// Gravity at many places as columns of numbers and as ranges.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,6 +16,7 @@ struct GravityPlaces {
   std::vector<Vec3d> points;   // in the body's unit
   std::vector<Vec3d> normals;  // outward unit vectors, or empty
   std::vector<double> areas;   // weights of means, or empty
+  std::string kind = "points";
 };
 
 // One column of the table.
@@ -24,7 +25,8 @@ struct GravityColumn {
   std::vector<double> values;
 };
 
-// The centres of all facets, and all vertices with a third of the area of their facets.
+// The centres of all facets, and all vertices with a third of the area of their facets. Their kinds are
+// "facets" and "vertices".
 GravityPlaces facet_places(const TriangleMesh& mesh);
 GravityPlaces vertex_places(const TriangleMesh& mesh);
 
@@ -42,6 +44,9 @@ std::vector<GravityColumn> gravity_columns(const GravityPlaces& places, std::spa
 // speed.
 nlohmann::ordered_json surface_json(const GravityPlaces& places, std::span<const PointGravity> values,
                                     const SurfaceMeans& means);
+
+// The columns side by side, row after row.
+std::vector<double> rows_of(std::span<const GravityColumn> columns);
 
 nlohmann::ordered_json error_json(const AchievedError& error, double tolerance);
 

@@ -1,0 +1,94 @@
+"""Gravity: analytic truth, and the bytes of the program."""
+
+import json
+
+import astrolith
+import numpy as np
+import pytest
+
+G = 6.67430e-11
+BALL = {"format_version": 1, "length_unit": "km", "body": {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0.3, 0.0, 0.0, 1.0]]}}
+LAYERS = [{"type": "perlin", "amplitude": 0.1, "frequency": 1.0}]
+CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+CUBE = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+                 [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])  # fmt: skip
+
+
+def test_a_cube_of_a_metre_has_its_mass_and_its_potential():
+    made = astrolith.gravity((CORNERS, CUBE), 1000.0, unit="m", points=[[0.5, 0.5, 0.5], [1000.5, 0.5, 0.5]], exact=True)
+    assert made.figures.body.mass_kg == pytest.approx(1000.0) and made.figures.body.area_m2 == pytest.approx(6.0)
+    # Waldvogel 1976: the potential at the centre of the unit cube is 3 ln((sqrt 3 + 1) / (sqrt 3 - 1)) - pi / 2.
+    at_center = 3 * np.log((3**0.5 + 1) / (3**0.5 - 1)) - np.pi / 2
+    np.testing.assert_allclose(made.potential, [-G * 1000 * at_center, -G * 1000 / 1000.0], rtol=1e-6)
+    np.testing.assert_allclose(made.acceleration[1], [-G * 1000 / 1e6, 0, 0], rtol=1e-6, atol=1e-20)
+    with pytest.raises(ValueError, match="^slope_deg: "):
+        made.slope
+
+
+def test_a_ball_has_gravity_of_a_point_level_ground_and_no_harmonics():
+    made = astrolith.gravity(BALL, 2000.0, resolution=48, degree=3, at="vertices")
+    mass = made.figures.body.mass_kg
+    assert mass == pytest.approx(4 / 3 * np.pi * 1e9 * 2000, rel=0.01)
+    np.testing.assert_allclose(made.figures.body.center_of_mass_m, [300, 0, 0], atol=1)
+    np.testing.assert_allclose(made.effective_gravity, G * mass / 1e6, rtol=0.01)
+    np.testing.assert_allclose(np.linalg.norm(made.acceleration, axis=1), made.effective_gravity, rtol=1e-14)
+    assert made.slope.max() < 3 and np.abs(made.elevation).max() < 10
+    assert made.coefficients.shape == (2, 4, 4) and made.coefficients[0, 0, 0] == pytest.approx(1)
+    assert np.abs(made.coefficients.reshape(-1)[1:]).max() < 2e-3
+    assert (made.geopotential == made.potential).all()
+
+
+@pytest.mark.parametrize("at", ["facets", "vertices"])
+def test_tables_have_the_bytes_of_gravity(example, program, tmp_path, at):
+    mesh = astrolith.mesh(example("itokawa_details"), resolution=32)
+    astrolith.write_mesh(mesh, tmp_path / "m.ply")
+    said = json.loads(program("gravity", "m.ply", "-o", "g.npy", "--density", "1900", "--period", "12.132", "--at", at,
+                              "--axis", "0.1", "0", "1", "--degree", "6", "--sample", "10", "--unit", mesh.length_unit))  # fmt: skip
+    made = astrolith.gravity(mesh, 1900.0, period=12.132, at=at, axis=(0.1, 0, 1), degree=6, sample=10)
+    assert made.table.tobytes() == np.load(tmp_path / "g.npy").tobytes()
+    assert made.table.tobytes() in (tmp_path / "g.npy").read_bytes()
+    assert made.figures == {key: value for key, value in said.items() if key != "shape"}
+
+
+def test_recipes_and_points_have_the_bytes_of_gravity(example, program, tmp_path):
+    points = np.array([[0.0, 0.0, 0.0], [0.5, 0.25, -0.125], [10.0, 0.0, 0.0]])
+    np.savetxt(tmp_path / "points.txt", points)
+    options = ["--density", "1900", "--resolution", "24", "--seed", "3"]
+    program("gravity", example("itokawa_details"), "-o", "p.npy", "--points", "points.txt", *options)
+    program("gravity", example("itokawa_details"), "-o", "f.npy", *options)
+    made = astrolith.gravity(example("itokawa_details"), 1900.0, points=points, resolution=24, seed=3)
+    assert made.table.tobytes() in (tmp_path / "p.npy").read_bytes()
+    assert (made.points == points).all() and len(made.columns) == 9
+    made = astrolith.gravity(astrolith.Recipe.read(example("itokawa_details")), 1900.0, resolution=24, threads=1)
+    assert made.table.tobytes() in (tmp_path / "f.npy").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "name, options",
+    [
+        ("density", {"density": 0.0}),
+        ("density", {"density": float("nan")}),
+        ("period", {"period": -1.0}),
+        ("axis", {"axis": (0, 0, 0)}),
+        ("unit", {"unit": "px"}),
+        ("at", {"at": "edges"}),
+        ("points", {"points": np.zeros((0, 3))}),
+        ("points", {"points": [[0, 0, np.inf]]}),
+        ("tolerance", {"tolerance": 1.0}),
+        ("degree", {"degree": 51}),
+    ],
+)
+def test_wrong_arguments(name, options):
+    with pytest.raises(ValueError, match=f"^{name}: ") as raised:
+        astrolith.gravity((CORNERS, CUBE), **{"density": 1000.0, **options})
+    assert "\n" not in str(raised.value)
+
+
+def test_wrong_bodies():
+    for faces, words in ((CUBE[1:], "open"), (CUBE[:, ::-1].copy(), "volume")):
+        with pytest.raises(ValueError, match=f"^body: .*{words}"):
+            astrolith.gravity((CORNERS, faces), 1000.0)
+    with pytest.raises(ValueError, match="^unit: "):
+        astrolith.gravity(BALL, 1000.0, unit="m")
+    with pytest.raises(ValueError, match="^body: .*without a body"):
+        astrolith.gravity({"format_version": 1, "length_unit": "m", "layers": LAYERS}, 1000.0)
