@@ -9,6 +9,7 @@ from astrolith import _synthesis
 from astrolith._description import Description, compare, describe
 from astrolith._field import Field
 from astrolith._gravity import Gravity, gravity
+from astrolith._height_map import HeightMap, height_map
 from astrolith._mesh import Mesh, read_mesh, write_mesh
 from astrolith._meshing import mesh
 from astrolith._picture import render
@@ -20,6 +21,7 @@ __all__ = [
     "Description",
     "Field",
     "Gravity",
+    "HeightMap",
     "Mesh",
     "Recipe",
     "Texture",
@@ -27,6 +29,7 @@ __all__ = [
     "compare",
     "describe",
     "gravity",
+    "height_map",
     "mesh",
     "read_mesh",
     "render",

@@ -19,6 +19,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/field_bindings.h"
 #include "python/bindings/gravity_bindings.h"
+#include "python/bindings/height_map_bindings.h"
 #include "python/bindings/job.h"
 #include "python/bindings/mesh_bindings.h"
 #include "recipe/recipe_json.h"
@@ -214,4 +215,5 @@ NB_MODULE(_synthesis, module) {
   bind_shapes(module);
   bind_products(module);
   bind_gravity(module);
+  bind_height_maps(module);
 }

@@ -9,6 +9,7 @@ import sys
 import astrolith
 import pytest
 from astrolith import _gravity, _recipe
+from astrolith.bridges import datasets
 
 
 def test_mypy_finds_nothing(tmp_path):
@@ -23,7 +24,7 @@ def test_mypy_finds_nothing(tmp_path):
     assert run.returncode == 0, run.stdout + run.stderr
 
 
-@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity])
+@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity, datasets])
 def test_examples_of_docstrings(module):
     assert doctest.testmod(module, optionflags=doctest.ELLIPSIS).failed == 0
 

@@ -1,0 +1,35 @@
+"""Bodies in other packages' terms: trimesh, PyVista, Open3D, PyTorch, xarray, GeoTIFF, SPICE.
+
+Nothing of these packages is loaded before a function needs it. Each is an optional extra, such as
+``pip install astrolith[trimesh]``; a function whose package is missing raises an ImportError that says so.
+"""
+
+from __future__ import annotations
+
+from astrolith.bridges.datasets import Bodies, torch_dataset
+from astrolith.bridges.geo import to_xarray, write_geotiff
+from astrolith.bridges.meshes import (
+    from_open3d,
+    from_pyvista,
+    from_trimesh,
+    to_open3d,
+    to_pyvista,
+    to_trimesh,
+)
+from astrolith.bridges.spice import Kernels, write_dsk, write_kernels
+
+__all__ = [
+    "Bodies",
+    "Kernels",
+    "from_open3d",
+    "from_pyvista",
+    "from_trimesh",
+    "to_open3d",
+    "to_pyvista",
+    "to_trimesh",
+    "to_xarray",
+    "torch_dataset",
+    "write_dsk",
+    "write_geotiff",
+    "write_kernels",
+]

@@ -1,0 +1,31 @@
+"""The dataset of PyTorch. Workers of a loader import this module by its name."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from astrolith.bridges._optional import required
+from astrolith.bridges.datasets import Bodies
+
+torch = required("torch", "torch")
+_Dataset: Any = torch.utils.data.Dataset
+
+
+class TorchBodies(_Dataset):  # type: ignore[misc]
+    """Bodies whose arrays are tensors."""
+
+    def __init__(self, bodies: Bodies, transform: Optional[Callable[[dict[str, Any]], Any]]) -> None:
+        self._bodies = bodies
+        self._transform = transform
+
+    def __len__(self) -> int:
+        return len(self._bodies)
+
+    def __getitem__(self, index: int) -> Any:
+        item = {
+            name: torch.from_numpy(value) if isinstance(value, np.ndarray) else value
+            for name, value in self._bodies[index].items()
+        }
+        return item if self._transform is None else self._transform(item)

@@ -1,0 +1,46 @@
+#include "python/bindings/height_map_bindings.h"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "geometry/surface/height_map.h"
+#include "python/bindings/arrays.h"
+#include "python/bindings/job.h"
+#include "tasks/gravity/gravity_table.h"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+
+namespace astrolith::python {
+namespace {
+
+std::array<double, 3> list(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+nb::typed<nb::dict, nb::str, nb::any> height_map_of(const Rows<double>& vertices,
+                                                    const Rows<std::uint32_t>& faces,
+                                                    const std::array<double, 3>& center, double length,
+                                                    int pixels, const std::string& unit) {
+  const double metres = metres_of(unit);
+  HeightMap map = run_job(nb::none(), 0, [=, mesh = mesh_of(vertices, faces, {})](JobState&) {
+    return height_map(mesh, length, pixels, metres);
+  });
+  const auto side = static_cast<std::size_t>(map.side);
+  nb::typed<nb::dict, nb::str, nb::any> result;
+  result["pixel"] = metres * map.pixel;
+  result["origin"] = list(metres * (Vec3d{center[0], center[1], center[2]} + map.origin));
+  result["right"] = list(map.right);
+  result["ahead"] = list(map.ahead);
+  result["up"] = list(map.up);
+  result["heights"] = array_of<float>(std::move(map.heights), {side, side});
+  return result;
+}
+
+}  // namespace
+
+void bind_height_maps(nb::module_& module) {
+  module.def("height_map", &height_map_of, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert(),
+             nb::arg("center"), nb::arg("length"), nb::arg("pixels"), nb::arg("unit"));
+}
+
+}  // namespace astrolith::python

@@ -1,0 +1,125 @@
+"""DSK, PCK and FK: what CSPICE reads, and where its rays meet the plates."""
+
+import astrolith
+import numpy as np
+import pytest
+from astrolith import bridges
+
+spice = pytest.importorskip("spiceypy")
+
+BODY = 2025143
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_loaded():
+    yield
+    spice.kclear()
+
+
+def nearest_crossings(corners, sources, directions):
+    """The distances along unit rays to the first triangle that faces them; infinity where there is none.
+
+    Moeller and Trumbore 1997. CSPICE does not see plates from behind either.
+    """
+    a, ab, ac = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    nearest = np.full(len(sources), np.inf)
+    for k, (source, direction) in enumerate(zip(sources, directions)):
+        p = np.cross(direction, ac)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = 1 / np.einsum("ij,ij->i", ab, p)
+            t = source - a
+            u = np.einsum("ij,ij->i", t, p) * scale
+            q = np.cross(t, ab)
+            v = (q @ direction) * scale
+            distance = np.einsum("ij,ij->i", ac, q) * scale
+        inside = (u >= -1e-12) & (v >= -1e-12) & (u + v <= 1 + 1e-12) & (distance > 0) & (scale > 0)
+        if inside.any():
+            nearest[k] = distance[inside].min()
+    return nearest
+
+
+def written_plates(file):
+    """The corners of the plates of each segment of a DSK, as CSPICE reads them."""
+    handle = spice.dasopr(str(file))
+    found, corners = spice.dlabfs(handle), []
+    while True:
+        segment = found
+        vertices_count, plates_count = spice.dskz02(handle, segment)
+        vertices = np.array(spice.dskv02(handle, segment, 1, vertices_count))
+        plates = np.array(spice.dskp02(handle, segment, 1, plates_count))
+        corners.append(vertices[plates - 1])
+        try:
+            found = spice.dlafns(handle, segment)
+        except spice.exceptions.NotFoundError:
+            break
+    spice.dascls(handle)
+    return corners
+
+
+@pytest.fixture
+def site(example):
+    """A body in metres, and a patch of it that is twenty times as fine."""
+    recipe = astrolith.Recipe.read(example("itokawa_details"))
+    body = astrolith.mesh(recipe, resolution=40)
+    top = body.vertices[body.vertices[:, 2].argmax()].tolist()
+    cell = body.figures.cell
+    return body, astrolith.mesh(recipe, resolution=40, patch=(*top, 2 * cell))
+
+
+def test_rays_of_cspice_meet_the_written_plates_of_two_segments(site, tmp_path):
+    body, patch = site
+    kernels = bridges.write_kernels([body, patch], tmp_path, "Itokawa", body=BODY, period=12.1324, pole=(90.5, -66.3))
+    spice.furnsh([kernels.dsk, kernels.pck, kernels.fk])
+    corners = written_plates(kernels.dsk)
+    assert [len(c) for c in corners] == [len(body.faces), len(patch.faces)]
+    place = np.array(patch.origin) / 1000
+    expected = (patch.vertices.astype(float) / 1000 + place)[patch.faces]
+    np.testing.assert_allclose(corners[1], expected, rtol=0, atol=1e-15)
+    radius = np.abs(corners[0]).max()
+
+    # 500 rays towards the body, and 500 towards the patch from near by.
+    random = np.random.default_rng(1)
+    ends = random.normal(size=(1000, 3))
+    ends /= np.linalg.norm(ends, axis=1)[:, None]
+    sources, targets = 2 * radius * ends, random.uniform(-0.2, 0.2, (1000, 3)) * radius
+    targets[500:] = place + random.uniform(-0.4, 0.4, (500, 3)) * np.ptp(corners[1].reshape(-1, 3), axis=0)
+    sources[500:] = targets[500:] + 0.3 * radius * (ends[500:] * [1, 1, 0] + [0, 0, 1])
+    directions = targets - sources
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+
+    for surfaces, plates in (([], np.concatenate(corners)), ([1], corners[0]), ([2], corners[1])):
+        ours = nearest_crossings(plates, sources, directions)
+        points, found = spice.dskxv(False, "ITOKAWA", surfaces, 0.0, "ITOKAWA_FIXED", sources, directions)
+        found = np.array(found, bool)
+        assert (found == np.isfinite(ours)).all() and found.sum() > (400 if surfaces == [2] else 900)
+        meets = sources + np.where(found, ours, 0)[:, None] * directions
+        assert np.abs(np.array(points) - meets)[found].max() <= 1e-9 * radius
+
+
+def test_the_frame_turns_and_the_radii_are_half_the_box(site, tmp_path):
+    body, _ = site
+    kernels = bridges.write_kernels(body, tmp_path, "Itokawa", body=BODY, period=12.0, pole=(90.0, 45.0), meridian=30.0)
+    spice.furnsh([kernels.dsk, kernels.pck, kernels.fk])
+    assert spice.bodn2c("ITOKAWA") == BODY and spice.cidfrm(BODY)[1] == "ITOKAWA_FIXED"
+    _, radii = spice.bodvcd(BODY, "RADII", 3)
+    np.testing.assert_allclose(radii, np.ptp(body.vertices.astype(float), axis=0) / 2000, rtol=1e-12)
+    now, later = (np.array(spice.pxform("ITOKAWA_FIXED", "J2000", t)) for t in (0.0, 3 * 3600.0))
+    np.testing.assert_allclose(now[:, 2], [0, np.sqrt(0.5), np.sqrt(0.5)], atol=1e-12)
+    np.testing.assert_allclose(now.T @ later, [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-12)
+    assert spice.dskobj(kernels.dsk)[0] == BODY
+
+
+def test_wrong_kernels_leave_no_file(site, tmp_path):
+    body, _ = site
+    for name, call in (
+        ("surfaces", lambda: bridges.write_dsk(body, tmp_path / "a.bds", body=BODY, frame="J2000", surfaces=[1, 2])),
+        ("meshes", lambda: bridges.write_dsk([], tmp_path / "a.bds", body=BODY, frame="J2000")),
+        ("meshes", lambda: bridges.write_dsk(body.vertices, tmp_path / "a.bds", body=BODY, frame="J2000")),
+        ("name", lambda: bridges.write_kernels(body, tmp_path, "25143", body=BODY, period=1.0)),
+        ("period", lambda: bridges.write_kernels(body, tmp_path, "Itokawa", body=BODY, period=0.0)),
+    ):
+        with pytest.raises(ValueError, match=f"^{name}: "):
+            call()
+    with pytest.raises(spice.exceptions.SpiceyError):
+        bridges.write_dsk(body, tmp_path / "a.bds", body=BODY, frame="NO_SUCH_FRAME")
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,33 @@
+"""The examples of docs/python.md, run one after another in one folder."""
+
+import pathlib
+import re
+
+import astrolith
+import numpy as np
+import pytest
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "python.md"
+
+
+def blocks():
+    """The page's Python blocks, but for those of packages that are not installed with the tests."""
+    return [code for mark, code in re.findall(r"(<!-- not run.*?-->\n)?```python\n(.*?)```", PAGE.read_text(), re.DOTALL) if not mark]
+
+
+def test_examples_of_the_page(tmp_path, monkeypatch, capsys, example):
+    for package in ("trimesh", "xarray", "rasterio", "spiceypy"):
+        pytest.importorskip(package)
+    monkeypatch.chdir(tmp_path)
+    shape = astrolith.mesh(example("itokawa_metaballs"), resolution=32)
+    astrolith.write_mesh(astrolith.Mesh(shape.vertices * np.float32(1e-3), shape.faces), "itokawa.ply")
+    names = {"tqdm": pytest.importorskip("tqdm")}
+    for code in blocks():
+        # Smaller than on the page.
+        for large, small in (("triangles=1e6", "triangles=2e4"), ('unit="km")', 'unit="km", spheres=8, points=1000, base_only=True)'),
+                             ("resolution=1024", "resolution=48")):  # fmt: skip
+            code = code.replace(large, small)
+        exec(compile(code, str(PAGE), "exec"), names)
+    said = capsys.readouterr().out
+    assert "True" in said and "(2048, 3)" in said and "Itokawa.bds" in said
+    assert {"itokawa.json", "itokawa.glb", "site.tif", "Itokawa.tpc"} <= {path.name for path in tmp_path.iterdir()}
