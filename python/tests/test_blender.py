@@ -1,0 +1,113 @@
+"""Blender without a window: the add-on makes and renders a body, and the tutorial's words on Blender hold."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import astrolith
+import numpy as np
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ADDON = ROOT / "python" / "blender"
+PAINT = {"type": "gabor", "name": "paint", "pixel_size": 0.004, "exemplar_rms": 0.2, "lobes": [[4, 0.05, 0.02, 1.0]],
+         "color": {"axis": [0.8, 0.5, 0.3], "mean": [0.4, 0.35, 0.3]}}  # fmt: skip
+RECIPE = {"format_version": 1, "length_unit": "km",
+          "body": {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0.3, 0, 0, 1], [-0.8, 0, 0, 0.7]]},
+          "layers": [{"type": "perlin", "amplitude": 0.1, "frequency": 3.0}]}  # fmt: skip
+
+
+@pytest.fixture
+def blender(tmp_path):
+    """Runs a script in Blender and returns the JSON of the line that begins with this word."""
+    if not shutil.which("blender"):
+        pytest.skip("Blender is not installed")
+
+    def run(word, script, *arguments):
+        command = ["blender", "--background", "--factory-startup", "--python-exit-code", "3", "--python", str(script), "--"]
+        # Debian's Blender heeds PYTHONPATH.
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        environment |= {"BLENDER_USER_SCRIPTS": str(tmp_path / "scripts"),
+                        "BLENDER_USER_CONFIG": str(tmp_path / "config")}  # fmt: skip
+        done = subprocess.run([*command, *map(str, arguments)], capture_output=True, text=True, env=environment, timeout=300)
+        lines = [line for line in done.stdout.splitlines() if line.startswith(word + " ")]
+        assert done.returncode == 0 and lines, done.stdout[-2000:] + done.stderr[-2000:]
+        return json.loads(lines[-1].removeprefix(word))
+
+    return run
+
+
+def source(by):
+    if by == "synth":
+        folder = os.environ.get("ASTROLITH_BIN")
+        if not folder:
+            pytest.skip("ASTROLITH_BIN names no folder of programs")
+        return ["--synth", os.path.join(folder, "synth")]
+    if sys.version_info[:2] != (3, 11):
+        pytest.skip("Debian's Blender has Python 3.11")
+    return ["--package", pathlib.Path(astrolith.__file__).parents[1]]
+
+
+@pytest.mark.parametrize("by", ["package", "synth"])
+@pytest.mark.parametrize("painted", [False, True])
+def test_the_addon_makes_a_body_and_renders_it(blender, tmp_path, by, painted):
+    recipe = astrolith.Recipe.from_dict({**RECIPE, "layers": RECIPE["layers"] + [PAINT] * painted})
+    recipe.write(tmp_path / "body.json")
+    options = ["--resolution", 40, "--seed", 5, "--size", "96x72", "--samples", 4, *source(by)]
+    made = blender("ASTEROID", ADDON / "render_asteroid.py", tmp_path / "body.json", tmp_path / "body.png", *options)
+    expected = astrolith.mesh(recipe, resolution=40, seed=5)
+    extent = np.ptp(expected.vertices.astype(float), axis=0)
+    assert made["by"] == by and made["smooth"] and made["normals"] and made["seed"] == 5
+    assert (made["vertices"], made["triangles"]) == (len(expected.vertices), len(expected.faces))
+    np.testing.assert_allclose(made["dimensions"], extent * 2 / extent.max(), rtol=1e-5)
+    assert made["metres"] == pytest.approx(1000 * extent.max() / 2, rel=1e-5)
+    assert made["colors"] == ["astrolith_color"] and bool(made["images"]) == painted
+    assert (tmp_path / "body.png").stat().st_size > 2000
+
+
+def test_wrong_recipes_and_missing_programs_are_said(blender, tmp_path):
+    script = tmp_path / "wrong.py"
+    script.write_text(f"""
+import bpy, json
+bpy.ops.preferences.addon_install(filepath={str(ADDON / "astrolith_addon.py")!r})
+bpy.ops.preferences.addon_enable(module="astrolith_addon")
+bpy.context.preferences.addons["astrolith_addon"].preferences.synth = "no_such_program"
+said = []
+for file in ({str(script)!r}, {str(ROOT / "synthesis/examples/steins.json")!r}):
+    try:
+        bpy.ops.mesh.asteroid_add(filepath=file)
+    except RuntimeError as error:
+        said.append(str(error).strip())
+print("SAID " + json.dumps(said))
+""")
+    said = blender("SAID", script)
+    assert "is no recipe" in said[0] and "neither the package astrolith nor the program synth" in said[1]
+
+
+def test_the_tutorial_is_right_about_blender(blender, program, tmp_path):
+    recipe = astrolith.Recipe.from_dict({**RECIPE, "layers": [{**PAINT, "height_rms": 0.02}]})
+    recipe.write(tmp_path / "r.json")
+    for extension in ("ply", "glb"):
+        program("synth", "r.json", "-o", f"b.{extension}", "--resolution", "24")
+    program("synth", "r.json", "--texture", "64x64", "--texture-of", "height", "--tileable", "-o", "h.tif")
+    program("synth", "r.json", "--texture", "64x64", "--texture-of", "color", "--tileable", "--bits", "8", "-o", "c.png")
+    found = blender("FOUND", ROOT / "python" / "tests" / "blender_tutorial.py",
+                    *(tmp_path / name for name in ("b.ply", "b.glb", "h.tif", "c.png")))  # fmt: skip
+    vertices = astrolith.mesh(recipe, resolution=24).vertices.astype(float)
+    least, most = vertices.min(axis=0), vertices.max(axis=0)
+    np.testing.assert_allclose(found["ply"]["box"], [least, most], rtol=1e-5)
+    np.testing.assert_allclose(found["glb"]["box"], 1000 * np.array([least, most]), rtol=1e-5)
+    assert not found["ply"]["custom_normals"] and not found["ply"]["smooth"]
+    assert found["glb"]["smooth"]
+    heights = astrolith.texture(recipe, 64, 64, content="height", tileable=True).values
+    assert found["height"]["float"] and found["height"]["least"] < 0
+    assert found["height"]["least"] == pytest.approx(heights.min(), rel=1e-5)
+    assert found["height"]["most"] == pytest.approx(heights.max(), rel=1e-5)
+    assert found["colour"]["space"] == "sRGB"
+    assert found["midlevel_0"] == pytest.approx(0.3, abs=1e-4)
+    assert found["midlevel_0_scale_3"] == pytest.approx(0.9, abs=1e-4)
+    assert found["default_midlevel"] == pytest.approx(-0.2, abs=1e-4)
+    assert found["default_method"] == pytest.approx(0.0, abs=1e-4)
