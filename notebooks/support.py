@@ -137,6 +137,15 @@ def needed(path):
     return path
 
 
+def package():
+    """The Python package, or the end of this notebook where it is not built."""
+    try:
+        import astrolith
+    except ImportError:
+        raise NotAtHand("the Python package is not at hand (-DASTROLITH_PYTHON=ON builds it)") from None
+    return astrolith
+
+
 def run_benchmark(name, report, pattern, *arguments):
     """Runs the Google benchmarks whose names match; report: the JSON to write."""
     subprocess.run([find_program(name), f"--benchmark_filter={pattern}", f"--benchmark_out={report}",

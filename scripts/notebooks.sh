@@ -4,7 +4,7 @@
 #   --full:          the thesis's sizes, hours in all; the figures go to docs/figures/, the claims to docs/claims.md
 #   --jobs N:        so many at a time (default 1: seconds that are measured want a machine of their own)
 #   NN ...:          only the notebooks with these numbers, such as 01 12
-# Installs what is missing, builds the programs and benchmarks. Says which notebooks failed; exit status 1 if any did.
+# Installs what is missing, builds the programs, the benchmarks and the Python package. Says which notebooks failed; exit status 1 if any did.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -21,11 +21,15 @@ while [[ $# -gt 0 ]]; do
   shift || true
 done
 
-scripts/setup.sh --notebooks
+scripts/setup.sh --notebooks --python
 scripts/fetch_data.sh
 if [[ -z "${ASTROLITH_BIN:-}" ]]; then
-  cmake --preset release -DASTROLITH_BENCHMARKS=ON >/dev/null
-  scripts/build.sh release
+  settings=(-DASTROLITH_BENCHMARKS=ON)
+  # Without the Python package, the notebook that begins with it is skipped with a word.
+  if scripts/python_venv.sh; then
+    settings+=(-DASTROLITH_PYTHON=ON -DPython_EXECUTABLE="$PWD/build/python-venv/bin/python")
+  fi
+  scripts/build.sh release "${settings[@]}"
 fi
 
 out=${ASTROLITH_OUT:-$PWD/build/notebooks}
@@ -55,7 +59,7 @@ done
 execute() {
   local notebook=$1 name start=$SECONDS
   name=$(basename "$notebook" .ipynb)
-  if PYTHONPATH=notebooks /usr/bin/python3 -m nbconvert --to html --execute --ExecutePreprocessor.timeout=-1 \
+  if PYTHONPATH="$PWD/notebooks:${ASTROLITH_BUILD:-$PWD/build/release}/python" /usr/bin/python3 -m nbconvert --to html --execute --ExecutePreprocessor.timeout=-1 \
        --output-dir "$out/executed" "$notebook" >"$out/executed/$name.log" 2>&1; then
     echo "$name: done in $((SECONDS - start)) s: $out/executed/$name.html"
   elif grep -q "^NotAtHand: " "$out/executed/$name.log"; then
