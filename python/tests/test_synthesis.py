@@ -1,6 +1,7 @@
 """Recipes, fields, meshes and textures: analytic truth, and the bytes of the programs."""
 
 import json
+import tracemalloc
 
 import astrolith
 import numpy as np
@@ -34,6 +35,16 @@ def test_values_do_not_depend_on_threads_or_on_the_type_of_exact_points(example)
     assert (field.value(points, threads=1) == values).all()
     assert (field.value(points.astype(np.float64)) == values).all()
     assert field.value(np.zeros((0, 3))).shape == (0,)
+
+
+def test_values_at_float64_points_take_no_temporary_arrays(ball):
+    field = astrolith.Field(ball)
+    points = np.random.default_rng(1).uniform(*field.bounds, (200_000, 3))
+    tracemalloc.start()
+    values = field.value(points)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert values.nbytes == 1_600_000 and peak < 50_000  # tracemalloc does not see the result, which is the module's
 
 
 def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):

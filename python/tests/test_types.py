@@ -3,6 +3,7 @@
 import doctest
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -11,17 +12,31 @@ import pytest
 from astrolith import _gravity, _recipe
 from astrolith.bridges import datasets
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-def test_mypy_finds_nothing(tmp_path):
+
+def mypy(folder, *what):
+    """Runs mypy, strictly, on the package or on files that use it."""
     pytest.importorskip("mypy")
     package = pathlib.Path(astrolith.__file__).parent
     environment = dict(os.environ)
     if package.parent.name != "site-packages":  # mypy finds installed packages by itself
         environment["MYPYPATH"] = str(package.parent)
-    options = ["--strict", "--cache-dir", str(tmp_path), "--config-file="]
-    run = subprocess.run([sys.executable, "-m", "mypy", *options, "-p", "astrolith"],
-                         cwd=tmp_path, env=environment, capture_output=True, text=True)  # fmt: skip
+    options = ["--strict", "--cache-dir", str(folder), "--config-file="]
+    run = subprocess.run([sys.executable, "-m", "mypy", *options, *what],
+                         cwd=folder, env=environment, capture_output=True, text=True)  # fmt: skip
     assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_mypy_finds_nothing(tmp_path):
+    mypy(tmp_path, "-p", "astrolith")
+
+
+def test_mypy_finds_nothing_in_the_examples_of_the_page(tmp_path):
+    others = "import open3d  # type: ignore\nimport torch  # type: ignore\nimport tqdm  # type: ignore\n"
+    code = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL)
+    (tmp_path / "page.py").write_text(others + "\n".join(code))
+    mypy(tmp_path, "--no-warn-unused-ignores", "page.py")
 
 
 @pytest.mark.parametrize("module", [astrolith, _recipe, _gravity, datasets])
