@@ -1,5 +1,8 @@
 #include "python/bindings/height_map_bindings.h"
 
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -8,9 +11,6 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "tasks/gravity/gravity_table.h"
-
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/string.h>
 
 namespace astrolith::python {
 namespace {

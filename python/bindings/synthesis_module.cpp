@@ -1,5 +1,5 @@
-// The module astrolith._synthesis: recipes, fields, meshes, textures, pictures, descriptions, gravity. It links no
-// library of the fits.
+// The module astrolith._synthesis: recipes, fields, meshes, textures, pictures, descriptions, gravity. It
+// links no library of the fits.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
