@@ -7,6 +7,7 @@
 
 #include "geometry/io/ply_stream_writer.h"
 #include "gravity/vertical_directions.h"
+#include "numerics/portable_double.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/finish/erosion.h"
@@ -20,14 +21,22 @@ namespace {
 // 1.5. The same holds for boxes of a lattice.
 constexpr double kMeanProjection = 1.5;
 
-// The tiles of a band that blocks of the surface need. A block needs the tiles within reach of it.
-double tiles_of_surface(const SurfaceBand& band, const MeshEstimate& mesh, const Vec3d& extent) {
-  const double tile = double{band.cell} * kTileCells, block = kBlockCells * mesh.step;
-  const double wide = tile + 2.0 * double{band.reach} + 0.5 * block;
+// The tiles of a band that touch a layer of `volume` along the surface, or lie within reach of it.
+double tiles_along_surface(const SurfaceBand& band, const MeshEstimate& mesh, double volume,
+                           const Vec3d& extent) {
+  const double tile = double{band.cell} * kTileCells;
   const double area = mesh.vertices * mesh.step * mesh.step / kMeanProjection;
+  const double whole = volume + kMeanProjection * area * (tile + 2.0 * double{band.reach});
   const auto along = [&](double length) { return (length + 2.0 * double{band.reach}) / tile + 1.0; };
-  return std::min(kMeanProjection * area * wide / (tile * tile * tile),
-                  along(extent.x) * along(extent.y) * along(extent.z));
+  return std::min(whole / (tile * tile * tile), along(extent.x) * along(extent.y) * along(extent.z));
+}
+
+// The tiles of a band that a mesh draws, from those that its sample has drawn. Blocks in which the noise does
+// not count draw none.
+double tiles_of_mesh(const SurfaceBand& band, const MeshEstimate& mesh, double drawn, const Vec3d& extent) {
+  const double most = drawn * std::max(mesh.blocks / mesh.sampled_blocks, 1.0);
+  const double volume = mesh.blocks * portable::whole_power(kBlockCells * mesh.step, 3);
+  return std::clamp(tiles_along_surface(band, mesh, volume, extent), drawn, most);
 }
 
 // How often a tile is drawn. Tiles that find no room are drawn anew in each layer of blocks that needs them.
@@ -72,19 +81,31 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
   const std::vector<GaborCacheUse> caches = field.gabor_caches();
   const Vec3d extent = field.bounds().extent();
   GaborCost cost;
+  cost.bytes.resize(lists.size());
   double drawn_bytes = 0.0, bytes_to_draw = 0.0;
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const GaborCacheUse& cache = caches[i];
-    if (!(cache.drawn > 0.0)) continue;  // too many cells for tiles: impulses are drawn for each point
+    if (!(cache.drawn > 0.0) || !(mesh.sampled_blocks > 0.0))
+      continue;  // too many cells for tiles: impulses are drawn for each point
     const SurfaceBand& band = band_of(view, lists[i]);
-    const double tiles = std::max(tiles_of_surface(band, mesh, extent), cache.drawn);
+    const double tiles = tiles_of_mesh(band, mesh, cache.drawn, extent);
     const double bytes = tiles * cache.drawn_bytes / cache.drawn;
-    cost.more_bytes += std::min(bytes, kMostCacheBytes) - std::min(cache.held_bytes, kMostCacheBytes);
+    cost.bytes[i] = bytes;
     drawn_bytes += cache.drawn_bytes;
     bytes_to_draw += bytes * draws_of_tile(band, mesh, bytes, extent.z);
   }
   if (drawn_bytes > 0.0) cost.seconds = mesh.caching_seconds * bytes_to_draw / drawn_bytes;
   return cost;
+}
+
+double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const double> bytes, int threads) {
+  constexpr double kGaps = 1.25;  // the memory of two heaps or more, over what they hold
+  double more = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double full = kMostCacheBytes * (threads > 1 ? kGaps : 1.0);
+    more += (bytes[i] > kMostCacheBytes ? full : bytes[i]) - before[i].held_bytes;
+  }
+  return more;
 }
 
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {

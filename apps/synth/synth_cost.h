@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/gabor/gabor_tiles.h"
 #include "synthesis/mesh/mesh_sample.h"
 
 namespace astrolith {
@@ -24,12 +27,16 @@ struct OutputCost {
 };
 OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use);
 
-// The tiles of Gabor impulses that a mesh draws and keeps.
+// The tiles of Gabor impulses that a mesh draws.
 struct GaborCost {
-  double more_bytes = 0.0;  // beyond what the caches hold now
-  double seconds = 0.0;     // of one processor
+  std::vector<double> bytes;  // of each list of impulses, if all tiles were kept
+  double seconds = 0.0;       // of one processor
 };
 GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh);
+
+// The memory of the caches of Gabor tiles at the end, beyond what they hold at the time of `before`. A list
+// whose tiles take more than a cache is drawn again and again, which leaves gaps in the heaps of threads.
+double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const double> bytes, int threads);
 
 // Memory of the mesher and of the check of its mesh, bytes, without its output and without caches.
 double meshing_bytes(const MeshEstimate& mesh);

@@ -49,12 +49,19 @@ struct TileRange {
   std::array<int, 3> first, count;
 };
 
+// The most memory of the tiles that a thread holds at once, bytes, but for the last tile. The cache may have
+// dropped tiles that a thread still holds.
+constexpr std::size_t kMostHeldBytes = 1 << 20;
+
 using HeldTiles = std::vector<std::shared_ptr<const GaborTile>>;
 
-HeldTiles whole_tiles(const GaborTiles& tiles, const TileRange& range) {
+// Takes tiles of the range from number `next` on, as many as a thread may hold at once, and advances `next`.
+HeldTiles next_tiles(const GaborTiles& tiles, const TileRange& range, std::size_t& next) {
   HeldTiles held;
-  held.reserve(range.size());
-  for (std::size_t i = 0; i < range.size(); ++i) held.push_back(tiles.tile(range.index(i)));
+  for (std::size_t bytes = 0; next < range.size() && bytes < kMostHeldBytes; ++next) {
+    held.push_back(tiles.tile(range.index(next)));
+    bytes += held.back()->chunks.size() * sizeof(ImpulseChunk);
+  }
   return held;
 }
 
@@ -169,11 +176,23 @@ void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
   }
 }
 
-void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end) {
-  const HeldTiles held = whole_tiles(tiles, TileRange(range));
-  Chunks all, cluster_chunks, group_chunks;
+// Tiles come in one order whatever part of them is held at once, and the sums are taken in this order.
+void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& cells, int begin, int end) {
+  const TileRange range(cells);
+  const PointBox box = box_of(begin, end);
+  Chunks chunks;
+  for (std::size_t next = 0; next < range.size();) {
+    const HeldTiles held = next_tiles(tiles, range, next);
+    find_chunks(held, box, chunks);
+    if (!chunks.empty()) add_chunks(chunks, tiles.band().amplitude, begin, end);
+  }
+}
+
+// Adds the kernels of the chunks to the sums at the points of a range of whole groups.
+void GaborSurfacePoints::add_chunks(const std::vector<const ImpulseChunk*>& all, float amplitude, int begin,
+                                    int end) {
+  Chunks cluster_chunks, group_chunks;
   std::vector<ImpulseLane> lanes;
-  find_chunks(held, box_of(begin, end), all);
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
     narrow(all, box_of(cluster, cluster_end), cluster_chunks);
@@ -183,7 +202,7 @@ void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& 
       lanes.clear();
       append_reaching(group_chunks, box, lanes);
       const auto i = static_cast<std::size_t>(group);
-      add_to_group(lanes, tiles.band().amplitude, &x_[i], &y_[i], &z_[i], sums_from(group));
+      add_to_group(lanes, amplitude, &x_[i], &y_[i], &z_[i], sums_from(group));
     }
   }
 }

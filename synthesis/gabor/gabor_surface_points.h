@@ -39,7 +39,8 @@ class GaborSurfacePoints {
   bool whole_groups(int begin, int end) const;
   void add_band(const GaborTiles& tiles, int begin, int end);
   void add_to_scattered(const GaborTiles& tiles, int begin, int end);
-  void add_to_dense(const GaborTiles& tiles, const CellRange& range, int begin, int end);
+  void add_to_dense(const GaborTiles& tiles, const CellRange& cells, int begin, int end);
+  void add_chunks(const std::vector<const ImpulseChunk*>& chunks, float amplitude, int begin, int end);
 
   std::vector<int> index_;                    // number of each point before sorting
   std::vector<float> x_, y_, z_;              // whole groups; the last point fills up the last group

@@ -62,9 +62,10 @@ MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)
     if (growth < 1.5) break;
     size.nodes = std::min(static_cast<int>(growth * size.nodes), 2 * kMost);
     size.blocks = std::min(static_cast<int>(growth * size.blocks), kMost);
-    const double caching = estimate.caching_seconds;
+    const double caching = estimate.caching_seconds, sampled = estimate.sampled_blocks;
     estimate = sample(size);
     estimate.caching_seconds += caching;
+    estimate.sampled_blocks += sampled;
     spent += estimate.spent_seconds;
   }
   estimate.spent_seconds = spent;

@@ -26,6 +26,7 @@ struct MeshEstimate {
   int resolution = 0;
   double step = 0.0;  // edge of a cell, length units
   double blocks = 0.0, evaluations = 0.0, vertices = 0.0, triangles = 0.0;
+  double sampled_blocks = 0.0;   // blocks that were meshed by this sample and the smaller ones before it
   double seconds = 0.0;          // of one processor, for finding and meshing all blocks
   double spent_seconds = 0.0;    // of one processor, for the sample
   double caching_seconds = 0.0;  // of one processor, by which meshing the sample first took longer than again
@@ -181,6 +182,7 @@ class MeshSampler {
       costs[static_cast<std::size_t>(i)] = cost_of(nodes[static_cast<std::size_t>(i)]);
     });
     double weights = 0.0;
+    estimate_.sampled_blocks = double(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const BlockCost& cost = costs[i];
       const double weight = nodes[i].weight;

@@ -597,6 +597,45 @@ TEST_F(Synth, PredictionMeetsTheMesh) {
   EXPECT_GE(made.at("peak_bytes").get<double>(), 0.5 * of_mesh.at("peak_bytes").get<double>());
 }
 
+// Two spheres under a Gabor layer of one band.
+std::string gabor_layer(double pixel_size, int impulses, const std::string& more) {
+  return R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
+    "layers": [{"type": "gabor", "height_rms": 0.003, "lobes": [[3, 0.125, -0.25, 1]], "pixel_size": )" +
+         std::to_string(pixel_size) + ", \"impulses_per_kernel\": " + std::to_string(impulses) + "}]" + more +
+         "}";
+}
+
+// The lattice that finds the mass of the body is finer than the mesh. It draws tiles of impulses, of which
+// the mesh has none.
+TEST_F(Synth, MemoryOfErosionIsPredicted) {
+  if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer's memory is not predicted";
+  const std::string recipe = folder_.write(
+      "eroded.json", gabor_layer(0.007, 32, R"(, "erosion": {"talus_angle": 30, "iterations": 5})"));
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  const auto figures = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{recipe,      "-o", output,      "--resolution", "20",
+                                       "--threads", "1",  "--summary", summary};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(kSynth, arguments).status, 0);
+    return nlohmann::json::parse(text_of(summary));
+  };
+  const double predicted = figures({"--predict"}).at("predicted").at("peak_bytes").get<double>();
+  EXPECT_LE(figures({}).at("peak_bytes").get<double>(), 1.2 * predicted);
+}
+
+// A block here needs tiles of 200 MB, many times what the cache keeps of them.
+TEST_F(Synth, ThreadsHoldFewTilesOfImpulses) {
+  if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer has memory of its own";
+  const std::string recipe = folder_.write("dense.json", gabor_layer(0.02, 400, "")),
+                    summary = (folder_ / "s.json").string();
+  const testing::Outcome made =
+      run_program(kSynth, {recipe, "-o", (folder_ / "out.ply").string(), "--resolution", "12", "--threads",
+                           "2", "--summary", summary});
+  EXPECT_EQ(made.status, 0) << made.errors;
+  EXPECT_LE(nlohmann::json::parse(text_of(summary)).at("peak_bytes").get<double>(), 120e6);
+}
+
 TEST_F(Synth, SmallPiecesAreLeftOut) {
   const std::string crumbs = replaced(kTwoSpheres, "[1, 0, 0, 0.75]", "[1, 0, 0, 0.75], [2.6, 0, 0, 0.15]");
   const std::string recipe = folder_.write("crumbs.json", crumbs), summary = (folder_ / "s.json").string();
