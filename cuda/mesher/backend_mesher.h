@@ -124,10 +124,6 @@ class BackendMesher {
     statistics_.triangles += made_.first_triangle.back();
     statistics_.evaluations += static_cast<std::int64_t>(made_.evaluations);
     statistics_.cut_vertices += static_cast<std::int64_t>(made_.cut_vertices);
-    const std::size_t bytes = (blocks + kept_.blocks.size()) * sizeof(MeshBlock) +
-                              made_.vertices.size() * sizeof(MeshVertex) +
-                              made_.triangles.size() * sizeof(Triangle);
-    statistics_.working_bytes = std::max(statistics_.working_bytes, static_cast<std::int64_t>(bytes));
   }
 
   Backend& backend_;

@@ -27,9 +27,8 @@ struct MeshStatistics {
   std::int64_t evaluations = 0;    // evaluations of the field, at samples and for normals
   std::int64_t active_blocks = 0;  // blocks that the surface may cross; the others are never sampled
   std::int64_t total_blocks = 0;
-  std::int64_t working_bytes = 0;  // most memory of two layers of blocks and one of vertices and triangles
-  std::int64_t cut_vertices = 0;   // vertices in the planes where a tile or a patch is cut open
-  double step = 0.0;               // edge of a cell, length units
+  std::int64_t cut_vertices = 0;  // vertices in the planes where a tile or a patch is cut open
+  double step = 0.0;              // edge of a cell, length units
 
   // V - E + F, where E = 3F/2 as in every closed triangle mesh.
   std::int64_t euler_characteristic() const { return vertices - triangles / 2; }
@@ -108,15 +107,7 @@ class LayeredMesher {
     const LayerCounts counts = number_rows(layer);
     emit_vertices(z, active, counts, layer);
     emit_triangles(z, counts, below, layer);
-    note_memory(layer.blocks.size());
     return layer;
-  }
-
-  void note_memory(std::size_t blocks) {
-    const std::size_t bytes = 2 * blocks * (sizeof(LayerBlock<B>) + sizeof(typename Blocks::value_type)) +
-                              vertices_.capacity() * sizeof(MeshVertex) +
-                              triangles_.capacity() * sizeof(Triangle);
-    statistics_.working_bytes = std::max(statistics_.working_bytes, static_cast<std::int64_t>(bytes));
   }
 
   // Calls body(i) for every block in parallel and adds up the counts it returns.
