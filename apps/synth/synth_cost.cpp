@@ -8,6 +8,7 @@
 #include "geometry/io/ply_stream_writer.h"
 #include "gravity/vertical_directions.h"
 #include "numerics/portable_double.h"
+#include "recipe/sha256.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/finish/erosion.h"
@@ -31,12 +32,23 @@ double tiles_along_surface(const SurfaceBand& band, const MeshEstimate& mesh, do
   return std::min(whole / (tile * tile * tile), along(extent.x) * along(extent.y) * along(extent.z));
 }
 
+// The layer in which a mesh evaluates impulses. Points of a plain body are projected onto it, so that half a
+// block stands for the blocks. A warp and operations leave points where they are, in all active blocks.
+double volume_of_blocks(const ImplicitField& field, const MeshEstimate& mesh) {
+  const double block = kBlockCells * mesh.step;
+  const double area = mesh.vertices * mesh.step * mesh.step / kMeanProjection;
+  if (field.has_local_form()) return kMeanProjection * area * 0.5 * block;
+  return mesh.blocks * portable::whole_power(block, 3);
+}
+
 // The tiles of a band that a mesh draws, from those that its sample has drawn. Blocks in which the noise does
 // not count draw none.
-double tiles_of_mesh(const SurfaceBand& band, const MeshEstimate& mesh, double drawn, const Vec3d& extent) {
+double tiles_of_mesh(const SurfaceBand& band, const ImplicitField& field, const MeshEstimate& mesh,
+                     double drawn) {
   const double most = drawn * std::max(mesh.blocks / mesh.sampled_blocks, 1.0);
-  const double volume = mesh.blocks * portable::whole_power(kBlockCells * mesh.step, 3);
-  return std::clamp(tiles_along_surface(band, mesh, volume, extent), drawn, most);
+  const double tiles =
+      tiles_along_surface(band, mesh, volume_of_blocks(field, mesh), field.bounds().extent());
+  return std::clamp(tiles, drawn, most);
 }
 
 // How often a tile is drawn. Tiles that find no room are drawn anew in each layer of blocks that needs them.
@@ -88,7 +100,7 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
     if (!(cache.drawn > 0.0) || !(mesh.sampled_blocks > 0.0))
       continue;  // too many cells for tiles: impulses are drawn for each point
     const SurfaceBand& band = band_of(view, lists[i]);
-    const double tiles = tiles_of_mesh(band, mesh, cache.drawn, extent);
+    const double tiles = tiles_of_mesh(band, field, mesh, cache.drawn);
     const double bytes = tiles * cache.drawn_bytes / cache.drawn;
     cost.bytes[i] = bytes;
     drawn_bytes += cache.drawn_bytes;
@@ -162,9 +174,12 @@ double output_seconds_per_triangle() {
   check.add_vertices(vertices);
   check.add_triangles(mesh.triangles);
   check.finish();
+  Sha256 hash;
   for (const Triangle& triangle : mesh.triangles) {
     if (file) std::fwrite(&triangle, 1, sizeof triangle, file.get());
+    hash.update(&triangle, sizeof triangle);
   }
+  hash.update(vertices.data(), vertices.size() * sizeof(MeshVertex));
   return clock.seconds() / double(mesh.triangles.size());
 }
 

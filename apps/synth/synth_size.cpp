@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <thread>
 
 #include "apps/memory_use.h"
@@ -25,6 +26,12 @@ struct Prediction {
 int threads_of(const Program& program) {
   return program.threads > 0 ? program.threads
                              : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// Seconds of the work so far. Other programs on the machine slow its clock, and the threads of this one add
+// up on the processor's, so that the lower one counts.
+double seconds_so_far(const Program& program) {
+  return std::min(program.seconds(), static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
 }
 
 // Improves the estimate of a mesh that takes long by the body without its layers, whose sample takes some
@@ -51,7 +58,7 @@ constexpr Care kForFigures{{24, 0.03, 0.3}, 0.3}, kForMemory{{24, 0.02, 0.03}, 2
     kForTriangles{{192, 0.0, 0.0}, 2.0};
 
 Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh, const Care& care) {
-  const double seconds_before = program.seconds(), peak_before = static_cast<double>(peak_bytes());
+  const double seconds_before = seconds_so_far(program), peak_before = static_cast<double>(peak_bytes());
   const bool gabor = mesh.field.tables().gabor_lists.count > 0;
   const MeshEstimate estimate = with_bare_body(
       estimate_within(
