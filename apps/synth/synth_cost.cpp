@@ -111,11 +111,11 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
 }
 
 double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const double> bytes, int threads) {
-  constexpr double kGaps = 1.25;  // the memory of two heaps or more, over what they hold
+  // The memory of heaps over what they hold. Two or more threads have heaps of their own.
+  const double gaps = threads > 1 ? 1.25 : 1.1;
   double more = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const double full = kMostCacheBytes * (threads > 1 ? kGaps : 1.0);
-    more += (bytes[i] > kMostCacheBytes ? full : bytes[i]) - before[i].held_bytes;
+    more += (bytes[i] > kMostCacheBytes ? gaps * kMostCacheBytes : bytes[i]) - before[i].held_bytes;
   }
   return more;
 }
