@@ -117,8 +117,7 @@ TEST_F(SynthPrediction, PredictionMeetsTheMesh) {
   EXPECT_GE(made.at("peak_bytes").get<double>(), 0.5 * of_mesh.at("peak_bytes").get<double>());
 }
 
-// The lattice that finds the mass of the body is finer than the mesh. It draws tiles of impulses, of which
-// the mesh has none.
+// An eroded mesh is held in memory, with its edges and verticals, beside the tiles of impulses.
 TEST_F(SynthPrediction, MemoryOfErosionIsPredicted) {
   if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer's memory is not predicted";
   const std::string recipe = folder_.write(
