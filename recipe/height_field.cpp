@@ -10,7 +10,7 @@ struct HeightField {
   double height;
 };
 
-// The kinds of layers that state a height have one of the two fields.
+// Most kinds of layers that state a height have one of two fields.
 template <class Kind>
 HeightField height_field_of(const Kind& layer) {
   if constexpr (requires { layer.amplitude; }) {
@@ -18,6 +18,10 @@ HeightField height_field_of(const Kind& layer) {
   } else {
     return {"height_rms", layer.height_rms};
   }
+}
+HeightField height_field_of(const ExemplarLayer& layer) {
+  return layer.height_range != 0.0 ? HeightField{"height_range", layer.height_range}
+                                   : HeightField{"height_rms", layer.height_rms};
 }
 HeightField height_field_of(const CraterLayer& layer) {
   return {layer.craters.empty() ? "population" : "craters", 0.0};

@@ -7,8 +7,8 @@
 
 namespace astrolith {
 
-// "amplitude" or "height_rms"; "combine.width" where a blend's joint is wider than the layer is high; or the
-// list of landforms, "craters", "boulders" or "population".
+// "amplitude", "height_rms" or "height_range"; "combine.width" where a blend's joint is wider than the layer
+// is high; or the list of landforms, "craters", "boulders" or "population".
 std::string_view height_field(const Layer& layer);
 
 }  // namespace astrolith

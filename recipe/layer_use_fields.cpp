@@ -1,4 +1,6 @@
 // Lists of fields that every noise layer can have, and rules for layers that refer to other layers.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -51,8 +53,12 @@ void check_layer_use(const Recipe& recipe, std::size_t index, const Place& place
     if (use->locality) check_group(*use->locality, recipe.body, place.field("locality"));
     if (use->mask) check_masking_layer(*use->mask, before, place.field("mask"));
   }
-  if (std::holds_alternative<GaborLayer>(layer) && std::any_of(before.begin(), before.end(), displaces)) {
-    place.fail("a gabor layer is bound to the surface and cannot be warped; move it before the warp");
+  const bool on_surface =
+      std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer);
+  if (on_surface && std::any_of(before.begin(), before.end(), displaces)) {
+    place.fail(
+        fmt::format("a{} {} layer is bound to the surface and cannot be warped; move it before the warp",
+                    std::holds_alternative<ExemplarLayer>(layer) ? "n" : "", type_word(layer)));
   }
 }
 

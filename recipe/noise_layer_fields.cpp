@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "numerics/portable_double.h"
@@ -24,6 +25,24 @@ void check_modulation(const FractalLayer& layer, const Place& place) {
 void check_lobes(const GaborLayer& layer, const Place& place) {
   if (!layer.lobes.empty()) return;
   place.field("lobes").fail("must hold at least one [bandwidth, frequency_x, frequency_y, variance]");
+}
+
+void check_image(const ExemplarLayer& layer, const Place& place) {
+  const bool relative = !layer.image.empty() && layer.image.front() != '/';
+  if (!relative) {
+    place.field("image").fail("must be a path relative to the recipe's folder, is " +
+                              quote_text(layer.image));
+  }
+  const std::string& hash = layer.image_sha256;
+  const bool digits = std::all_of(hash.begin(), hash.end(), [](unsigned char c) { return std::isxdigit(c); });
+  if (hash.size() == 64 && digits) return;
+  place.field("image_sha256")
+      .fail("must be the 64 hexadecimal digits that sha256sum prints for the image, is " + quote_text(hash));
+}
+
+void check_exemplar_height(const ExemplarLayer& layer, const Place& place) {
+  if (layer.height_rms == 0.0 || layer.height_range == 0.0) return;
+  place.field("height_range").fail("must be 0 where height_rms is not; state one of both");
 }
 
 void check_edge(const Vec3d& edge, const Place& place) {
@@ -131,6 +150,20 @@ void visit_fields(FieldVisitor& v, GaborLayer& layer) {
   v.field("color", layer.color);
   v.rule(check_lobes, layer);
   v.required("lobes", layer.lobes);
+}
+
+void visit_fields(FieldVisitor& v, ExemplarLayer& layer) {
+  v.required("image", layer.image);
+  v.required("image_sha256", layer.image_sha256);
+  v.rule(check_image, layer);
+  v.field("pixel_size", layer.pixel_size, kPositive);
+  v.field("height_rms", layer.height_rms, kNotNegative);
+  v.field("height_range", layer.height_range, kAnyNumber);
+  v.rule(check_exemplar_height, layer);
+  v.field("exponent", layer.exponent, range(2, 8));
+  v.field("anchor_spacing", layer.anchor_spacing, range(0.1, 2.0));
+  v.word("border", layer.border, kExemplarBorders, border_word);
+  v.word("rotation", layer.rotation, kExemplarRotations, rotation_word);
 }
 
 static void visit_row(FieldVisitor& v, CellEdges& lattice) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "numerics/vec3.h"
 #include "recipe/body.h"
+#include "recipe/exemplar_image.h"
 
 namespace astrolith {
 
@@ -153,6 +155,56 @@ struct GaborLayer {
   void rescale(double ratio) {
     pixel_size *= ratio;
     height_rms *= ratio;
+  }
+};
+
+// How an exemplar goes on beyond its border: as a copy of itself, which needs a periodic image, or mirrored.
+enum class ExemplarBorder { kRepeat, kMirror };
+inline constexpr ExemplarBorder kExemplarBorders[] = {ExemplarBorder::kRepeat, ExemplarBorder::kMirror};
+constexpr std::string_view border_word(ExemplarBorder border) {
+  return border == ExemplarBorder::kRepeat ? "repeat" : "mirror";
+}
+
+// How the copies of an exemplar are turned about the normal.
+enum class ExemplarRotation { kNone, kQuarter, kAny };
+inline constexpr ExemplarRotation kExemplarRotations[] = {ExemplarRotation::kNone, ExemplarRotation::kQuarter,
+                                                          ExemplarRotation::kAny};
+constexpr std::string_view rotation_word(ExemplarRotation rotation) {
+  constexpr std::string_view kWords[] = {"none", "quarter", "any"};
+  return kWords[static_cast<int>(rotation)];
+}
+
+// A texture by example: tiling and blending that preserves the histogram (Heitz and Neyret 2018) on a
+// surface. Anchors stand on a body-centred cubic lattice in space. Each anchor has a random offset into the
+// exemplar and the tangent frame of the bare surface near it. With the barycentric weights w_k of a point's
+// four anchors, its coordinates u_k in their frames, and the Gaussianised exemplar g,
+//   z = sum_k w_k^exponent g(u_k + offset_k) / sqrt(sum_k w_k^(2 exponent)),   height = quantile(normal(z)).
+// The height has mean 0. Its standard deviation is height_rms, or height_range times that of the image.
+struct ExemplarLayer {
+  static constexpr std::string_view kType = "exemplar";
+
+  std::string name;
+  LayerSeed seed;
+  LayerUse use;
+  std::string image;            // path of a PNG file, relative to the folder of the recipe
+  std::string image_sha256;     // SHA-256 of that file, 64 hexadecimal digits
+  double pixel_size = 1.0;      // length units per pixel of the image, > 0
+  double height_rms = 0.0;      // length units, >= 0
+  double height_range = 0.0;    // height of white above black, length units; at most one of both is not 0
+  int exponent = 3;             // 2 .. 8
+  double anchor_spacing = 0.5;  // cube root of the volume per anchor, in shorter sides of the image, [0.1, 2]
+  ExemplarBorder border = ExemplarBorder::kRepeat;
+  ExemplarRotation rotation = ExemplarRotation::kNone;
+
+  // The image, which load_recipe() decodes. It is no field of the file. Null: the layer cannot be evaluated.
+  std::shared_ptr<const ExemplarImage> pixels;
+
+  bool has_height() const { return height_rms != 0.0 || height_range != 0.0; }
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    pixel_size *= ratio;
+    height_rms *= ratio;
+    height_range *= ratio;
   }
 };
 

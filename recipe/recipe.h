@@ -23,7 +23,7 @@ namespace astrolith {
 inline constexpr int kRecipeFormatVersion = 1;
 
 using Layer = std::variant<FractalLayer, SpotLayer, SparseLayer, CraterLayer, BoulderLayer, RandomPhaseLayer,
-                           PhasorLayer, GaborLayer>;
+                           PhasorLayer, GaborLayer, ExemplarLayer>;
 
 // The layer's `type` in a file: "simplex", "perlin" or "worley" of a fractal layer, kType of the others.
 std::string_view type_word(const Layer& layer);

@@ -21,6 +21,7 @@
 #include "recipe/sha256.h"
 #include "tasks/estimation/fit_checkpoint.h"
 #include "tasks/estimation/shape_recipe.h"
+#include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 namespace {
@@ -149,7 +150,7 @@ void run(Program& program, FitArguments& arguments) {
   if (Program::interrupted()) return keep_best_so_far(program, arguments, checkpoint, target, fit, recipe);
   if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
   note_achieved(fit, recipe);
-  write_recipe(recipe, arguments.output);
+  write_loaded_recipe(recipe, arguments.output);
   if (!arguments.report.empty()) {
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),
                      arguments.report);

@@ -11,6 +11,7 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "tasks/estimation/shape_recipe.h"
+#include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith {
@@ -27,7 +28,7 @@ double size_of(const Recipe& recipe) {
 
 // Reads a recipe whose layers can be scaled to another body.
 Recipe read_details(const std::string& file) {
-  Recipe other = read_recipe(file);
+  Recipe other = load_recipe(file);
   if (!other.body) {
     throw InputError(file +
                      ": body: absent, so nobody knows how large its layers are; lay them on a body with "
@@ -125,7 +126,7 @@ void transfer_details(const Program& program, const std::string& file, Recipe& r
 }
 
 void add_micro_layers(const DetailArguments& arguments, Recipe& recipe) {
-  Recipe rock = read_recipe(arguments.micro);
+  Recipe rock = load_recipe(arguments.micro);
   const double mm = recipe.length_unit == "km" ? 1e-6 : 1e-3;
   const GaborLayer* first = nullptr;
   for (const Layer& layer : rock.layers) {
@@ -184,7 +185,7 @@ nlohmann::ordered_json write_variations(const Program& program, const TargetBody
   for (std::size_t k = 0; k < files.size(); ++k) {
     const Variation variation =
         find_variation(recipe, similarity, arguments.delta, k + 1, program.progress("variation"));
-    write_recipe(variation.recipe, files[k]);
+    write_loaded_recipe(variation.recipe, files[k]);
     figures.push_back(figures_of(variation));
     program.say(fmt::format("{}: similarity {:.4f} with the mesh; {}", files[k].string(),
                             variation.similarity, words_of(variation)));

@@ -2,7 +2,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
-#include "recipe/recipe_json.h"
+#include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 
@@ -11,7 +11,7 @@ GravityBody read_gravity_body(const Program& program, const std::filesystem::pat
   if (file.extension() != ".json") {
     return gravity_body(read_mesh(file), unit.empty() ? "km" : unit, file.string());
   }
-  const Recipe recipe = read_recipe(file);
+  const Recipe recipe = load_recipe(file);
   if (!unit.empty() && unit != recipe.length_unit) {
     throw InputError("--unit: the recipe states " + recipe.length_unit + "; leave the option out");
   }

@@ -11,9 +11,9 @@
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
 #include "synthesis/finish/lay_on_base.h"
+#include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith {
@@ -86,9 +86,9 @@ void make_texture(Program& program, const Options& options, const Recipe& recipe
 }
 
 Recipe read_input(const Program& program, const Options& options) {
-  Recipe recipe = read_recipe(options.recipe);
+  Recipe recipe = load_recipe(options.recipe);
   if (!options.base.empty()) {
-    recipe = lay_on_base(recipe, options.recipe.string(), read_recipe(options.base), options.base.string());
+    recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string());
   }
   if (program.app.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
@@ -141,7 +141,7 @@ void synthesize(Program& program, const Options& options) {
                      "with --texture WxH");
   }
   const Recipe made = options.vary > 0.0 ? varied(program, options, recipe) : recipe;
-  if (!options.written_recipe.empty()) write_recipe(made, options.written_recipe);
+  if (!options.written_recipe.empty()) write_loaded_recipe(made, options.written_recipe);
   if (options.output.empty() && !options.mesh.size.only_predict) return;
   make_mesh(program, options.mesh, made, options.base.empty() ? options.recipe : options.base,
             options.output);

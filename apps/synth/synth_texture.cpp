@@ -78,7 +78,7 @@ void write_heights(Program& program, const TextureRequest& request, const Recipe
     program.summary["height_at_0"] = -kTextureRange * rms;
     program.summary[request.bits == 8 ? "height_at_255" : "height_at_65535"] = kTextureRange * rms;
   }
-  program.say(output.string() + ": height of a Gabor layer, " + request.size + " pixels");
+  program.say(output.string() + ": height of a texture layer, " + request.size + " pixels");
 }
 
 void write_colors(Program& program, const TextureRequest& request, const PlaneTexture& texture,
@@ -101,7 +101,8 @@ void declare_texture_options(Program& program, TextureRequest& request) {
   app.add_option("--texture", request.size,
                  "a plane of WxH pixels instead of a mesh: the colours of the recipe's layers where they "
                  "have some (0 to 1 in a .tif of 32-bit floats, full scale in a .png; see fit_gabor "
-                 "--channels), otherwise the height of its first Gabor layer (a .tif holds heights, a .png "
+                 "--channels), otherwise the height of its first Gabor or exemplar layer (a .tif holds "
+                 "heights, a .png "
                  "maps -4 to +4 standard deviations to its full scale)")
       .placeholder("WxH");
   app.add_option("--texture-of", request.content, "what --texture draws: height or color")

@@ -60,6 +60,9 @@ struct LayerAtPoint {
     join(height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list,
                    projected_point(f, body)));
   }
+  ASTROLITH_HD void operator()(const ExemplarNoise& noise) const {
+    join(height_at(noise, f.arrays, projected_point(f, body)));
+  }
   ASTROLITH_HD void operator()(const SpotNoise& noise) const {
     join(height_at(noise, f.arrays, lists.spots, lists.first_spot + layer.first_list, displaced()));
   }

@@ -92,6 +92,12 @@ struct LayerHeights {
                 {b.px.data(), b.py.data(), b.pz.data()});
     }
   }
+  void operator()(const ExemplarNoise& noise) const {
+    in_patch ? project_locally(model, b) : project(model, b);
+    const PointArrays p = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
+                                   : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+    evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
+  }
   void operator()(const CraterRelief&) const {}  // craters change elevations and have no heights
   template <class Noise>
   void operator()(const Noise& noise) const {

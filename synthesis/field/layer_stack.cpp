@@ -87,6 +87,12 @@ class LayerStack {
     push(layer, noise, add_lists(noise.bands.count, model_.gabor_lists));
     model_.gabor_caches.resize(model_.gabor_lists.size());
   }
+  void add(const ExemplarLayer& layer) {
+    if (!layer.has_height()) return;
+    const ExemplarNoise made = make_exemplar(layer, place_of(index_), model_.arrays);
+    exemplars_.emplace(index_, made);
+    push(layer, placed(layer, made, supports_, model_.arrays));
+  }
   void add(const CraterLayer& layer) {
     std::vector<PlacedCrater> craters =
         place_craters(layer, bare(), recipe_.seed, number_of(layer), place_of(index_));
@@ -195,10 +201,20 @@ class LayerStack {
                      " are allowed; " + remedy);
   }
 
+  // An exemplar with the anchors of a frame, which are added to `arrays`.
+  ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& made, const NoiseFrame& frame,
+                       ArrayStore& arrays) const {
+    GaborGround ground{model_.body, model_.arrays.view(), model_.metaballs.lists()};
+    if (frame.moved) ground.origin = &frame.origin;
+    return placed_exemplar(made, layer, recipe_.seed, number_of(layer), frame, ground, arrays);
+  }
+
   // The noise of a layer in a frame with an origin of its own.
   template <class AnyLayer>
   auto moved_noise(const AnyLayer& layer, const NoiseFrame& frame, ArrayStore& arrays) const {
-    if constexpr (std::is_same_v<AnyLayer, GaborLayer>) {
+    if constexpr (std::is_same_v<AnyLayer, ExemplarLayer>) {
+      return placed(layer, exemplars_.at(index_), frame, arrays);
+    } else if constexpr (std::is_same_v<AnyLayer, GaborLayer>) {
       const Vec3d e = supports_.extent();
       return make_noise(layer, recipe_.seed, number_of(layer), frame, std::max({e.x, e.y, e.z}), arrays);
     } else {
@@ -260,7 +276,7 @@ class LayerStack {
   template <class AnyLayer>
   void add_patch_noise(const AnyLayer& layer, const PatchLayer& l, const PatchCube& patch, double warp) {
     if constexpr (requires { layer.use; }) {
-      const bool on_surface = std::is_same_v<AnyLayer, GaborLayer>;
+      const bool on_surface = std::is_same_v<AnyLayer, GaborLayer> || std::is_same_v<AnyLayer, ExemplarLayer>;
       const double reach = 2.0 * patch.side + (on_surface ? warp + model_.height_bound : l.displaced);
       const NoiseFrame frame(widened(Box{{}, {}}, reach), patch.center);
       const auto noise = moved_noise(layer, frame, model_.arrays);
@@ -367,6 +383,7 @@ class LayerStack {
   std::map<int, int> slots_;  // slot of the kept heights of each masking layer
   std::vector<PatchLayer> patch_layers_;
   double spot_draws_ = 0.0, gabor_draws_ = 0.0;  // by draws_at_a_point()
+  std::map<int, ExemplarNoise> exemplars_;       // without anchors, by the layer's place in the recipe
   std::optional<BareSurface> bare_;              // made for the first layer that needs it
   int index_ = 0;
 };

@@ -4,17 +4,22 @@
 #include <string_view>
 
 #include "numerics/errors.h"
+#include "synthesis/exemplar/exemplar_texture.h"
+#include "synthesis/exemplar/plane_exemplar.h"
 #include "synthesis/gabor/color_texture.h"
 #include "synthesis/gabor/gabor_texture.h"
 
 namespace astrolith {
 namespace {
 
-GaborLayer first_gabor_layer(const Recipe& recipe, const std::string& file) {
-  for (const Layer& layer : recipe.layers) {
-    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) return *gabor;
+// The place of the first layer that a plane can show.
+std::size_t first_plane_layer(const Recipe& recipe, const std::string& file) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    const Layer& layer = recipe.layers[i];
+    if (std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer)) return i;
   }
-  throw InputError(file + ": layers: hold no Gabor layer, which a texture draws; fit one with fit_gabor");
+  throw InputError(
+      file + ": layers: hold no Gabor or exemplar layer, which a texture draws; make one with fit_gabor");
 }
 
 void check_side(int side) {
@@ -31,6 +36,19 @@ PlaneTexture draw_heights(GaborLayer layer, const PlaneTextureRequest& request, 
   if (!texture.has_height) layer.height_rms = 1.0;
   texture.height_rms = layer.height_rms;
   texture.values = synthesize_texture(layer, request.width, request.height, options, progress);
+  return texture;
+}
+
+PlaneTexture draw_heights(ExemplarLayer layer, std::size_t index, const std::string& file,
+                          const PlaneTextureRequest& request, std::uint64_t seed, const Progress& progress) {
+  PlaneTexture texture;
+  texture.has_height = layer.has_height();
+  if (!texture.has_height) layer.height_rms = 1.0;
+  const std::string place = file + ": layers[" + std::to_string(index) + "]";
+  const int number = layer_number(layer.seed, static_cast<int>(index));
+  texture.values = synthesize_exemplar(layer, place, request.width, request.height,
+                                       {seed, number, request.tileable}, progress);
+  texture.height_rms = exemplar_height_rms(layer);
   return texture;
 }
 
@@ -67,8 +85,16 @@ PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const P
     return go_on;
   };
   const bool colors = !layers.empty() && request.content != "height";
-  PlaneTexture texture = colors ? draw_colors(layers, request, options, watched)
-                                : draw_heights(first_gabor_layer(recipe, file), request, options, watched);
+  PlaneTexture texture;
+  if (colors) {
+    texture = draw_colors(layers, request, options, watched);
+  } else {
+    const std::size_t first = first_plane_layer(recipe, file);
+    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe.layers[first]);
+    texture = exemplar != nullptr
+                  ? draw_heights(*exemplar, first, file, request, recipe.seed, watched)
+                  : draw_heights(std::get<GaborLayer>(recipe.layers[first]), request, options, watched);
+  }
   if (stopped) throw WorkError("stopped before the texture was complete");
   return texture;
 }

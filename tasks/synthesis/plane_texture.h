@@ -1,4 +1,5 @@
-// A recipe's Gabor layers drawn on a plane: the heights of the first, or the colours of all that have one.
+// A recipe's texture layers drawn on a plane: the heights of the first Gabor or exemplar layer, or the
+// colours of all Gabor layers that have one.
 #pragma once
 
 #include <cstddef>

@@ -99,6 +99,7 @@ std::map<std::string, Fields> described() {
           {"random_phase", fields_of(Layer{RandomPhaseLayer{}})},
           {"phasor", fields_of(Layer{PhasorLayer{}})},
           {"gabor", fields_of(Layer{GaborLayer{}})},
+          {"exemplar", fields_of(Layer{ExemplarLayer{}})},
           {"color", fields_of(LayerColor{})},
           {"craters", fields_of(Layer{CraterLayer{}})},
           {"crater_profile", fields_of(CraterProfile{})},

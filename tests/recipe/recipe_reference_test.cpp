@@ -27,6 +27,10 @@ nlohmann::json schema() { return nlohmann::json::parse(text_of(ASTROLITH_RECIPE_
 nlohmann::json least_layer(const std::string& type) {
   nlohmann::json layer = {{"type", type}};
   if (type == "gabor") layer["lobes"] = {{4, 0.1, 0.0, 1.0}};
+  if (type == "exemplar") {
+    layer["image"] = "photo.png";
+    layer["image_sha256"] = std::string(64, '0');
+  }
   return layer;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/exemplars.h"
 
 namespace astrolith::testing {
 
@@ -98,7 +99,7 @@ inline Layer random_layer(CounterRandom& random) {
     case 5:
       return random_boulders(random);
     case 6:
-      return gabor_layer(0.03, 0.005);
+      return random.below(2) == 0 ? Layer(gabor_layer(0.03, 0.005)) : Layer(exemplar_layer(0.01, 0.01));
     default:
       return random_fractal(random);
   }

@@ -12,6 +12,7 @@
 #include "synthesis/field/field_mesh.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/exemplars.h"
 
 namespace astrolith {
 namespace {
@@ -85,6 +86,14 @@ TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   const ImplicitField noisy(gravel);
   ASSERT_EQ(obstacle_on_gpu(noisy.tables(), block_side(noisy.bounds(), 12)), "");
   expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
+}
+
+TEST(BackendMesher, MakesTheExemplarsOfTheCpu) {
+  Recipe recipe = potato_recipe(10, 8);
+  recipe.layers = {testing::exemplar_layer(0.01, 0.01)};
+  const ImplicitField field(recipe);
+  ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
+  expect_same(on_twin(field, 40), on_cpu(field, 40));
 }
 
 // The field is exactly zero at some samples, and some cells have many such samples.

@@ -1,0 +1,177 @@
+#include "synthesis/exemplar/exemplar_noise.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "numerics/hash_random.h"
+#include "synthesis/gabor/gabor_cells.h"
+#include "synthesis/noise/points_in_domain.h"
+
+namespace astrolith {
+namespace {
+
+// Points and their places in the lattice, as arrays.
+struct PlaceArrays {
+  std::vector<float> values;  // x, y, z and four weights of each point
+  std::vector<std::int32_t> tetrahedra;
+
+  explicit PlaceArrays(std::size_t n) : values(7 * n), tetrahedra(n) {}
+  float* array(std::size_t k) { return values.data() + k * tetrahedra.size(); }
+  const float* array(std::size_t k) const { return values.data() + k * tetrahedra.size(); }
+};
+
+// Writes the places of the points. The number of a tetrahedron is 8 * anchor + order.
+ASTROLITH_SIMD_CLONES void find_places(const ExemplarLattice& of_layer, int n, const float* __restrict px,
+                                       const float* __restrict py, const float* __restrict pz,
+                                       float* __restrict x, float* __restrict y, float* __restrict z,
+                                       float* __restrict w0, float* __restrict w1, float* __restrict w2,
+                                       float* __restrict w3, std::int32_t* __restrict tetrahedron) {
+  const ExemplarLattice lattice = of_layer;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    const ExemplarPlace place = exemplar_place(lattice, px[i], py[i], pz[i]);
+    x[i] = place.x, y[i] = place.y, z[i] = place.z;
+    w0[i] = place.weight[0], w1[i] = place.weight[1], w2[i] = place.weight[2], w3[i] = place.weight[3];
+    tetrahedron[i] = 8 * place.anchor + place.order;
+  }
+}
+
+ASTROLITH_SIMD_CLONES void sharpen(std::int32_t exponent, int n, float* __restrict w0, float* __restrict w1,
+                                   float* __restrict w2, float* __restrict w3) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    float weight[4] = {w0[i], w1[i], w2[i], w3[i]};
+    sharpen_weights(exponent, weight);
+    w0[i] = weight[0], w1[i] = weight[1], w2[i] = weight[2], w3[i] = weight[3];
+  }
+}
+
+// Adds one anchor's part to z at n points of one tetrahedron.
+ASTROLITH_SIMD_CLONES void add_anchor(const ExemplarTexture& of_layer, const std::uint32_t* words,
+                                      const ExemplarAnchor& of_corner, int n, const float* __restrict x,
+                                      const float* __restrict y, const float* __restrict z,
+                                      const float* __restrict weight, float* __restrict sum) {
+  const ExemplarTexture texture = of_layer;
+  const ExemplarAnchor anchor = of_corner;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    sum[i] = math::fma(weight[i], anchor_value(texture, words, anchor, x[i], y[i], z[i]), sum[i]);
+  }
+}
+
+ASTROLITH_SIMD_CLONES void look_up(const float* heights, int n, float* __restrict values) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) values[i] = exemplar_height(heights, values[i]);
+}
+
+// Sorts points by their tetrahedra: a group is a run of points of one tetrahedron in `order`.
+struct Groups {
+  std::vector<std::int32_t> order;  // numbers of the points
+  std::vector<int> first;           // first point of each group, and the number of points
+};
+
+Groups groups_of(const std::vector<std::int32_t>& tetrahedra) {
+  const auto n = tetrahedra.size();
+  Groups groups;
+  if (std::all_of(tetrahedra.begin(), tetrahedra.end(), [&](std::int32_t t) { return t == tetrahedra[0]; })) {
+    groups.first = {0, static_cast<int>(n)};
+    return groups;
+  }
+  std::vector<std::uint64_t> keys(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    keys[i] = static_cast<std::uint64_t>(static_cast<std::uint32_t>(tetrahedra[i])) << 32 | i;
+  }
+  std::sort(keys.begin(), keys.end());
+  groups.order.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    groups.order[i] = static_cast<std::int32_t>(keys[i] & 0xffffffffu);
+    if (i == 0 || keys[i] >> 32 != keys[i - 1] >> 32) groups.first.push_back(static_cast<int>(i));
+  }
+  groups.first.push_back(static_cast<int>(n));
+  return groups;
+}
+
+// The places in the order of the groups.
+PlaceArrays sorted(const PlaceArrays& places, const Groups& groups) {
+  const std::size_t n = groups.order.size();
+  PlaceArrays result(n);
+  for (std::size_t k = 0; k < 7; ++k) {
+    const float* from = places.array(k);
+    float* to = result.array(k);
+    for (std::size_t i = 0; i < n; ++i) to[i] = from[groups.order[i]];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    result.tetrahedra[i] = places.tetrahedra[static_cast<std::size_t>(groups.order[i])];
+  }
+  return result;
+}
+
+}  // namespace
+
+ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place, ArrayStore& arrays) {
+  ExemplarNoise noise;
+  noise.texture = make_exemplar_texture(layer, place, arrays);
+  noise.exponent = layer.exponent;
+  noise.height_bound = std::max(std::fabs(noise.texture.least), std::fabs(noise.texture.greatest));
+  noise.detail.finest = layer.pixel_size;
+  return noise;
+}
+
+ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
+                              int layer_index, const NoiseFrame& frame, const GaborGround& ground,
+                              ArrayStore& arrays) {
+  ExemplarNoise noise = made;
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
+  noise.lattice.anchors = {};
+  const int side = std::min(layer.pixels->width, layer.pixels->height);
+  const double edge = exemplar_edge(layer.anchor_spacing) * side * layer.pixel_size;
+  noise.detail.left_out = 1.0;
+  if (!(frame.farthest() / layer.pixel_size <= kLargestCell)) return noise;
+  const ExemplarCells cells = exemplar_cells(frame, {edge, edge, edge});
+  if (!(cells.anchors <= kMostExemplarAnchors)) return noise;
+  noise.detail.left_out = 0.0;
+  noise.lattice = cells.lattice;
+  noise.lattice.anchors = arrays.add(
+      anchors_on_body(layer, cells, hash_seed(seed, static_cast<std::uint32_t>(layer_index)), ground));
+  return noise;
+}
+
+void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height) {
+  std::fill(height, height + count, 0.0f);
+  if (n.lattice.anchors.count == 0) return;
+  evaluate_heights(n, arrays, arrays[n.lattice.anchors], count, x, y, z, height);
+}
+
+void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, const ExemplarAnchor* anchors,
+                      int count, const float* x, const float* y, const float* z, float* height) {
+  if (count == 0) return;
+  const PointsInDomain p(n.low, n.high, count, x, y, z);
+  PlaceArrays places(static_cast<std::size_t>(count));
+  find_places(n.lattice, count, p.x(), p.y(), p.z(), places.array(0), places.array(1), places.array(2),
+              places.array(3), places.array(4), places.array(5), places.array(6), places.tetrahedra.data());
+  sharpen(n.exponent, count, places.array(3), places.array(4), places.array(5), places.array(6));
+  const Groups groups = groups_of(places.tetrahedra);
+  if (!groups.order.empty()) places = sorted(places, groups);
+  std::vector<float> sums(static_cast<std::size_t>(count));
+  for (std::size_t g = 0; g + 1 < groups.first.size(); ++g) {
+    const int first = groups.first[g], size = groups.first[g + 1] - first;
+    const std::int32_t tetrahedron = places.tetrahedra[static_cast<std::size_t>(first)];
+    for (int c = 0; c < 4; ++c) {
+      const ExemplarAnchor anchor =
+          anchor_at_corner(n.lattice, anchors, tetrahedron >> 3, tetrahedron & 7, c);
+      add_anchor(n.texture, arrays[n.texture.words], anchor, size, places.array(0) + first,
+                 places.array(1) + first, places.array(2) + first,
+                 places.array(static_cast<std::size_t>(3 + c)) + first, sums.data() + first);
+    }
+  }
+  look_up(arrays[n.texture.heights], count, sums.data());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    height[groups.order.empty() ? i : static_cast<std::size_t>(groups.order[i])] = sums[i];
+  }
+}
+
+}  // namespace astrolith

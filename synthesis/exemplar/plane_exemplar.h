@@ -1,0 +1,27 @@
+// An exemplar layer on a plane: a texture like its image, of any size.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "numerics/progress.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+struct PlaneExemplarOptions {
+  std::uint64_t seed = 1;
+  int layer_index = 0;    // layers of one seed and different numbers are independent
+  bool tileable = false;  // the texture repeats after its width and height without a seam
+};
+
+// Heights at pixel centres, row-major (height x width), x to the right, y down; length units, mean 0. A
+// smaller texture is the top left part of a larger one, unless it is tileable. Throws as
+// make_exemplar_texture() does, and InputError for a tileable side below half of an anchor cell. When
+// `progress` asks to stop, the rows not yet made are 0. Expects sides of at least 1.
+std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::string& place, int width,
+                                       int height, const PlaneExemplarOptions& options,
+                                       const Progress& progress = {});
+
+}  // namespace astrolith

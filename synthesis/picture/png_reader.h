@@ -1,0 +1,25 @@
+// Reads PNG files as grey images.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace astrolith {
+
+// A grey image, row-major, the top row first. 0 is black, 65535 is white.
+struct GreyPng {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint16_t> values;
+};
+
+// Decodes a PNG file that was read into memory. Channels have 1 to 16 bits; palettes are expanded, colours
+// become the luma 0.2126 R + 0.7152 G + 0.0722 B of the stored values, and alpha is ignored. Throws
+// InputError, which names `file`: for bytes that are no PNG, for a damaged file, and for sides outside
+// least_side to most_side, before anything is decoded.
+GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::string& file, int least_side,
+                        int most_side);
+
+}  // namespace astrolith

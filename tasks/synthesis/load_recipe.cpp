@@ -1,0 +1,88 @@
+#include "tasks/synthesis/load_recipe.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "numerics/errors.h"
+#include "numerics/files/input_file.h"
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+#include "synthesis/picture/png_reader.h"
+
+namespace astrolith {
+namespace {
+
+// A PNG of the largest exemplar takes less.
+constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{1} << 28;
+
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file, const std::string& place) {
+  try {
+    require_plain_file(file);
+  } catch (const InputError& e) {
+    throw InputError(place + ": " + e.what());
+  }
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  if (size > kMostImageBytes) {
+    throw InputError(place + ": " + file.string() + " is larger than 256 MB; scale the image down");
+  }
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
+    throw InputError(place + ": " + file.string() + " cannot be read; check its permissions");
+  }
+  return bytes;
+}
+
+bool same_digits(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+void load_exemplar(ExemplarLayer& layer, const std::filesystem::path& folder, const std::string& place) {
+  const std::filesystem::path file = folder / layer.image;
+  const std::vector<std::uint8_t> bytes = read_bytes(file, place + ".image");
+  Sha256 hash;
+  hash.update(bytes.data(), bytes.size());
+  if (!same_digits(hash.hex(), layer.image_sha256)) {
+    throw InputError(place + ".image: " + file.string() +
+                     " has changed since the recipe was written; restore it, or state its SHA-256 " +
+                     hash.hex());
+  }
+  GreyPng png =
+      decode_grey_png(bytes, place + ".image: " + file.string(), kLeastExemplarSide, kMostExemplarSide);
+  layer.pixels = std::make_shared<ExemplarImage>(
+      ExemplarImage{png.width, png.height, std::move(png.values), std::filesystem::absolute(file)});
+}
+
+}  // namespace
+
+void load_exemplars(Recipe& recipe, const std::filesystem::path& folder, const std::string& name) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    auto* layer = std::get_if<ExemplarLayer>(&recipe.layers[i]);
+    if (layer != nullptr) load_exemplar(*layer, folder, name + ": layers[" + std::to_string(i) + "]");
+  }
+}
+
+Recipe load_recipe(const std::filesystem::path& file) {
+  Recipe recipe = read_recipe(file);
+  load_exemplars(recipe, file.parent_path(), file.string());
+  return recipe;
+}
+
+void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  for (Layer& any : recipe.layers) {
+    auto* layer = std::get_if<ExemplarLayer>(&any);
+    if (layer == nullptr || layer->pixels == nullptr) continue;
+    layer->image =
+        layer->pixels->file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
+  }
+  write_recipe(recipe, file);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,127 @@
+// synth with exemplar layers, whose images lie beside the recipe, run as a user runs it.
+#include <png.h>
+
+#include <cstdint>
+#include <filesystem>
+
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+#include "tests/apps/program_runner.h"
+
+namespace astrolith {
+namespace {
+
+using testing::expect_refusal;
+using testing::run_program;
+using testing::text_of;
+
+const std::string kSynthProgram = ASTROLITH_SYNTH;
+
+class SynthExemplar : public ::testing::Test {
+ protected:
+  // Writes a PNG of `channels` channels in one of libpng's formats: values from a hash of their place.
+  void write_image(const std::string& name, int side, std::uint32_t format, int channels, bool flat = false) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<std::uint32_t>(side);
+    image.height = static_cast<std::uint32_t>(side);
+    image.format = format;
+    const bool wide = (format & PNG_FORMAT_FLAG_LINEAR) != 0;
+    std::vector<std::uint16_t> values(static_cast<std::size_t>(side * side * channels), 20000);
+    std::uint32_t state = 1;
+    for (std::uint16_t& value : values) {
+      state = state * 1664525u + 1013904223u;
+      if (!flat) value = static_cast<std::uint16_t>(state >> 16);
+    }
+    const std::vector<std::uint8_t> bytes(values.begin(), values.end());
+    ASSERT_NE(
+        png_image_write_to_file(&image, (folder_ / name).c_str(), 0,
+                                wide ? static_cast<const void*>(values.data()) : bytes.data(), 0, nullptr),
+        0);
+  }
+  std::string recipe_of(const std::string& image, const std::string& hash, bool with_body = true) const {
+    const std::string body = R"("body": {"type": "metaballs", "spheres": [[0, 0, 0, 10]]},)";
+    return folder_.write("r.json", R"({"format_version": 1, "length_unit": "m", )" + (with_body ? body : "") +
+                                       R"("layers": [{"type": "exemplar", "image": ")" + image +
+                                       R"(", "image_sha256": ")" + hash +
+                                       R"(", "height_rms": 0.05, "pixel_size": 0.05}]})");
+  }
+  std::string recipe_of(const std::string& image) const {
+    return recipe_of(image, sha256_of_file(folder_ / image));
+  }
+  void make_mesh(const std::string& recipe, const std::string& mesh, const std::string& threads = "2") {
+    const testing::Outcome outcome =
+        run_program(kSynthProgram, {recipe, "--resolution", "64", "--threads", threads, "-o", name(mesh)});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_NE(outcome.errors.find("closed, manifold"), std::string::npos) << outcome.errors;
+  }
+  std::string name(const std::string& file) const { return (folder_ / file).string(); }
+  void refuse(const std::string& recipe, const std::string& culprit) {
+    expect_refusal(folder_, kSynthProgram, {recipe, "--resolution", "64", "-o", name("x.ply")}, culprit);
+  }
+
+  testing::WorkFolder folder_;
+};
+
+TEST_F(SynthExemplar, TakesGreyColourAlphaAndSixteenBits) {
+  struct Kind {
+    std::uint32_t format;
+    int channels;
+  };
+  for (const Kind kind : {Kind{PNG_FORMAT_GRAY, 1}, Kind{PNG_FORMAT_RGB, 3}, Kind{PNG_FORMAT_RGBA, 4},
+                          Kind{PNG_FORMAT_LINEAR_Y, 1}, Kind{PNG_FORMAT_GA, 2}}) {
+    write_image("i.png", 64, kind.format, kind.channels);
+    make_mesh(recipe_of("i.png"), "m.ply");
+  }
+}
+
+TEST_F(SynthExemplar, HasTheSameBytesForOneThreadAndForTwo) {
+  write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
+  const std::string recipe = recipe_of("i.png");
+  make_mesh(recipe, "one.ply", "1");
+  make_mesh(recipe, "two.ply", "2");
+  EXPECT_EQ(text_of(name("one.ply")), text_of(name("two.ply")));
+}
+
+TEST_F(SynthExemplar, RefusesImagesThatAreNotWhatTheRecipeSays) {
+  const std::string zeros(64, '0');
+  refuse(recipe_of("absent.png", zeros), "layers[0].image: " + name("absent.png"));
+  std::filesystem::create_directory(folder_ / "folder");
+  refuse(recipe_of("folder", zeros), "is a folder");
+  write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
+  refuse(recipe_of("i.png", zeros), "has changed since the recipe was written");
+  folder_.write("text.png", "no image");
+  refuse(recipe_of("text.png"), "is no PNG");
+  folder_.write("half.png", text_of(name("i.png")).substr(0, 900));
+  refuse(recipe_of("half.png"), "is damaged");
+  write_image("small.png", 8, PNG_FORMAT_GRAY, 1);
+  refuse(recipe_of("small.png"), "is 8 x 8 pixels");
+  write_image("large.png", 4097, PNG_FORMAT_GRAY, 1, true);
+  refuse(recipe_of("large.png"), "is 4097 x 4097 pixels");
+  write_image("flat.png", 64, PNG_FORMAT_GRAY, 1, true);
+  refuse(recipe_of("flat.png"), "has one grey value only");
+}
+
+TEST_F(SynthExemplar, DrawsATexture) {
+  write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
+  const std::string hash = sha256_of_file(folder_ / "i.png");
+  const testing::Outcome outcome = run_program(kSynthProgram, {recipe_of("i.png", hash, false), "--texture",
+                                                               "200x100", "--tileable", "-o", name("t.png")});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+}
+
+// The written recipe names the image from its own folder.
+TEST_F(SynthExemplar, WrittenRecipesFindTheirImages) {
+  write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
+  const std::string recipe = recipe_of("i.png");
+  std::filesystem::create_directory(folder_ / "deep");
+  const std::string written = name("deep/w.json");
+  ASSERT_EQ(run_program(kSynthProgram, {recipe, "--write-recipe", written}).status, 0);
+  EXPECT_EQ(std::get<ExemplarLayer>(read_recipe(written).layers[0]).image, "../i.png");
+  make_mesh(recipe, "a.ply");
+  make_mesh(written, "b.ply");
+  EXPECT_EQ(text_of(name("a.ply")), text_of(name("b.ply")));
+}
+
+}  // namespace
+}  // namespace astrolith
