@@ -35,6 +35,7 @@ estimation/page            -> numerics geometry synthesis/picture
 estimation/gabor           -> numerics recipe geometry synthesis/picture estimation/plot estimation/page estimation/gabor
 estimation/gabor/image     -> numerics
 estimation/gabor/spectrum  -> numerics estimation/gabor/image
+estimation/gabor/exemplar  -> numerics recipe synthesis/exemplar estimation/gabor/image estimation/gabor/spectrum
 estimation/gabor/pursuit   -> numerics recipe estimation/gabor/spectrum
 estimation/gabor/lobes     -> numerics recipe estimation/gabor/spectrum estimation/gabor/pursuit
 estimation/shape/target    -> numerics recipe geometry synthesis

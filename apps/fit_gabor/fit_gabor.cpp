@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
+#include "apps/fit_gabor/fit_exemplar.h"
 #include "apps/fit_gabor/fit_gabor_outputs.h"
 #include "apps/memory_use.h"
 #include "apps/program.h"
@@ -26,6 +29,7 @@ struct Options {
   std::string output;
   std::string report_folder;
   std::string spectrum_file;
+  std::string model = "gabor";
   std::string target = "smoothed";
   std::string solver = "working-set";
   std::string unit = "m";
@@ -45,8 +49,15 @@ void add_photo_options(CommandLine& app, Options& o) {
          "alpha is ignored, of several pages or frames the first is taken")
       .required();
   app.add_option("-o,--output", o.output,
-                 "recipe to write, with one Gabor layer (up to three with --channels pca)")
+                 "recipe to write, with one Gabor layer (up to three with --channels pca) or one exemplar "
+                 "layer, whose image becomes RECIPE_exemplar.png beside it")
       .required();
+  app.add_option(
+         "--model", o.model,
+         "what the layer is: gabor (the photo's spectrum in lobes), exemplar (the photo itself, tiled "
+         "and blended) or auto (the one whose texture is nearer to the photo by the distributions of "
+         "values and of 12 filter responses)")
+      .check(one_of({"gabor", "exemplar", "auto"}));
   app.add_option(
          "--channels", o.channels,
          "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
@@ -153,13 +164,20 @@ void predict_memory(Program& program, const Options& o, const PhotoFitOptions& p
   }
 }
 
-Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& photo) {
-  Recipe recipe = photo_recipe(photo, {std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit,
-                                       o.height_rms, program.seed});
+PhotoRecipeOptions recipe_options(const Program& program, const Options& o) {
+  return {std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit, o.height_rms, program.seed};
+}
+
+void set_provenance(const Program& program, const Options& o, Recipe& recipe) {
   recipe.provenance.tool = program.tool();
   recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
   recipe.provenance.input_sha256 = sha256_of_file(o.image);
   recipe.provenance.options = program.given_options();
+}
+
+Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& photo) {
+  Recipe recipe = photo_recipe(photo, recipe_options(program, o));
+  set_provenance(program, o, recipe);
   return recipe;
 }
 
@@ -175,6 +193,11 @@ PhotoFitOptions photo_options(const Program& program, const Options& o) {
 
 void require_outputs(const Options& o) {
   require_writable(o.output);
+  if (o.model != "gabor") {
+    const std::filesystem::path image = exemplar_image_of(o.output);
+    require_writable(image);
+    require_other_file(image, o.image);
+  }
   if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
   if (o.report_folder.empty()) return;
   make_output_folder(o.report_folder);
@@ -215,20 +238,71 @@ void say_result(const PhotoFit& photo, const Options& o, const Program& program)
   program.say(photo.gaussianity().sentence);
 }
 
+PreparedExemplar prepare(Program& program, const Options& o) {
+  const TrendModel trend = photo_options(program, o).trend;
+  const GreyImage photo = read_exemplar_photo(program, o.image, o.photo.detrend_degree, trend);
+  PreparedExemplar prepared = prepare_exemplar(photo, o.image, program.seed, program.progress("exemplar"));
+  report_exemplar(program, prepared);
+  return prepared;
+}
+
+void write_exemplar(Program& program, const Options& o, const PreparedExemplar& prepared) {
+  Recipe recipe;
+  const PhotoRecipeOptions options = recipe_options(program, o);
+  recipe.length_unit = options.mm_per_px > 0.0 ? options.unit : "px";
+  recipe.seed = options.seed;
+  const TextureScore& score = prepared.scores[static_cast<int>(prepared.variant)];
+  recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
+  set_provenance(program, o, recipe);
+  write_exemplar_recipe(std::move(recipe), scaled_exemplar(prepared, options), o.output);
+  program.summary["model"] = "exemplar";
+  program.summary["peak_bytes"] = peak_bytes();
+}
+
+// Whether a texture of the exemplar is nearer to the photo than one of the lobes.
+bool exemplar_is_nearer(Program& program, const PreparedExemplar& prepared, const PhotoFit& photo,
+                        const std::vector<float>& synthesis) {
+  const FittedChannel& channel = photo.channels.front();
+  const double deviation = std::sqrt(channel.variance());
+  GreyImage texture{channel.exemplar.width, channel.exemplar.height, {}};
+  for (const float v : synthesis)
+    texture.values.push_back(channel.fit.exemplar_mean + deviation * static_cast<double>(v));
+  const TextureScore gabor = texture_score(texture, channel.exemplar);
+  const TextureScore& exemplar = prepared.scores[static_cast<int>(prepared.variant)];
+  const bool nearer = exemplar.sum() < gabor.sum();
+  program.summary["gabor"] = {{"values", gabor.values}, {"filters", gabor.filters}};
+  program.say(fmt::format(
+      "a texture of the lobes differs by {:.3f} and {:.3f}: {}", gabor.values, gabor.filters,
+      nearer ? "the exemplar is nearer to the photo" : "the lobes are as near to the photo, and smaller"));
+  return nearer;
+}
+
 void work(Program& program, const Options& o) {
   require_outputs(o);
+  if (o.model != "gabor" && o.channels != "luminance") {
+    throw InputError("--model: an exemplar has no colours yet; use --channels luminance");
+  }
+  std::optional<PreparedExemplar> exemplar;
+  if (o.model != "gabor") exemplar = prepare(program, o);
+  if (o.model == "exemplar") return write_exemplar(program, o, *exemplar);
   const PhotoFitOptions options = photo_options(program, o);
   predict_memory(program, o, options);
   const PhotoFit photo = fit_photo(o.image, options, program.progress("pursuit"));
   for (const std::string& remark : photo.remarks) program.say(o.image + ": " + remark);
   const Recipe recipe = make_recipe(program, o, photo);
-  write_recipe(recipe, o.output);
+  if (!exemplar || Program::interrupted()) write_recipe(recipe, o.output);
+  program.summary["model"] = "gabor";
   program.summary.update(photo_figures(photo));
   if (Program::interrupted()) {
     program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
     return;
   }
   const std::vector<std::vector<float>> syntheses = synthesize_channels(photo, recipe, program);
+  if (exemplar) {
+    const bool nearer = exemplar_is_nearer(program, *exemplar, photo, syntheses.front());
+    if (nearer) return write_exemplar(program, o, *exemplar);
+    write_recipe(recipe, o.output);
+  }
   program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
   if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
   if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);

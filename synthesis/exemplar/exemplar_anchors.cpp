@@ -85,7 +85,7 @@ ExemplarAnchor make_anchor(const ExemplarLayer& layer, const TangentFrame& frame
 
 // Calls visit(cell y, cell z, number of the row's first anchor) for every row of cells along x.
 template <class Visit>
-void for_each_row(const ExemplarLattice& l, const Visit& visit) {
+void for_each_anchor_row(const ExemplarLattice& l, const Visit& visit) {
   parallel_for(0, std::int64_t{l.size[1]} * l.size[2], [&](std::int64_t row) {
     const int y = static_cast<int>(row % l.size[1]), z = static_cast<int>(row / l.size[1]);
     visit(l.low[1] + y, l.low[2] + z,
@@ -180,7 +180,7 @@ std::vector<ExemplarAnchor> anchors_on_body(const ExemplarLayer& layer, const Ex
   // An anchor lies at most this far from the points that it serves.
   const float longest =
       1.0f / math::min(l.cells_per_length.x, math::min(l.cells_per_length.y, l.cells_per_length.z));
-  for_each_row(l, [&](int cy, int cz, std::size_t first) {
+  for_each_anchor_row(l, [&](int cy, int cz, std::size_t first) {
     BodyRow row(l, cy, cz);
     row.find_gradients(ground, longest, middle);
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -202,7 +202,7 @@ std::vector<ExemplarAnchor> anchors_on_plane(const ExemplarLayer& layer, const E
     const std::int64_t rest = cell % cells_of_period;
     return rest < 0 ? rest + cells_of_period : rest;
   };
-  for_each_row(l, [&](int cy, int cz, std::size_t first) {
+  for_each_anchor_row(l, [&](int cy, int cz, std::size_t first) {
     for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(l.size[0]); ++i) {
       const std::int64_t cx = cells.origin[0] + l.low[0] + static_cast<std::int64_t>(i / 2);
       const std::uint32_t hash =

@@ -67,14 +67,14 @@ ASTROLITH_SIMD_CLONES void look_up(const float* heights, int n, float* __restric
 }
 
 // Sorts points by their tetrahedra: a group is a run of points of one tetrahedron in `order`.
-struct Groups {
+struct PointGroups {
   std::vector<std::int32_t> order;  // numbers of the points
   std::vector<int> first;           // first point of each group, and the number of points
 };
 
-Groups groups_of(const std::vector<std::int32_t>& tetrahedra) {
+PointGroups groups_of(const std::vector<std::int32_t>& tetrahedra) {
   const auto n = tetrahedra.size();
-  Groups groups;
+  PointGroups groups;
   if (std::all_of(tetrahedra.begin(), tetrahedra.end(), [&](std::int32_t t) { return t == tetrahedra[0]; })) {
     groups.first = {0, static_cast<int>(n)};
     return groups;
@@ -94,7 +94,7 @@ Groups groups_of(const std::vector<std::int32_t>& tetrahedra) {
 }
 
 // The places in the order of the groups.
-PlaceArrays sorted(const PlaceArrays& places, const Groups& groups) {
+PlaceArrays sorted_places(const PlaceArrays& places, const PointGroups& groups) {
   const std::size_t n = groups.order.size();
   PlaceArrays result(n);
   for (std::size_t k = 0; k < 7; ++k) {
@@ -154,8 +154,8 @@ void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, const Exe
   find_places(n.lattice, count, p.x(), p.y(), p.z(), places.array(0), places.array(1), places.array(2),
               places.array(3), places.array(4), places.array(5), places.array(6), places.tetrahedra.data());
   sharpen(n.exponent, count, places.array(3), places.array(4), places.array(5), places.array(6));
-  const Groups groups = groups_of(places.tetrahedra);
-  if (!groups.order.empty()) places = sorted(places, groups);
+  const PointGroups groups = groups_of(places.tetrahedra);
+  if (!groups.order.empty()) places = sorted_places(places, groups);
   std::vector<float> sums(static_cast<std::size_t>(count));
   for (std::size_t g = 0; g + 1 < groups.first.size(); ++g) {
     const int first = groups.first[g], size = groups.first[g + 1] - first;

@@ -146,7 +146,7 @@ void prefilter(std::vector<double>& line, bool mirror) {
 }
 
 // Correlates a line with the products of the spline with itself, [1, 26, 66, 26, 1] / 120.
-void correlate(std::vector<double>& line, bool mirror) {
+void correlate_spline(std::vector<double>& line, bool mirror) {
   const std::vector<double> c = line;
   const int side = static_cast<int>(line.size());
   const auto at = [&](int i) { return c[static_cast<std::size_t>(pixel_beyond(i, side, mirror))]; };
@@ -159,7 +159,7 @@ void correlate(std::vector<double>& line, bool mirror) {
 // The mean square of the spline over the whole image.
 double mean_square(const Plane& coefficients) {
   Plane correlated = coefficients;
-  correlated.filter_lines([&](std::vector<double>& line) { correlate(line, coefficients.mirror); });
+  correlated.filter_lines([&](std::vector<double>& line) { correlate_spline(line, coefficients.mirror); });
   double sum = 0.0;
   for (std::size_t i = 0; i < correlated.values.size(); ++i) {
     sum += correlated.values[i] * coefficients.values[i];

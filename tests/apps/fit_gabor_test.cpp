@@ -49,6 +49,48 @@ TEST_F(FitGabor, WritesARecipeOfOneLayer) {
   EXPECT_EQ(recipe.provenance.input_sha256, sha256_of_file(folder_ / "rock.png"));
 }
 
+// The exemplar's image lies beside the recipe, which names it; both have the same bytes for any threads.
+TEST_F(FitGabor, WritesAnExemplarAndItsImage) {
+  const std::string one = fit("rock.json", {"--model", "exemplar", "--height-rms", "0.5", "--threads", "1"});
+  const std::string image = text_of(folder_ / "rock_exemplar.png");
+  const Recipe recipe = read_recipe(folder_ / "rock.json");
+  ASSERT_EQ(recipe.layers.size(), 1u);
+  const ExemplarLayer& layer = std::get<ExemplarLayer>(recipe.layers[0]);
+  EXPECT_EQ(layer.image, "rock_exemplar.png");
+  EXPECT_EQ(layer.image_sha256, sha256_of_file(folder_ / "rock_exemplar.png"));
+  EXPECT_EQ(layer.height_rms, 0.5);
+  EXPECT_EQ(recipe.provenance.input_name, "rock.png");
+  EXPECT_EQ(fit("rock.json", {"--model", "exemplar", "--height-rms", "0.5", "--threads", "2"}).size(),
+            one.size());
+  EXPECT_EQ(text_of(folder_ / "rock_exemplar.png"), image);
+}
+
+TEST_F(FitGabor, AutoTakesTheNearerModelByItsScores) {
+  fit("rock.json", {"--model", "auto", "--summary", (folder_ / "s.json").string()});
+  const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
+  const auto sum = [](const nlohmann::json& score) {
+    return score["values"].get<double>() + score["filters"].get<double>();
+  };
+  const bool exemplar =
+      sum(summary["variants"][summary["variant"].get<std::string>()]) < sum(summary["gabor"]);
+  EXPECT_EQ(summary["model"], exemplar ? "exemplar" : "gabor");
+  const Recipe recipe = read_recipe(folder_ / "rock.json");
+  EXPECT_EQ(std::holds_alternative<ExemplarLayer>(recipe.layers[0]), exemplar);
+}
+
+TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
+  const std::string out = (folder_ / "out.json").string();
+  const std::string flat =
+      folder_.write("flat.png", testing::png(64, 64, std::vector<std::uint8_t>(4096, 9)));
+  const std::string small = folder_.write("small.png", testing::noise_png(16));
+  expect_refusal(folder_, kFitGabor, {flat, "--model", "exemplar", "-o", out}, "one grey value");
+  expect_refusal(folder_, kFitGabor, {small, "--model", "exemplar", "-o", out}, "16 x 16 pixels");
+  expect_refusal(folder_, kFitGabor, {small, "--model", "exemplar", "--channels", "pca", "-o", out},
+                 "--model");
+  const std::string own = folder_.write("out_exemplar.png", testing::noise_png(64));
+  expect_refusal(folder_, kFitGabor, {own, "--model", "exemplar", "-o", out}, "out_exemplar.png");
+}
+
 TEST_F(FitGabor, SameBytesForAnyThreadCount) {
   EXPECT_EQ(fit("one.json", {"--threads", "1"}), fit("two.json", {"--threads", "2"}));
 }

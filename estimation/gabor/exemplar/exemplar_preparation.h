@@ -1,0 +1,39 @@
+// Prepares a photo as the image of an exemplar layer.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "estimation/gabor/exemplar/texture_score.h"
+#include "estimation/gabor/image/grey_image.h"
+#include "numerics/progress.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+// The ways to continue a photo beyond its border:
+//   kPeriodic  its periodic component (Moisan 2011), which tiles
+//   kMatched   the periodic component, whose ranks take the grey values of the photo
+//   kMirrored  the photo itself, mirrored at its borders
+enum class ExemplarVariant { kPeriodic, kMatched, kMirrored };
+inline constexpr ExemplarVariant kExemplarVariants[] = {ExemplarVariant::kPeriodic, ExemplarVariant::kMatched,
+                                                        ExemplarVariant::kMirrored};
+std::string_view variant_word(ExemplarVariant variant);
+
+struct PreparedExemplar {
+  ExemplarVariant variant = ExemplarVariant::kPeriodic;
+  ExemplarLayer layer;     // with pixels and border; lengths are pixels, height_rms is the photo's deviation
+  TextureScore scores[3];  // of each variant, by number: a texture of the photo's size against the photo
+};
+
+// Makes an exemplar of a photo by the variant whose textures are nearest to the photo. `name` is the photo's
+// name in messages. Throws InputError for sides outside kLeastTextureSide to kMostExemplarSide, and for a
+// photo of one grey value. Throws WorkError when `progress` asks to stop.
+inline constexpr int kLeastTextureSide = 32;
+PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
+                                  const Progress& progress = {});
+
+// A texture of an exemplar layer, in the grey values of the photo that it was made from.
+GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed);
+
+}  // namespace astrolith

@@ -1,0 +1,103 @@
+#include "estimation/gabor/exemplar/texture_score.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "numerics/portable_double.h"
+
+namespace astrolith {
+namespace {
+
+double deviation_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, square = 0.0;
+  for (const double v : values) mean += v;
+  mean /= n;
+  for (const double v : values) square += (v - mean) * (v - mean);
+  return std::sqrt(square / n);
+}
+
+// The Wasserstein-1 distance over the deviation of `reference`: the mean difference of 4096 quantiles.
+double relative_distance(std::vector<double> values, std::vector<double> reference) {
+  constexpr int kQuantiles = 4096;
+  const double deviation = deviation_of(reference);
+  std::sort(values.begin(), values.end());
+  std::sort(reference.begin(), reference.end());
+  const auto quantile = [](const std::vector<double>& sorted_values, double share) {
+    const double at = share * static_cast<double>(sorted_values.size() - 1);
+    const auto i = static_cast<std::size_t>(at);
+    const double next = sorted_values[std::min(i + 1, sorted_values.size() - 1)];
+    return sorted_values[i] + (at - static_cast<double>(i)) * (next - sorted_values[i]);
+  };
+  double sum = 0.0;
+  for (int q = 0; q < kQuantiles; ++q) {
+    const double share = (q + 0.5) / kQuantiles;
+    sum += std::fabs(quantile(values, share) - quantile(reference, share));
+  }
+  return sum / kQuantiles / deviation;
+}
+
+// A Gaussian blur, cut at 3 sigma. The borders, where the blur is not whole, go: the result is smaller.
+GreyImage blurred_inside(const GreyImage& image, double sigma) {
+  const int reach = static_cast<int>(std::ceil(3.0 * sigma));
+  std::vector<double> weights;
+  double total = 0.0;
+  for (int i = -reach; i <= reach; ++i) {
+    weights.push_back(portable::exp(-0.5 * i * i / (sigma * sigma)));
+    total += weights.back();
+  }
+  const auto sum_at = [&](const GreyImage& of, int x, int y, int step_x, int step_y) {
+    double sum = 0.0;
+    for (int i = 0; i <= 2 * reach; ++i) {
+      sum += weights[static_cast<std::size_t>(i)] * of.at(x + i * step_x, y + i * step_y);
+    }
+    return sum / total;
+  };
+  GreyImage rows{image.width - 2 * reach, image.height, {}};
+  for (int y = 0; y < rows.height; ++y) {
+    for (int x = 0; x < rows.width; ++x) rows.values.push_back(sum_at(image, x, y, 1, 0));
+  }
+  GreyImage result{rows.width, image.height - 2 * reach, {}};
+  for (int y = 0; y < result.height; ++y) {
+    for (int x = 0; x < result.width; ++x) result.values.push_back(sum_at(rows, x, y, 0, 1));
+  }
+  return result;
+}
+
+// The responses of the three filters after one blur.
+std::array<std::vector<double>, 3> responses(const GreyImage& image, double sigma) {
+  const GreyImage b = blurred_inside(image, sigma);
+  std::array<std::vector<double>, 3> result;
+  for (int y = 1; y + 1 < b.height; ++y) {
+    for (int x = 1; x + 1 < b.width; ++x) {
+      const double left = b.at(x - 1, y), right = b.at(x + 1, y), up = b.at(x, y - 1), down = b.at(x, y + 1);
+      result[0].push_back(right - left);
+      result[1].push_back(down - up);
+      result[2].push_back(left + right + up + down - 4.0 * b.at(x, y));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TextureScore texture_score(const GreyImage& texture, const GreyImage& photo) {
+  TextureScore score;
+  score.values = relative_distance(texture.values, photo.values);
+  const int side = std::min({texture.width, texture.height, photo.width, photo.height});
+  int filters = 0;
+  for (const double sigma : {1.0, 2.0, 4.0, 8.0}) {
+    if (!(side > 8.0 * sigma)) break;
+    const std::array<std::vector<double>, 3> of_texture = responses(texture, sigma),
+                                             of_photo = responses(photo, sigma);
+    for (std::size_t k = 0; k < 3; ++k, ++filters) {
+      score.filters += relative_distance(of_texture[k], of_photo[k]);
+    }
+  }
+  score.filters /= filters;
+  return score;
+}
+
+}  // namespace astrolith

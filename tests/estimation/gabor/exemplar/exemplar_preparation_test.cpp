@@ -1,0 +1,63 @@
+#include "estimation/gabor/exemplar/exemplar_preparation.h"
+
+#include <gtest/gtest.h>
+
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+
+namespace astrolith {
+namespace {
+
+// Discs of two grey levels on a ramp of light: far from Gaussian, and not periodic.
+GreyImage discs(int side) {
+  GreyImage image{side, side, std::vector<double>(static_cast<std::size_t>(side * side))};
+  CounterRandom random(3);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      image.values[static_cast<std::size_t>(y * side + x)] = 0.2 + 0.05 * x / side + 0.02 * random.uniform();
+    }
+  }
+  for (int disc = 0; disc < side * side / 60; ++disc) {
+    const double cx = random.uniform(0, side), cy = random.uniform(0, side), grey = random.uniform(0.4, 0.9);
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        if ((x - cx) * (x - cx) + (y - cy) * (y - cy) < 9.0) {
+          image.values[static_cast<std::size_t>(y * side + x)] = grey;
+        }
+      }
+    }
+  }
+  return image;
+}
+
+TEST(TextureScore, IsZeroForTheSameImageAndKnowsShifts) {
+  const GreyImage image = discs(96);
+  EXPECT_EQ(texture_score(image, image).sum(), 0.0);
+  GreyImage shifted = image;
+  double mean = 0.0, square = 0.0;
+  for (const double v : image.values) mean += v / static_cast<double>(image.values.size());
+  for (const double v : image.values)
+    square += (v - mean) * (v - mean) / static_cast<double>(image.values.size());
+  for (double& v : shifted.values) v += 0.25 * std::sqrt(square);
+  const TextureScore score = texture_score(shifted, image);
+  EXPECT_NEAR(score.values, 0.25, 1e-9);
+  EXPECT_NEAR(score.filters, 0.0, 1e-9);
+}
+
+TEST(ExemplarPreparation, TakesTheVariantWithTheBestScore) {
+  const GreyImage photo = discs(128);
+  const PreparedExemplar prepared = prepare_exemplar(photo, "p", 1);
+  for (const TextureScore& score : prepared.scores) {
+    EXPECT_LE(prepared.scores[static_cast<int>(prepared.variant)].sum(), score.sum());
+  }
+  EXPECT_EQ(prepared.layer.border == ExemplarBorder::kMirror, prepared.variant == ExemplarVariant::kMirrored);
+  EXPECT_LT(prepared.scores[static_cast<int>(prepared.variant)].sum(), 0.25);
+}
+
+TEST(ExemplarPreparation, RefusesPhotosThatAreTooSmallOrFlat) {
+  EXPECT_THROW(prepare_exemplar(discs(24), "p", 1), InputError);
+  EXPECT_THROW(prepare_exemplar({64, 64, std::vector<double>(4096, 0.5)}, "p", 1), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith
