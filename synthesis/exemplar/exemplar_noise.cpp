@@ -38,14 +38,29 @@ ASTROLITH_SIMD_CLONES void find_places(const ExemplarLattice& of_layer, int n, c
   }
 }
 
-ASTROLITH_SIMD_CLONES void sharpen(std::int32_t exponent, int n, float* __restrict w0, float* __restrict w1,
-                                   float* __restrict w2, float* __restrict w3) {
+// sharpen_weights() at n points, bit for bit: powers of one anchor's weights, and the sum of their squares.
+ASTROLITH_SIMD_CLONES void raise_weights(std::int32_t exponent, int n, float* __restrict weight,
+                                         float* __restrict plain, float* __restrict squares) {
+  std::copy_n(weight, n, plain);
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    float weight[4] = {w0[i], w1[i], w2[i], w3[i]};
-    sharpen_weights(exponent, weight);
-    w0[i] = weight[0], w1[i] = weight[1], w2[i] = weight[2], w3[i] = weight[3];
+  for (int i = 0; i < n; ++i) weight[i] = plain[i] * plain[i];
+  for (std::int32_t e = 2; e < exponent; ++e) {
+#pragma omp simd
+    for (int i = 0; i < n; ++i) weight[i] *= plain[i];
   }
+#pragma omp simd
+  for (int i = 0; i < n; ++i) squares[i] = math::fma(weight[i], weight[i], squares[i]);
+}
+
+ASTROLITH_SIMD_CLONES void divide_by_root(int n, float* __restrict weight, const float* __restrict squares) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) weight[i] *= 1.0f / math::sqrt(squares[i]);
+}
+
+void sharpen(std::int32_t exponent, int n, const std::array<float*, 4>& weights) {
+  std::vector<float> plain(static_cast<std::size_t>(n)), squares(plain.size(), 0.0f);
+  for (float* weight : weights) raise_weights(exponent, n, weight, plain.data(), squares.data());
+  for (float* weight : weights) divide_by_root(n, weight, squares.data());
 }
 
 // Adds one anchor's part to z at n points of one tetrahedron.
@@ -68,22 +83,60 @@ ASTROLITH_SIMD_CLONES void look_up(const float* heights, int n, float* __restric
 
 // Sorts points by their tetrahedra: a group is a run of points of one tetrahedron in `order`.
 struct PointGroups {
-  std::vector<std::int32_t> order;  // numbers of the points
+  std::vector<std::int32_t> order;  // numbers of the points; empty: one group, as they were given
   std::vector<int> first;           // first point of each group, and the number of points
 };
 
-PointGroups groups_of(const std::vector<std::int32_t>& tetrahedra) {
-  const auto n = tetrahedra.size();
-  PointGroups groups;
-  if (std::all_of(tetrahedra.begin(), tetrahedra.end(), [&](std::int32_t t) { return t == tetrahedra[0]; })) {
-    groups.first = {0, static_cast<int>(n)};
-    return groups;
+// More groups than this in one call are sorted; fewer are found in a list.
+constexpr std::size_t kMostListedGroups = 24;
+
+// Writes the number of each point's tetrahedron in the list of all that occur. Returns the list, or an empty
+// one where more than kMostListedGroups occur.
+std::vector<std::int32_t> listed_tetrahedra(const std::vector<std::int32_t>& tetrahedra,
+                                            std::vector<std::int32_t>& number) {
+  std::vector<std::int32_t> list;
+  std::int32_t last = -1;
+  for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
+    if (last < 0 || list[static_cast<std::size_t>(last)] != tetrahedra[i]) {
+      const auto found = std::find(list.begin(), list.end(), tetrahedra[i]);
+      last = static_cast<std::int32_t>(found - list.begin());
+      if (found == list.end()) {
+        if (list.size() == kMostListedGroups) return {};
+        list.push_back(tetrahedra[i]);
+      }
+    }
+    number[i] = last;
   }
+  return list;
+}
+
+// Points of one group stand together, in the order in which they were given.
+PointGroups groups_in_list(const std::vector<std::int32_t>& number, std::size_t groups) {
+  PointGroups result;
+  result.first.assign(groups + 1, 0);
+  for (const std::int32_t g : number) ++result.first[static_cast<std::size_t>(g) + 1];
+  for (std::size_t g = 0; g < groups; ++g) result.first[g + 1] += result.first[g];
+  if (groups == 1) return result;
+  std::vector<int> next = result.first;
+  result.order.resize(number.size());
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(number[i])]++);
+    result.order[at] = static_cast<std::int32_t>(i);
+  }
+  return result;
+}
+
+PointGroups groups_of(const std::vector<std::int32_t>& tetrahedra) {
+  const std::size_t n = tetrahedra.size();
+  std::vector<std::int32_t> number(n);
+  const std::vector<std::int32_t> list = listed_tetrahedra(tetrahedra, number);
+  if (!list.empty()) return groups_in_list(number, list.size());
   std::vector<std::uint64_t> keys(n);
   for (std::size_t i = 0; i < n; ++i) {
     keys[i] = static_cast<std::uint64_t>(static_cast<std::uint32_t>(tetrahedra[i])) << 32 | i;
   }
   std::sort(keys.begin(), keys.end());
+  PointGroups groups;
   groups.order.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     groups.order[i] = static_cast<std::int32_t>(keys[i] & 0xffffffffu);
@@ -153,7 +206,7 @@ void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, const Exe
   PlaceArrays places(static_cast<std::size_t>(count));
   find_places(n.lattice, count, p.x(), p.y(), p.z(), places.array(0), places.array(1), places.array(2),
               places.array(3), places.array(4), places.array(5), places.array(6), places.tetrahedra.data());
-  sharpen(n.exponent, count, places.array(3), places.array(4), places.array(5), places.array(6));
+  sharpen(n.exponent, count, {places.array(3), places.array(4), places.array(5), places.array(6)});
   const PointGroups groups = groups_of(places.tetrahedra);
   if (!groups.order.empty()) places = sorted_places(places, groups);
   std::vector<float> sums(static_cast<std::size_t>(count));

@@ -269,13 +269,15 @@ ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::str
   const std::vector<float> heights =
       height_table(distribution_of(levels, image.values.size()), moments.mean, gain);
   const auto [least, greatest] = std::minmax_element(heights.begin(), heights.end());
-  const double period = plane.mirror ? 2.0 : 1.0;
+  const int periods = plane.mirror ? 2 : 1;
+  const double period_x = periods * image.width, period_y = periods * image.height;
   return {static_cast<float>(image.width),
           static_cast<float>(image.height),
-          static_cast<float>(1.0 / (period * image.width)),
-          static_cast<float>(1.0 / (period * image.height)),
+          static_cast<float>(period_x),
+          static_cast<float>(period_y),
+          static_cast<float>(1.0 / period_x),
+          static_cast<float>(1.0 / period_y),
           image.width,
-          plane.mirror,
           static_cast<float>(unit),
           arrays.add(packed(plane, unit)),
           arrays.add(heights),

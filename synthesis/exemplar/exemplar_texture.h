@@ -26,10 +26,10 @@ inline constexpr float kLargestExemplarDeviation = 5.0f;
 inline constexpr int kExemplarHeights = 1024;  // number of intervals of the table
 
 struct ExemplarTexture {
-  float width = 0.0f, height = 0.0f;                  // pixels
-  float inverse_width = 0.0f, inverse_height = 0.0f;  // of a period: a side, or two where it is mirrored
-  std::int32_t columns = 0;                           // words in a row
-  bool mirror = false;
+  float width = 0.0f, height = 0.0f;       // pixels
+  float period_x = 0.0f, period_y = 0.0f;  // pixels: a side, or two where the image is mirrored
+  float inverse_period_x = 0.0f, inverse_period_y = 0.0f;
+  std::int32_t columns = 0;            // words in a row
   float unit = 0.0f;                   // value of a code above the code of 0
   ArrayRange<std::uint32_t> words;     // (height + 2) rows of `columns` words; the first row is row -1
   ArrayRange<float> heights;           // (kExemplarHeights + 3) coefficients, length units
@@ -67,11 +67,11 @@ ASTROLITH_KERNEL float spline_row(std::uint32_t word, const SplineWeights& w) {
 struct PixelPlace {
   float number, offset;
 };
-// `inverse_period` is 1 / side, or 1 / (2 side) where the image is mirrored.
-ASTROLITH_KERNEL PixelPlace pixel_place(float u, float side, float inverse_period, bool mirror) {
-  const float periods = math::floor(u * inverse_period);
-  const float repeated = math::fma(mirror ? -(side + side) : -side, periods, u);
-  const float inside = mirror ? side - math::abs(repeated - side) : repeated;
+// The second half of a period of two sides is the mirror image of the first. In a period of one side, the
+// fold changes nothing but the last bits.
+ASTROLITH_KERNEL PixelPlace pixel_place(float u, float side, float period, float inverse_period) {
+  const float repeated = math::fma(-period, math::floor(u * inverse_period), u);
+  const float inside = side - math::abs(repeated - side);
   const float number = math::clamp(math::floor(inside), 0.0f, side - 1.0f);
   return {number, inside - number - 0.5f};
 }
@@ -79,8 +79,8 @@ ASTROLITH_KERNEL PixelPlace pixel_place(float u, float side, float inverse_perio
 // g at the point (u, v), in pixels from the upper left corner of the image. Standard deviation 1.
 ASTROLITH_KERNEL float exemplar_value(const ExemplarTexture& t, const std::uint32_t* words, float u,
                                       float v) {
-  const PixelPlace x = pixel_place(u, t.width, t.inverse_width, t.mirror),
-                   y = pixel_place(v, t.height, t.inverse_height, t.mirror);
+  const PixelPlace x = pixel_place(u, t.width, t.period_x, t.inverse_period_x),
+                   y = pixel_place(v, t.height, t.period_y, t.inverse_period_y);
   const SplineWeights wx = spline_weights(x.offset), wy = spline_weights(y.offset);
   const std::int32_t first =
       static_cast<std::int32_t>(y.number) * t.columns + static_cast<std::int32_t>(x.number);
