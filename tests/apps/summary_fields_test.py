@@ -105,6 +105,7 @@ def runs(folder):
     yield ["synth", plain, *mesh, "--vary", "0.3", "--seed", "2"]
     yield ["synth", eroded, *mesh]
     yield ["fit_gabor", grey, "-o", folder / "grey.json"]
+    yield ["fit_gabor", grey, "-o", folder / "either.json", "--model", "auto"]
     yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
     yield ["synth", folder / "grey.json", "-o", folder / "grey_texture.png", "--texture", "64x64"]
     yield ["synth", folder / "color.json", "-o", folder / "color_texture.png", "--texture", "64x64"]
