@@ -15,7 +15,8 @@ namespace astrolith {
 //   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
 //   error_histogram.png  signed distances of the fit from the target
 //   convergence.png      mean distance (logarithmic) against iterations of the refinement
-//   index.html           a page that needs no other file: both bodies to turn, these pictures, and tables of the
+//   index.html           a page that needs no other file: both bodies to turn, these pictures, and tables of
+//   the
 //                        numbers
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
                       const std::filesystem::path& folder);
