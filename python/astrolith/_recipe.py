@@ -78,8 +78,18 @@ class Recipe(Record):
 
     @classmethod
     def read(cls, file: PathLike) -> "Recipe":
-        """Read a JSON file of at most 64 MB. Raises ValueError as :meth:`from_json`."""
-        return cls(records(_synthesis.read_recipe(os.fspath(file))))
+        """Read a JSON file of at most 64 MB. Raises ValueError as :meth:`from_json`.
+
+        The image of an ``exemplar`` layer lies relative to the file; its path becomes one relative to the current
+        folder, where every function looks for it.
+        """
+        recipe = cls(records(_synthesis.read_recipe(os.fspath(file))))
+        for layer in recipe._exemplars():
+            layer["image"] = os.path.relpath(os.path.join(os.path.dirname(os.fspath(file)), layer["image"]))
+        return recipe
+
+    def _exemplars(self) -> list[Any]:
+        return [layer for layer in self.get("layers", []) if layer.get("type") == "exemplar"]
 
     def validate(self, name: str = "recipe") -> None:
         """Raise ValueError at the first field that breaks a rule."""
@@ -95,7 +105,7 @@ class Recipe(Record):
         return plain
 
     def write(self, file: PathLike) -> None:
-        """Write the file whole or not at all, with the bytes that the programs write.
+        """Write the file whole or not at all, with the bytes that the programs write. Paths of images become relative to it.
 
         Raises
         ------
@@ -104,7 +114,10 @@ class Recipe(Record):
         RuntimeError
             The disk is full.
         """
-        _synthesis.write_recipe(_dumped(self, "recipe"), "recipe", os.fspath(file))
+        written = Recipe.from_json(self.to_json()) if self._exemplars() else self
+        for layer in written._exemplars():
+            layer["image"] = os.path.relpath(layer["image"], os.path.dirname(os.fspath(file)) or os.curdir)
+        _synthesis.write_recipe(_dumped(written, "recipe"), "recipe", os.fspath(file))
 
     def copy(self) -> "Recipe":
         """Return a copy that shares nothing with this recipe."""
@@ -141,5 +154,5 @@ def json_of(recipe: RecipeLike, name: str = "recipe") -> tuple[str, str]:
         return _dumped(recipe, name), name
     if isinstance(recipe, (str, os.PathLike)):
         file = os.fspath(recipe)
-        return _synthesis.read_recipe(file), file
+        return Recipe.read(file).to_json(file), file
     raise ValueError(f"{name}: must be a Recipe, a dictionary or a file, and is {type(recipe).__name__}")

@@ -15,7 +15,7 @@
 #include "numerics/parallel_for.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
-#include "recipe/recipe_json.h"
+#include "python/bindings/recipe_text.h"
 #include "tasks/synthesis/body_mesh.h"
 
 namespace astrolith::python {
@@ -27,7 +27,7 @@ constexpr std::int64_t kChunk = 1024;
 class Field {
  public:
   Field(const std::string& json, const std::string& name)
-      : recipe_(parse_recipe(json, name)), field_(field_of_region(recipe_, name, Region{})) {}
+      : recipe_(loaded_recipe(json, name)), field_(field_of_region(recipe_, name, Region{})) {}
 
   const ImplicitField& operator*() const { return field_; }
 

@@ -16,7 +16,7 @@
 
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
-#include "recipe/recipe_json.h"
+#include "python/bindings/recipe_text.h"
 #include "tasks/gravity/body_gravity.h"
 
 namespace astrolith::python {
@@ -46,7 +46,7 @@ GravityPlaces places_of(const GravityArguments& arguments, const TriangleMesh& m
 GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
   const StageProgress stage = [&](const std::string& name) { return state.progress(name); };
   const GravityBody body = arguments.mesh ? gravity_body(*arguments.mesh, arguments.unit, arguments.name)
-                                          : gravity_body(parse_recipe(arguments.json, arguments.name),
+                                          : gravity_body(loaded_recipe(arguments.json, arguments.name),
                                                          arguments.resolution, arguments.name, stage);
   const BodyGravity made = body_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
   GravityTable table{rows_of(made.columns), {}, made.figures.dump()};

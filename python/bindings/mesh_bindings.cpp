@@ -17,7 +17,7 @@
 #include "numerics/version/code_version.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
-#include "recipe/recipe_json.h"
+#include "python/bindings/recipe_text.h"
 #include "synthesis/field/surface_labels.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
@@ -101,7 +101,7 @@ ErosionStatistics erode_arrays(const Erosion& erosion, ArraySink& arrays, const 
 }
 
 MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
-  const Recipe recipe = parse_recipe(arguments.json, arguments.name);
+  const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
   const std::filesystem::path file = arguments.name;
   const Region region = arguments.region();
   const ImplicitField field = field_of_region(recipe, file, region);

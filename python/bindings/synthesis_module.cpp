@@ -22,6 +22,7 @@
 #include "python/bindings/height_map_bindings.h"
 #include "python/bindings/job.h"
 #include "python/bindings/mesh_bindings.h"
+#include "python/bindings/recipe_text.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "synthesis/picture/preview.h"
@@ -119,7 +120,7 @@ struct VariedRecipe {
 
 VariedRecipe vary(const std::string& json, const std::string& name, double delta, std::uint64_t seed,
                   const std::optional<TriangleMesh>& target, const Progress& progress) {
-  const Recipe recipe = parse_recipe(json, name);
+  const Recipe recipe = loaded_recipe(json, name);
   const TriangleMesh like = target ? *target : mesh_for_comparison(recipe);
   const SimilarityMeasure similarity = like.triangles.empty() ? SimilarityMeasure() : similarity_with(like);
   const Variation variation = find_variation(recipe, similarity, delta, seed, progress);
@@ -170,7 +171,7 @@ std::tuple<NumpyArray<float>, double, bool> texture(const std::string& json, con
                                                     int width, int height, const std::string& content,
                                                     bool tileable, int threads, nb::object progress) {
   PlaneTexture drawn = run_job(std::move(progress), threads, [=](JobState& state) {
-    return draw_texture(parse_recipe(json, name), name, {width, height, content, tileable},
+    return draw_texture(loaded_recipe(json, name), name, {width, height, content, tileable},
                         state.progress("texture"));
   });
   const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);

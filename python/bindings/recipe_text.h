@@ -1,0 +1,19 @@
+// Recipes from the text that Python hands over.
+#pragma once
+
+#include <string>
+
+#include "recipe/recipe_json.h"
+#include "tasks/synthesis/load_recipe.h"
+
+namespace astrolith::python {
+
+// The recipe, ready to be evaluated. The paths of its images are relative to the current folder:
+// Recipe.read() has made them so.
+inline Recipe loaded_recipe(const std::string& json, const std::string& name) {
+  Recipe recipe = parse_recipe(json, name);
+  load_exemplars(recipe, {}, name);
+  return recipe;
+}
+
+}  // namespace astrolith::python
