@@ -277,11 +277,19 @@ bool exemplar_is_nearer(Program& program, const PreparedExemplar& prepared, cons
   return nearer;
 }
 
-void work(Program& program, const Options& o) {
-  require_outputs(o);
+void check_model(const Options& o) {
   if (o.model != "gabor" && o.channels != "luminance") {
     throw InputError("--model: an exemplar has no colours yet; use --channels luminance");
   }
+  if (o.model == "exemplar" && !(o.report_folder.empty() && o.spectrum_file.empty())) {
+    throw InputError(
+        "--model exemplar: fits no lobes that --report or --spectrum could show; use --model auto");
+  }
+}
+
+void work(Program& program, const Options& o) {
+  check_model(o);
+  require_outputs(o);
   std::optional<PreparedExemplar> exemplar;
   if (o.model != "gabor") exemplar = prepare(program, o);
   if (o.model == "exemplar") return write_exemplar(program, o, *exemplar);
@@ -298,14 +306,14 @@ void work(Program& program, const Options& o) {
     return;
   }
   const std::vector<std::vector<float>> syntheses = synthesize_channels(photo, recipe, program);
+  program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
+  if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
+  if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
   if (exemplar) {
     const bool nearer = exemplar_is_nearer(program, *exemplar, photo, syntheses.front());
     if (nearer) return write_exemplar(program, o, *exemplar);
     write_recipe(recipe, o.output);
   }
-  program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
-  if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
-  if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
   program.summary["peak_bytes"] = peak_bytes();
   say_result(photo, o, program);
 }

@@ -87,6 +87,9 @@ TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
   expect_refusal(folder_, kFitGabor, {small, "--model", "exemplar", "-o", out}, "16 x 16 pixels");
   expect_refusal(folder_, kFitGabor, {small, "--model", "exemplar", "--channels", "pca", "-o", out},
                  "--model");
+  expect_refusal(folder_, kFitGabor,
+                 {small, "--model", "exemplar", "--report", (folder_ / "report").string(), "-o", out},
+                 "--report");
   const std::string own = folder_.write("out_exemplar.png", testing::noise_png(64));
   expect_refusal(folder_, kFitGabor, {own, "--model", "exemplar", "-o", out}, "out_exemplar.png");
 }

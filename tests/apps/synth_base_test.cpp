@@ -3,6 +3,7 @@
 
 #include "recipe/recipe_json.h"
 #include "tests/apps/program_runner.h"
+#include "tests/apps/synth_runner.h"
 
 namespace astrolith {
 namespace {
@@ -10,8 +11,6 @@ namespace {
 using testing::expect_refusal;
 using testing::run_program;
 using testing::text_of;
-
-const std::string kSynthProgram = ASTROLITH_SYNTH;
 
 const std::string kBall = R"({"format_version": 1, "length_unit": "m",
   "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100]]},
@@ -25,7 +24,7 @@ class SynthBase : public ::testing::Test {
  protected:
   std::string name(const std::string& file) const { return (folder_ / file).string(); }
   void run(std::vector<std::string> arguments) {
-    const testing::Outcome outcome = run_program(kSynthProgram, arguments);
+    const testing::Outcome outcome = run_program(kSynth, arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
   }
 
@@ -60,24 +59,23 @@ TEST_F(SynthBase, TheWrittenVariationMakesTheSameMesh) {
 }
 
 TEST_F(SynthBase, OneThingToMakeIsRequired) {
-  expect_refusal(folder_, kSynthProgram, {ball_}, "--output: is required");
+  expect_refusal(folder_, kSynth, {ball_}, "--output: is required");
   run({ball_, "--predict", "--quiet", "--summary", name("summary.json")});
   EXPECT_GT(nlohmann::json::parse(text_of(name("summary.json"))).at("predicted").at("triangles"), 0);
 }
 
 TEST_F(SynthBase, SharesNeedABodyAndHaveNoneThemselves) {
-  expect_refusal(folder_, kSynthProgram, {shares_, "-o", name("a.ply")}, "body: absent");
-  expect_refusal(folder_, kSynthProgram, {shares_, "--base", shares_, "-o", name("a.ply")}, "body: absent");
+  expect_refusal(folder_, kSynth, {shares_, "-o", name("a.ply")}, "body: absent");
+  expect_refusal(folder_, kSynth, {shares_, "--base", shares_, "-o", name("a.ply")}, "body: absent");
   std::string with_body = kBall;
   with_body.replace(with_body.find("\"m\""), 3, "\"body\"");
-  expect_refusal(folder_, kSynthProgram, {folder_.write("bad.json", with_body), "-o", name("a.ply")},
+  expect_refusal(folder_, kSynth, {folder_.write("bad.json", with_body), "-o", name("a.ply")},
                  "length_unit: is \"body\"");
 }
 
 TEST_F(SynthBase, TheWrittenRecipeIsNotItsInput) {
-  expect_refusal(folder_, kSynthProgram, {ball_, "--write-recipe", ball_}, "is the input itself");
-  expect_refusal(folder_, kSynthProgram, {shares_, "--base", ball_, "--write-recipe", ball_},
-                 "is the input itself");
+  expect_refusal(folder_, kSynth, {ball_, "--write-recipe", ball_}, "is the input itself");
+  expect_refusal(folder_, kSynth, {shares_, "--base", ball_, "--write-recipe", ball_}, "is the input itself");
   EXPECT_EQ(text_of(ball_), kBall);
 }
 

@@ -7,6 +7,7 @@
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
 #include "tests/apps/program_runner.h"
+#include "tests/apps/synth_runner.h"
 
 namespace astrolith {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 using testing::expect_refusal;
 using testing::run_program;
 using testing::text_of;
-
-const std::string kSynthProgram = ASTROLITH_SYNTH;
 
 class SynthExemplar : public ::testing::Test {
  protected:
@@ -51,13 +50,13 @@ class SynthExemplar : public ::testing::Test {
   }
   void make_mesh(const std::string& recipe, const std::string& mesh, const std::string& threads = "2") {
     const testing::Outcome outcome =
-        run_program(kSynthProgram, {recipe, "--resolution", "64", "--threads", threads, "-o", name(mesh)});
+        run_program(kSynth, {recipe, "--resolution", "64", "--threads", threads, "-o", name(mesh)});
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     EXPECT_NE(outcome.errors.find("closed, manifold"), std::string::npos) << outcome.errors;
   }
   std::string name(const std::string& file) const { return (folder_ / file).string(); }
   void refuse(const std::string& recipe, const std::string& culprit) {
-    expect_refusal(folder_, kSynthProgram, {recipe, "--resolution", "64", "-o", name("x.ply")}, culprit);
+    expect_refusal(folder_, kSynth, {recipe, "--resolution", "64", "-o", name("x.ply")}, culprit);
   }
 
   testing::WorkFolder folder_;
@@ -105,8 +104,8 @@ TEST_F(SynthExemplar, RefusesImagesThatAreNotWhatTheRecipeSays) {
 TEST_F(SynthExemplar, DrawsATexture) {
   write_image("i.png", 64, PNG_FORMAT_GRAY, 1);
   const std::string hash = sha256_of_file(folder_ / "i.png");
-  const testing::Outcome outcome = run_program(kSynthProgram, {recipe_of("i.png", hash, false), "--texture",
-                                                               "200x100", "--tileable", "-o", name("t.png")});
+  const testing::Outcome outcome = run_program(
+      kSynth, {recipe_of("i.png", hash, false), "--texture", "200x100", "--tileable", "-o", name("t.png")});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
 }
 
@@ -116,7 +115,7 @@ TEST_F(SynthExemplar, WrittenRecipesFindTheirImages) {
   const std::string recipe = recipe_of("i.png");
   std::filesystem::create_directory(folder_ / "deep");
   const std::string written = name("deep/w.json");
-  ASSERT_EQ(run_program(kSynthProgram, {recipe, "--write-recipe", written}).status, 0);
+  ASSERT_EQ(run_program(kSynth, {recipe, "--write-recipe", written}).status, 0);
   EXPECT_EQ(std::get<ExemplarLayer>(read_recipe(written).layers[0]).image, "../i.png");
   make_mesh(recipe, "a.ply");
   make_mesh(written, "b.ply");

@@ -10,9 +10,6 @@ using testing::text_of;
 
 using SynthPicture = SynthTest;
 
-const std::string kTexture = R"({"format_version": 1, "length_unit": "m",
-  "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.002, "lobes": [[4, 0.125, -0.25, 1]]}]})";
-
 TEST_F(SynthPicture, PicturesCanBeTakenFromElsewhere) {
   const auto picture = [&](std::vector<std::string> more) {
     std::vector<std::string> arguments{"--preview", (folder_ / "p.png").string()};

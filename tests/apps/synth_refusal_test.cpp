@@ -10,9 +10,6 @@ using testing::text_of;
 
 using SynthRefusal = SynthTest;
 
-const std::string kTexture = R"({"format_version": 1, "length_unit": "m",
-  "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.002, "lobes": [[4, 0.125, -0.25, 1]]}]})";
-
 TEST_F(SynthRefusal, ABodyThatTheIsoValueErasesIsAnInputError) {
   expect_recipe_refused(replaced(kTwoSpheres, "\"spheres\"", "\"iso_value\": 100, \"spheres\""),
                         "body.iso_value");

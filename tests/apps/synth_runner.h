@@ -1,4 +1,4 @@
-// What the tests of synth share: two recipes, and a folder to run the program in.
+// What the tests of synth share: recipes, and a folder to run the program in.
 #pragma once
 
 #include <string>
@@ -13,6 +13,9 @@ inline const std::string kSynth = ASTROLITH_SYNTH;
 inline const std::string kTwoSpheres = R"({"format_version": 1, "length_unit": "km",
   "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
   "layers": [{"type": "simplex", "amplitude": 0.05, "frequency": 2, "octaves": 4}]})";
+
+inline const std::string kTexture = R"({"format_version": 1, "length_unit": "m",
+  "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.002, "lobes": [[4, 0.125, -0.25, 1]]}]})";
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);

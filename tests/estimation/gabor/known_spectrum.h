@@ -15,6 +15,15 @@
 
 namespace astrolith::testing {
 
+// The spectrum of lobes on a grid of width x height.
+inline PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int height) {
+  std::vector<GaborLobe> layer;
+  for (const SpectralLobe& lobe : lobes) {
+    layer.push_back({lobe.bandwidth, lobe.x, lobe.y, lobe_variance(lobe, width, height)});
+  }
+  return spectrum_of(layer, width, height);
+}
+
 // weight times a symmetric pair of Gaussians at +-(cx, cy) with deviations sx and sy along axes turned by
 // angle.
 inline double gaussian_pair(double fx, double fy, double cx, double cy, double sx, double sy, double angle,

@@ -10,13 +10,7 @@
 namespace astrolith {
 namespace {
 
-PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int height) {
-  std::vector<GaborLobe> layer;
-  for (const SpectralLobe& lobe : lobes) {
-    layer.push_back({lobe.bandwidth, lobe.x, lobe.y, lobe_variance(lobe, width, height)});
-  }
-  return spectrum_of(layer, width, height);
-}
+using testing::sum_of;
 
 // Four lobes: the third is broad enough to wrap around the grid and lies on an axis, the fourth at frequency
 // 0.

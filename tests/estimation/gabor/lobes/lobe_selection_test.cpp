@@ -3,23 +3,18 @@
 #include <cmath>
 
 #include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "tests/estimation/gabor/known_spectrum.h"
 
 namespace astrolith {
 namespace {
+
+using testing::sum_of;
 
 std::vector<SpectralLobe> three_lobes() {
   return {{4, 0.1, 0.05, 3.0}, {3, -0.2, 0.25, 1.0}, {5, 0.3, 0.0, 0.4}};
 }
 
 const std::vector<double> evenly(64 * 64, 1.0);
-
-PowerSpectrum sum_of(const std::vector<SpectralLobe>& lobes, int width, int height) {
-  std::vector<GaborLobe> layer;
-  for (const SpectralLobe& lobe : lobes) {
-    layer.push_back({lobe.bandwidth, lobe.x, lobe.y, lobe_variance(lobe, width, height)});
-  }
-  return spectrum_of(layer, width, height);
-}
 
 // The integral of a pair of Gaussians: 2 * height * 2 pi deviation^2 over a unit square of frequencies.
 TEST(LobeVariance, IsTheIntegralOfThePair) {
