@@ -44,10 +44,12 @@ Outcome stopped_fit(const WorkFolder& folder, const std::string& mesh, std::chro
 TEST(StoppedFit, SaysWhatItKeptAndHasItsOwnStatus) {
   const std::filesystem::path mesh = testing::shared_shape("eros_gaskell_49k.ply");
   ASTROLITH_SKIP_WITHOUT(mesh);
-  for (const int milliseconds : {300, 1500, 4000, 8000}) {
+  for (const int milliseconds : {500, 2000, 4000, 8000}) {
     const WorkFolder folder;
     const Outcome outcome = stopped_fit(folder, mesh.string(), std::chrono::milliseconds(milliseconds));
-    if (outcome.status == 1) {  // before anything was fitted
+    if (outcome.status == 128 + SIGINT) {  // before the program heeds signals, as where it starts slowly
+      EXPECT_TRUE(folder.files().empty());
+    } else if (outcome.status == 1) {  // before anything was fitted
       EXPECT_NE(outcome.errors.find("nothing was fitted yet"), std::string::npos) << outcome.errors;
       EXPECT_TRUE(folder.files().empty());
     } else {
