@@ -76,7 +76,7 @@ ASTROLITH_HD inline float height_at(const ExemplarNoise& n, const ArrayView& arr
 // the same bits as height_at.
 void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
-// The same for anchors that lie outside the arrays of the texture.
+// Writes these heights for anchors that lie outside the arrays of the texture.
 void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, const ExemplarAnchor* anchors,
                       int count, const float* x, const float* y, const float* z, float* height);
 
