@@ -14,6 +14,9 @@ if(ASTROLITH_SANITIZE)
   target_link_options(astrolith_compile_rules INTERFACE -fsanitize=${ASTROLITH_SANITIZE})
   target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_SANITIZED)
 endif()
+if(ASTROLITH_FUZZ)
+  target_compile_options(astrolith_compile_rules INTERFACE -fsanitize=fuzzer-no-link)  # counts what inputs reach
+endif()
 # scripts/check_simd.sh builds with one instruction set at a time and compares the bits of their results. "scalar"
 # vectorises nothing.
 set(ASTROLITH_SIMD "" CACHE STRING "scalar or a -march value; empty: the machine chooses among three at start")

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <span>
 #include <vector>
 
@@ -77,11 +78,24 @@ ImageHeader jpeg_header(std::ifstream& in, const std::string& name) {
   throw InputError(name + ": JPEG without a frame header; the file is damaged, save it again");
 }
 
+// Opens a TIFF such that no field of its directory takes much more memory than the file has bytes: a file of
+// a hundred bytes can declare a field of a gigabyte.
+TIFF* open_tiff(const std::string& name) {
+  constexpr std::uintmax_t kFixed = std::uintmax_t{1} << 20, kEachByte = 8, kMost = std::uintmax_t{1} << 30;
+  TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
+  if (options == nullptr) throw std::bad_alloc();
+  const std::uintmax_t most = std::min(kMost, kFixed + kEachByte * std::filesystem::file_size(name));
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, static_cast<tmsize_t>(most));
+  TIFF* tiff = TIFFOpenExt(name.c_str(), "r", options);
+  TIFFOpenOptionsFree(options);
+  return tiff;
+}
+
 ImageHeader tiff_header(const std::string& name) {
   // Without handlers libtiff does not print.
   TIFFSetErrorHandler(nullptr);
   TIFFSetWarningHandler(nullptr);
-  TIFF* tiff = TIFFOpen(name.c_str(), "r");
+  TIFF* tiff = open_tiff(name);
   if (tiff == nullptr) throw InputError(name + ": TIFF cannot be opened; the file is damaged, save it again");
   ImageHeader header{"TIFF"};
   TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &header.width);
