@@ -104,18 +104,33 @@ double spin_of(const BodyMotion& motion) {
   return turn * turn / (kGravitationalConstant * motion.density);
 }
 
+// Makes verticals of accelerations at the points, for G times density = 1.
+void turn_upwards(std::span<const Vec3d> points, const Vec3d& center, const BodyMotion& motion,
+                  std::vector<Vec3d>& accelerations) {
+  const double spin = spin_of(motion);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3d from = points[i] - center;
+    accelerations[i] = normalized(-1.0 * (accelerations[i] + spin * Vec3d{from.x, from.y, 0.0}));
+  }
+}
+
 }  // namespace
 
 std::vector<Vec3d> vertical_directions(const TriangleMesh& mesh, const BodyMotion& motion) {
   const CoarseSurface coarse = coarse_body(mesh);
   const PolyhedronGravity gravity(coarse.mesh, kRoughDetail);
   std::vector<Vec3d> up = continued(mesh, coarse, gravity.roughly_at(coarse.mesh.vertices));
-  const Vec3d center = body_mass(coarse.mesh).center;
-  const double spin = spin_of(motion);
-  for (std::size_t i = 0; i < up.size(); ++i) {
-    const Vec3d from = mesh.vertices[i] - center;
-    up[i] = normalized(-1.0 * (up[i] + spin * Vec3d{from.x, from.y, 0.0}));
-  }
+  turn_upwards(mesh.vertices, body_mass(coarse.mesh).center, motion, up);
+  return up;
+}
+
+std::vector<Vec3d> vertical_directions_at(const TriangleMesh& mesh, std::span<const Vec3d> points,
+                                          const BodyMotion& motion) {
+  const PolyhedronGravity gravity(mesh, kRoughDetail);
+  std::vector<Vec3d> up;
+  up.reserve(points.size());
+  for (const Attraction& a : gravity.roughly_at(points)) up.push_back(a.acceleration);
+  turn_upwards(points, body_mass(mesh).center, motion, up);
   return up;
 }
 

@@ -1,6 +1,7 @@
 // The verticals of a body's surface, for work that needs no more than some tenths of a degree.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
@@ -22,5 +23,10 @@ struct BodyMotion {
 // with the vertices only by some 0.1 microseconds each. The bits are the same for any number of threads.
 // Throws InputError for a mesh without a facet that has an area.
 std::vector<Vec3d> vertical_directions(const TriangleMesh& mesh, const BodyMotion& motion);
+
+// The same for points on or near the surface of a closed mesh, with the gravity of the mesh itself, to some
+// hundredths of a degree. Meant for meshes of some ten thousand facets: time grows with the points.
+std::vector<Vec3d> vertical_directions_at(const TriangleMesh& mesh, std::span<const Vec3d> points,
+                                          const BodyMotion& motion);
 
 }  // namespace astrolith

@@ -36,6 +36,7 @@ void visit_fields(FieldVisitor& v, CraterPopulation& population);
 void visit_fields(FieldVisitor& v, BoulderLayer& layer);
 void visit_fields(FieldVisitor& v, Boulder& boulder);
 void visit_fields(FieldVisitor& v, BoulderPopulation& population);
+void visit_fields(FieldVisitor& v, LocalGravity& gravity);
 
 // The fields that every kind of noise layer has beside its own.
 void visit_fields(FieldVisitor& v, LayerUse& use);

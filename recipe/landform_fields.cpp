@@ -115,11 +115,18 @@ void visit_fields(FieldVisitor& v, BoulderPopulation& population) {
   v.field("greatest_tilt", population.greatest_tilt, range(0.0, 90.0));
 }
 
+void visit_fields(FieldVisitor& v, LocalGravity& gravity) {
+  const bool at_rest = gravity.rotation_period == 0.0;
+  v.field("density", gravity.density, range(1.0, 30000.0));
+  v.field("rotation_period", gravity.rotation_period, at_rest ? kNotNegative : range(0.01, 1e6));
+}
+
 void visit_fields(FieldVisitor& v, BoulderLayer& layer) {
   v.field("smoothing", layer.smoothing, kShare);
   v.field("roughness", layer.roughness, range(0.0, 0.5));
   v.field("boulders", layer.boulders);
   v.field("population", layer.population);
+  v.field("gravity", layer.gravity);
 }
 
 }  // namespace astrolith

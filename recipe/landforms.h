@@ -106,14 +106,21 @@ struct CraterLayer {
   }
 };
 
-// An ellipsoid on the surface that all other layers make. Without a tilt, its axis c lies along the normal of
-// the bare surface.
+// An ellipsoid on the surface that all other layers make. Without a tilt, its axis c is upright: it lies
+// along the normal of the bare surface or, in a layer with gravity, along the local vertical.
 struct Boulder {
   SurfacePlace place;
   Vec3d axes{1, 1, 1};   // full lengths a, b, c, length units, > 0; none below kMinAxisRatio of the longest
-  double heading = 0.0;  // of axis a on the surface, degrees from east (z x normal) to north, [-360, 360]
+  double heading = 0.0;  // of axis a, degrees from east (z x upright) to north, [-360, 360]
   double tilt = 0.0;     // of axis c about axis a, degrees, [-180, 180]
-  double burial = 0.3;   // share of the chord along the normal that lies below the surface, [0, 1]
+  double burial = 0.3;   // share of the upright chord that lies below the surface, [0, 1]
+};
+
+// The local vertical is against the body's own attraction and the centrifugal force. The bare body has a
+// uniform density and may turn about +z through its centre of mass.
+struct LocalGravity {
+  double density = 2000.0;       // kg / m^3, [1, 30000]
+  double rotation_period = 0.0;  // hours, [0.01, 1e6], or 0 for a body at rest
 };
 
 struct BoulderPopulation {
@@ -135,6 +142,7 @@ struct BoulderLayer {
   double roughness = 0.0;   // amplitude of noise on a boulder, in half its shortest axis, [0, 0.5]
   std::vector<Boulder> boulders;
   std::optional<BoulderPopulation> population;
+  std::optional<LocalGravity> gravity;  // absent: boulders stand along the normal
 
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {

@@ -84,6 +84,11 @@ void BareSurface::make_mesh() const {
   }
 }
 
+const TriangleMesh& BareSurface::mesh() const {
+  make_mesh();
+  return mesh_;
+}
+
 double BareSurface::area() const {
   make_mesh();
   return areas_.empty() ? 0.0 : areas_.back();

@@ -35,6 +35,8 @@ class BareSurface {
   // the centre of the bounding box.
   Vec3d normal(const Vec3d& p) const;
 
+  // A closed mesh of the surface. It has no facet where the body is thinner than 1/64 of its longest side.
+  const TriangleMesh& mesh() const;
   // The area of a mesh of the surface, in squared length units.
   double area() const;
   // Points of the surface, uniform over its area: one for each element of `random`, whose coordinates lie in
@@ -50,7 +52,8 @@ class BareSurface {
   Vec3d last_crossing(const Vec3d& direction, const std::string& where) const;
 
   BareBody body_;
-  // The mesh is made at the first call of area() or scatter(), which must not run in two threads at once.
+  // The mesh is made at the first call of mesh(), area() or scatter(), which must not run in two threads at
+  // once.
   mutable TriangleMesh mesh_;
   mutable std::vector<double> areas_;  // running sum over the mesh's triangles
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/interval.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::int64_t kBouldersBetweenReports = 4096;
+constexpr double kLeastUpward = 0.0872;  // cosine of 85 degrees: nothing rests on steeper ground
 
 void expect_boulder_fits(double axis, const BareSurface& surface, const std::string& where) {
   if (axis <= surface.longest_side()) return;
@@ -35,17 +37,17 @@ Vec3d on_terrain(const Vec3d& bare, const Vec3d& normal, const Terrain& terrain)
   return bare + height * normal;
 }
 
-// Sets the boulder's axes from its heading and tilt about the normal.
-void turn(const Vec3d& normal, PlacedBoulder& boulder) {
-  Vec3d east = cross(Vec3d{0, 0, 1}, normal);
+// Sets the boulder's axes from its heading and tilt about the upright direction.
+void turn(const Vec3d& upright, PlacedBoulder& boulder) {
+  Vec3d east = cross(Vec3d{0, 0, 1}, upright);
   east = norm(east) > 1e-6 ? normalized(east) : Vec3d{1, 0, 0};
-  const Vec3d north = cross(normal, east);
+  const Vec3d north = cross(upright, east);
   const double heading = boulder.heading * kDegree, tilt = boulder.tilt * kDegree;
   Vec3d(&axis)[3] = boulder.directions;
   axis[0] = portable::cos(heading) * east + portable::sin(heading) * north;
-  const Vec3d level = cross(normal, axis[0]);
-  axis[1] = portable::cos(tilt) * level + portable::sin(tilt) * normal;
-  axis[2] = portable::cos(tilt) * normal - portable::sin(tilt) * level;
+  const Vec3d level = cross(upright, axis[0]);
+  axis[1] = portable::cos(tilt) * level + portable::sin(tilt) * upright;
+  axis[2] = portable::cos(tilt) * upright - portable::sin(tilt) * level;
 }
 
 struct Placement {
@@ -113,14 +115,29 @@ double extent_along(const BoulderKernel& kernel, const Vec3d& direction, double 
   return in;
 }
 
-// Places a boulder as deep in the ground as its burial says, measured along the normal through its centre. A
-// boulder of any shape therefore touches the ground.
-void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& normal, PlacedBoulder& boulder) {
-  turn(normal, boulder);
+// Places a boulder as deep in the ground as its burial says, measured along the upright direction through its
+// centre. A boulder of any shape therefore touches the ground.
+void settle(const BoulderLayer& layer, const Vec3d& ground, const Vec3d& upright, PlacedBoulder& boulder) {
+  turn(upright, boulder);
   const BoulderKernel kernel = kernel_of(layer, boulder);
   const double longest = std::max({boulder.axes.x, boulder.axes.y, boulder.axes.z});
-  const double above = extent_along(kernel, normal, longest), below = extent_along(kernel, -normal, longest);
-  boulder.center = ground + (below - boulder.burial * (above + below)) * normal;
+  const double above = extent_along(kernel, upright, longest),
+               below = extent_along(kernel, -upright, longest);
+  boulder.center = ground + (below - boulder.burial * (above + below)) * upright;
+}
+
+// The verticals at all places; none for a layer without gravity.
+std::vector<Vec3d> find_verticals(const BoulderLayer& layer, const BareSurface& surface,
+                                  const std::string& where, std::span<const Placement> placements) {
+  if (!layer.gravity || placements.empty()) return {};
+  if (surface.mesh().triangles.empty()) {
+    throw InputError(where + ".gravity: the bare body is too thin for its gravity to be known; leave it out");
+  }
+  std::vector<Vec3d> places;
+  places.reserve(placements.size());
+  for (const Placement& p : placements) places.push_back(p.bare);
+  return vertical_directions_at(surface.mesh(), places,
+                                {layer.gravity->density, layer.gravity->rotation_period});
 }
 
 // The box of a boulder whose axes are longer by the factor `reach`.
@@ -153,6 +170,7 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
   std::vector<Placement> placements;
   find_listed(layer, surface, where, placements);
   if (layer.population) draw(layer, surface, seed, layer_index, where + ".population", placements);
+  const std::vector<Vec3d> verticals = find_verticals(layer, surface, where, placements);
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   const auto count = static_cast<std::int64_t>(placements.size());
   for (std::int64_t first = 0; first < count; first += kBouldersBetweenReports) {
@@ -162,8 +180,10 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
     parallel_for(first, std::min(first + kBouldersBetweenReports, count), [&](std::int64_t i) {
       Placement& p = placements[static_cast<std::size_t>(i)];
       const Vec3d normal = surface.normal(p.bare);
+      const Vec3d vertical = verticals.empty() ? normal : verticals[static_cast<std::size_t>(i)];
+      const Vec3d upright = dot(vertical, normal) > kLeastUpward ? vertical : normal;
       p.boulder.noise_seed = hash_append(layer_seed, static_cast<std::uint32_t>(i));
-      settle(layer, on_terrain(p.bare, normal, terrain), normal, p.boulder);
+      settle(layer, on_terrain(p.bare, normal, terrain), upright, p.boulder);
     });
   }
   std::vector<PlacedBoulder> boulders;

@@ -107,7 +107,8 @@ std::map<std::string, Fields> described() {
           {"crater_population", fields_of(CraterPopulation{})},
           {"boulders", fields_of(Layer{BoulderLayer{}})},
           {"boulder", fields_of(Boulder{})},
-          {"boulder_population", fields_of(BoulderPopulation{})}};
+          {"boulder_population", fields_of(BoulderPopulation{})},
+          {"local_gravity", fields_of(LocalGravity{})}};
 }
 
 class RecipeFields : public ::testing::Test {
@@ -162,7 +163,7 @@ TEST_F(RecipeFields, SchemaRequiresTheSameFields) {
 TEST_F(RecipeFields, SchemaStatesTheSameLimits) {
   // These limits depend on other fields, and the schema states them in part.
   const std::vector<std::string> by_rule = {"crater.depth", "crater.rim_height", "erosion.rotation_period",
-                                            "spots.density"};
+                                            "local_gravity.rotation_period", "spots.density"};
   int compared = 0;
   for (const auto& [name, fields] : described()) {
     for (const auto& [field, facts] : fields) {

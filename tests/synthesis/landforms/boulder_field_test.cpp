@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
@@ -80,6 +81,73 @@ TEST(BoulderField, AxesLieAsTheHeadingSays) {
   const ImplicitField north(with_boulders(sphere, layer));
   EXPECT_FALSE(north.inside({10.1, 0.9, 0.0}));
   EXPECT_TRUE(north.inside({10.1, 0.0, 0.9}));
+}
+
+// The direction against gravity and centrifugal force on a ball about the origin, by hand.
+Vec3d vertical_of_ball(const Vec3d& p, const LocalGravity& gravity) {
+  const double turn = 2.0 * std::numbers::pi / (3600.0 * gravity.rotation_period);
+  const double pull = 4.0 / 3.0 * std::numbers::pi * 6.6743e-11 * gravity.density;
+  return normalized(pull * p - turn * turn * Vec3d{p.x, p.y, 0.0});
+}
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  return std::atan2(norm(cross(a, b)), dot(a, b)) * (180.0 / std::numbers::pi);
+}
+
+BoulderLayer upright_boulders() {
+  BoulderLayer layer;
+  BoulderPopulation& population = layer.population.emplace();
+  population.drawn.count = 300;
+  population.drawn.least_diameter = 0.2;
+  population.drawn.greatest_diameter = 1.0;
+  population.greatest_tilt = 0.0;
+  return layer;
+}
+
+// At the equator of this ball the centrifugal force is .6 of gravity. The vertical leans by up to 25 degrees.
+TEST(BoulderField, StandUprightInTheGravityOfAFastRotator) {
+  const Recipe sphere = testing::sphere_recipe(10.0);
+  BoulderLayer layer = upright_boulders();
+  const ImplicitField still(with_boulders(sphere, layer));
+  layer.gravity = LocalGravity{2000.0, 3.0};
+  const ImplicitField turning(with_boulders(sphere, layer));
+  double greatest_lean = 0.0;
+  for (std::size_t i = 0; i < 300; ++i) {
+    const PlacedBoulder& at_rest = still.boulders()[0].boulders[i];
+    const PlacedBoulder& leaning = turning.boulders()[0].boulders[i];
+    const Vec3d normal = normalized(at_rest.center), foot = 10.0 * normal;
+    const Vec3d vertical = vertical_of_ball(foot, *layer.gravity);
+    EXPECT_LT(degrees_between(at_rest.directions[2], normal), 1e-3);
+    EXPECT_LT(degrees_between(leaning.directions[2], vertical), 0.2);
+    // The foot stays, and the centre lies along the vertical, as high as along the normal before.
+    EXPECT_NEAR(norm(leaning.center - foot), std::fabs(norm(at_rest.center) - 10.0), 2e-3);
+    EXPECT_LT(norm(cross(leaning.center - foot, vertical)), 5e-3);
+    greatest_lean = std::max(greatest_lean, degrees_between(leaning.directions[2], normal));
+  }
+  EXPECT_GT(greatest_lean, 20.0);
+}
+
+// Here the centrifugal force exceeds gravity at the equator. Stones there stand along the normal.
+TEST(BoulderField, StandAlongTheNormalWhereNothingRests) {
+  BoulderLayer layer;
+  layer.boulders = {boulder_towards({1, 0, 0}, {1, 1, 0.5}, 0.3),
+                    boulder_towards({0, 0.6, 0.8}, {1, 1, 0.5}, 0.3)};
+  layer.gravity = LocalGravity{2000.0, 2.0};
+  const ImplicitField field(with_boulders(testing::sphere_recipe(10.0), layer));
+  const std::vector<PlacedBoulder>& boulders = field.boulders()[0].boulders;
+  EXPECT_LT(degrees_between(boulders[0].directions[2], {1, 0, 0}), 1e-3);
+  EXPECT_LT(degrees_between(boulders[1].directions[2], vertical_of_ball({0, 6, 8}, *layer.gravity)), 0.2);
+}
+
+// The mesh of the bare body has no facet of these two grains.
+TEST(BoulderField, GravityThatIsUnknownIsRefused) {
+  Recipe grains = testing::sphere_recipe(0.01, {-10, 0, 0});
+  grains.body->spheres.push_back({{10, 0, 0}, 0.01});
+  BoulderLayer layer;
+  layer.boulders = {boulder_towards({1, 0, 0}, {1e-3, 1e-3, 1e-3}, 0.5)};
+  EXPECT_NO_THROW(ImplicitField(with_boulders(grains, layer)));
+  layer.gravity.emplace();
+  EXPECT_THROW(ImplicitField(with_boulders(grains, layer)), InputError);
 }
 
 // Boulders lie on the hills and in the craters of layers that come before or after them in the recipe.
