@@ -1,5 +1,6 @@
-// Recipes as JSON files: reader, writer and the check of every rule that recipe.h states. docs/recipe.md
-// describes the fields, and recipe.schema.json states them for other tools.
+// Recipes as files: reader, writer and the check of every rule that recipe.h states. A file is JSON text or a
+// compact recipe, which holds the same document in few bytes. docs/recipe.md describes the fields and both
+// forms, and recipe.schema.json states the fields for other tools.
 //
 // The functions report a wrong recipe by InputError with one line "file: field.path: what is wrong; what to
 // do".
@@ -13,10 +14,11 @@
 
 namespace astrolith {
 
-// Reads and validates the recipe in a file of at most 64 MB. Throws InputError.
+// Reads and validates the recipe in a file of at most 64 MB, in either form. Throws InputError.
 Recipe read_recipe(const std::filesystem::path& file);
 
-// Reads and validates the recipe in a text. `name` is the file's name in errors. Throws InputError.
+// Reads and validates the recipe in the bytes of a file, in either form. `name` is the file's name in errors.
+// Throws InputError.
 Recipe parse_recipe(std::string_view text, const std::string& name);
 
 // Throws InputError at the first field that breaks a rule of recipe.h.
@@ -28,11 +30,26 @@ void validate_recipe(const Recipe& recipe, const std::string& name);
 // could read the file.
 std::string recipe_to_json(const Recipe& recipe);
 
-// Writes the file whole or not at all. Throws what recipe_to_json and OutputFile throw.
+// The compact recipe, which reads back to an equal recipe. Throws WorkError as recipe_to_json does, and for a
+// recipe with more than 16 MB of text beside its lists of numbers.
+std::string recipe_to_compact(const Recipe& recipe);
+
+// Whether write_recipe() writes a compact recipe to a file of this name.
+inline constexpr std::string_view kCompactExtension = ".astro";
+bool is_compact_name(const std::filesystem::path& file);
+
+// Whether a file of this name holds a recipe in either form (.json or .astro) and no mesh.
+bool is_recipe_name(const std::filesystem::path& file);
+
+// Writes the file whole or not at all, compact if its name ends in .astro. Throws what recipe_to_json,
+// recipe_to_compact and OutputFile throw.
 void write_recipe(const Recipe& recipe, const std::filesystem::path& file);
 
 // x rounded to seven significant digits, about the precision of a float. Fits store rounded numbers, so that
 // 200 spheres take about 12 kB. A fit must round before it measures the errors that the recipe states.
 double round_to_seven_digits(double x);
+
+// x rounded to so many significant digits, 1 to 17.
+double round_to_digits(double x, int digits);
 
 }  // namespace astrolith

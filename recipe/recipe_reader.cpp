@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "recipe/compact_document_internal.h"
 #include "recipe/fields_internal.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/recipe_json.h"
@@ -161,7 +162,7 @@ class FieldReader final : public FieldVisitor {
 }  // namespace
 
 Recipe parse_recipe(std::string_view text, const std::string& name) {
-  const json document = parse_json(text, name);
+  const json document = is_compact(text) ? parse_compact(text, name) : parse_json(text, name);
   const Place place(name);
   Recipe recipe;
   FieldReader(document, place).visit(recipe);

@@ -1,8 +1,10 @@
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "recipe/compact_document_internal.h"
 #include "recipe/fields_internal.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/recipe_json.h"
@@ -92,19 +94,31 @@ std::string recipe_to_json(const Recipe& recipe) {
   return writer.take();
 }
 
+std::string recipe_to_compact(const Recipe& recipe) {
+  return compact_document(nlohmann::json::parse(recipe_to_json(recipe)));
+}
+
+bool is_compact_name(const std::filesystem::path& file) { return file.extension() == kCompactExtension; }
+
+bool is_recipe_name(const std::filesystem::path& file) {
+  return file.extension() == ".json" || is_compact_name(file);
+}
+
 void write_recipe(const Recipe& recipe, const std::filesystem::path& file) {
-  const std::string text = recipe_to_json(recipe);
+  const std::string text = is_compact_name(file) ? recipe_to_compact(recipe) : recipe_to_json(recipe);
   OutputFile output(file);
   output.write(text.data(), text.size());
   output.commit();
 }
 
-double round_to_seven_digits(double x) {
+double round_to_digits(double x, int digits) {
   char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::scientific, 6);
+  const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::scientific, digits - 1);
   double rounded = x;
   std::from_chars(text, end.ptr, rounded);
   return rounded;
 }
+
+double round_to_seven_digits(double x) { return round_to_digits(x, 7); }
 
 }  // namespace astrolith

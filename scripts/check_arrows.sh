@@ -8,7 +8,8 @@ git grep -noE '#include "[a-z_]+/[^"]*"' -- '*.h' '*.cpp' '*.cu' ':!tests' | awk
 numerics                   -> numerics/.
 numerics/files             -> numerics
 numerics/version           -> numerics
-recipe                     -> numerics
+recipe                     -> numerics recipe/compact
+recipe/compact             -> numerics
 geometry                   -> numerics geometry/.
 geometry/io                -> numerics geometry/.
 geometry/points            -> numerics

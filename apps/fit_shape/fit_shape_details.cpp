@@ -169,9 +169,11 @@ std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, c
 }
 
 std::vector<std::filesystem::path> variation_files(const std::filesystem::path& fit, int count) {
+  const std::string extension = is_compact_name(fit) ? std::string(kCompactExtension) : ".json";
   std::vector<std::filesystem::path> files;
   for (int k = 1; k <= count; ++k) {
-    files.push_back(fit.parent_path() / (fit.stem().string() + "_variation_" + std::to_string(k) + ".json"));
+    files.push_back(fit.parent_path() /
+                    (fit.stem().string() + "_variation_" + std::to_string(k) + extension));
     require_writable(files.back());
   }
   return files;

@@ -47,7 +47,8 @@ void add_micro_layers(const DetailArguments& arguments, Recipe& recipe);
 std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, const Progress& progress,
                                  Recipe& recipe);
 
-// FIT.json becomes FIT_variation_K.json, K from 1. Throws InputError for the first that cannot be written.
+// FIT.json becomes FIT_variation_K.json, and FIT.astro becomes FIT_variation_K.astro, K from 1. Throws
+// InputError for the first that cannot be written.
 std::vector<std::filesystem::path> variation_files(const std::filesystem::path& fit, int count);
 
 // Writes variations of the recipe, each with its measured similarity to the target. Returns the figures of

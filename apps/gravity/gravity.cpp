@@ -28,7 +28,7 @@ struct Arguments {
 void add_options(Program& program, Arguments& a) {
   CommandLine& app = program.app;
   app.add_option("shape", a.shape,
-                 "closed mesh (obj, ply, stl, off, PDS plate .tab, ICQ, bmf) or recipe (.json)")
+                 "closed mesh (obj, ply, stl, off, PDS plate .tab, ICQ, bmf) or recipe (.json, .astro)")
       .required()
       .placeholder("SHAPE");
   app.add_option("-o,--output", a.output, "table of all places (.csv, .npy), or the mesh with values (.ply)")

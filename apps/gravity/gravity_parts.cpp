@@ -5,6 +5,7 @@
 
 #include "apps/gravity/gravity_body.h"
 #include "numerics/errors.h"
+#include "recipe/recipe_json.h"
 
 namespace astrolith {
 namespace {
@@ -42,7 +43,7 @@ std::vector<BodyPart> read_parts(const Program& program, const std::string& word
   std::istringstream all(words);
   for (std::string word; std::getline(all, word, ',');) {
     const PartWord read = parse(word);
-    const bool recipe = read.file.ends_with(".json");
+    const bool recipe = is_recipe_name(read.file);
     BodyPart part{read.file,
                   read_gravity_body(program, read.file, recipe ? "" : whole.unit, resolution),
                   read.density,

@@ -33,7 +33,8 @@ struct Options {
 };
 
 void declare_options(Program& program, Options& options) {
-  program.app.add_option("recipe", options.recipe, "the recipe, a JSON file").required();
+  program.app.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
+      .required();
   program.app
       .add_option("-o,--output", options.output,
                   "the mesh: .ply (binary, streamed), .obj, .stl, .glb, .icq or .tab (PDS plates), in the "
@@ -64,7 +65,7 @@ void declare_options(Program& program, Options& options) {
   program.app
       .add_option("--write-recipe", options.written_recipe,
                   "also write the recipe that is made, with the layers of --base, the variation and the seed "
-                  "in it; without -o nothing else")
+                  "in it, as JSON or compact (.astro); without -o nothing else")
       .placeholder("FILE.json");
   declare_texture_options(program, options.texture);
   for (const char* of_mesh :
@@ -122,7 +123,7 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
 
 void check_outputs(const Options& options) {
   if (!options.written_recipe.empty()) {
-    require_extension(options.written_recipe, {".json"});
+    require_extension(options.written_recipe, {".json", ".astro"});
     require_writable(options.written_recipe);
   }
   if (!options.output.empty() || !options.written_recipe.empty() || options.mesh.size.only_predict) return;

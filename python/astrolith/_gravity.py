@@ -93,7 +93,7 @@ class Gravity:
 
 
 def _is_recipe(body: Any) -> bool:
-    return isinstance(body, Mapping) or (isinstance(body, (str, os.PathLike)) and os.fspath(body).endswith(".json"))
+    return isinstance(body, Mapping) or (isinstance(body, (str, os.PathLike)) and os.fspath(body).endswith((".json", ".astro")))
 
 
 def _unit_of(mesh: Any, unit: Optional[str]) -> str:

@@ -78,7 +78,7 @@ class Recipe(Record):
 
     @classmethod
     def read(cls, file: PathLike) -> "Recipe":
-        """Read a JSON file of at most 64 MB. Raises ValueError as :meth:`from_json`.
+        """Read a JSON file or a compact recipe of at most 64 MB. Raises ValueError as :meth:`from_json`.
 
         The image of an ``exemplar`` layer lies relative to the file; its path becomes one relative to the current
         folder, where every function looks for it.
@@ -105,7 +105,9 @@ class Recipe(Record):
         return plain
 
     def write(self, file: PathLike) -> None:
-        """Write the file whole or not at all, with the bytes that the programs write. Paths of images become relative to it.
+        """Write the file whole or not at all, with the bytes that the programs write.
+
+        A name that ends in .astro makes a compact recipe, any other one JSON. Paths of images become relative to the file.
 
         Raises
         ------

@@ -1,0 +1,171 @@
+#include "recipe/compact_document_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "numerics/errors.h"
+#include "recipe/compact/number_table.h"
+#include "recipe/compact/text_model.h"
+#include "recipe/json_document_internal.h"
+
+namespace astrolith {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view kMagic = "AST";
+constexpr unsigned char kCompactVersion = 1;
+constexpr std::size_t kHeaderBytes = 6;  // magic, version, check of the rest
+constexpr std::size_t kMaxCompactText = std::size_t{16} << 20;
+
+// Shorter lists stay in the text.
+constexpr std::size_t kFewestRows = 4;
+constexpr std::size_t kFewestNumbers = 8;
+
+// CRC-16 with the polynomial 0x1021, which finds damaged files.
+std::uint16_t check_of(std::string_view bytes) {
+  std::uint32_t check = 0xffff;
+  for (const char c : bytes) {
+    check ^= static_cast<std::uint32_t>(static_cast<unsigned char>(c)) << 8;
+    for (int bit = 0; bit < 8; ++bit)
+      check = ((check << 1) ^ ((check & 0x8000) != 0 ? 0x1021u : 0u)) & 0xffff;
+  }
+  return static_cast<std::uint16_t>(check);
+}
+
+bool all_numbers(const json& list) {
+  return list.is_array() && !list.empty() &&
+         std::all_of(list.begin(), list.end(), [](const json& value) { return value.is_number(); });
+}
+
+bool is_list_of_numbers(const json& value) { return all_numbers(value) && value.size() >= kFewestNumbers; }
+
+bool is_list_of_rows(const json& value) {
+  if (!value.is_array() || value.size() < kFewestRows) return false;
+  const std::size_t columns = value.front().size();
+  return columns <= kMostTableColumns && std::all_of(value.begin(), value.end(), [&](const json& row) {
+           return all_numbers(row) && row.size() == columns;
+         });
+}
+
+NumberTable table_of_numbers(const json& list) { return {1, list.get<std::vector<double>>()}; }
+
+NumberTable table_of_rows(const json& list) {
+  NumberTable table{list.front().size(), {}};
+  for (const json& row : list) {
+    for (const json& number : row) table.values.push_back(number.get<double>());
+  }
+  return table;
+}
+
+json rows_of(const NumberTable& table) {
+  json list = json::array();
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto first = table.values.begin() + static_cast<std::ptrdiff_t>(row * table.columns);
+    list.emplace_back(json::array_t(first, first + static_cast<std::ptrdiff_t>(table.columns)));
+  }
+  return list;
+}
+
+// Moves the tables out of the value, in the order of its text. null stands for a list of rows, and [null] for
+// a list of numbers: recipes have no null of their own.
+void take_tables(json& value, std::vector<NumberTable>& tables) {
+  if (is_list_of_rows(value)) {
+    tables.push_back(table_of_rows(value));
+    value = nullptr;
+  } else if (is_list_of_numbers(value)) {
+    tables.push_back(table_of_numbers(value));
+    value = json::array({nullptr});
+  } else if (value.is_structured()) {
+    for (json& inner : value) take_tables(inner, tables);
+  }
+}
+
+class TableReturner {
+ public:
+  explicit TableReturner(RangeDecoder& decoder) : decoder_(decoder) {}
+
+  void fill(json& value) {
+    if (value.is_null()) {
+      value = rows_of(next());
+    } else if (value.is_array() && value.size() == 1 && value.front().is_null()) {
+      value = next().values;
+    } else if (value.is_structured()) {
+      for (json& inner : value) fill(inner);
+    }
+  }
+
+ private:
+  NumberTable next() {
+    NumberTable table = decoder_.decode(values_left_);
+    values_left_ -= table.values.size();
+    return table;
+  }
+
+  TableDecoder decoder_;
+  std::size_t values_left_ = kMaxJsonValues;
+};
+
+std::string encoded(const json& document, const std::vector<NumberTable>& tables) {
+  const std::string text = document.dump();
+  if (text.size() > kMaxCompactText) {
+    throw WorkError("the recipe is too large for a compact file; write it as .json");
+  }
+  RangeEncoder encoder;
+  encoder.encode_number(text.size());
+  TextModel(kCompactPrimer).encode(text, encoder);
+  TableEncoder table_encoder(encoder);
+  for (const NumberTable& table : tables) table_encoder.encode(table);
+  return encoder.finish();
+}
+
+json decoded(std::string_view bytes, const std::string& name) {
+  RangeDecoder decoder(bytes);
+  const std::uint64_t size = decoder.decode_number();
+  if (size > kMaxCompactText) throw DamagedStream();
+  json document = parse_json(TextModel(kCompactPrimer).decode(static_cast<std::size_t>(size), decoder), name);
+  TableReturner(decoder).fill(document);
+  return document;
+}
+
+}  // namespace
+
+bool is_compact(std::string_view bytes) { return bytes.substr(0, kMagic.size()) == kMagic; }
+
+std::string compact_document(const json& document) {
+  json rest = document;
+  std::vector<NumberTable> tables;
+  take_tables(rest, tables);
+  const std::string stream = encoded(rest, tables);
+  const std::uint16_t check = check_of(stream);
+  std::string bytes(kMagic);
+  for (const unsigned char byte :
+       {kCompactVersion, static_cast<unsigned char>(check >> 8), static_cast<unsigned char>(check & 0xff)}) {
+    bytes += static_cast<char>(byte);
+  }
+  return bytes + stream;
+}
+
+json parse_compact(std::string_view bytes, const std::string& name) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  if (bytes.size() > kMagic.size() && byte(kMagic.size()) != kCompactVersion) {
+    throw InputError(fmt::format(
+        "{}: is a compact recipe of version {}, this program reads {}; use the program version that "
+        "wrote the file",
+        name, byte(kMagic.size()), kCompactVersion));
+  }
+  const InputError damaged(name + ": is a damaged compact recipe; copy it or write it again");
+  if (bytes.size() < kHeaderBytes) throw damaged;
+  const std::string_view stream = bytes.substr(kHeaderBytes);
+  if (check_of(stream) != (byte(4) << 8 | byte(5))) throw damaged;
+  try {
+    return decoded(stream, name);
+  } catch (const DamagedStream&) {
+    throw damaged;
+  }
+}
+
+}  // namespace astrolith
