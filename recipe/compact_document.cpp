@@ -41,10 +41,17 @@ bool all_numbers(const json& list) {
          std::all_of(list.begin(), list.end(), [](const json& value) { return value.is_number(); });
 }
 
-bool is_list_of_numbers(const json& value) { return all_numbers(value) && value.size() >= kFewestNumbers; }
+bool too_many_equal(const json& list) {
+  return list.size() > kMostEqualRows &&
+         std::all_of(list.begin(), list.end(), [&](const json& value) { return value == list.front(); });
+}
+
+bool is_list_of_numbers(const json& value) {
+  return all_numbers(value) && value.size() >= kFewestNumbers && !too_many_equal(value);
+}
 
 bool is_list_of_rows(const json& value) {
-  if (!value.is_array() || value.size() < kFewestRows) return false;
+  if (!value.is_array() || value.size() < kFewestRows || too_many_equal(value)) return false;
   const std::size_t columns = value.front().size();
   return columns <= kMostTableColumns && std::all_of(value.begin(), value.end(), [&](const json& row) {
            return all_numbers(row) && row.size() == columns;

@@ -201,6 +201,7 @@ class PointSetDecoder {
     if (n == 1) return decode_point();
     const std::size_t column = boxes_.widest();
     if (column == boxes_.columns()) {
+      if (n > kMostEqualRows) throw DamagedStream();
       for (std::size_t i = 0; i < n; ++i) decode_point();
       return;
     }
@@ -229,6 +230,19 @@ class PointSetDecoder {
   RangeDecoder& decoder_;
   IntegerRows points_;
 };
+
+// The length of the longest run of equal rows.
+std::size_t longest_run(const IntegerRows& rows) {
+  const auto row = [&](std::size_t i) {
+    return std::span(rows.values).subspan(i * rows.columns, rows.columns);
+  };
+  std::size_t longest = 0, run = 0;
+  for (std::size_t i = 0; i < rows.rows(); ++i) {
+    run = i > 0 && std::ranges::equal(row(i), row(i - 1)) ? run + 1 : 1;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
 
 std::vector<double> column_of(const NumberTable& table, std::size_t column) {
   std::vector<double> numbers;
@@ -339,7 +353,8 @@ void TableEncoder::encode(const NumberTable& table) {
     last_[c] = lattice;
   }
   const std::vector<std::size_t> order = integers.order();
-  const bool ordered = integers.on_lattices() && std::is_sorted(order.begin(), order.end());
+  const bool ordered = integers.on_lattices() && std::is_sorted(order.begin(), order.end()) &&
+                       longest_run(integers.rows) <= kMostEqualRows;
   encoder_.encode_uniform(ordered ? 1 : 0, 2);
   const Ranges ranges = integers.ranges();
   if (ordered) {
@@ -380,6 +395,10 @@ NumberTable TableDecoder::decode(std::size_t most_values) {
   const bool ordered = decoder_.decode_uniform(2) == 1;
   if (ordered && std::any_of(lattices.begin(), lattices.end(), [](const auto& l) { return !l; }))
     throw DamagedStream();
+  const bool all_equal =
+      std::all_of(lattices.begin(), lattices.end(), [](const auto& l) { return l.has_value(); }) &&
+      std::all_of(ranges.begin(), ranges.end(), [](const IntegerRange& r) { return r.width() == 1; });
+  if (all_equal && rows > kMostEqualRows) throw DamagedStream();
   IntegerRows integers;
   if (ordered)
     integers = PointSetDecoder(table.columns, ranges, decoder_).decode(static_cast<std::size_t>(rows));

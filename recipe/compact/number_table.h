@@ -18,6 +18,9 @@
 namespace astrolith {
 
 inline constexpr std::size_t kMostTableColumns = 16;
+// Further equal rows would cost no bits, so that a few bytes could declare millions of them. A table whose
+// rows are all equal has at most so many rows, and no point of a set of points stands more often.
+inline constexpr std::size_t kMostEqualRows = 64;
 
 struct NumberTable {
   std::size_t columns = 1;     // 1 .. kMostTableColumns

@@ -67,7 +67,8 @@ std::string RangeEncoder::finish() {
     }
   }
   for (int i = 0; i < 5; ++i) shift_low();
-  while (!bytes_.empty() && bytes_.back() == 0) bytes_.pop_back();
+  for (std::size_t i = 0; i < kMostZerosLeftOut && !bytes_.empty() && bytes_.back() == 0; ++i)
+    bytes_.pop_back();
   return std::move(bytes_);
 }
 
@@ -111,7 +112,9 @@ std::uint64_t RangeDecoder::decode_number() {
 }
 
 std::uint8_t RangeDecoder::next_byte() {
-  return position_ < bytes_.size() ? static_cast<std::uint8_t>(bytes_[position_++]) : std::uint8_t{0};
+  if (position_ >= bytes_.size() + kMostZerosLeftOut) throw DamagedStream();
+  const std::size_t at = position_++;
+  return at < bytes_.size() ? static_cast<std::uint8_t>(bytes_[at]) : std::uint8_t{0};
 }
 
 }  // namespace astrolith

@@ -13,6 +13,8 @@ namespace astrolith {
 // Probabilities are shares of this many.
 inline constexpr std::uint32_t kProbabilityScale = 65536;
 
+inline constexpr std::size_t kMostZerosLeftOut = 64;
+
 class RangeEncoder {
  public:
   // Writes a symbol that has the shares [start, start + size) of `total`. 0 < size, total <= 65536.
@@ -22,7 +24,8 @@ class RangeEncoder {
   // Writes any number. Small ones take fewer bits: 6 and their own.
   void encode_number(std::uint64_t value);
 
-  // Ends the stream and returns its bytes without the zeros at its end.
+  // Ends the stream and returns its bytes without the zeros at its end, of which it leaves out at most
+  // kMostZerosLeftOut.
   std::string finish();
 
  private:
@@ -35,7 +38,8 @@ class RangeEncoder {
   std::uint64_t pending_count_ = 0;  // of it and the bytes 255 that follow it
 };
 
-// Reads what RangeEncoder wrote. Any bytes decode to something; zeros follow their end.
+// Reads what RangeEncoder wrote. Any bytes decode to something. kMostZerosLeftOut zeros follow their end;
+// further on every function throws DamagedStream, so that a few bytes cannot go on for ever.
 class RangeDecoder {
  public:
   // `bytes` must outlive this.

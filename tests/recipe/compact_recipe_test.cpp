@@ -164,6 +164,29 @@ TEST(CompactRecipe, SizesBeyondTheLimitsAreRefusedBeforeTheyAreAllocated) {
   EXPECT_THROW(TableDecoder(decoder).decode(8'000'000), DamagedStream);
 }
 
+TEST(CompactRecipe, AFewBytesHoldAFewThings) {
+  RangeEncoder text;
+  text.encode_number(std::uint64_t{1} << 23);  // bytes of text, of which none follows
+  const std::string error = error_of(with_valid_check("AST\x01" + std::string(2, ' ') + text.finish()));
+  EXPECT_NE(error.find("damaged"), std::string::npos) << error;
+}
+
+TEST(CompactRecipe, EqualRowsThatWouldCostNothingAreRefused) {
+  const NumberTable table{2, std::vector<double>(2 * (kMostEqualRows + 1), 3.0)};
+  RangeEncoder encoder;
+  TableEncoder(encoder).encode(table);
+  const std::string stream = encoder.finish();
+  RangeDecoder decoder(stream);
+  EXPECT_THROW(TableDecoder(decoder).decode(1000), DamagedStream);
+}
+
+TEST(CompactRecipe, HoldsPointsThatStandManyTimes) {
+  std::vector<Sphere> spheres(100, Sphere{{1, 2, 3}, 4});
+  spheres.push_back({{5, 6, 7}, 8});
+  expect_equal_after_compact(body_of(spheres));
+  expect_equal_after_compact(body_of(std::vector<Sphere>(1000, Sphere{{1, 2, 3}, 4})));
+}
+
 TEST(NumberLattice, IsTheCoarsestThatHoldsAll) {
   const std::vector<double> numbers = {0.25, -1.5, 0.0, 12.75};
   const auto found = find_lattice(numbers);
