@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "apps/fit_gabor/fit_exemplar.h"
-#include "apps/fit_gabor/fit_gabor_outputs.h"
 #include "apps/memory_use.h"
 #include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
@@ -16,6 +14,8 @@
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
+#include "tasks/estimation/exemplar_recipe.h"
+#include "tasks/estimation/photo_outputs.h"
 #include "tasks/estimation/photo_recipe.h"
 
 namespace astrolith {
@@ -240,21 +240,22 @@ void say_result(const PhotoFit& photo, const Options& o, const Program& program)
 
 PreparedExemplar prepare(Program& program, const Options& o) {
   const TrendModel trend = photo_options(program, o).trend;
-  const GreyImage photo = read_exemplar_photo(program, o.image, o.photo.detrend_degree, trend);
-  PreparedExemplar prepared = prepare_exemplar(photo, o.image, program.seed, program.progress("exemplar"));
-  report_exemplar(program, prepared);
+  const ImageFile read = read_exemplar_photo(o.image, o.photo.detrend_degree, trend);
+  for (const std::string& remark : read.remarks) program.say(o.image + ": " + remark);
+  PreparedExemplar prepared =
+      prepare_exemplar(read.image, o.image, program.seed, program.progress("exemplar"));
+  program.summary.update(exemplar_figures(prepared));
+  const TextureScore& best = prepared.scores[static_cast<int>(prepared.variant)];
+  program.say(fmt::format(
+      "exemplar: {}; a texture of it differs from the photo by {:.3f} in values and {:.3f} in filters",
+      variant_word(prepared.variant), best.values, best.filters));
   return prepared;
 }
 
 void write_exemplar(Program& program, const Options& o, const PreparedExemplar& prepared) {
-  Recipe recipe;
-  const PhotoRecipeOptions options = recipe_options(program, o);
-  recipe.length_unit = options.mm_per_px > 0.0 ? options.unit : "px";
-  recipe.seed = options.seed;
-  const TextureScore& score = prepared.scores[static_cast<int>(prepared.variant)];
-  recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
+  Recipe recipe = exemplar_recipe(prepared, recipe_options(program, o));
   set_provenance(program, o, recipe);
-  write_exemplar_recipe(std::move(recipe), scaled_exemplar(prepared, options), o.output);
+  write_exemplar_recipe(std::move(recipe), o.output);
   program.summary["model"] = "exemplar";
   program.summary["peak_bytes"] = peak_bytes();
 }
@@ -262,12 +263,7 @@ void write_exemplar(Program& program, const Options& o, const PreparedExemplar& 
 // Whether a texture of the exemplar is nearer to the photo than one of the lobes.
 bool exemplar_is_nearer(Program& program, const PreparedExemplar& prepared, const PhotoFit& photo,
                         const std::vector<float>& synthesis) {
-  const FittedChannel& channel = photo.channels.front();
-  const double deviation = std::sqrt(channel.variance());
-  GreyImage texture{channel.exemplar.width, channel.exemplar.height, {}};
-  for (const float v : synthesis)
-    texture.values.push_back(channel.fit.exemplar_mean + deviation * static_cast<double>(v));
-  const TextureScore gabor = texture_score(texture, channel.exemplar);
+  const TextureScore gabor = score_of_lobes(photo, synthesis);
   const TextureScore& exemplar = prepared.scores[static_cast<int>(prepared.variant)];
   const bool nearer = exemplar.sum() < gabor.sum();
   program.summary["gabor"] = {{"values", gabor.values}, {"filters", gabor.filters}};
@@ -305,7 +301,8 @@ void work(Program& program, const Options& o) {
     program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
     return;
   }
-  const std::vector<std::vector<float>> syntheses = synthesize_channels(photo, recipe, program);
+  const std::vector<std::vector<float>> syntheses =
+      synthesize_channels(photo, recipe, program.progress("synthesis"));
   program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
   if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
   if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);

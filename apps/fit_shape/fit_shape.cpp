@@ -7,7 +7,6 @@
 #include "apps/fit_shape/fit_shape_details.h"
 #include "apps/fit_shape/fit_shape_options.h"
 #include "apps/fit_shape/fit_shape_packing.h"
-#include "apps/fit_shape/fit_time_limit.h"
 #include "apps/fit_shape/known_bodies.h"
 #include "apps/program.h"
 #include "estimation/shape/fit/shape_fit.h"
@@ -19,7 +18,9 @@
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
+#include "tasks/estimation/detail_layers.h"
 #include "tasks/estimation/fit_checkpoint.h"
+#include "tasks/estimation/fit_time_limit.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/synthesis/load_recipe.h"
 
@@ -49,7 +50,10 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
     program.say("micro: " + add_residual_texture(target, arguments.fit.seed,
                                                  limit.guard(program.progress("micro"), "micro"), recipe));
   } else if (!wanted.transfer.empty()) {
-    transfer_details(program, wanted.transfer, recipe);
+    const Recipe other = read_details(wanted.transfer);
+    const double ratio = transfer_details(other, recipe);
+    program.say(
+        fmt::format("{}: {} layers, lengths times {:.4g}", wanted.transfer, other.layers.size(), ratio));
   } else if (!wanted.base_only) {
     const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
     const DetailsFitResult details =
@@ -57,7 +61,9 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
     checkpoint.save();
     program.summary["details"] = details_json(details);
   }
-  if (!wanted.micro.empty() && wanted.micro != "auto") add_micro_layers(wanted, recipe);
+  if (!wanted.micro.empty() && wanted.micro != "auto") {
+    add_micro_layers(wanted.micro, wanted.mm_per_px, wanted.micro_height_mm, recipe);
+  }
   if (!Program::interrupted()) measure_recipe(target, recipe, arguments.fit, fit);
 }
 

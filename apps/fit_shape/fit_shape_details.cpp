@@ -4,39 +4,16 @@
 
 #include "cuda/candidate_evaluator.h"
 #include "cuda/candidates_on_gpu.h"
-#include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
-#include "synthesis/field/implicit_field.h"
-#include "synthesis/finish/lay_on_base.h"
+#include "tasks/estimation/detail_layers.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith {
 namespace {
-
-// Diagonal of the bare body's box, in the recipe's unit.
-double size_of(const Recipe& recipe) {
-  Recipe bare;
-  bare.body = recipe.body;
-  const Box box = ImplicitField(bare).bounds();
-  if (box.empty()) throw InputError("body.iso_value: no point of the body reaches it; lower it");
-  return box.diagonal();
-}
-
-// Reads a recipe whose layers can be scaled to another body.
-Recipe read_details(const std::string& file) {
-  Recipe other = load_recipe(file);
-  if (!other.body) {
-    throw InputError(file +
-                     ": body: absent, so nobody knows how large its layers are; lay them on a body with "
-                     "synth --base");
-  }
-  if (other.layers.empty()) throw InputError(file + ": layers: none; give a recipe with details");
-  return other;
-}
 
 void declare_micro_options(Program& program, DetailArguments& arguments) {
   Option micro =
@@ -101,7 +78,7 @@ void check_detail_inputs(const DetailArguments& arguments) {
   if (!arguments.transfer.empty()) read_details(arguments.transfer);
   if (!arguments.micro.empty() && arguments.micro != "auto") {
     Recipe unused;
-    add_micro_layers(arguments, unused);
+    add_micro_layers(arguments.micro, arguments.mm_per_px, arguments.micro_height_mm, unused);
   }
 }
 
@@ -115,57 +92,6 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
       add_searched_details(target, options, arguments.generations, log, evaluator.get(), progress, recipe);
   program.say(fmt::format("details: {} candidates {}", result.optimization.evaluations, chosen.words));
   return result;
-}
-
-void transfer_details(const Program& program, const std::string& file, Recipe& recipe) {
-  const Recipe other = read_details(file);
-  const double ratio = size_of(recipe) / size_of(other);
-  for (const Layer& layer : other.layers) recipe.layers.push_back(rescaled(layer, ratio));
-  program.say(file + ": " + std::to_string(other.layers.size()) + " layers, lengths times " +
-              fmt::format("{:.4g}", ratio));
-}
-
-void add_micro_layers(const DetailArguments& arguments, Recipe& recipe) {
-  Recipe rock = load_recipe(arguments.micro);
-  const double mm = recipe.length_unit == "km" ? 1e-6 : 1e-3;
-  const GaborLayer* first = nullptr;
-  for (const Layer& layer : rock.layers) {
-    const auto* gabor = std::get_if<GaborLayer>(&layer);
-    if (gabor == nullptr || !(gabor->height_rms > 0.0)) continue;
-    if (first == nullptr) first = gabor;
-  }
-  if (first == nullptr) {
-    throw InputError(arguments.micro +
-                     ": layers: none is a Gabor layer with a height; give a recipe of fit_gabor");
-  }
-  if (rock.length_unit == "px" && !(arguments.mm_per_px > 0.0 && arguments.micro_height_mm > 0.0)) {
-    throw InputError(arguments.micro + ": lengths are pixels; give --mm-per-px and --micro-height");
-  }
-  const double unit = rock.length_unit == recipe.length_unit ? 1.0 : rock.length_unit == "km" ? 1e3 : 1e-3;
-  const double height =
-      arguments.micro_height_mm > 0.0 ? mm * arguments.micro_height_mm / first->height_rms : unit;
-  for (const Layer& layer : rock.layers) {
-    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) {
-      GaborLayer micro = *gabor;
-      micro.pixel_size = arguments.mm_per_px > 0.0 ? mm * arguments.mm_per_px : unit * gabor->pixel_size;
-      micro.height_rms *= height;
-      recipe.layers.push_back(micro);
-    }
-  }
-}
-
-std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, const Progress& progress,
-                                 Recipe& recipe) {
-  ResidualTextureOptions options;
-  options.seed = seed;
-  const ResidualTexture texture =
-      fit_residual_texture(target, in_target_frame(target, *recipe.body), options, progress);
-  GaborLayer layer = texture.layer;
-  layer.pixel_size = round_to_seven_digits(target.diagonal * layer.pixel_size);
-  layer.height_rms = round_to_seven_digits(target.diagonal * layer.height_rms);
-  recipe.layers.push_back(layer);
-  return fmt::format("{} lobes from {} patches, height {:.3g} {} rms", layer.lobes.size(), texture.patches,
-                     layer.height_rms, recipe.length_unit);
 }
 
 std::vector<std::filesystem::path> variation_files(const std::filesystem::path& fit, int count) {

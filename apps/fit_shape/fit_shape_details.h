@@ -36,17 +36,6 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
                                 const DetailArguments& arguments, EvaluationLog& log,
                                 const Progress& progress, Recipe& recipe);
 
-// Adds the layers of another recipe, scaled by the ratio of the two bodies' bounding-box diagonals.
-void transfer_details(const Program& program, const std::string& file, Recipe& recipe);
-
-// Adds the Gabor layers of --micro RECIPE to the recipe, as its finest detail.
-void add_micro_layers(const DetailArguments& arguments, Recipe& recipe);
-
-// Adds the layer of --micro auto: Gabor noise like the heights that the base leaves of the target. Returns a
-// sentence about the layer.
-std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, const Progress& progress,
-                                 Recipe& recipe);
-
 // FIT.json becomes FIT_variation_K.json, and FIT.astro becomes FIT_variation_K.astro, K from 1. Throws
 // InputError for the first that cannot be written.
 std::vector<std::filesystem::path> variation_files(const std::filesystem::path& fit, int count);

@@ -54,6 +54,10 @@ def _given(**arguments: Any) -> list[tuple[str, str]]:
     )
 
 
+def _name(file: Optional[PathLike]) -> Optional[str]:
+    return None if file is None else os.fspath(file)
+
+
 _KERNELS = ("gaussian", "metaball", "soft_object", "wyvill", "cauchy")
 _OPTIMIZERS = ("pso", "crs2", "isres", "esch", "sbplx", "cmaes")
 
@@ -71,9 +75,16 @@ def fit_shape(
     population: Optional[int] = None,
     generations: Optional[int] = None,
     base_only: bool = False,
+    details: Optional[PathLike] = None,
+    micro: Optional[PathLike] = None,
+    mm_per_px: Optional[float] = None,
+    micro_height: Optional[float] = None,
+    device: Optional[str] = None,
+    time_limit: Optional[float] = None,
     unit: Optional[str] = None,
     seed: Optional[int] = None,
     checkpoint: Optional[PathLike] = None,
+    report: Optional[PathLike] = None,
     threads: int = 0,
     progress: Progress = None,
 ) -> ShapeFit:
@@ -100,12 +111,26 @@ def fit_shape(
         Of the search for details: default 20 and 100.
     base_only
         Metaballs alone, without a search for details.
+    details
+        No search: the layers of this recipe's file, scaled by the ratio of the two bodies' sizes.
+    micro
+        The finest detail: the file of a recipe of ``fit_gabor``, whose layers are added; or "auto": instead of the
+        search, a Gabor layer learnt from what the metaballs leave of the mesh.
+    mm_per_px, micro_height
+        Size of a pixel of the photo of `micro`, and root mean square height of its first layer, both in mm.
+    device
+        What computes the search: "auto" (default; the GPU where there is one), "cpu" or "cuda".
+    time_limit
+        Seconds after which the best so far is returned, measured figures included; default 0, none. The result then
+        depends on the machine.
     unit
         The unit of the vertices, "km" (default) or "m".
     seed
         0 to 2**53 - 1; default 1.
     checkpoint
         Keep the progress in this file; where it exists, go on from there.
+    report
+        A folder for a page, index.html, with target and fit to turn, and pictures of both.
     progress
         Called with the share done of a stage and a few words. Returning False ends the fit with its best so far.
 
@@ -128,7 +153,13 @@ def fit_shape(
     given = _given(
         spheres=spheres, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
         population=population, generations=generations, base_only=base_only, unit=unit, seed=seed,
+        details=_name(details), micro=_name(micro), mm_per_px=mm_per_px, micro_height=micro_height, device=device,
+        time_limit=time_limit,
     )  # fmt: skip
+    if details is not None and (base_only or generations is not None):
+        raise ValueError("details: there is no search then; leave out base_only and generations")
+    if micro is None and (mm_per_px is not None or micro_height is not None):
+        raise ValueError("micro: is missing; mm_per_px and micro_height are of its layers")
     if kernel not in (None, "gaussian") and subtract:
         raise ValueError("subtract: only Gaussian metaballs may be subtractive; leave it out, or kernel")
     json, figures = _estimation.fit_shape(
@@ -144,8 +175,15 @@ def fit_shape(
         20 if population is None else _arrays.integer(population, "population", 1, 10000),
         100 if generations is None else _arrays.integer(generations, "generations", 1, 100000),
         bool(base_only),
+        _name(details) or "",
+        _name(micro) or "",
+        0.0 if mm_per_px is None else _arrays.number(mm_per_px, "mm_per_px", 1e-12, 1e12),
+        0.0 if micro_height is None else _arrays.number(micro_height, "micro_height", 1e-12, 1e12),
+        _arrays.choice(device or "auto", "device", ("auto", "cpu", "cuda")),
+        0.0 if time_limit is None else _arrays.number(time_limit, "time_limit", 0.0, 1e9),
         _arrays.choice(unit or "km", "unit", ("km", "m")),
-        "" if checkpoint is None else os.fspath(checkpoint),
+        _name(checkpoint) or "",
+        _name(report) or "",
         given,
         1 if seed is None else _options.seed(seed),
         _options.threads(threads),
@@ -183,6 +221,8 @@ def _luma(planes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 def fit_texture(
     image: Union[PathLike, npt.ArrayLike],
     *,
+    model: Optional[str] = None,
+    output: Optional[PathLike] = None,
     channels: Optional[str] = None,
     detrend: Optional[int] = None,
     detrend_by: Optional[str] = None,
@@ -194,17 +234,25 @@ def fit_texture(
     solver: Optional[str] = None,
     penalty: Optional[float] = None,
     gap: Optional[float] = None,
+    max_memory: Optional[float] = None,
+    report: Optional[PathLike] = None,
     seed: Optional[int] = None,
     threads: int = 0,
     progress: Progress = None,
 ) -> TextureFit:
-    """Fit layers of Gabor noise to a photo of rock or to a height map, as the program ``fit_gabor`` does.
+    """Fit layers of noise to a photo of rock or to a height map, as the program ``fit_gabor`` does.
 
     Parameters
     ----------
     image
         The name of a PNG, JPEG or TIFF file, or (height, width) or (height, width, 3) uint8, uint16 (full scale
         becomes 1) or floats, at least 32 x 32. The recipe of a file has the bytes that the program writes.
+    model
+        "gabor" (default: the photo's spectrum in lobes), "exemplar" (the photo itself, tiled and blended) or "auto"
+        (the one whose texture is nearer to the photo). figures.model says which one it became.
+    output
+        Write the recipe to this file. Models other than "gabor" need it, since an exemplar layer names an image,
+        which becomes RECIPE_exemplar.png beside it.
     channels
         "luminance" (default; one layer) or "pca" (a layer for each principal axis of the colours).
     detrend, detrend_by
@@ -221,6 +269,10 @@ def fit_texture(
         "working-set" (default) or "fista".
     penalty, gap
         Sparsity penalty over the largest useful one (default 0.03), and the certified gap (default 1e-4).
+    max_memory
+        Refuse fits that are predicted to need more gigabytes; default: three quarters of the machine's.
+    report
+        A folder for a page, index.html, and pictures of photo and noise, spectra and lobes.
 
     Returns
     -------
@@ -240,13 +292,28 @@ def fit_texture(
             raise ValueError("channels: a grey image has no colours; leave it out")
         if not colors and len(planes) == 3:
             planes = _luma(planes)
+    kind = _arrays.choice(model or "gabor", "model", ("gabor", "exemplar", "auto"))
+    if kind != "gabor" and output is None:
+        raise ValueError("output: is missing; an exemplar layer names an image beside its recipe")
+    if kind != "gabor" and colors:
+        raise ValueError("model: an exemplar has no colours yet; leave out channels")
+    if kind == "exemplar" and report is not None:
+        raise ValueError('model: "exemplar" fits no lobes that a report could show; use "auto"')
+    if max_memory is None:
+        most_bytes = 0.75 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    else:
+        most_bytes = 1e9 * _arrays.number(max_memory, "max_memory", 1e-9, 1e9)
     given = _given(
-        channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
+        model=model, max_memory=max_memory, channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
         height_rms=height_rms, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty, gap=gap, seed=seed,
     )  # fmt: skip
     json, figures = _estimation.fit_texture(
         file or "image",
         planes,
+        kind,
+        _name(output) or "",
+        _name(report) or "",
+        most_bytes,
         colors,
         0 if detrend is None else _arrays.integer(detrend, "detrend", 0, 6),
         _arrays.choice(detrend_by or "subtraction", "detrend_by", ("subtraction", "division")) == "division",
@@ -263,6 +330,8 @@ def fit_texture(
         _options.threads(threads),
         progress,
     )
+    if not json and output is not None:
+        return TextureFit(Recipe.read(output), records(figures))
     return TextureFit(Recipe(records(json)), records(figures))
 
 

@@ -10,38 +10,35 @@
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cuda/candidates_on_gpu.h"
+#include "cuda/device.h"
 #include "descriptor/classification/class_folders.h"
 #include "descriptor/classification/classifier_file.h"
 #include "descriptor/classification/feature_table.h"
-#include "estimation/gabor/photo_fit.h"
+#include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
+#include "numerics/files/output_folder.h"
 #include "numerics/version/code_version.h"
 #include "python/bindings/arrays.h"
+#include "python/bindings/fit_bindings.h"
 #include "python/bindings/job.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
-#include "tasks/estimation/photo_recipe.h"
+#include "tasks/estimation/detail_layers.h"
+#include "tasks/estimation/fit_time_limit.h"
 #include "tasks/estimation/shape_recipe.h"
 
 namespace astrolith::python {
-namespace {
-
-using Options = std::vector<std::pair<std::string, std::string>>;
-
-// A recipe, and the figures of the fit as JSON.
-struct Fitted {
-  std::string json, figures;
-};
 
 std::string tool_named(const std::string& program) { return program + " " + kCodeVersion.text(); }
 
-// The provenance of a fit to a file, or to arrays, which have no name.
 Provenance provenance_of(const std::string& program, const std::string& file, const Options& options) {
   Provenance provenance;
   provenance.tool = tool_named(program);
@@ -53,12 +50,23 @@ Provenance provenance_of(const std::string& program, const std::string& file, co
   return provenance;
 }
 
+namespace {
+
+// Layers that are added to the metaballs.
+struct DetailArguments {
+  bool base_only = false;
+  int generations = 100;
+  std::string transfer, micro;  // as fit_shape --details and --micro
+  double mm_per_px = 0.0, micro_height = 0.0;
+  std::string device;  // "auto", "cpu" or "cuda"
+};
+
 struct ShapeArguments {
   std::string name, file;  // `file` is empty for arrays
   ShapeFitOptions fit;
-  bool base_only = false;
-  int generations = 100;
-  std::string unit, checkpoint;
+  DetailArguments details;
+  double time_limit = 0.0;  // seconds; 0 = none
+  std::string unit, checkpoint, report;
   Options options;
 };
 
@@ -70,13 +78,72 @@ std::string hash_of(const TriangleMesh& mesh) {
   return hash.hex();
 }
 
-Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, JobState& state) {
+// The GPU's evaluator, or null for the CPU.
+std::unique_ptr<CandidateEvaluator> evaluator_on(const std::string& device) {
+  const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
+  if (status.usable) return candidates_on_gpu();
+  if (device == "cuda") throw InputError("device: no cuda: " + status.reason + "; leave it out for the CPU");
+  return {};
+}
+
+// Inputs and results that cannot be used are refused before the work.
+void check_files(const ShapeArguments& a) {
+  if (!a.details.transfer.empty()) read_details(a.details.transfer);
+  if (!a.details.micro.empty() && a.details.micro != "auto") {
+    Recipe unused;
+    add_micro_layers(a.details.micro, a.details.mm_per_px, a.details.micro_height, unused);
+  }
+  if (!a.report.empty()) require_folder_can_be_made(a.report);
+}
+
+// The images of layers that another recipe gave: their paths become relative to the current folder.
+void find_images_from_here(Recipe& recipe) {
+  for (Layer& any : recipe.layers) {
+    auto* layer = std::get_if<ExemplarLayer>(&any);
+    if (layer != nullptr && layer->pixels != nullptr) {
+      layer->image = std::filesystem::proximate(layer->pixels->file).generic_string();
+    }
+  }
+}
+
+// Adds the layers that the arguments ask for, with their figures.
+void add_details(const TargetBody& target, const ShapeArguments& a, FitCheckpoint& checkpoint,
+                 TimeLimit& limit, JobState& state, Recipe& recipe, nlohmann::ordered_json& figures) {
+  const DetailArguments& wanted = a.details;
+  if (wanted.micro == "auto") {
+    add_residual_texture(target, a.fit.seed, limit.guard(state.progress("micro"), "micro"), recipe);
+  } else if (!wanted.transfer.empty()) {
+    transfer_details(read_details(wanted.transfer), recipe);
+    find_images_from_here(recipe);
+  } else if (!wanted.base_only) {
+    const std::unique_ptr<CandidateEvaluator> evaluator = evaluator_on(wanted.device);
+    const DetailsFitResult found =
+        add_searched_details(target, a.fit, wanted.generations, checkpoint.log(), evaluator.get(),
+                             checkpoint.guard(limit.guard(state.progress("details"), "details")), recipe);
+    checkpoint.save();
+    figures = details_json(found);
+  }
+  if (!wanted.micro.empty() && wanted.micro != "auto") {
+    add_micro_layers(wanted.micro, wanted.mm_per_px, wanted.micro_height, recipe);
+  }
+}
+
+// Ends the preparation of the mesh when the time is over or Ctrl-C was pressed.
+Progress preparation(const TimeLimit& limit, const JobState& state) {
+  constexpr double kReadShare = 0.2;
+  return [&state, timed = limit.preparation(kReadShare)](double fraction, std::string_view words) {
+    if (state.stopped()) throw WorkError("stopped while the mesh was checked; nothing was fitted yet");
+    return report(timed, fraction, words);
+  };
+}
+
+Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& limit, JobState& state) {
   const std::string array_hash = arguments.file.empty() ? hash_of(mesh) : "";
-  const TargetBody target = prepare_target(std::move(mesh), arguments.name);
+  const TargetBody target = prepare_target(std::move(mesh), arguments.name, preparation(limit, state));
   Provenance provenance = provenance_of("fit_shape", arguments.file, arguments.options);
   FitCheckpoint checkpoint(arguments.checkpoint, {provenance.tool, kCodeVersion.changes,
                                                   provenance.input_sha256 + array_hash, arguments.options});
-  const auto stage = [&](const std::string& name) { return state.progress(name); };
+  const auto stage = [&](const std::string& name) { return limit.guard(state.progress(name), name); };
   const auto stopped = [&] { return state.stopped(); };
   ShapeFitResult fit = fit_base(target, arguments.fit, checkpoint, stage, stopped);
   if (fit.interrupted && stopped()) measure_fit(target, arguments.fit, fit);
@@ -86,17 +153,18 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, JobState& s
   recipe.provenance = std::move(provenance);
   recipe.body = fit.body;
   nlohmann::ordered_json details;
-  if (!arguments.base_only && !stopped()) {
-    const DetailsFitResult found =
-        add_searched_details(target, arguments.fit, arguments.generations, checkpoint.log(), nullptr,
-                             checkpoint.guard(stage("details")), recipe);
-    checkpoint.save();
-    details = details_json(found);
+  const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
+  if (with_details && !stopped() && limit.allows_more()) {
+    add_details(target, arguments, checkpoint, limit, state, recipe, details);
     measure_recipe(target, recipe, arguments.fit, fit);
   }
   note_achieved(fit, recipe);
+  if (!arguments.report.empty() && !stopped()) {
+    const std::filesystem::path file = arguments.name;
+    write_fit_report(target, fit, file.filename().string(), arguments.report);
+  }
   nlohmann::ordered_json figures = fit_figures(fit);
-  figures["stopped_early"] = stopped();
+  figures["stopped_early"] = stopped() || limit.reached();
   figures["diagonal"] = target.diagonal;
   figures["remarks"] = target.remarks;
   if (!details.is_null()) figures["details"] = details;
@@ -107,9 +175,13 @@ std::pair<std::string, std::string> fit_shape_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, double subtract,
     std::int64_t points, double tolerance, const std::string& optimizer, int population, int generations,
-    bool base_only, const std::string& unit, const std::string& checkpoint, const Options& options,
-    std::uint64_t seed, int threads, nb::object progress) {
-  ShapeArguments arguments{name, vertices ? "" : name, {}, base_only, generations, unit, checkpoint, options};
+    bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
+    double micro_height, const std::string& device, double time_limit, const std::string& unit,
+    const std::string& checkpoint, const std::string& report, const Options& options, std::uint64_t seed,
+    int threads, nb::object progress) {
+  const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device};
+  ShapeArguments arguments{name, vertices ? "" : name, {},     layers, time_limit,
+                           unit, checkpoint,           report, options};
   arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
                                        [&](Kernel k) { return kernel_word(k) == kernel; });
   arguments.fit.spheres = spheres;
@@ -123,55 +195,10 @@ std::pair<std::string, std::string> fit_shape_in_job(
   if (vertices && faces) mesh = mesh_of(*vertices, *faces, {});
   const Fitted fitted =
       run_job(std::move(progress), threads, [arguments, mesh = std::move(mesh)](JobState& state) {
-        return fit_shape(mesh ? *mesh : read_mesh(arguments.name), arguments, state);
+        check_files(arguments);
+        TimeLimit limit(arguments.time_limit, "time_limit");
+        return fit_shape(mesh ? *mesh : read_mesh(arguments.name), arguments, limit, state);
       });
-  return {fitted.json, fitted.figures};
-}
-
-using Planes = nb::ndarray<const double, nb::shape<-1, -1, -1>, nb::c_contig, nb::device::cpu>;
-
-std::vector<GreyImage> planes_of(const Planes& image) {
-  std::vector<GreyImage> planes;
-  for (std::size_t k = 0; k < image.shape(0); ++k) {
-    GreyImage plane{static_cast<int>(image.shape(2)), static_cast<int>(image.shape(1)), {}};
-    const std::size_t pixels = image.shape(1) * image.shape(2);
-    plane.values.assign(image.data() + k * pixels, image.data() + (k + 1) * pixels);
-    planes.push_back(std::move(plane));
-  }
-  return planes;
-}
-
-std::pair<std::string, std::string> fit_texture(const std::string& name, const std::optional<Planes>& image,
-                                                bool colors, int detrend, bool by_division, int lobes,
-                                                double mm_per_px, const std::string& unit, double height_rms,
-                                                bool periodogram, bool fista, double penalty, double gap,
-                                                const Options& given, std::uint64_t seed, int threads,
-                                                nb::object progress) {
-  PhotoFitOptions options;
-  options.colors = colors;
-  options.detrend_degree = detrend;
-  options.trend = by_division ? TrendModel::kMultiplied : TrendModel::kAdded;
-  options.fit.target = periodogram ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
-  options.fit.solver = fista ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
-  options.fit.max_lobes = lobes;
-  options.fit.penalty_ratio = penalty;
-  options.fit.relative_gap = gap;
-  options.seed = seed;
-  std::optional<std::vector<GreyImage>> planes;
-  if (image) planes = planes_of(*image);
-  const std::string stem = image ? "" : std::filesystem::path(name).stem().string();
-  const Fitted fitted = run_job(std::move(progress), threads, [=](JobState& state) {
-    const Progress pursuit = state.progress("pursuit");
-    const PhotoFit photo =
-        planes ? fit_planes(*planes, name, options, pursuit) : fit_photo(name, options, pursuit);
-    Recipe recipe = photo_recipe(photo, {stem, mm_per_px, unit, height_rms, seed});
-    Provenance provenance = provenance_of("fit_gabor", planes ? "" : name, given);
-    provenance.achieved = std::move(recipe.provenance.achieved);
-    recipe.provenance = std::move(provenance);
-    nlohmann::ordered_json figures = photo_figures(photo);
-    figures["remarks"] = photo.remarks;
-    return Fitted{recipe_to_json(recipe), figures.dump()};
-  });
   return {fitted.json, fitted.figures};
 }
 
@@ -213,15 +240,13 @@ NB_MODULE(_estimation, module) {
   using namespace astrolith::python;
   namespace nb = nanobind;
   declare_common(module);
+  declare_texture_fit(module);
   module.def("fit_shape", &fit_shape_in_job, nb::arg("name"), nb::arg("vertices").noconvert().none(),
              nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("subtract"),
              nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"), nb::arg("population"),
-             nb::arg("generations"), nb::arg("base_only"), nb::arg("unit"), nb::arg("checkpoint"),
-             nb::arg("options"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
-  module.def("fit_texture", &fit_texture, nb::arg("name"), nb::arg("image").noconvert().none(),
-             nb::arg("colors"), nb::arg("detrend"), nb::arg("by_division"), nb::arg("lobes"),
-             nb::arg("mm_per_px"), nb::arg("unit"), nb::arg("height_rms"), nb::arg("periodogram"),
-             nb::arg("fista"), nb::arg("penalty"), nb::arg("gap"), nb::arg("options"), nb::arg("seed"),
+             nb::arg("generations"), nb::arg("base_only"), nb::arg("details"), nb::arg("micro"),
+             nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"), nb::arg("time_limit"),
+             nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"), nb::arg("options"), nb::arg("seed"),
              nb::arg("threads"), nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),

@@ -35,6 +35,41 @@ def test_a_fit_of_a_file_has_the_bytes_of_fit_shape(peanut, program, tmp_path, b
     assert 0 < fit.figures.mean_distance < 0.02
 
 
+@pytest.mark.parametrize("way", ["details", "auto", "photo"])
+def test_details_that_are_not_searched_have_the_bytes_of_fit_shape(peanut, example, program, tmp_path, way):
+    mesh = peanut
+    if way == "auto":  # learns from what the metaballs leave
+        hills = {"type": "simplex", "amplitude": 0.06, "frequency": 3, "octaves": 4}
+        body = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[-0.8, 0, 0, 1], [0.8, 0, 0, 0.9]]}
+        rough = {"format_version": 1, "length_unit": "km", "body": body, "layers": [hills]}
+        mesh = astrolith.mesh(rough, resolution=40)
+    astrolith.write_mesh(mesh, tmp_path / "peanut.ply")
+    options = {
+        "details": {"details": example("steins")},
+        "auto": {"micro": "auto"},
+        "photo": {"micro": example("rubble_pile"), "mm_per_px": 3e7, "micro_height": 6.5e4, "base_only": True},
+    }[way]
+    words = []
+    for name, value in options.items():
+        words += [f"--{name.replace('_', '-')}"] + ([] if value is True else [value])
+    fast = {"spheres": 12, "population": 4, "seed": 3}
+    program("fit_shape", tmp_path / "peanut.ply", "-o", "program.json", "--spheres", "12", "--population", "4",
+            "--seed", "3", "--device", "cpu", *words)  # fmt: skip
+    fit = astrolith.fit_shape(tmp_path / "peanut.ply", device="cpu", **fast, **options)
+    fit.recipe.write(tmp_path / "package.json")
+    assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
+    assert fit.recipe.layers
+
+
+def test_a_time_limit_returns_the_best_so_far_and_a_report_shows_it(peanut, tmp_path):
+    # Without the limit the search would take hours.
+    fit = astrolith.fit_shape(peanut, spheres=12, generations=100000, time_limit=6.0, report=tmp_path / "report")
+    assert fit.figures.stopped_early and fit.figures.mean_distance < 0.02
+    assert {"index.html", "convergence.png"} <= {file.name for file in (tmp_path / "report").iterdir()}
+    with pytest.raises(ValueError, match="^time_limit: reading and checking the mesh"):
+        astrolith.fit_shape(peanut, spheres=12, time_limit=1e-6)
+
+
 def test_arrays_give_the_body_that_their_file_gives(peanut, tmp_path):
     astrolith.write_mesh(peanut, tmp_path / "peanut.ply")
     of_file = astrolith.fit_shape(str(tmp_path / "peanut.ply"), base_only=True, **FAST)
@@ -76,6 +111,37 @@ def test_a_texture_of_a_photo_has_the_recipe_of_fit_gabor(example, program, tmp_
     assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
     of_array = astrolith.fit_texture(grey, lobes=6, seed=2)
     assert of_array.recipe.layers[0].lobes == fit.recipe.layers[0].lobes
+
+
+@pytest.mark.parametrize("model", ["exemplar", "auto"])
+def test_an_exemplar_of_a_photo_has_the_bytes_of_fit_gabor(program, tmp_path, model):
+    rows, columns = np.indices((64, 64))
+    grey = (120 + 90 * ((rows // 8 + columns // 8) % 2) + (rows * 7 + columns * 3) % 23).astype(np.uint8)
+    (tmp_path / "tiles.png").write_bytes(png(grey))
+    (tmp_path / "package").mkdir()
+    options = {"model": model, "mm_per_px": 2.0, "height_rms": 0.01, "lobes": 6, "seed": 2}
+    program("fit_gabor", "tiles.png", "-o", "tile.json", "--model", model, "--mm-per-px", "2.0", "--height-rms",
+            "0.01", "--lobes", "6", "--seed", "2")  # fmt: skip
+    fit = astrolith.fit_texture(tmp_path / "tiles.png", output=tmp_path / "package" / "tile.json", **options)
+    for name in ("tile.json", "tile_exemplar.png"):
+        wanted, written = tmp_path / name, tmp_path / "package" / name
+        assert wanted.exists() == written.exists()
+        assert not wanted.exists() or written.read_bytes() == wanted.read_bytes()
+    assert fit.figures.model == "exemplar" and set(fit.figures.variants) == {"periodic", "matched", "mirrored"}
+    assert ("gabor" in fit.figures) == (model == "auto")
+    assert astrolith.texture(fit.recipe, 16, 16, content="height").values.shape == (16, 16)
+
+
+def test_a_photo_beyond_the_memory_is_refused(tmp_path):
+    grey = (np.arange(64 * 64).reshape(64, 64) * 37 % 251).astype(np.uint8)
+    with pytest.raises(ValueError, match="^image: fitting 64 x 64 pixels needs .* raise max_memory$"):
+        astrolith.fit_texture(grey, max_memory=1e-6)
+    with pytest.raises(ValueError, match="^output: is missing"):
+        astrolith.fit_texture(grey, model="auto")
+    fit = astrolith.fit_texture(grey, lobes=4, report=tmp_path / "report", output=tmp_path / "rock.json")
+    assert {"index.html", "report.png"} <= {file.name for file in (tmp_path / "report").iterdir()}
+    assert astrolith.Recipe.read(tmp_path / "rock.json") == fit.recipe
+    assert 0.5 < fit.figures.variance_ratio_synthesized < 1.5
 
 
 def png(grey):

@@ -1,4 +1,4 @@
-#include "apps/fit_gabor/fit_gabor_outputs.h"
+#include "tasks/estimation/photo_outputs.h"
 
 #include <fmt/format.h>
 
@@ -23,12 +23,11 @@ double variance_of(const std::vector<float>& values) {
 }
 
 // A layer at unit variance and the exemplar's size: for pictures, and to measure what synthesis keeps.
-std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, int stream,
-                                   const Program& program) {
+std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, std::uint64_t seed,
+                                   int stream, const Progress& progress) {
   layer.height_rms = 1.0;
   layer.pixel_size = 1.0;
-  return synthesize_texture(layer, exemplar.width, exemplar.height, {program.seed, stream},
-                            program.progress("synthesis"));
+  return synthesize_texture(layer, exemplar.width, exemplar.height, {seed, stream}, progress);
 }
 
 // The channels put together again: mean + sum of axis * gain * (values - center), cut to full scale.
@@ -57,11 +56,11 @@ ReportPicture color_picture(const PhotoFit& photo, const std::vector<ChannelValu
 }  // namespace
 
 std::vector<std::vector<float>> synthesize_channels(const PhotoFit& photo, const Recipe& recipe,
-                                                    const Program& program) {
+                                                    const Progress& progress) {
   std::vector<std::vector<float>> syntheses;
   for (std::size_t k = 0; k < photo.channels.size(); ++k) {
     syntheses.push_back(synthesize_like(photo.channels[k].exemplar, std::get<GaborLayer>(recipe.layers[k]),
-                                        static_cast<int>(k), program));
+                                        recipe.seed, static_cast<int>(k), progress));
   }
   return syntheses;
 }

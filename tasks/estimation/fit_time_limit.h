@@ -1,4 +1,4 @@
-// fit_shape's --time-limit: each stage of a fit gets a share of the time.
+// The time limit of a fit of a shape: each stage gets a share of the time.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,9 @@ namespace astrolith {
 // Asks a stage to stop when its share of the time, counted from the start of the program's work, is over.
 class TimeLimit {
  public:
-  explicit TimeLimit(double seconds) : seconds_(seconds) {}
+  // `option` names the limit in messages. 0 seconds: no limit.
+  explicit TimeLimit(double seconds, std::string option = "--time-limit")
+      : seconds_(seconds), option_(std::move(option)) {}
 
   // For the preparation of the mesh, without which there is no result: throws InputError once the time is
   // over. `done` is the share of the preparation that is over when the progress begins, and it ends at 1.
@@ -28,9 +30,9 @@ class TimeLimit {
       const double share = done + (1.0 - done) * fraction, now = spent();
       if (now <= seconds_) return true;
       throw InputError(
-          fmt::format("--time-limit: reading and checking the mesh is {:.0f} % done after {:.2g} s "
+          fmt::format("{}: reading and checking the mesh is {:.0f} % done after {:.2g} s "
                       "and there is nothing to write yet; allow some {:.2g} s, or more for a fit",
-                      100.0 * share, now, now / share));
+                      option_, 100.0 * share, now, now / share));
     };
   }
 
@@ -61,6 +63,7 @@ class TimeLimit {
   }
 
   double seconds_;
+  std::string option_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::atomic<bool> reached_{false};
 };

@@ -1,18 +1,18 @@
-// The files that fit_gabor writes beside the recipe.
+// The textures of a photo's lobes, and the files that a fit writes beside the recipe.
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
-#include "apps/program.h"
 #include "estimation/gabor/photo_fit.h"
+#include "numerics/progress.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {
 
-// The recipe's layers at unit variance and the exemplar's size, one for each channel.
+// The recipe's layers at unit variance and the exemplar's size, one for each channel, of the recipe's seed.
 std::vector<std::vector<float>> synthesize_channels(const PhotoFit& photo, const Recipe& recipe,
-                                                    const Program& program);
+                                                    const Progress& progress);
 
 // Variance that the syntheses have, over that of the photo's pixels, all channels together.
 double synthesized_variance_ratio(const PhotoFit& photo, const std::vector<std::vector<float>>& syntheses);
