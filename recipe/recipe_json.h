@@ -49,7 +49,4 @@ void write_recipe(const Recipe& recipe, const std::filesystem::path& file);
 // 200 spheres take about 12 kB. A fit must round before it measures the errors that the recipe states.
 double round_to_seven_digits(double x);
 
-// x rounded to so many significant digits, 1 to 17.
-double round_to_digits(double x, int digits);
-
 }  // namespace astrolith

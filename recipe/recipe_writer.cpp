@@ -111,14 +111,12 @@ void write_recipe(const Recipe& recipe, const std::filesystem::path& file) {
   output.commit();
 }
 
-double round_to_digits(double x, int digits) {
+double round_to_seven_digits(double x) {
   char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::scientific, digits - 1);
+  const auto end = std::to_chars(text, text + sizeof text, x, std::chars_format::scientific, 6);
   double rounded = x;
   std::from_chars(text, end.ptr, rounded);
   return rounded;
 }
-
-double round_to_seven_digits(double x) { return round_to_digits(x, 7); }
 
 }  // namespace astrolith

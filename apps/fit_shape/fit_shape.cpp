@@ -27,16 +27,18 @@
 namespace astrolith {
 namespace {
 
-// The recipe of a fitted body, without layers and without the figures that the fit achieved.
+// The recipe of a fitted body, without layers and without the figures that the fit achieved. With --bytes it
+// has no provenance either.
 Recipe recipe_of(const Program& program, const FitArguments& arguments, const ShapeFitResult& fit) {
   Recipe recipe;
   recipe.length_unit = arguments.unit;
+  recipe.body = fit.body;
+  if (arguments.fit.bytes > 0) return recipe;
   recipe.seed = program.seed;
   recipe.provenance.tool = program.tool();
   recipe.provenance.input_name = std::filesystem::path(arguments.mesh).filename().string();
   recipe.provenance.input_sha256 = sha256_of_file(arguments.mesh);
   recipe.provenance.options = program.given_options();
-  recipe.body = fit.body;
   return recipe;
 }
 
@@ -155,7 +157,7 @@ void run(Program& program, FitArguments& arguments) {
   }
   if (Program::interrupted()) return keep_best_so_far(program, arguments, checkpoint, target, fit, recipe);
   if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
-  note_achieved(fit, recipe);
+  if (arguments.fit.bytes == 0) note_achieved(fit, recipe);
   write_loaded_recipe(recipe, arguments.output);
   if (!arguments.report.empty()) {
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),

@@ -20,10 +20,18 @@ void declare_base_options(CommandLine& app, FitArguments& arguments) {
                  "memory a facet")
       .required()
       .placeholder("MESH");
-  app.add_option("-o,--output", arguments.output, "the recipe to write; with --packing-only a .csv")
+  app.add_option("-o,--output", arguments.output,
+                 "the recipe to write, as JSON or compact (.astro); with --packing-only a .csv")
       .required()
       .placeholder("RECIPE.json");
   app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs").check(in_range(1, 10000));
+  app.add_option(
+         "--bytes", arguments.fit.bytes,
+         "round the numbers of the metaballs so that the recipe of the bare body takes at most so many "
+         "bytes as a compact recipe (RECIPE.astro), for the least error; without --spheres the number of "
+         "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
+      .check(in_range(100, 1000000))
+      .default_text("");
   app.add_option("--kernel", arguments.kernel, "kernel of the metaballs")
       .check(one_of({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
   app.add_option("--subtract", arguments.fit.subtract,
@@ -95,6 +103,11 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
   declare_detail_options(program, arguments.details);
   declare_run_options(program.app, arguments);
   declare_packing_options(program.app, arguments);
+  Option bytes = program.app.option("--bytes");
+  bytes.needs(program.app.option("--base-only"));
+  for (const char* option : {"--packing-only", "--variations", "--micro"}) {
+    bytes.excludes(program.app.option(option));
+  }
 }
 
 void settle_fit_options(const Program& program, FitArguments& arguments) {
@@ -103,6 +116,10 @@ void settle_fit_options(const Program& program, FitArguments& arguments) {
   if (arguments.fit.kernel != Kernel::kGaussian && program.app.option("--subtract").count() > 0 &&
       arguments.fit.subtract > 0.0) {
     throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
+  }
+  arguments.fit.length_unit = arguments.unit;
+  if (arguments.fit.bytes > 0 && program.app.option("--spheres").count() == 0) {
+    arguments.fit.spheres = spheres_for_bytes(arguments.fit.bytes);
   }
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
 }

@@ -56,6 +56,14 @@ TEST_F(FitShape, WritesARecipeWithABody) {
   EXPECT_EQ(recipe.provenance.input_sha256, sha256_of_file(folder_ / "egg.obj"));
 }
 
+TEST_F(FitShape, WritesACompactRecipeOfAtMostTheBytes) {
+  const std::string compact = fit("egg.astro", {"--base-only", "--bytes", "140"});
+  EXPECT_LE(compact.size(), 140u);
+  EXPECT_EQ(compact.substr(0, 3), "AST");
+  const std::string text = fit("egg.json", {"--base-only", "--bytes", "140"});
+  EXPECT_EQ(recipe_to_json(read_recipe(folder_ / "egg.astro")), text);
+}
+
 TEST_F(FitShape, NoSphereTakesAwayWhereNoneMay) {
   fit("egg.json", {"--base-only", "--subtract", "0"});
   const Recipe recipe = read_recipe(folder_ / "egg.json");

@@ -185,14 +185,18 @@ void NormalEquations::store(std::size_t sphere, const SphereRow& row) {
   }
 }
 
-bool NormalEquations::solve(double damping, Eigen::VectorXd& step) {
+Eigen::SparseMatrix<double> NormalEquations::damped(double damping) const {
   Eigen::SparseMatrix<double> damped = hessian_;
   for (Eigen::Index column = 0; column < damped.cols(); ++column) {
     // The diagonal's place among the entries of its column: the block on the diagonal comes first.
     const Eigen::Index within = column + 1 < damped.cols() ? column % 4 : 0;
     damped.valuePtr()[damped.outerIndexPtr()[column] + within] += damping * diagonal_[column];
   }
-  factor_.factorize(damped);
+  return damped;
+}
+
+bool NormalEquations::solve(double damping, Eigen::VectorXd& step) {
+  factor_.factorize(damped(damping));
   if (factor_.info() != Eigen::Success) return false;
   step = factor_.solve(-gradient_);
   return factor_.info() == Eigen::Success && step.allFinite();

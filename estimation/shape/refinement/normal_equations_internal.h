@@ -23,6 +23,9 @@ class NormalEquations {
   // Sums the blocks as they were last evaluated. The evaluation must have included the derivatives.
   void assemble();
 
+  // The lower triangle of H + damping D.
+  Eigen::SparseMatrix<double> damped(double damping) const;
+
   // Solves (H + damping D) step = -g, where D is the diagonal of H. Returns false where the matrix is not
   // positive definite.
   bool solve(double damping, Eigen::VectorXd& step);
