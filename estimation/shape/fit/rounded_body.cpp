@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
+#include "estimation/shape/fit/fit_check.h"
 #include "estimation/shape/model/model_levels.h"
 #include "estimation/shape/refinement/rounding.h"
+#include "estimation/shape/target/surface_components.h"
 #include "numerics/errors.h"
 #include "recipe/compact/number_table.h"
 #include "recipe/recipe_json.h"
@@ -15,6 +18,9 @@ namespace {
 // Steps of 10 to 99 units of the last decimal, numbered from the coarsest down: 90 in a decade.
 constexpr int kStepsInDecade = 90;
 constexpr int kDecades = 8;
+
+constexpr std::int64_t kCheckSamples = 1000;  // of the distances of a checked mesh, which are not used
+
 NumberLattice lattice_number_from(int coarsest_decimals, int number) {
   return {coarsest_decimals + number / kStepsInDecade, 99 - number % kStepsInDecade};
 }
@@ -68,7 +74,7 @@ class BodyRounding {
         coarsest_decimals_(decimals_of(target.diagonal)) {}
 
   RoundedBody run() {
-    for (const double damping : {1e-3, 1e-2, 1e-1}) {
+    for (const double damping : {1e-3, 1e-2, 1e-1, 1.0}) {
       keep_better(within_bytes(ModelRounding(model_, points_, options_.refinement, damping)));
     }
     return std::move(best_);
@@ -109,12 +115,16 @@ class BodyRounding {
   }
 
   RoundedBody measured(MetaballBody body) const {
-    const double distance = mean_distance(model_of(in_target_frame(target_, body)), points_.on_surface);
-    return {std::move(body), distance};
+    const MetaballBody in_frame = in_target_frame(target_, body);
+    const FitCheck check = check_fit(target_, in_frame, options_.check_resolution, kCheckSamples, 1);
+    return {std::move(body), mean_distance(model_of(in_frame), points_.on_surface),
+            compare_components(target_, check.mesh).wrong()};
   }
 
   void keep_better(RoundedBody other) {
-    if (best_.body.spheres.empty() || other.mean_distance < best_.mean_distance) best_ = std::move(other);
+    const bool better = std::tie(other.wrong_components, other.mean_distance) <
+                        std::tie(best_.wrong_components, best_.mean_distance);
+    if (best_.body.spheres.empty() || better) best_ = std::move(other);
   }
 
   const TargetBody& target_;

@@ -90,7 +90,10 @@ MetaballBody rounded_body(const TargetBody& target, const MetaballModel& model, 
                           FitPoints points, const AdaptiveFitOptions& adaptive,
                           const ShapeFitOptions& options) {
   points.on_surface = samples.points;
-  RoundingOptions rounding{static_cast<std::size_t>(options.bytes), options.length_unit, {}};
+  RoundingOptions rounding;
+  rounding.bytes = static_cast<std::size_t>(options.bytes);
+  rounding.length_unit = options.length_unit;
+  rounding.check_resolution = options.check_resolution;
   rounding.refinement.loss_scale = adaptive.loss_scale;
   rounding.refinement.containment_weight = adaptive.containment_weight;
   rounding.refinement.keep_centers_inside = &target.tree;

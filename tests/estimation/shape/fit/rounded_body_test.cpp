@@ -36,6 +36,7 @@ struct RoughBall {
     refinement.max_iterations = 80;
     model = refine(model, points, refinement).model;
     options.length_unit = "m";
+    options.check_resolution = 32;
   }
   double distance_of(const MetaballModel& of) const {
     double sum = 0.0;
