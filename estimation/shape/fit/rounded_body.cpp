@@ -32,7 +32,7 @@ double on_lattice(const NumberLattice& lattice, double x) {
   return lattice_number(lattice, k).value_or(x);
 }
 
-double mean_distance(const MetaballModel& model, const std::vector<Vec3d>& points) {
+double mean_distance_of(const MetaballModel& model, const std::vector<Vec3d>& points) {
   double sum = 0.0;
   for (const double s : model_distances(model, points)) sum += std::abs(s);
   return sum / static_cast<double>(points.size());
@@ -117,7 +117,7 @@ class BodyRounding {
   RoundedBody measured(MetaballBody body) const {
     const MetaballBody in_frame = in_target_frame(target_, body);
     const FitCheck check = check_fit(target_, in_frame, options_.check_resolution, kCheckSamples, 1);
-    return {std::move(body), mean_distance(model_of(in_frame), points_.on_surface),
+    return {std::move(body), mean_distance_of(model_of(in_frame), points_.on_surface),
             compare_components(target_, check.mesh).wrong()};
   }
 
