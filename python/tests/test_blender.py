@@ -68,6 +68,25 @@ def test_the_addon_makes_a_body_and_renders_it(blender, tmp_path, by, painted):
     assert (tmp_path / "body.png").stat().st_size > 2000
 
 
+def test_the_finished_body_of_the_tutorial_is_rendered(blender, program, tmp_path):
+    """A ball with a layer's colour and relief fills the middle of the picture, and the sky about it stays dark."""
+    ball = {"format_version": 1, "length_unit": "km", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}}
+    astrolith.Recipe.from_dict(ball).write(tmp_path / "ball.json")
+    layer = astrolith.Recipe.from_dict({**RECIPE, "layers": [{**PAINT, "height_rms": 0.01}]})
+    layer.write(tmp_path / "r.json")
+    program("synth", "ball.json", "-o", "b.ply", "--resolution", "64")
+    program("synth", "r.json", "--texture", "64x64", "--texture-of", "height", "--tileable", "-o", "h.tif")
+    program("synth", "r.json", "--texture", "64x64", "--texture-of", "color", "--tileable", "--bits", "8", "-o", "c.png")
+    files = [tmp_path / name for name in ("b.ply", "c.png", "h.tif")]
+    made = blender("FINISHED", ADDON / "render_finished.py", *files, 0.256, tmp_path / "out.png", 60, 4)
+    np.testing.assert_allclose(made["size"], [2.0, 2.0, 2.0], rtol=1e-3)
+    assert made["smooth"]
+    bright = np.asarray(made["brightness"])
+    assert bright.shape == (72, 60)
+    assert bright[30:42, 20:30].mean() > 0.05 and bright[30:42, 20:30].std() > 0.01
+    assert bright[:3].max() < 0.1
+
+
 def test_wrong_recipes_and_missing_programs_are_said(blender, tmp_path):
     script = tmp_path / "wrong.py"
     script.write_text(f"""
