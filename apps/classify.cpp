@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/evaluation_json.h"
+#include "apps/output_names.h"
 #include "apps/program.h"
 #include "descriptor/classification/class_folders.h"
 #include "descriptor/classification/classifier_file.h"
@@ -102,6 +103,7 @@ FeatureTable features_with_failures(Program& program, const std::vector<fs::path
                                     const FeatureOptions& options) {
   FeatureTable table = features_of_files(files, options, program.progress("describe"));
   for (const std::string& failure : table.failures) program.report_failure(failure);
+  for (const std::string& remark : table.remarks) program.say(remark);
   program.summary["failed"] = table.failures;
   return table;
 }
@@ -124,7 +126,12 @@ void say_evaluation(const Program& program, const Evaluation& evaluation, int fo
   program.say(line);
 }
 
+void say_skipped(const Program& program, const fs::path& file) {
+  program.say(file.string() + ": skipped; its ending is not that of a mesh");
+}
+
 void train(Program& program, Arguments& a) {
+  require_extension(a.output, {".yml", ".yaml", ".json"});
   require_writable(a.output);
   const FeatureOptions features = chosen_features(a, program.seed);
   a.training.forest.seed = program.seed;
@@ -133,6 +140,7 @@ void train(Program& program, Arguments& a) {
     require_other_file(a.output, file);
     if (!program.summary_file.empty()) require_other_file(program.summary_file, file);
   }
+  for (const fs::path& file : files.skipped) say_skipped(program, file);
   const LabelledFeatures data = labelled(files, features_with_failures(program, files.files, features));
   require_shapes_of_each(data);
 
@@ -151,7 +159,7 @@ void train(Program& program, Arguments& a) {
   write_classifier(train_classifier(data, features, a.training), program.tool(), a.output);
 }
 
-std::vector<fs::path> all_meshes(const std::vector<fs::path>& paths) {
+std::vector<fs::path> all_meshes(const Program& program, const std::vector<fs::path>& paths) {
   std::vector<fs::path> meshes;
   std::error_code unused;  // what cannot be looked at is named when it is read
   for (const fs::path& path : paths) {
@@ -161,6 +169,7 @@ std::vector<fs::path> all_meshes(const std::vector<fs::path>& paths) {
     }
     const std::vector<fs::path> inside = meshes_in(path);
     if (inside.empty()) throw InputError(path.string() + ": holds no meshes; give a folder of meshes");
+    for (const fs::path& file : others_in(path)) say_skipped(program, file);
     meshes.insert(meshes.end(), inside.begin(), inside.end());
   }
   return meshes;
@@ -178,7 +187,7 @@ std::string prediction_line(const fs::path& mesh, const ShapeClassifier& classif
 
 void predict(Program& program, const Arguments& a) {
   const ShapeClassifier classifier = read_classifier(a.model);
-  const std::vector<fs::path> meshes = all_meshes(a.meshes);
+  const std::vector<fs::path> meshes = all_meshes(program, a.meshes);
   const FeatureTable table = features_with_failures(program, meshes, classifier.features);
   std::size_t predicted = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {

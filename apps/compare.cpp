@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
 #include "geometry/io/mesh_io.h"
@@ -50,7 +51,10 @@ void print(const nlohmann::ordered_json& result, const std::string& output) {
 }
 
 void run(Program& program, const Arguments& arguments) {
-  if (!arguments.output.empty()) require_writable(arguments.output);
+  if (!arguments.output.empty()) {
+    require_extension(arguments.output, {".json"});
+    require_writable(arguments.output);
+  }
   const TriangleMesh a = read_mesh(arguments.a), b = read_mesh(arguments.b);
   const DescriptionOptions options = arguments.options.with_seed(program.seed);
   nlohmann::ordered_json result{{"a", arguments.a},

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "apps/device_option.h"
+#include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
 #include "cuda/pair_count.h"
@@ -44,6 +45,7 @@ void summarize(Program& program, const ShapeDescription& shape, const std::strin
 }
 
 void run(Program& program, const Arguments& arguments) {
+  require_extension(arguments.output, {".npy"});
   require_writable(arguments.output);
   const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
   DescriptionOptions options = arguments.options.with_seed(program.seed);
@@ -58,7 +60,7 @@ void run(Program& program, const Arguments& arguments) {
   write_npy(shape.histogram.frequencies(), axes, arguments.output);
   summarize(program, shape, arguments.options.features);
   program.say(arguments.output + ": " + std::to_string(shape.points) + " points, " +
-              std::to_string(shape.histogram.pairs) + " pairs; " + chosen.words);
+              std::to_string(shape.histogram.pairs) + " pairs" + chosen.remark());
 }
 
 }  // namespace

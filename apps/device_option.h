@@ -12,9 +12,11 @@ namespace astrolith {
 // The device that computes.
 struct ChosenDevice {
   bool gpu = false;
-  std::string words;  // for the last line of the program: "computed on the CPU: no CUDA device"
+  std::string words;  // "computed on the CPU: no CUDA device"; empty where nobody asked
 
   explicit operator bool() const { return gpu; }
+  // The words as the end of a line of the program; empty where there are none.
+  std::string remark() const { return words.empty() ? "" : "; " + words; }
 };
 
 struct DeviceOption {
@@ -29,8 +31,9 @@ struct DeviceOption {
   }
 
   // Chooses the GPU where there is one, unless --device says cpu. Otherwise the CPU computes, and the words
-  // say why. A GPU that cannot be trusted is named in a line of its own. With "cuda", a GPU that is missing
-  // or cannot be trusted is an InputError. The summary states the device.
+  // say why to those who gave --device or --summary. A GPU that cannot be trusted is named in a line of its
+  // own. With "cuda", a GPU that is missing or cannot be trusted is an InputError. The summary states the
+  // device.
   ChosenDevice choose(Program& program) const {
     const DeviceStatus status = device == "cpu" ? DeviceStatus{} : probe_device();
     if (!status.usable && device == "cuda") {
@@ -40,7 +43,7 @@ struct DeviceOption {
     if (is_there && !status.usable) program.note(status.name + " is not used: " + status.reason);
     program.summary["device"] = status.usable ? status.name : "cpu";
     if (status.usable) return {true, "computed on " + status.name};
-    return on_cpu(status.reason);
+    return on_cpu(program, status.reason);
   }
 
   // Chooses the CPU for work that the GPU cannot do. `lacking` names the part that the GPU lacks in a few
@@ -51,11 +54,13 @@ struct DeviceOption {
     if (device == "cuda") throw InputError("--device cuda: " + words + "; leave it out for the CPU");
     const ChosenDevice chosen = choose(program);
     program.summary["device"] = "cpu";
-    return chosen.gpu ? on_cpu(words) : chosen;
+    return chosen.gpu ? on_cpu(program, words) : chosen;
   }
 
  private:
-  static ChosenDevice on_cpu(const std::string& why) {
+  static ChosenDevice on_cpu(const Program& program, const std::string& why) {
+    const bool asked = program.app.option("--device").count() > 0 || !program.summary_file.empty();
+    if (!asked) return {};
     return {false, "computed on the CPU" + (why.empty() ? "" : ": " + why)};
   }
 };

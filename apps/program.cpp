@@ -14,6 +14,8 @@
 #include <new>
 
 #include "apps/help_formatter.h"
+#include "apps/option_names.h"
+#include "apps/output_names.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
@@ -71,6 +73,31 @@ std::string option_not_finite(const CLI::App& app) {
     for (const std::string& text : option->results()) {
       if (!std::isfinite(std::strtod(text.c_str(), nullptr))) return option->get_lnames().front();
     }
+  }
+  return "";
+}
+
+// The program's long options without their dashes, and those of the command that was given.
+std::vector<std::string> long_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const std::string& name : long_names(*command)) names.push_back(name);
+  }
+  return names;
+}
+
+// The complaint about the first option that does not exist, with the one that was probably meant; empty where
+// all exist. CLI11 names neither, and complains first of what is missing because of the wrong name.
+std::string unknown_option(const CLI::App& app) {
+  for (const std::string& word : app.remaining(true)) {
+    const std::size_t dashes = word.find_first_not_of('-');
+    if (!word.starts_with('-') || dashes == std::string::npos) continue;
+    const std::string nearest = nearest_name(word.substr(dashes, word.find('=') - dashes), long_names(app));
+    return word + ": there is no such option" +
+           (nearest.empty() ? std::string() : "; did you mean --" + nearest + "?");
   }
   return "";
 }
@@ -148,7 +175,8 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     parser_->parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return parser_->exit(e);  // --help, --version
-    print_line(fmt::format("{}: {}; see {} --help", name_, e.what(), name_));
+    const std::string unknown = unknown_option(*parser_);
+    print_line(fmt::format("{}: {}; see {} --help", name_, unknown.empty() ? e.what() : unknown, name_));
     return 2;
   }
   if (const std::string wrong = option_not_finite(*parser_); !wrong.empty()) {
@@ -183,7 +211,10 @@ double Program::seconds() const {
 void Program::timed(const std::function<void()>& work) {
   require_distinct_files(*parser_);
   // A summary that cannot be written should not be found out after an hour's work.
-  if (!summary_file.empty()) require_writable(summary_file);
+  if (!summary_file.empty()) {
+    require_extension(summary_file, {".json"});
+    require_writable(summary_file);
+  }
   start_ = std::chrono::steady_clock::now();
   work();
   for (const std::string& line : notes_) say(line);

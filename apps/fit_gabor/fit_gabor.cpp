@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "apps/counted.h"
 #include "apps/memory_use.h"
+#include "apps/output_names.h"
 #include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/photo_fit.h"
@@ -192,6 +194,8 @@ PhotoFitOptions photo_options(const Program& program, const Options& o) {
 }
 
 void require_outputs(const Options& o) {
+  require_extension(o.output, {".json", ".astro"});
+  if (!o.spectrum_file.empty()) require_extension(o.spectrum_file, {".npy"});
   require_writable(o.output);
   if (o.model != "gabor") {
     const std::filesystem::path image = exemplar_image_of(o.output);
@@ -218,12 +222,12 @@ std::string remedy(const PhotoFit& photo, const Options& o) {
 
 void say_result(const PhotoFit& photo, const Options& o, const Program& program) {
   const std::size_t layers = photo.channels.size();
-  program.say(
-      fmt::format("{} lobes{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the photo's (weak above "
-                  "{:.3f}), {:.1f} % "
-                  "of the variance in the right octave",
-                  photo.lobes(), layers > 1 ? fmt::format(" in {} layers", layers) : "", photo.pursuit_gap(),
-                  photo.spectrum_residual(), photo.weak_above(), 100.0 * photo.band_overlap()));
+  program.say(fmt::format(
+      "{}{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the photo's (weak above "
+      "{:.3f}), {:.1f} % "
+      "of the variance in the right octave",
+      counted(photo.lobes(), "lobe"), layers > 1 ? fmt::format(" in {} layers", layers) : "",
+      photo.pursuit_gap(), photo.spectrum_residual(), photo.weak_above(), 100.0 * photo.band_overlap()));
   if (photo.weak()) {
     program.say("note: weak fit: a good one would be nearer to the photo's spectrum; " + remedy(photo, o));
   }

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/counted.h"
 #include "apps/fit_shape/fit_shape_details.h"
 #include "apps/fit_shape/fit_shape_options.h"
 #include "apps/fit_shape/fit_shape_packing.h"
 #include "apps/fit_shape/known_bodies.h"
+#include "apps/output_names.h"
 #include "apps/program.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
@@ -74,16 +76,24 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
   const SurfaceDistanceReport& d = fit.check.distance;
   char line[240];
   std::snprintf(line, sizeof line,
-                "%zu metaballs (%zu subtractive)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
+                "%s (%zu subtractive)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
                 "diagonal; similarity %.2f %% "
                 "(two samplings of the target: %.2f %%)",
-                fit.body.num_metaballs(), fit.body.subtract.size(), with_details ? " and details" : "",
-                100 * d.mean, 100 * d.p99, 100 * d.max, 100 * fit.similarity, 100 * fit.similarity_floor);
+                counted(fit.body.num_metaballs(), "metaball").c_str(), fit.body.subtract.size(),
+                with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max,
+                100 * fit.similarity, 100 * fit.similarity_floor);
   program.say(line);
   if (fit.check.topology.components != target.components) {
     program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +
                 std::to_string(target.components) + "; give it more --spheres");
   }
+}
+
+// States the size, by which a wrong --unit is seen.
+void say_size(const Program& program, const FitArguments& arguments, const TargetBody& target) {
+  Box box;
+  for (const Vec3d& vertex : target.mesh.vertices) box.extend(target.diagonal * vertex);
+  program.say(arguments.mesh + ": " + size_words(box.extent(), arguments.unit));
 }
 
 void say_wrong_unit(const Program& program, const FitArguments& arguments, const TargetBody& target) {
@@ -98,8 +108,8 @@ void keep_best_so_far(Program& program, const FitArguments& arguments, const Fit
                       const TargetBody& target, const ShapeFitResult& fit, const Recipe& recipe) {
   write_recipe(recipe, arguments.output);
   std::string line =
-      fmt::format("stopped by Ctrl-C: {} holds the best so far, {} metaballs{}, not measured",
-                  arguments.output, fit.body.num_metaballs(), recipe.layers.empty() ? "" : " and details");
+      fmt::format("stopped by Ctrl-C: {} holds the best so far, {}{}, not measured", arguments.output,
+                  counted(fit.body.num_metaballs(), "metaball"), recipe.layers.empty() ? "" : " and details");
   if (!arguments.checkpoint.empty()) {
     line += checkpoint.has_base() ? "; the same command goes on from " + arguments.checkpoint
                                   : "; no checkpoint yet, since the metaballs were not finished";
@@ -122,6 +132,11 @@ Progress heeding_ctrl_c(Progress progress) {
 
 void run(Program& program, FitArguments& arguments) {
   // A result that cannot be written should be refused before minutes of work.
+  if (arguments.packing_only) {
+    require_extension(arguments.output, {".csv"});
+  } else {
+    require_extension(arguments.output, {".json", ".astro"});
+  }
   require_writable(arguments.output);
   if (!arguments.checkpoint.empty()) {
     require_writable(arguments.checkpoint);
@@ -145,6 +160,7 @@ void run(Program& program, FitArguments& arguments) {
 
   FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes,
                                                   sha256_of_file(arguments.mesh), program.given_options()});
+  say_size(program, arguments, target);
   if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
   ShapeFitResult fit = fit_base(
       target, arguments.fit, checkpoint,

@@ -90,7 +90,8 @@ DetailsFitResult search_details(Program& program, const TargetBody& target, cons
       chosen ? candidates_on_gpu() : std::unique_ptr<CandidateEvaluator>();
   DetailsFitResult result =
       add_searched_details(target, options, arguments.generations, log, evaluator.get(), progress, recipe);
-  program.say(fmt::format("details: {} candidates {}", result.optimization.evaluations, chosen.words));
+  program.say(
+      fmt::format("details: {} candidates tried{}", result.optimization.evaluations, chosen.remark()));
   return result;
 }
 

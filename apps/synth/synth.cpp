@@ -121,21 +121,27 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
   return std::move(variation.recipe);
 }
 
-void check_outputs(const Options& options) {
+// Refuses outputs that cannot be written before any work.
+void check_outputs(const Program& program, const Options& options) {
   if (!options.written_recipe.empty()) {
     require_extension(options.written_recipe, {".json", ".astro"});
     require_writable(options.written_recipe);
+  }
+  if (options.texture.size.empty()) {
+    if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
+    check_mesh_outputs(program, options.mesh, options.output);
+  } else if (!options.output.empty()) {
+    require_extension(options.output, {".png", ".tif", ".tiff"});
   }
   if (!options.output.empty() || !options.written_recipe.empty() || options.mesh.size.only_predict) return;
   throw InputError("--output: is required; name the file to make, such as -o body.ply");
 }
 
 void synthesize(Program& program, const Options& options) {
-  check_outputs(options);
+  check_outputs(program, options);
   const Recipe recipe = read_input(program, options);
   program.summary["length_unit"] = recipe.length_unit;
   if (!options.texture.size.empty()) return make_texture(program, options, recipe);
-  if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
   if (!recipe.body) {
     throw InputError(options.recipe.string() +
                      ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/counted.h"
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/synth/synth_erosion.h"
@@ -52,17 +53,22 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
   }
 }
 
-void check_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
+}  // namespace
+
+void check_mesh_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
   if (!output.empty()) {
     check_mesh_extension(output);
     if (request.points || request.labels || request.gravity.wanted()) require_extension(output, {".ply"});
     require_writable(output);
   }
   check_preview(program, request.preview);
+  if (!request.height_map.empty()) require_extension(request.height_map, {".tif"});
   if (request.landforms.empty()) return;
   require_extension(request.landforms, {".csv", ".json"});
   require_writable(request.landforms);
 }
+
+namespace {
 
 void summarize_mesh(Program& program, const Region& region, const MeshStatistics& statistics,
                     const ManifoldReport& report) {
@@ -90,7 +96,7 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
   // Rough noise leaves small separate pieces, which few people want.
   const bool crumbs = report.components > 1 && !(request.least_component > 0.0);
   return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
-         std::to_string(report.components) + (report.components == 1 ? " component" : " components") +
+         counted(static_cast<std::size_t>(report.components), "component") +
          (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
 }
 
@@ -164,13 +170,20 @@ struct MeshJob {
 void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen) {
   const auto& [request, recipe, file, region, field, resolution, output] = job;
   MeshOutput result(program.tool(), request, recipe, file, region, output);
+  ExtentOfMesh extent;
+  SinkList sinks;
+  sinks.add(result.sink());
+  sinks.add(extent);
   const BodyMeshReport made =
       make_body_mesh({recipe, field, file, region, resolution, request.least_component,
                       chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu},
-                     result.sink(), [&](const std::string& stage) { return program.progress(stage); });
+                     sinks, [&](const std::string& stage) { return program.progress(stage); });
   const ManifoldReport& report = made.manifold;
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
-  if (recipe.erosion) erode_mesh(program, *recipe.erosion, result.collected());
+  if (recipe.erosion) {
+    erode_mesh(program, *recipe.erosion, result.collected());
+    extent.measure(result.collected());
+  }
 
   std::vector<VertexValues> quantities;
   if (request.gravity.wanted())
@@ -182,7 +195,8 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (!request.landforms.empty()) write_landform_list(field, recipe, region.cube(), request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   summarize_output(program, output);
-  program.say(output.string() + ": " + describe_mesh(report, request) + "; " + chosen.words);
+  program.say(output.string() + ": " + describe_mesh(report, request) + ", " +
+              size_words(extent.box.extent(), recipe.length_unit) + chosen.remark());
 }
 
 }  // namespace
@@ -243,7 +257,6 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
 
 void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
                const fs::path& output) {
-  check_outputs(program, request, output);
   const Region region = parse_region(request.tile, request.patch);
   check_request(request, region, recipe, file);
   const ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));

@@ -30,6 +30,11 @@ struct MeshRequest {
 
 void declare_mesh_options(Program& program, MeshRequest& request);
 
+// Throws InputError for an output of the request that cannot be written. An output without a name is left
+// out.
+void check_mesh_outputs(const Program& program, const MeshRequest& request,
+                        const std::filesystem::path& output);
+
 // Writes the mesh of a recipe with a body, which was read from `file`, and its summary. Throws InputError
 // where the request makes no sense, WorkError for a mesh that does not keep its promise.
 void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe,

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <thread>
 
+#include "apps/counted.h"
 #include "apps/memory_use.h"
 #include "numerics/errors.h"
 #include "synthesis/field/field_mesh.h"
@@ -142,10 +143,9 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
                                   {"peak_bytes", predicted.peak_bytes},
                                   {"seconds", predicted.seconds}};
   check_memory(request, resolution, mesh, predicted);
-  program.say(
-      fmt::format("resolution {}: about {} triangles, {:.0f} MB file, {:.0f} MB memory, about {:.0f} s",
-                  resolution, rounded_count(predicted.triangles), predicted.file_bytes / 1e6,
-                  predicted.peak_bytes / 1e6, std::ceil(predicted.seconds)));
+  program.say(fmt::format("resolution {}: about {} triangles, {} file, {} memory, about {:.0f} s", resolution,
+                          rounded_count(predicted.triangles), byte_words(predicted.file_bytes),
+                          byte_words(predicted.peak_bytes), std::ceil(predicted.seconds)));
   return resolution;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/image_file.h"
@@ -90,8 +91,9 @@ void write_colors(Program& program, const TextureRequest& request, const PlaneTe
   program.summary["layers"] = texture.layers;
   program.summary["share_outside_full_scale"] =
       static_cast<double>(outside) / static_cast<double>(rgb.size());
-  program.say(output.string() + ": colours of " + std::to_string(texture.layers) + " Gabor layers, " +
-              request.size + " pixels");
+  program.say(output.string() + ": colours of " +
+              counted(static_cast<std::size_t>(texture.layers), "Gabor layer") + ", " + request.size +
+              " pixels");
 }
 
 }  // namespace

@@ -63,8 +63,17 @@ std::vector<fs::path> meshes_in(const fs::path& folder) {
   return meshes;
 }
 
+std::vector<fs::path> others_in(const fs::path& folder) {
+  std::vector<fs::path> others = entries_of(folder);
+  std::error_code unused;
+  std::erase_if(others,
+                [&](const fs::path& p) { return fs::is_directory(p, unused) || has_mesh_extension(p); });
+  return others;
+}
+
 LabelledFiles find_classes(std::span<const fs::path> folders) {
   std::map<std::string, std::vector<fs::path>> classes;
+  std::vector<fs::path> skipped;
   const auto add = [&](const fs::path& folder) {
     const std::vector<fs::path> meshes = meshes_in(folder);
     if (meshes.empty()) {
@@ -72,6 +81,8 @@ LabelledFiles find_classes(std::span<const fs::path> folders) {
     }
     auto& files = classes[name_of(folder)];
     files.insert(files.end(), meshes.begin(), meshes.end());
+    const std::vector<fs::path> others = others_in(folder);
+    skipped.insert(skipped.end(), others.begin(), others.end());
   };
   for (const fs::path& folder : folders) {
     const std::vector<fs::path> inner = folders_in(folder);
@@ -85,6 +96,7 @@ LabelledFiles find_classes(std::span<const fs::path> folders) {
     }
   }
   LabelledFiles result;
+  result.skipped = std::move(skipped);
   for (const auto& [name, files] : classes) {
     result.labels.insert(result.labels.end(), files.size(), static_cast<int>(result.classes.size()));
     result.files.insert(result.files.end(), files.begin(), files.end());

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 
@@ -18,13 +19,28 @@ std::string naming(const std::filesystem::path& file, const std::string& message
   return message.starts_with(name) ? message : name + ": " + message;
 }
 
+// Says that a mesh is open; empty for a closed one.
+std::string open_remark(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  const std::int64_t edges = analyze_topology(mesh).boundary_edges;
+  if (edges == 0) return "";
+  return file.string() + ": open, " + std::to_string(edges) + (edges == 1 ? " edge has" : " edges have") +
+         " one face only; used as it is";
+}
+
+// Moves the lines that are not empty, in their order.
+void keep_filled(std::vector<std::string>& lines, std::vector<std::string>& kept) {
+  for (std::string& line : lines) {
+    if (!line.empty()) kept.push_back(std::move(line));
+  }
+}
+
 }  // namespace
 
 FeatureTable features_of_files(std::span<const std::filesystem::path> files, const FeatureOptions& options,
                                const Progress& progress) {
   check(options);
-  FeatureTable table{FeatureRows(files.size()), {}};
-  std::vector<std::string> failures(files.size());
+  FeatureTable table{FeatureRows(files.size()), {}, {}};
+  std::vector<std::string> failures(files.size()), remarks(files.size());
   std::mutex reporting;
   std::size_t done = 0;
   std::atomic<bool> stopped{false};
@@ -32,7 +48,9 @@ FeatureTable features_of_files(std::span<const std::filesystem::path> files, con
     if (stopped) return;
     const auto i = static_cast<std::size_t>(index);
     try {
-      table.rows[i] = shape_features(read_mesh(files[i]), options);
+      const TriangleMesh mesh = read_mesh(files[i]);
+      table.rows[i] = shape_features(mesh, options);
+      remarks[i] = open_remark(files[i], mesh);
     } catch (const std::runtime_error& e) {  // InputError, WorkError
       failures[i] = naming(files[i], e.what());
     }
@@ -42,9 +60,8 @@ FeatureTable features_of_files(std::span<const std::filesystem::path> files, con
     if (!report(progress, fraction, files[i].filename().string())) stopped = true;
   });
   if (stopped && done < files.size()) throw WorkError("features: stopped; run it again");
-  for (std::string& failure : failures) {
-    if (!failure.empty()) table.failures.push_back(std::move(failure));
-  }
+  keep_filled(failures, table.failures);
+  keep_filled(remarks, table.remarks);
   return table;
 }
 

@@ -15,6 +15,7 @@ namespace astrolith {
 struct FeatureTable {
   FeatureRows rows;                   // (#files); empty where the file could not be used
   std::vector<std::string> failures;  // one line for each such file, with its name
+  std::vector<std::string> remarks;   // one line for each file that is used although its mesh is open
 };
 
 // Reads the files in parallel; the result does not depend on the number of threads. Throws InputError for

@@ -83,13 +83,14 @@ int count_numbers(TextScanner& scan) {
 }
 
 // Tells tables of numbers apart. An ICQ states Q and goes on with "x y z". A plate model states its count (or
-// both counts) and goes on with "i x y z".
+// both counts) and goes on with "i x y z", after both counts perhaps with "x y z".
 Format sniff_table(const MeshFile& file) {
   TextScanner scan(file);
   const int first = count_numbers(scan);
   const int second = count_numbers(scan);
   if (first == 1 && second == 3) return Format::icq;
   if ((first == 1 || first == 2) && second == 4) return Format::plate;
+  if (first == 2 && second == 3) return Format::plate;  // rows without numbers
   return Format::unknown;
 }
 

@@ -1,5 +1,6 @@
 // Plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", numbered from
-// 1. The first line may state both counts. (Models with rows "v x y z" and "f a b c" are read as OBJ.)
+// 1. The first line may state both counts, and rows may lack their numbers. (Models with rows "v x y z" and
+// "f a b c" are read as OBJ.)
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/polygon_fan_internal.h"
 #include "geometry/io/text_scanner_internal.h"
@@ -7,7 +8,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kLeastRowBytes = 8;  // "1 0 0 0\n"
+constexpr std::size_t kLeastRowBytes = 6;  // "0 0 0\n"
 
 std::size_t checked_count(const TextScanner& scan, std::int64_t count, const char* what) {
   if (count < 1 || static_cast<std::uint64_t>(count) > (scan.bytes_left() + 1) / kLeastRowBytes) {
@@ -17,9 +18,12 @@ std::size_t checked_count(const TextScanner& scan, std::int64_t count, const cha
   return static_cast<std::size_t>(count);
 }
 
-// Goes to row i (counted from 1) of a table and reads the number that stands at its start.
-void start_row(TextScanner& scan, std::size_t i, const char* what) {
+// Goes to row i (counted from 1) of a table and, where rows are numbered, reads the number at its start. The
+// first row tells: one of three words has no number.
+void start_row(TextScanner& scan, std::size_t i, const char* what, bool& numbered) {
   if (!scan.next_filled_line()) scan.fail_truncated(std::string(what) + " " + std::to_string(i));
+  if (i == 1) numbered = scan.words_left() != 3;
+  if (!numbered) return;
   const std::int64_t stated = scan.integer("row number");
   if (stated != static_cast<std::int64_t>(i)) {
     scan.fail(
@@ -47,8 +51,9 @@ TriangleMesh read_plate(const MeshFile& file) {
   const std::size_t num_vertices = checked_count(scan, scan.integer("number of vertices"), "vertices");
   std::int64_t num_plates = scan.line_done() ? 0 : scan.integer("number of plates");
   mesh.vertices.reserve(num_vertices);
+  bool numbered = true;
   for (std::size_t i = 1; i <= num_vertices; ++i) {
-    start_row(scan, i, "vertex");
+    start_row(scan, i, "vertex", numbered);
     mesh.vertices.push_back(scan.point());
   }
   if (num_plates == 0) {
@@ -58,7 +63,7 @@ TriangleMesh read_plate(const MeshFile& file) {
   const std::size_t plates = checked_count(scan, num_plates, "plates");
   mesh.triangles.reserve(plates);
   for (std::size_t i = 1; i <= plates; ++i) {
-    start_row(scan, i, "plate");
+    start_row(scan, i, "plate", numbered);
     Triangle& t = mesh.triangles.emplace_back();
     for (std::uint32_t& corner : t) corner = vertex_index(scan, num_vertices);
   }

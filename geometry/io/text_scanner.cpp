@@ -58,6 +58,16 @@ bool TextScanner::next_filled_line(char comment) {
   return false;
 }
 
+std::size_t TextScanner::words_left() const {
+  std::size_t words = 0;
+  bool inside = false;
+  for (const char c : line_) {
+    words += !inside && !is_blank(c) ? 1 : 0;
+    inside = !is_blank(c);
+  }
+  return words;
+}
+
 bool TextScanner::line_done() {
   std::size_t start = 0;
   while (start < line_.size() && is_blank(line_[start])) ++start;

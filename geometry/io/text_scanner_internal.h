@@ -32,6 +32,8 @@ class TextScanner {
   std::string_view word();
   // The next word, on this line or a following one; empty at the end of the file.
   std::string_view word_anywhere();
+  // The number of words from here to the end of the line.
+  std::size_t words_left() const;
   // True when the line has no more words.
   bool line_done();
   // True when the rest of the line is a comment.

@@ -121,6 +121,21 @@ TEST(Classify, NamesUnreadableFilesAndGoesOn) {
   EXPECT_EQ(lines_of(said.output).size(), 1u);
 }
 
+TEST(Classify, NamesFilesThatItSkipsAndOpenMeshesThatItTakes) {
+  const Shapes shapes;
+  shapes.folder.write("shapes/ring/notes.md", "no mesh");
+  shapes.folder.write("shapes/ring/.hidden", "no mesh");
+  shapes.folder.write("shapes/ball/open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Outcome trained = run_program(kClassify, shapes.train({"--features", "wahl"}));
+  EXPECT_EQ(trained.status, 0) << trained.errors;
+  EXPECT_NE(trained.errors.find("notes.md: skipped"), std::string::npos) << trained.errors;
+  EXPECT_EQ(trained.errors.find(".hidden"), std::string::npos) << trained.errors;
+  EXPECT_NE(trained.errors.find("open.obj: open, 3 edges have one face only"), std::string::npos)
+      << trained.errors;
+  const Outcome said = run_program(kClassify, {"predict", shapes.at("model.yml"), shapes.all + "/ring"});
+  EXPECT_NE(said.errors.find("notes.md: skipped"), std::string::npos) << said.errors;
+}
+
 TEST(Classify, RefusesByName) {
   const Shapes shapes;
   const std::string model = shapes.at("model.yml");
@@ -132,7 +147,7 @@ TEST(Classify, RefusesByName) {
           "mesh.obj: is no folder");
   refused({"train", shapes.all + "/ball", "-o", model, "--folds", "0", "--points", "50"}, "1 classes");
   refused({"train", shapes.all, "-o", shapes.at("no/such/model.yml")}, "model.yml");
-  refused({"train", shapes.all, "-o", shapes.all + "/ball/0.ply", "--points", "50"}, "is the input itself");
+  refused({"train", shapes.all, "-o", shapes.all + "/ball/0.ply", "--points", "50"}, "0.ply: is no .yml");
   refused(shapes.train({"--features", "shapedna"}), "--points");
   refused(shapes.train({"--eigenvalues", "5"}), "--eigenvalues");
   refused(shapes.train({"--bins", "64"}), "bins 64");

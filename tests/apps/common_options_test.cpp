@@ -69,6 +69,14 @@ TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
   refuse({"--seed", "-1"}, "--seed");
 }
 
+TEST_P(EveryProgram, OutputsWithAWrongEndingAreRefusedBeforeAnyWork) {
+  const testing::WorkFolder folder;
+  std::vector<std::string> arguments{"in", "-o", (folder / "out.docx").string()};
+  if (name() == "compare") arguments.push_back("other_in");
+  if (name() == "gravity") arguments.insert(arguments.end(), {"--density", "2000"});
+  testing::expect_refusal(folder, GetParam(), arguments, "out.docx: ");
+}
+
 std::string file_name(const ::testing::TestParamInfo<const char*>& program) {
   return std::filesystem::path(program.param).filename();
 }

@@ -73,8 +73,8 @@ class Describe : public ::testing::Test {
 TEST_F(Describe, TheDeviceChangesNothing) {
   describe(egg_, {});
   const std::string on_cpu = text_of(folder_ / "h.npy");
-  const Outcome outcome =
-      run_program(kDescribe, {egg_, "-o", (folder_ / "h.npy").string(), "--points", "600"});
+  const Outcome outcome = run_program(
+      kDescribe, {egg_, "-o", (folder_ / "h.npy").string(), "--points", "600", "--device", "auto"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(text_of(folder_ / "h.npy"), on_cpu);
   EXPECT_NE(outcome.errors.find("; computed on "), std::string::npos) << outcome.errors;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 
@@ -34,7 +35,7 @@ Outcome run(const std::vector<std::string>& arguments, const std::function<void(
 }
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::temp_directory_path() / (name + std::to_string(::getpid()));
+  return std::filesystem::temp_directory_path() / (name + std::to_string(::getpid()) + ".json");
 }
 
 TEST(Program, StatusSaysWhoseFaultItWas) {
@@ -53,6 +54,35 @@ TEST(Program, AnErrorIsOneLineOfText) {
   const std::string errors = run({"--unknown"}, [](Program&) {}).errors;
   EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
   EXPECT_NE(errors.find("--unknown"), std::string::npos);
+}
+
+TEST(Program, AMisspeltOptionIsNamedWithTheNearest) {
+  const auto complaint = [](const std::vector<std::string>& words) {
+    return run(words, [](Program&) { FAIL(); }).errors;
+  };
+  const std::string meant = "there is no such option; did you mean --";
+  for (const char* wrong : {"--summry", "--sumary=a.json", "-summary", "--summarry", "--smumary", "--summ"}) {
+    EXPECT_EQ(complaint({wrong, "3"}),
+              "tool: " + std::string(wrong) + ": " + meant + "summary?; see tool --help\n");
+  }
+  EXPECT_NE(complaint({"--treads", "2"}).find(meant + "threads?"), std::string::npos);
+  EXPECT_EQ(complaint({"--colour"}), "tool: --colour: there is no such option; see tool --help\n");
+}
+
+TEST(Program, ASummaryWithAWrongEndingIsRefusedBeforeTheWork) {
+  const Outcome outcome = run({"--summary", "figures.txt"}, [](Program&) { FAIL(); });
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.errors, "tool: figures.txt: is no .json file; name it with that extension\n");
+}
+
+TEST(CountedWords, HaveTheirPluralsAndUnits) {
+  EXPECT_EQ(counted(1, "Gabor layer"), "1 Gabor layer");
+  EXPECT_EQ(counted(3, "Gabor layer"), "3 Gabor layers");
+  EXPECT_EQ(byte_words(16e3), "16 kB");
+  EXPECT_EQ(byte_words(4.24e6), "4.2 MB");
+  EXPECT_EQ(byte_words(46.2e6), "46 MB");
+  EXPECT_EQ(byte_words(1.26e9), "1.3 GB");
+  EXPECT_EQ(size_words({0.5612, 0.3, 0.2456}, "km"), "0.561 x 0.3 x 0.246 km");
 }
 
 // U+202E turns the text after it around, U+2028 breaks the line, and U+009B begins a command to a terminal.

@@ -27,6 +27,19 @@ TEST_F(SynthRefusal, ALayerThatTakesTheBodyAwayIsNamed) {
                         "layers[1].combine.width: nothing of the body is left");
 }
 
+// One line about the size in its unit; not a word about a GPU that nobody asked for.
+TEST_F(SynthRefusal, TheClosingLineStatesSizeAndUnit) {
+  const std::string ball = folder_.write("ball.json", R"({"format_version": 1, "length_unit": "km",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}})");
+  const std::string mesh = (folder_ / "ball.ply").string();
+  const std::string said = testing::run_program(kSynth, {ball, "-o", mesh, "--resolution", "32"}).errors;
+  EXPECT_NE(said.find(", 2 x 2 x 2 km"), std::string::npos) << said;
+  EXPECT_EQ(said.find("computed on the CPU"), std::string::npos) << said;
+  const std::string asked =
+      testing::run_program(kSynth, {ball, "-o", mesh, "--resolution", "32", "--device", "cpu"}).errors;
+  EXPECT_NE(asked.find(" km; computed on the CPU\n"), std::string::npos) << asked;
+}
+
 // U+202E would turn the rest of the line around, and U+2028 breaks it.
 TEST_F(SynthRefusal, WhatARecipeQuotesIsEscaped) {
   expect_recipe_refused(replaced(kTwoSpheres, "simplex", "\u202esim\u2028plex\u009b"),

@@ -188,6 +188,17 @@ TEST_F(MeshFormats, PlateModelsInTheirVariants) {
   }
 }
 
+TEST_F(MeshFormats, PlateModelWithoutRowNumbers) {
+  const std::string rows = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  for (const char* name : {"eros.tab", "eros.plt", "eros.shape"}) {
+    const TriangleMesh mesh = read(name, " 4 2\n" + rows + "1 3 2\n1 2 4\n");
+    EXPECT_EQ(mesh.vertices.size(), 4u);
+    EXPECT_TRUE((mesh.triangles == Triangles{{0, 2, 1}, {0, 1, 3}}));
+  }
+  // One table may have numbers and the other none.
+  EXPECT_TRUE((read("a.tab", "4 1\n" + rows + "1 1 3 2\n").triangles == Triangles{{0, 2, 1}}));
+}
+
 TEST_F(MeshFormats, PlateModelWithLetters) {
   const TriangleMesh mesh = read("kw4a.tab", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_TRUE((mesh.triangles == Triangles{{0, 1, 2}}));

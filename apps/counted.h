@@ -1,0 +1,38 @@
+// Numbers with their nouns and units, as messages of programs state them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+// "1 layer", "3 layers".
+inline std::string counted(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+// "31 kB", "4.2 MB", "1.3 GB".
+inline std::string byte_words(double bytes) {
+  const char* unit = "GB";
+  double amount = bytes / 1e9;
+  if (bytes < 1e6) {
+    unit = "kB";
+    amount = std::max(bytes / 1e3, 1.0);
+  } else if (bytes < 1e9) {
+    unit = "MB";
+    amount = bytes / 1e6;
+  }
+  return fmt::format("{:.{}f} {}", amount, amount < 9.95 && bytes >= 1e6 ? 1 : 0, unit);
+}
+
+// "0.561 x 0.302 x 0.246 km": the sides of a box, in `unit`.
+inline std::string size_words(const Vec3d& sides, std::string_view unit) {
+  return fmt::format("{:.3g} x {:.3g} x {:.3g} {}", sides.x, sides.y, sides.z, unit);
+}
+
+}  // namespace astrolith
