@@ -9,7 +9,7 @@
 #include "descriptor/surflet_arrays.h"
 #include "descriptor/surflet_pair.h"
 #include "numerics/errors.h"
-#include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -17,8 +17,6 @@ namespace {
 // Rows of pairs in one task. Times the largest number of points this stays below 2^32, the range of a
 // counter.
 constexpr std::int64_t kRowsPerTask = 64;
-// Progress is reported after this many tasks: some hundred times for a million points.
-constexpr std::int64_t kTasksPerReport = 128;
 // One AVX-512 vector of codes.
 constexpr std::int64_t kLanes = 16;
 // Codes wait for this many vectors before they are counted. The processor then computes and counts at the
@@ -123,15 +121,15 @@ std::vector<std::uint64_t> count_with(const SurfletArrays& s, int num_local, con
   const auto size = static_cast<std::size_t>(num_local * kCodes<kBins> / 2);
   // Sums of integers do not depend on their order, so that each thread may keep its own.
   tbb::combinable<std::vector<std::uint64_t>> totals([&] { return std::vector<std::uint64_t>(size, 0); });
-  // The longest rows come first, so that no thread is left with one at the end.
-  for (std::int64_t end = num_tasks; end > 0; end -= kTasksPerReport) {
-    const std::int64_t count = std::min(end, kTasksPerReport);
-    parallel_for(0, count, [&](std::int64_t t) {
-      count_task<kBins>(s, tasks[static_cast<std::size_t>(end - 1 - t)], totals.local());
-    });
-    const double left = static_cast<double>(end - count) / static_cast<double>(num_tasks);
+  const auto report_pairs = [&](double rows, std::string_view) {
+    const double left = 1 - rows;
     if (!report(progress, 1 - left * left, "")) throw WorkError("stopped; nothing was written");
-  }
+    return true;
+  };
+  // The longest rows come first, so that no thread is left with one at the end.
+  reported_parallel_for({0, num_tasks, num_tasks}, report_pairs, "pairs", [&](std::int64_t t) {
+    count_task<kBins>(s, tasks[static_cast<std::size_t>(num_tasks - 1 - t)], totals.local());
+  });
   std::vector<std::uint64_t> sum(size, 0);
   totals.combine_each([&](const std::vector<std::uint64_t>& one) {
     for (std::size_t b = 0; b < size; ++b) sum[b] += one[b];

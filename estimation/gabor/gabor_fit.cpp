@@ -126,12 +126,21 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
                      ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
   fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram)
                                                              : SpectrumEstimate{fit.periodogram, {}, 0.0};
-  std::vector<SpectralLobe> lobes = pursue(fit, options, progress);
+  bool stopped = false;
+  const auto heeded = [&](double fraction, std::string_view words) {
+    const bool goes_on = report(progress, fraction, words);
+    stopped = stopped || !goes_on;
+    return goes_on;
+  };
+  std::vector<SpectralLobe> lobes = pursue(fit, options, heeded);
   fit.pursuit_lobes = static_cast<int>(lobes.size());
   const std::vector<double> weight = row_weights(fit.estimate.spectrum, options.target);
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
   if (options.target == SpectrumTarget::kSmoothed) lobes = refined(lobes, weight, fit);
-  if (lobes.empty()) throw WorkError(name + ": no lobe was found; try a smaller penalty");
+  if (lobes.empty()) {
+    throw WorkError(name + (stopped ? ": stopped before a lobe was found; nothing is written"
+                                    : ": no lobe was found; try a smaller penalty"));
+  }
   fit.lobes = to_layer_lobes(lobes, fit);
   fit.fitted = spectrum_of(fit.lobes, fit.periodogram.width, fit.periodogram.height);
   fit.spectrum_distance = optimal_transport_distance(fit.fitted, fit.estimate.spectrum);
