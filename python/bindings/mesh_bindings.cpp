@@ -21,6 +21,7 @@
 #include "synthesis/field/surface_labels.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
+#include "tasks/synthesis/mesh_estimate.h"
 
 namespace astrolith::python {
 namespace {
@@ -112,8 +113,9 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
     labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
   }
   MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, {}, {}};
-  made.resolution = arguments.triangles > 0.0 ? resolution_for_triangles(field, region, arguments.triangles)
-                                              : arguments.resolution;
+  made.resolution = arguments.triangles > 0.0
+                        ? resolution_for_triangles(field, recipe, region, arguments.triangles)
+                        : arguments.resolution;
   const auto stage = [&](const std::string& name) { return state.progress(name); };
   made.report = make_body_mesh(
       {recipe, field, file, region, made.resolution, arguments.min_component, MeshingDevice::kCpu},

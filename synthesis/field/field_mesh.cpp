@@ -1,6 +1,21 @@
 #include "synthesis/field/field_mesh.h"
 
+#include <utility>
+
 namespace astrolith {
+namespace {
+
+// Coarse meshes have smaller blocks, whose lists of craters and boulders are shorter.
+constexpr int kCoarseBlockCells = 4;
+
+template <BlockField Field>
+void probe_mesh(const Field& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums) {
+  SurfaceProber<kBlockCells, Field>(field, mesh.surface, mesh.step, mesh.reach, mesh.with_neighbour,
+                                    mesh.warm_up, mesh.costs)
+      .add(first, count, sums);
+}
+
+}  // namespace
 
 MeshStatistics mesh_field(const ImplicitField& field, const Box& bounds, int resolution, MeshSink& sink,
                           const Progress& progress, MeshTile tile) {
@@ -20,6 +35,26 @@ MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int res
 MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolution,
                           const SampleSize& size) {
   return sample_patch<kBlockCells>(field, patch_size, resolution, size);
+}
+
+TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution) {
+  MeshCollector collector;
+  mesh_field<kCoarseBlockCells>(field, field.bounds(), resolution, collector);
+  return std::move(collector.mesh);
+}
+
+TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution) {
+  MeshCollector collector;
+  mesh_patch<kCoarseBlockCells>(field, patch_size, resolution, collector);
+  return std::move(collector.mesh);
+}
+
+void probe(const ImplicitField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums) {
+  probe_mesh(field, mesh, first, count, sums);
+}
+
+void probe(const PatchField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums) {
+  probe_mesh(field, mesh, first, count, sums);
 }
 
 }  // namespace astrolith

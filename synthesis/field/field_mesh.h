@@ -7,6 +7,7 @@
 #include "synthesis/field/patch_field.h"
 #include "synthesis/mesh/mesh_sample.h"
 #include "synthesis/mesh/mesher.h"
+#include "synthesis/mesh/surface_probes.h"
 
 namespace astrolith {
 
@@ -20,5 +21,22 @@ MeshStatistics mesh_patch(const PatchField& field, double size, int resolution, 
 MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int resolution, MeshTile tile,
                           const SampleSize& size);
 MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolution, const SampleSize& size);
+
+// A coarse mesh of a field, as a place for probes: whole, and of a patch.
+TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution);
+TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution);
+
+// A mesh to be probed (synthesis/mesh/surface_probes.h).
+struct ProbedMesh {
+  const CoarseSurface& surface;
+  double step;   // edge of its cells, length units
+  double reach;  // how far its surface may lie from the coarse one, length units
+  double with_neighbour;
+  bool warm_up;
+  bool costs = true;  // false: only triangles are counted, which takes less
+};
+// Adds the probes first .. first + count - 1 to the sums.
+void probe(const ImplicitField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums);
+void probe(const PatchField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums);
 
 }  // namespace astrolith

@@ -41,27 +41,19 @@ double most_in_layers(const std::vector<double>& profile, const std::vector<int>
   return most;
 }
 
-MeshEstimate corrected_by_bare(MeshEstimate mesh, double bare_triangles) {
-  constexpr double kLeastCorrelation = 0.6, kMostChange = 3.0;
-  if (mesh.whole || !(mesh.bare_correlation >= kLeastCorrelation) || !(mesh.bare_triangles > 0.0))
-    return mesh;
-  const double ratio = std::clamp(bare_triangles / mesh.bare_triangles, 1.0 / kMostChange, kMostChange);
-  for (double* count : {&mesh.triangles, &mesh.vertices, &mesh.evaluations, &mesh.seconds}) *count *= ratio;
-  return mesh;
-}
-
 MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)>& sample, bool warm_up,
                              const SampleBudget& budget) {
-  constexpr int kMost = 768;
-  SampleSize size{4 * budget.first_blocks, budget.first_blocks, warm_up};
+  // Probes tell the cost of a block, so that a sample needs few blocks, and squares for their number.
+  constexpr int kMostNodes = 768, kMostBlocks = 24;
+  SampleSize size{3 * budget.first_blocks, budget.first_blocks, warm_up};
   MeshEstimate estimate = sample(size);
   double spent = estimate.spent_seconds;
-  while (!estimate.whole && size.blocks < kMost) {
+  while (!estimate.whole && size.nodes < kMostNodes) {
     const double allowed = std::max(budget.free_seconds, budget.share * estimate.seconds) - spent;
     const double growth = std::min(allowed / std::max(estimate.spent_seconds, 1e-6), 16.0);
     if (growth < 1.5) break;
-    size.nodes = std::min(static_cast<int>(growth * size.nodes), 2 * kMost);
-    size.blocks = std::min(static_cast<int>(growth * size.blocks), kMost);
+    size.nodes = std::min(static_cast<int>(growth * size.nodes), kMostNodes);
+    size.blocks = std::min(static_cast<int>(growth * size.blocks), kMostBlocks);
     const double caching = estimate.caching_seconds, sampled = estimate.sampled_blocks;
     estimate = sample(size);
     estimate.caching_seconds += caching;

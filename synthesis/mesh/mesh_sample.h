@@ -6,11 +6,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <vector>
 
+#include "synthesis/mesh/block_cost.h"
 #include "synthesis/mesh/mesher.h"
 #include "synthesis/mesh/processor_clock.h"
 
@@ -28,15 +28,15 @@ struct MeshEstimate {
   double blocks = 0.0, evaluations = 0.0, vertices = 0.0, triangles = 0.0;
   double sampled_blocks = 0.0;   // blocks that were meshed by this sample and the smaller ones before it
   double seconds = 0.0;          // of one processor, for finding and meshing all blocks
+  double finding_seconds = 0.0;  // the part of these for finding the blocks
   double spent_seconds = 0.0;    // of one processor, for the sample
   double caching_seconds = 0.0;  // of one processor, by which meshing the sample first took longer than again
   double list_bytes = 0.0;       // memory of the field narrowed to one block
   // The most blocks in one layer, and in three successive layers.
   double blocks_of_layer = 0.0, blocks_of_three_layers = 0.0;
-  // Triangles of the body without its layers in the same blocks, and how they go with those of the mesh over
-  // the blocks of the sample (-1 to 1); 0 where the field does not give them.
-  double bare_triangles = 0.0, bare_correlation = 0.0;
-  bool whole = false;  // every block was meshed: the counts are exact
+  int narrowed_squares = 0;     // most squares of one size that the sample narrowed
+  double with_neighbour = 0.7;  // share of the blocks whose lower neighbour is a block too
+  bool whole = false;           // every block was meshed: the counts are exact
 
   double triangles_per_block() const { return blocks > 0.0 ? triangles / blocks : 0.0; }
 };
@@ -48,11 +48,6 @@ std::vector<std::size_t> evenly_chosen(std::size_t size, std::size_t count, std:
 // The largest sum of `layers` successive elements of a profile that `samples` items gave. Where items are
 // few, the sum of a longer range is taken instead, and scaled.
 double most_in_layers(const std::vector<double>& profile, const std::vector<int>& samples, int layers);
-
-// A better estimate of a mesh by that of the body without its layers, whose cheap blocks can be sampled more
-// often: where both have more and fewer triangles in the same blocks, the sample of the mesh had as much too
-// many or too few as that of the body.
-MeshEstimate corrected_by_bare(MeshEstimate mesh, double bare_triangles);
 
 // What an estimate may take.
 struct SampleBudget {
@@ -110,7 +105,7 @@ class MeshSampler {
       nodes.push_back({z, weight, {0, 0, size, whole_.restricted_to(grid_.box(0, 0, z, size))}});
     }
     estimate_.spent_seconds += clock.seconds();
-    estimate_.seconds += weight * clock.seconds();
+    estimate_.finding_seconds += weight * clock.seconds();
     return nodes;
   }
 
@@ -130,6 +125,7 @@ class MeshSampler {
 
   // The quarters of the nodes that the surface may cross.
   std::vector<Node> narrowed(const std::vector<Node>& nodes) {
+    estimate_.narrowed_squares = std::max(estimate_.narrowed_squares, static_cast<int>(nodes.size()));
     std::vector<std::vector<BlockNode<Block>>> quarters(nodes.size());
     std::vector<double> seconds(nodes.size());
     parallel_for(0, static_cast<std::int64_t>(nodes.size()), [&](std::int64_t i) {
@@ -142,7 +138,7 @@ class MeshSampler {
     double pairs = 0.0, both = 0.0;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       estimate_.spent_seconds += seconds[n];
-      estimate_.seconds += nodes[n].weight * seconds[n];
+      estimate_.finding_seconds += nodes[n].weight * seconds[n];
       for (auto& quarter : quarters[n]) {
         if (quarter.x > nodes[n].node.x) {
           pairs += 1.0;
@@ -152,7 +148,7 @@ class MeshSampler {
       }
       for (auto& quarter : quarters[n]) next.push_back({nodes[n].z, nodes[n].weight, std::move(quarter)});
     }
-    if (pairs > 0.0) with_neighbour_ = both / pairs;
+    if (pairs > 0.0) estimate_.with_neighbour = both / pairs;
     return next;
   }
 
@@ -170,19 +166,16 @@ class MeshSampler {
     estimate_.blocks_of_three_layers = most_in_layers(profile, samples, 3);
   }
 
-  struct BlockCost {
-    double bare_triangles = 0.0;
-    double seconds = 0.0, first_seconds = 0.0, evaluations = 0.0, list_bytes = 0.0;
-    LayerCounts counts;
-  };
-
   void mesh(const std::vector<Node>& nodes) {
     std::vector<BlockCost> costs(nodes.size());
     parallel_for(0, static_cast<std::int64_t>(nodes.size()), [&](std::int64_t i) {
-      costs[static_cast<std::size_t>(i)] = cost_of(nodes[static_cast<std::size_t>(i)]);
+      const Node& node = nodes[static_cast<std::size_t>(i)];
+      costs[static_cast<std::size_t>(i)] =
+          cost_of_block(grid_, node.z, node.node, estimate_.with_neighbour, size_.warm_up);
     });
     double weights = 0.0;
     estimate_.sampled_blocks = double(nodes.size());
+    estimate_.seconds = estimate_.finding_seconds;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const BlockCost& cost = costs[i];
       const double weight = nodes[i].weight;
@@ -190,110 +183,18 @@ class MeshSampler {
       estimate_.evaluations += weight * cost.evaluations;
       estimate_.vertices += weight * cost.counts.vertices;
       estimate_.triangles += weight * cost.counts.triangles;
-      estimate_.bare_triangles += weight * cost.bare_triangles;
       estimate_.seconds += weight * cost.seconds;
       estimate_.list_bytes += weight * cost.list_bytes;
-      estimate_.spent_seconds += cost.seconds + cost.first_seconds;
-      if (size_.warm_up) estimate_.caching_seconds += std::max(cost.first_seconds - cost.seconds, 0.0);
+      estimate_.spent_seconds += cost.spent_seconds;
+      estimate_.caching_seconds += cost.caching_seconds;
     }
     if (weights > 0.0) estimate_.list_bytes /= weights;
-    correlate(costs);
-  }
-
-  void correlate(const std::vector<BlockCost>& costs) {
-    double xx = 0.0, xy = 0.0, yy = 0.0, x_mean = 0.0, y_mean = 0.0;
-    for (const BlockCost& cost : costs) {
-      x_mean += cost.bare_triangles / double(costs.size());
-      y_mean += cost.counts.triangles / double(costs.size());
-    }
-    for (const BlockCost& cost : costs) {
-      const double x = cost.bare_triangles - x_mean, y = cost.counts.triangles - y_mean;
-      xx += x * x, xy += x * y, yy += y * y;
-    }
-    if (xx > 0.0 && yy > 0.0) estimate_.bare_correlation = xy / std::sqrt(xx * yy);
-  }
-
-  // The body of a block without its layers, as a block of its own.
-  struct BareBlock {
-    const Block& block;
-    BlockContent content() const { return block.content(); }
-    BareBlock restricted_to(const Box&) const { return *this; }
-    void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                  std::span<float> value, float) const {
-      block.evaluate_bare(x, y, z, value);
-    }
-  };
-
-  double bare_triangles_of(const Node& node) const {
-    BlockLayer<B> layer;
-    layer.blocks.emplace_back(node.node.x, node.node.y);
-    LayerBlock<B>& block = layer.blocks.front();
-    Owners<B> owners{};
-    owners[0] = &block;
-    evaluate_samples(grid_, node.z, BareBlock{node.node.field}, owners, block);
-    take_signs(block);
-    count_rows(grid_.window_of(block.x, block.y, node.z), block);
-    return number_rows(layer).triangles;
-  }
-
-  BlockCost cost_of(const Node& node) const {
-    BlockCost cost;
-    if (size_.warm_up) {
-      cost = meshed(node);
-      const double first = cost.seconds;
-      cost = meshed(node);
-      cost.first_seconds = first;
-    } else {
-      cost = meshed(node);
-    }
-    if constexpr (requires { node.node.field.list_bytes(); }) {
-      cost.list_bytes = node.node.field.list_bytes();
-      cost.bare_triangles = bare_triangles_of(node);
-    }
-    return cost;
-  }
-
-  // Meshes one block without its neighbours. In a mesh the neighbours evaluate part of its halo.
-  BlockCost meshed(const Node& node) const {
-    const ProcessorClock clock;
-    BlockLayer<B> layer;
-    layer.blocks.emplace_back(node.node.x, node.node.y);
-    LayerBlock<B>& block = layer.blocks.front();
-    Owners<B> owners{};
-    owners[0] = &block;
-    const auto samples = static_cast<double>(evaluate_samples(grid_, node.z, node.node.field, owners, block));
-    constexpr double kOwned = double(B) * B * B;
-    const double own = std::min(samples, kOwned) + (1.0 - with_neighbour_) * std::max(samples - kOwned, 0.0);
-    BlockCost cost;
-    cost.seconds = samples > 0.0 ? clock.seconds() * own / samples : 0.0;
-    const ProcessorClock rest;
-    take_signs(block);
-    count_rows(grid_.window_of(block.x, block.y, node.z), block);
-    cost.counts = number_rows(layer);
-    std::vector<MeshVertex> vertices(cost.counts.vertices);
-    cost.evaluations =
-        own + double(make_vertices(grid_, node.z, node.node.field, 0, block, std::span(vertices)));
-    make_polygons(node.z, cost.counts, block);
-    cost.seconds += rest.seconds();
-    return cost;
-  }
-
-  // The work of a mesh that needs neighbours: the block stands for each of them.
-  void make_polygons(int z, const LayerCounts& counts, LayerBlock<B>& block) const {
-    Owners<B> owners;
-    owners.fill(&block);
-    const BlockWindow<B> window = grid_.window_of(block.x, block.y, z);
-    fill_sample_halo(owners, block);
-    fill_vertex_halo(owners, window, block);
-    std::vector<Triangle> triangles(counts.triangles);
-    make_triangles(block, window, std::span(triangles));
   }
 
   BlockGrid<B> grid_;
   Block whole_;
   SampleSize size_;
   MeshEstimate estimate_;
-  double with_neighbour_ = 0.7;  // share of the blocks whose lower neighbour is a block too
   std::uint32_t draws_ = 0;
 };
 

@@ -102,40 +102,8 @@ MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
 }
 
-MeshEstimate sample_region(const ImplicitField& field, const Region& region, int resolution,
-                           const SampleSize& size) {
-  return region.is_patch ? sample_patch(PatchField(field, region.center), region.size, resolution, size)
-                         : sample_field(field, field.bounds(), resolution, region.tile, size);
-}
-
 std::string rounded_count(double count) {
   return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
-}
-
-int resolution_for_triangles(const ImplicitField& field, const Region& region, double triangles) {
-  constexpr SampleSize kSize{512, 192, false};
-  constexpr int kFirst = 96, kMostSteps = 3;
-  constexpr double kNearEnough = 0.02;
-  const Region whole = region.is_patch ? region : Region{};
-  int resolution = kFirst;
-  double found = 0.0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    found = sample_region(field, whole, resolution, kSize).triangles;
-    if (!(found > 0.0)) {
-      throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
-    }
-    const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
-    const int next =
-        static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
-    if (next == resolution || std::fabs(found / triangles - 1.0) < kNearEnough) break;
-    resolution = next;
-  }
-  if (resolution == kMaxResolution && found < 0.9 * triangles) {
-    throw InputError(
-        fmt::format("triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
-                    resolution, rounded_count(found)));
-  }
-  return resolution;
 }
 
 void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,

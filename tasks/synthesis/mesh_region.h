@@ -7,7 +7,6 @@
 
 #include "numerics/progress.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesh_sample.h"
 #include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
@@ -42,15 +41,6 @@ enum class MeshingDevice { kCpu, kGpu };
 // by operations, and what mesh_field throws.
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
-
-// The estimate of the mesh of a region from a sample of its blocks.
-MeshEstimate sample_region(const ImplicitField& field, const Region& region, int resolution,
-                           const SampleSize& size);
-
-// The resolution at which the whole mesh, or the patch, has about so many triangles. The samples have a fixed
-// size, so that the resolution is the same on every machine. Throws InputError where the finest mesh has
-// fewer, and WorkError where the surface is too small for a sample.
-int resolution_for_triangles(const ImplicitField& field, const Region& region, double triangles);
 
 // A count in three characters or so: "1.2 M", "340 k".
 std::string rounded_count(double count);

@@ -59,19 +59,6 @@ TEST(MeshSample, TheFullestLayerIsFound) {
   EXPECT_DOUBLE_EQ(most_in_layers({10, 0, 20, 0}, {1, 0, 2, 0}, 1), 7.5) << "few samples are averaged";
 }
 
-// With few blocks the triangles of the body tell by how much the sample is off.
-TEST(MeshSample, TheBareBodyCorrectsASmallSample) {
-  Recipe recipe = testing::potato_recipe(20, 3);
-  const ImplicitField bare(recipe);
-  recipe.layers.push_back(testing::fractal_layer(0.005, 4.0, 3));
-  const ImplicitField field(recipe);
-  const MeshStatistics made = statistics_at(field, 200);
-  const MeshEstimate of_body = sample_field(bare, field.bounds(), 200, {}, {2048, 1024});
-  const MeshEstimate few = sampled(field, 200, {24, 12});
-  EXPECT_GT(few.bare_correlation, 0.6);
-  expect_near(corrected_by_bare(few, of_body.triangles).triangles, made.triangles, 0.2);
-}
-
 TEST(MeshSample, ChosenItemsAreSpreadEvenly) {
   const std::vector<std::size_t> all = evenly_chosen(5, 9, 1), some = evenly_chosen(1000, 10, 1);
   EXPECT_EQ(all, (std::vector<std::size_t>{0, 1, 2, 3, 4}));

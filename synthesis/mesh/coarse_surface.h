@@ -1,0 +1,38 @@
+// A coarse mesh of a surface, from which places are drawn where a finer mesh is looked at.
+#pragma once
+
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+class CoarseSurface {
+ public:
+  CoarseSurface() = default;
+  // Triangles whose centres lie outside `within` are left out.
+  CoarseSurface(TriangleMesh mesh, const Box& within);
+
+  bool empty() const { return areas_.empty(); }
+  double area() const { return areas_.empty() ? 0.0 : areas_.back(); }  // square length units
+
+  struct Point {
+    Vec3d position;
+    Vec3d normal;  // unit length, outwards
+  };
+  // The point number `index` of a sequence whose beginnings all lie evenly over the area. Expects a surface
+  // that is not empty.
+  Point point(int index) const;
+
+  // The largest share of the area that lies in a slab of this height across the z axis; 0 to 1.
+  double largest_share(double height) const;
+
+  // The area of the surface within a box.
+  double area_within(const Box& box) const;
+
+ private:
+  TriangleMesh mesh_;
+  std::vector<double> areas_;  // of the triangles up to this one
+};
+
+}  // namespace astrolith

@@ -1,0 +1,175 @@
+#include "tasks/synthesis/mesh_estimate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "numerics/errors.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/field_tables.h"
+#include "synthesis/mesh/surface_probes.h"
+
+namespace astrolith {
+namespace {
+
+// Cells of the first and coarsest mesh, and of the finest one that still counts as coarse.
+constexpr int kCoarsest = 24, kFinest = 96;
+
+SampleGrid grid_of(const ImplicitField& field, const Region& region, int resolution) {
+  return region.is_patch ? make_patch_grid(region.size, resolution)
+                         : make_sample_grid(field.bounds(), resolution);
+}
+
+// The slab of space in which a tile of the mesh lies.
+Box slab_of(const ImplicitField& field, const Region& region, int resolution) {
+  constexpr double kFar = 1e300;
+  Box slab{{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}};
+  if (region.is_patch || region.tile.count <= 1) return slab;
+  const SampleGrid grid = make_sample_grid(field.bounds(), resolution);
+  const CellWindow window = window_of_tile<kBlockCells>(grid, region.tile);
+  slab.min.z = double{grid.z(window.first[2] - 1)};
+  slab.max.z = double{grid.z(window.last[2])};
+  return slab;
+}
+
+// The field whose coarse mesh is made. A coarse mesh of a field with spots or Gabor noise would draw all
+// impulses of a fine one, so that the body without its layers stands for it.
+ImplicitField base_of(const ImplicitField& field, const Recipe& recipe) {
+  const FieldView& view = field.tables();
+  if (view.gabor_lists.count == 0 && view.spot_lists.count == 0) return field;
+  Recipe bare = recipe;
+  bare.layers.clear();
+  return ImplicitField(bare);
+}
+
+// Probes of the mesh of one region, at one resolution, on a coarse surface.
+class RegionProbes {
+ public:
+  // `base` is the field whose coarse mesh tells where the surface is.
+  RegionProbes(const ImplicitField& field, const ImplicitField& base, const Region& region, int resolution)
+      : field_(field), base_(base), region_(region), resolution_(resolution) {}
+
+  // Makes the coarse surface with this many cells.
+  void look_from(int cells) {
+    const ProcessorClock clock;
+    cells_ = std::min(cells, resolution_);
+    TriangleMesh mesh = region_.is_patch
+                            ? coarse_mesh_of(PatchField(base_, region_.center), region_.size, cells_)
+                            : coarse_mesh_of(base_, cells_);
+    surface_ = CoarseSurface(std::move(mesh), slab_of(field_, region_, resolution_));
+    seconds_ = clock.seconds();
+  }
+
+  void add(int count, double with_neighbour, bool costs = true) {
+    const double cell = grid_of(field_, region_, cells_).step;
+    const bool gabor = field_.tables().gabor_lists.count > 0;
+    const double reach =
+        base_.tables().num_layers < field_.tables().num_layers ? std::max(cell, field_.height_bound()) : cell;
+    const ProbedMesh mesh{surface_, grid_of(field_, region_, resolution_).step, reach, with_neighbour, gabor,
+                          costs};
+    if (region_.is_patch) {
+      probe(PatchField(field_, region_.center), mesh, sums_.probes, count, sums_);
+    } else {
+      probe(field_, mesh, sums_.probes, count, sums_);
+    }
+  }
+
+  int cells() const { return cells_; }
+  double coarse_seconds() const { return seconds_; }
+  const CoarseSurface& surface() const { return surface_; }
+  const ProbeSums& sums() const { return sums_; }
+
+ private:
+  const ImplicitField& field_;
+  const ImplicitField& base_;
+  const Region& region_;
+  int resolution_;
+  int cells_ = 0;
+  double seconds_ = 0.0;
+  CoarseSurface surface_;
+  ProbeSums sums_;
+};
+
+MeshEstimate sample_region(const ImplicitField& field, const Region& region, int resolution,
+                           const SampleSize& size) {
+  return region.is_patch ? sample_patch(PatchField(field, region.center), region.size, resolution, size)
+                         : sample_field(field, field.bounds(), resolution, region.tile, size);
+}
+
+// Makes a coarse surface, as fine as the seconds allow. Returns the seconds that it took.
+double take_surface(RegionProbes& probes, int resolution, double allowed) {
+  probes.look_from(kCoarsest);
+  double spent = probes.coarse_seconds();
+  const double finer = kCoarsest * std::sqrt((allowed - spent) / std::max(spent, 1e-5));
+  const int cells = std::min({int(std::min(finer, double(kFinest))), kFinest, resolution});
+  if (!(finer > 0.0) || cells < kCoarsest * 5 / 4) return spent;
+  probes.look_from(cells);
+  return spent + probes.coarse_seconds();
+}
+
+}  // namespace
+
+MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                             int resolution, const EstimateBudget& budget) {
+  constexpr double kOfSample = 0.4, kOfSurface = 0.25;  // parts of what the estimate may take
+  constexpr int kFirstProbes = 8, kFewestProbes = 4, kMostProbes = 1024;
+  const bool gabor = field.tables().gabor_lists.count > 0;
+  const MeshEstimate sample =
+      estimate_within([&](const SampleSize& size) { return sample_region(field, region, resolution, size); },
+                      gabor, {4, kOfSample * budget.share, kOfSample * budget.free_seconds});
+  if (sample.whole) return sample;
+  const auto allowed = [&](const MeshEstimate& estimate) {
+    return std::max(budget.share * estimate.seconds, budget.free_seconds);
+  };
+  const ImplicitField base = base_of(field, recipe);
+  RegionProbes probes(field, base, region, resolution);
+  const double of_surface = take_surface(probes, resolution, kOfSurface * allowed(sample));
+  MeshEstimate estimate = sample;
+  estimate.spent_seconds += of_surface;
+  if (probes.surface().empty()) return estimate;
+  for (int more = kFirstProbes; more >= kFewestProbes;) {
+    probes.add(more, sample.with_neighbour);
+    estimate = improved_by_probes(sample, probes.surface(), probes.sums());
+    estimate.spent_seconds += of_surface;
+    const double of_probe = probes.sums().spent_seconds / probes.sums().probes;
+    const double left = allowed(estimate) - estimate.spent_seconds;
+    const int most = std::min(3 * probes.sums().probes, kMostProbes - probes.sums().probes);
+    more = std::min(int(std::clamp(left / std::max(of_probe, 1e-6), 0.0, 1e6)), most);
+  }
+  return estimate;
+}
+
+int resolution_for_triangles(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                             double triangles) {
+  const ImplicitField base = base_of(field, recipe);
+  constexpr int kCells = 64, kProbes = 256, kProbesOfGabor = 64, kFirst = 96, kMostSteps = 3;
+  constexpr double kNearEnough = 0.02;
+  const bool gabor = field.tables().gabor_lists.count > 0;
+  const Region whole = region.is_patch ? region : Region{};
+  int resolution = kFirst;
+  double found = 0.0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    RegionProbes probes(field, base, whole, resolution);
+    probes.look_from(kCells);
+    if (!probes.surface().empty()) probes.add(gabor ? kProbesOfGabor : kProbes, 1.0, false);
+    found = probes.surface().area() * probes.sums().triangles_per_area / std::max(probes.sums().probes, 1);
+    if (!(found > 0.0)) {
+      throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
+    }
+    const double better = 2.0 + (resolution - 2) * std::sqrt(triangles / found);
+    const int next =
+        static_cast<int>(std::lround(std::clamp(better, double(kMinResolution), double(kMaxResolution))));
+    if (next == resolution || std::fabs(found / triangles - 1.0) < kNearEnough) break;
+    resolution = next;
+  }
+  if (resolution == kMaxResolution && found < 0.9 * triangles) {
+    throw InputError(
+        fmt::format("triangles: the finest mesh there is, resolution {}, has about {}; ask for fewer",
+                    resolution, rounded_count(found)));
+  }
+  return resolution;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,28 @@
+// What the mesh of a region takes, estimated before it is made.
+#pragma once
+
+#include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/mesh_sample.h"
+#include "tasks/synthesis/mesh_region.h"
+
+namespace astrolith {
+
+// What an estimate may take: a share of the seconds that are predicted for the mesh, or this many seconds of
+// one processor if these are more.
+struct EstimateBudget {
+  double share;
+  double free_seconds;
+};
+
+// The estimate of the mesh of a region from samples of its blocks, a coarse mesh, and probes along the
+// surface of that. Throws what mesh_region throws.
+MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                             int resolution, const EstimateBudget& budget);
+
+// The resolution at which the whole mesh, or the patch, has about so many triangles. The estimates look at a
+// fixed number of places, so that the resolution is the same on every machine. Throws InputError where the
+// finest mesh has fewer, and WorkError where the surface is too small to tell its size.
+int resolution_for_triangles(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                             double triangles);
+
+}  // namespace astrolith
