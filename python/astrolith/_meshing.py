@@ -17,7 +17,9 @@ def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[in
         return _arrays.vector(patch, "patch", 4), None
     if tile is None:
         return None, None
-    parts = tile.split("/") if isinstance(tile, str) else list(tile)
+    parts: Sequence[Any] = tile
+    if isinstance(tile, str):
+        parts = tile.split("/")
     try:
         number, count = (int(part) for part in parts)
     except (TypeError, ValueError):

@@ -44,7 +44,7 @@ def test_values_at_float64_points_take_no_temporary_arrays(ball):
     values = field.value(points)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert values.nbytes == 1_600_000 and peak < 50_000  # tracemalloc does not see the result, which is the module's
+    assert values.nbytes == 1_600_000 and peak < 200_000  # tracemalloc does not see the result, which is the module's
 
 
 def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):
