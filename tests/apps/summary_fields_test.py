@@ -113,7 +113,7 @@ def runs(folder):
     yield [*fit, folder / "base.json", "--base-only"]
     yield [*fit, folder / "fit.json", "--population", "4", "--generations", "2", "--variations", "1"]
     yield [*fit, folder / "packing.csv", "--packing-only"]
-    yield ["describe", ball, "-o", folder / "description.json"]
+    yield ["describe", ball, "-o", folder / "description.npy"]
     yield ["compare", ball, other, "--floor", "-o", folder / "comparison.json"]
     yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3"]
     yield ["classify", "predict", folder / "model.json", ball]
