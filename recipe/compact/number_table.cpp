@@ -108,7 +108,8 @@ class Boxes {
     return ranges_[column].low + static_cast<std::int64_t>(ranges_[column].width() / 2);
   }
   double left_share(std::size_t column) const {
-    return static_cast<double>(ranges_[column].width() / 2) / static_cast<double>(ranges_[column].width());
+    const std::uint64_t width = ranges_[column].width(), left = width / 2;
+    return static_cast<double>(left) / static_cast<double>(width);
   }
   // Calls visit() in the half of the box.
   template <class Visit>
