@@ -22,6 +22,9 @@ namespace {
 // 1.5. The same holds for boxes of a lattice.
 constexpr double kMeanProjection = 1.5;
 
+// Tables of an erosion for each triangle: verticals, areas, heights and edges.
+constexpr double kBytesOfSlides = 90.0;
+
 // The tiles of a band that touch a layer of `volume` along the surface, or lie within reach of it.
 double tiles_along_surface(const SurfaceBand& band, const MeshEstimate& mesh, double volume,
                            const Vec3d& extent) {
@@ -77,10 +80,11 @@ OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use) 
   const std::string extension = output.extension().string();
   // Half a vertex and half a normal as doubles, and a triangle; half of one array is copied as it grows.
   const double collected = 36.0 + 6.0;
-  // Verticals, areas, heights and edges; they are gone before a picture is drawn.
+  // The tables of an erosion are gone before a picture is drawn.
   // Facets and multipoles of the tree of gravity, and eight columns of values at half a vertex.
   const double attracted = use.gravity ? 72.0 + 740.0 + 8.0 * 8.0 : 0.0;
-  const double rendered = std::max({use.preview ? 120.0 : 0.0, use.erosion ? 90.0 : 0.0, attracted});
+  const double rendered =
+      std::max({use.preview ? 120.0 : 0.0, use.erosion ? kBytesOfSlides : 0.0, attracted});
   if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
   if (extension == ".stl") return {50.0, collected + rendered};
   if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
@@ -142,8 +146,14 @@ ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const
   const double most_sweeps = 1.5 * mesh.triangles * erosion.iterations * kSecondsOfEdge;
   const double growing = clock.seconds() * (done.sweeps > 2 ? ratio * ratio : ratio);
   const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
+  // Facets of the lattice, each with its share of the tree of multipoles: 900 to 1,450 bytes. The tree is
+  // gone before the tables of the slides are made.
+  constexpr double kBytesOfFacet = 1250.0;
+  const double of_lattice = std::min(kCellsOfGravity / double(mesh.resolution), 1.0);
+  const double bytes =
+      std::max(kBytesOfFacet * of_lattice * of_lattice - kBytesOfSlides, 0.0) * mesh.triangles;
   const double verticals = seconds_of_verticals * finer * finer + kSecondsOfVertical * mesh.triangles;
-  return {verticals, std::min(growing, clock.seconds() * ratio + most_sweeps)};
+  return {verticals, std::min(growing, clock.seconds() * ratio + most_sweeps), bytes};
 }
 
 double meshing_bytes(const MeshEstimate& mesh) {

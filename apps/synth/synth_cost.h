@@ -45,6 +45,7 @@ double meshing_bytes(const MeshEstimate& mesh);
 struct ErosionCost {
   double parallel_seconds = 0.0;  // of one processor
   double serial_seconds = 0.0;
+  double bytes = 0.0;  // of the gravity that it slides against, beyond OutputCost::memory
 };
 // A mesh of a sixth of the cells is made and eroded. Sweeps take longer on finer meshes, so that the seconds
 // of an erosion that has far to go are rough.

@@ -54,7 +54,7 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   // A peak that the sample made is one of blocks, which the mesh will have too.
   const double peak_after = static_cast<double>(peak_bytes());
   const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
-  const double working = meshing_bytes(estimate) +
+  const double working = std::max(meshing_bytes(estimate), erosion.bytes) +
                          more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(program)) +
                          output.memory * estimate.triangles;
   const double times = mesh.use.twice ? 2.0 : 1.0;
