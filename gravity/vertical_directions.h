@@ -24,8 +24,8 @@ struct BodyMotion {
 // Throws InputError for a mesh without a facet that has an area.
 std::vector<Vec3d> vertical_directions(const TriangleMesh& mesh, const BodyMotion& motion);
 
-// The same for points on or near the surface of a closed mesh, with the gravity of the mesh itself, to some
-// hundredths of a degree. Meant for meshes of some ten thousand facets: time grows with the points.
+// Verticals as above, at points on or near the surface of a closed mesh, with the gravity of the mesh itself,
+// to some hundredths of a degree. Meant for meshes of some ten thousand facets: time grows with the points.
 std::vector<Vec3d> vertical_directions_at(const TriangleMesh& mesh, std::span<const Vec3d> points,
                                           const BodyMotion& motion);
 

@@ -24,7 +24,7 @@ struct ProbeSums {
   int probes = 0;
   double triangles_per_area = 0.0;
   double blocks_along_normal = 0.0;
-  // Of the blocks that were meshed, each weighted by the blocks along its normal.
+  // These four are sums over the blocks that were meshed, each weighted by the blocks along its normal.
   double weights = 0.0, seconds = 0.0, evaluations = 0.0, list_bytes = 0.0;
   int meshed_blocks = 0;
   double caching_seconds = 0.0, spent_seconds = 0.0;
