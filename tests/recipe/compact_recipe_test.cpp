@@ -47,7 +47,7 @@ Recipe body_on_grid(double step) {
   return body_of(ordered);
 }
 
-std::string error_of(const std::string& bytes) {
+std::string error_of_bytes(const std::string& bytes) {
   try {
     parse_recipe(bytes, "r.astro");
   } catch (const InputError& e) {
@@ -105,7 +105,7 @@ TEST(CompactRecipe, IsAFileLikeOthers) {
 TEST(CompactRecipe, OtherVersionIsRefused) {
   std::string bytes = recipe_to_compact(body_on_grid(1.0));
   bytes[3] = 2;
-  EXPECT_EQ(error_of(bytes),
+  EXPECT_EQ(error_of_bytes(bytes),
             "r.astro: is a compact recipe of version 2, this program reads 1; use the program version that "
             "wrote the file");
 }
@@ -114,11 +114,11 @@ TEST(CompactRecipe, DamagedBytesAreRefused) {
   const std::string bytes = recipe_to_compact(body_on_grid(1.0));
   const std::string damaged = "r.astro: is a damaged compact recipe; copy it or write it again";
   for (std::size_t size = 3; size < bytes.size(); ++size)
-    EXPECT_EQ(error_of(bytes.substr(0, size)), damaged) << size;
+    EXPECT_EQ(error_of_bytes(bytes.substr(0, size)), damaged) << size;
   for (std::size_t i = 4; i < bytes.size(); ++i) {
     std::string changed = bytes;
     changed[i] = static_cast<char>(changed[i] ^ 0x10);
-    EXPECT_EQ(error_of(changed), damaged) << i;
+    EXPECT_EQ(error_of_bytes(changed), damaged) << i;
   }
 }
 
@@ -146,7 +146,7 @@ TEST(CompactRecipe, HostileStreamsEndInOneLineOrInARecipe) {
           6 + static_cast<std::size_t>(random.uniform() * static_cast<double>(changed.size() - 6));
       changed[at] = static_cast<char>(random.uniform() * 256.0);
     }
-    const std::string error = error_of(with_valid_check(changed));
+    const std::string error = error_of_bytes(with_valid_check(changed));
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
 }
@@ -154,7 +154,8 @@ TEST(CompactRecipe, HostileStreamsEndInOneLineOrInARecipe) {
 TEST(CompactRecipe, SizesBeyondTheLimitsAreRefusedBeforeTheyAreAllocated) {
   RangeEncoder encoder;
   encoder.encode_number(std::uint64_t{1} << 40);
-  const std::string error = error_of(with_valid_check("AST\x01" + std::string(2, ' ') + encoder.finish()));
+  const std::string error =
+      error_of_bytes(with_valid_check("AST\x01" + std::string(2, ' ') + encoder.finish()));
   EXPECT_NE(error.find("damaged"), std::string::npos) << error;
   RangeEncoder rows;
   rows.encode_number(std::uint64_t{1} << 31);
@@ -167,7 +168,7 @@ TEST(CompactRecipe, SizesBeyondTheLimitsAreRefusedBeforeTheyAreAllocated) {
 TEST(CompactRecipe, AFewBytesHoldAFewThings) {
   RangeEncoder text;
   text.encode_number(std::uint64_t{1} << 23);  // bytes of text, of which none follows
-  const std::string error = error_of(with_valid_check("AST\x01" + std::string(2, ' ') + text.finish()));
+  const std::string error = error_of_bytes(with_valid_check("AST\x01" + std::string(2, ' ') + text.finish()));
   EXPECT_NE(error.find("damaged"), std::string::npos) << error;
 }
 
