@@ -28,7 +28,7 @@ TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int reso
 
 // A mesh to be probed (synthesis/mesh/surface_probes.h).
 struct ProbedMesh {
-  const CoarseSurface& surface;
+  const ProbedSurface& surface;
   double step;   // edge of its cells, length units
   double reach;  // how far its surface may lie from the coarse one, length units
   double with_neighbour;

@@ -14,7 +14,7 @@ double combined(double of_sample, double squares, double along_normals) {
 
 }  // namespace
 
-MeshEstimate improved_by_probes(const MeshEstimate& estimate, const CoarseSurface& surface,
+MeshEstimate improved_by_probes(const MeshEstimate& estimate, const ProbedSurface& surface,
                                 const ProbeSums& sums) {
   MeshEstimate better = estimate;
   better.spent_seconds += sums.spent_seconds;

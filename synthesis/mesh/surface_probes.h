@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "numerics/hash_random.h"
-#include "synthesis/mesh/coarse_surface.h"
 #include "synthesis/mesh/mesh_sample.h"
+#include "synthesis/mesh/probed_surface.h"
 
 namespace astrolith {
 
@@ -31,7 +31,7 @@ struct ProbeSums {
 };
 
 // The estimate with the counts of probes of its surface, and with the seconds that follow from them.
-MeshEstimate improved_by_probes(const MeshEstimate& estimate, const CoarseSurface& surface,
+MeshEstimate improved_by_probes(const MeshEstimate& estimate, const ProbedSurface& surface,
                                 const ProbeSums& sums);
 
 template <int B, BlockField Field>
@@ -40,7 +40,7 @@ class SurfaceProber {
   // Probes a mesh of cells of this size. `reach` limits how far the surface is looked for from the coarse
   // one; length units. Without `costs` only triangles are counted. The field and the surface must outlive
   // this.
-  SurfaceProber(const Field& field, const CoarseSurface& surface, double step, double reach,
+  SurfaceProber(const Field& field, const ProbedSurface& surface, double step, double reach,
                 double with_neighbour, bool warm_up, bool costs)
       : field_(field),
         surface_(surface),
@@ -54,7 +54,7 @@ class SurfaceProber {
   void add(int first, int count, ProbeSums& sums) const {
     for (int i = first; i < first + count; ++i) {
       const ProcessorClock clock;
-      const CoarseSurface::Point place = surface_.point(i);
+      const ProbedSurface::Point place = surface_.point(i);
       const Vec3d center = on_surface(place);
       const double area = surface_.area_within(window(place.position).samples_box());
       if (area > 0.0) sums.triangles_per_area += triangles_around(center) / area;
@@ -93,7 +93,7 @@ class SurfaceProber {
   }
 
   // The point of the surface near a point of the coarse one. F is nearly a distance there.
-  Vec3d on_surface(const CoarseSurface::Point& place) const {
+  Vec3d on_surface(const ProbedSurface::Point& place) const {
     double offset = 0.0;
     for (int step = 0; step < 2; ++step) {
       offset += value_at(place.position + offset * place.normal);
@@ -154,7 +154,7 @@ class SurfaceProber {
   }
 
   const Field& field_;
-  const CoarseSurface& surface_;
+  const ProbedSurface& surface_;
   double step_, reach_, with_neighbour_;
   bool warm_up_, costs_;
 };

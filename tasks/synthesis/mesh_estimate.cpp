@@ -58,7 +58,7 @@ class RegionProbes {
     TriangleMesh mesh = region_.is_patch
                             ? coarse_mesh_of(PatchField(base_, region_.center), region_.size, cells_)
                             : coarse_mesh_of(base_, cells_);
-    surface_ = CoarseSurface(std::move(mesh), slab_of(field_, region_, resolution_));
+    surface_ = ProbedSurface(std::move(mesh), slab_of(field_, region_, resolution_));
     seconds_ = clock.seconds();
   }
 
@@ -78,7 +78,7 @@ class RegionProbes {
 
   int cells() const { return cells_; }
   double coarse_seconds() const { return seconds_; }
-  const CoarseSurface& surface() const { return surface_; }
+  const ProbedSurface& surface() const { return surface_; }
   const ProbeSums& sums() const { return sums_; }
 
  private:
@@ -88,7 +88,7 @@ class RegionProbes {
   int resolution_;
   int cells_ = 0;
   double seconds_ = 0.0;
-  CoarseSurface surface_;
+  ProbedSurface surface_;
   ProbeSums sums_;
 };
 

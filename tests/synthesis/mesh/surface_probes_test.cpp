@@ -17,20 +17,20 @@ TriangleMesh square() {
           {}};
 }
 
-TEST(CoarseSurface, AreaWithinABoxIsExact) {
-  const CoarseSurface all(square(), kEverywhere), near(square(), {{-2, -2, -2}, {2, 2, 2}});
+TEST(ProbedSurface, AreaWithinABoxIsExact) {
+  const ProbedSurface all(square(), kEverywhere), near(square(), {{-2, -2, -2}, {2, 2, 2}});
   EXPECT_DOUBLE_EQ(all.area(), 4.5);
   EXPECT_DOUBLE_EQ(near.area(), 4.0);
   EXPECT_NEAR(all.area_within({{-0.25, -0.5, 0}, {0.5, 3, 2}}), 0.75 * 1.5, 1e-12);
   EXPECT_NEAR(all.area_within({{-2, -2, 1.5}, {2, 2, 2}}), 0.0, 1e-12);
 }
 
-TEST(CoarseSurface, PointsLieEvenlyOverTheArea) {
-  const CoarseSurface surface(square(), kEverywhere);
+TEST(ProbedSurface, PointsLieEvenlyOverTheArea) {
+  const ProbedSurface surface(square(), kEverywhere);
   int on_triangle = 0;
   Vec3d mean;
   for (int i = 0; i < 900; ++i) {
-    const CoarseSurface::Point point = surface.point(i);
+    const ProbedSurface::Point point = surface.point(i);
     if (point.position.x > 2.0) {
       ++on_triangle;
       continue;
@@ -44,8 +44,8 @@ TEST(CoarseSurface, PointsLieEvenlyOverTheArea) {
   EXPECT_NEAR(mean.y, 0.0, 0.05);
 }
 
-TEST(CoarseSurface, TheFullestSlabIsFound) {
-  const CoarseSurface surface(square(), kEverywhere);
+TEST(ProbedSurface, TheFullestSlabIsFound) {
+  const ProbedSurface surface(square(), kEverywhere);
   EXPECT_NEAR(surface.largest_share(0.1), 4.0 / 4.5, 0.03);
   EXPECT_DOUBLE_EQ(surface.largest_share(5.0), 1.0);
 }
@@ -60,7 +60,7 @@ Counts predicted_over_true(const Recipe& recipe, int count) {
   const ImplicitField field(recipe);
   MeshDiscard sink;
   const MeshStatistics made = mesh_field(field, field.bounds(), kCells, sink);
-  const CoarseSurface surface(coarse_mesh_of(field, kCoarse), kEverywhere);
+  const ProbedSurface surface(coarse_mesh_of(field, kCoarse), kEverywhere);
   const MeshEstimate sample = sample_field(field, field.bounds(), kCells, {}, {24, 6, false});
   ProbeSums sums;
   probe(field, {surface, made.step, make_sample_grid(field.bounds(), kCoarse).step, 0.7, false}, 0, count,

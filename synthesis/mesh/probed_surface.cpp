@@ -1,4 +1,4 @@
-#include "synthesis/mesh/coarse_surface.h"
+#include "synthesis/mesh/probed_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -59,7 +59,7 @@ double even(int index, double ratio) {
 
 }  // namespace
 
-CoarseSurface::CoarseSurface(TriangleMesh mesh, const Box& within) : mesh_(std::move(mesh)) {
+ProbedSurface::ProbedSurface(TriangleMesh mesh, const Box& within) : mesh_(std::move(mesh)) {
   double sum = 0.0;
   std::vector<Triangle> kept;
   for (const Triangle& triangle : mesh_.triangles) {
@@ -73,7 +73,7 @@ CoarseSurface::CoarseSurface(TriangleMesh mesh, const Box& within) : mesh_(std::
   mesh_.triangles = std::move(kept);
 }
 
-CoarseSurface::Point CoarseSurface::point(int index) const {
+ProbedSurface::Point ProbedSurface::point(int index) const {
   constexpr double kGolden = 0.6180339887498949, kRootOfTwo = 0.4142135623730951,
                    kRootOfThree = 0.7320508075688772;
   const auto found = std::upper_bound(areas_.begin(), areas_.end(), even(index, kGolden) * areas_.back());
@@ -85,7 +85,7 @@ CoarseSurface::Point CoarseSurface::point(int index) const {
   return {t.a + u * (t.b - t.a) + v * (t.c - t.a), (1.0 / norm(normal)) * normal};
 }
 
-double CoarseSurface::largest_share(double height) const {
+double ProbedSurface::largest_share(double height) const {
   constexpr int kBins = 512;
   Box bounds;
   for (const Triangle& t : mesh_.triangles) {
@@ -111,7 +111,7 @@ double CoarseSurface::largest_share(double height) const {
   return std::clamp(most / areas_.back(), 0.0, 1.0);
 }
 
-double CoarseSurface::area_within(const Box& box) const {
+double ProbedSurface::area_within(const Box& box) const {
   double area = 0.0;
   for (const Triangle& triangle : mesh_.triangles) {
     const Corners t = corners_of(mesh_, triangle);

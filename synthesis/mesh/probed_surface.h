@@ -7,11 +7,11 @@
 
 namespace astrolith {
 
-class CoarseSurface {
+class ProbedSurface {
  public:
-  CoarseSurface() = default;
+  ProbedSurface() = default;
   // Triangles whose centres lie outside `within` are left out.
-  CoarseSurface(TriangleMesh mesh, const Box& within);
+  ProbedSurface(TriangleMesh mesh, const Box& within);
 
   bool empty() const { return areas_.empty(); }
   double area() const { return areas_.empty() ? 0.0 : areas_.back(); }  // square length units
