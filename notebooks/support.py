@@ -100,7 +100,7 @@ class Notebook:
         plt.show()
 
     def claim(self, what, thesis, ours, comment=""):
-        """A row of the table of claims; every number in it was computed in a cell."""
+        """An entry of the list of claims; every number in it was computed in a cell."""
         self._claims.append({"notebook": self.name, "what": what, "thesis": thesis, "ours": ours, "comment": comment})
         folder = OUT / ("claims_full" if FULL else "claims")
         folder.mkdir(parents=True, exist_ok=True)

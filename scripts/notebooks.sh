@@ -87,13 +87,13 @@ done
 
 if [[ $ASTROLITH_FULL == 1 ]]; then
   claims=docs/claims.md
-  /usr/bin/python3 notebooks/claims_table.py "$out/claims_full" --keep docs/claims.md
+  /usr/bin/python3 notebooks/claims_list.py "$out/claims_full" --keep docs/claims.md
 else
   claims=$out/claims.md
-  /usr/bin/python3 notebooks/claims_table.py "$out/claims" >"$claims"
+  /usr/bin/python3 notebooks/claims_list.py "$out/claims" >"$claims"
 fi
 if ((failures > 0)); then
   echo "notebooks.sh: $failures of ${#chosen[@]} failed" >&2
   exit 1
 fi
-echo "All ${#chosen[@]} done; the table of claims is $claims"
+echo "All ${#chosen[@]} done; the list of claims is $claims"

@@ -16,10 +16,14 @@ import pathlib
 import re
 import sys
 
+from narrow_table import narrow_table
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCHEMA = json.loads((ROOT / "recipe/recipe.schema.json").read_text())
 REFERENCE = ROOT / "docs/recipe.md"
-TABLE = re.compile(r"<!-- fields of (?P<names>[\w, ]+?)(?: without (?P<omitted>[\w, ]+?))?(?: only (?P<only>[\w, ]+))? -->\n.*?<!-- end -->", re.S)
+TABLE = re.compile(
+    r"<!-- fields of (?P<names>[\w, ]+?)(?: without (?P<omitted>[\w, ]+?))?(?: only (?P<only>[\w, ]+))? -->\n"
+    r".*?<!-- end -->", re.S)
 HEADER = "| field | meaning | unit | range | default |\n|---|---|---|---|---|\n"
 BIG = 1e12  # the largest magnitude of any number: not worth a word in each row
 
@@ -114,7 +118,7 @@ def rows(names, omitted, only):
         if len(having) < len(names):
             types = [t for n in having for t in definition(n)["properties"]["type"]["enum"]]
             meaning += f"; {' and '.join(types)} only"
-        yield f"| `{name}` | {meaning} | {field.get('unit', '')} | {range_of(field)} | {default_of(name, field, owner)} |"
+        yield [f"`{name}`", meaning, field.get("unit", ""), range_of(field), default_of(name, field, owner)]
 
 
 def table(match):
@@ -123,7 +127,7 @@ def table(match):
 
     names, omitted, only = split(match["names"]), split(match["omitted"]), split(match["only"])
     comment = match[0].split("\n", 1)[0]
-    return f"{comment}\n{HEADER}" + "\n".join(rows(names, omitted, only)) + "\n<!-- end -->"
+    return f"{comment}\n{HEADER}" + narrow_table(rows(names, omitted, only), shortened=1) + "<!-- end -->"
 
 
 def main():

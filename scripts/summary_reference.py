@@ -8,6 +8,8 @@ import json
 import pathlib
 import sys
 
+from narrow_table import narrow_table
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/summaries.md"
 HEAD = """# What summaries and feature lists say
@@ -28,8 +30,7 @@ def page(programs):
     text = HEAD
     for program, fields in programs.items():
         text += f"\n## {program}\n\n| field | meaning | unit |\n|---|---|---|\n"
-        for path, (unit, meaning) in fields.items():
-            text += f"| `{path}` | {meaning} | {unit} |\n"
+        text += narrow_table(([f"`{path}`", meaning, unit] for path, (unit, meaning) in fields.items()), shortened=1)
     return text + CSV
 
 
