@@ -47,8 +47,11 @@ class Program {
   // Prints one line to stderr, unless --quiet was given.
   void say(const std::string& line) const;
 
-  // Prints the line like say(), but once the work is done. Work that fails prints no notes.
-  void note(const std::string& line) { notes_.push_back(line); }
+  // Prints the line like say(), but once the work is done. Work that fails prints no notes, and a quiet
+  // program has none.
+  void note(const std::string& line) {
+    if (!quiet) notes_.push_back(line);
+  }
 
   // Reports a part of the work that failed while the rest goes on. Prints one line to stderr, also with
   // --quiet; the exit status will be 1.

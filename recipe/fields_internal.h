@@ -12,6 +12,11 @@ void visit_fields(FieldVisitor& v, Recipe& recipe);
 void visit_fields(FieldVisitor& v, Provenance& provenance);
 void visit_fields(FieldVisitor& v, Erosion& erosion);
 
+void visit_fields(FieldVisitor& v, Family& family);
+void visit_fields(FieldVisitor& v, DrawnField& drawn);
+// The rules for a family that concern the rest of the recipe.
+void check_family(const Recipe& recipe, const Place& place);
+
 void visit_row(FieldVisitor& v, Vec3d& vector, const NumberLimits& limits);
 void visit_fields(FieldVisitor& v, MetaballBody& body);
 void visit_fields(FieldVisitor& v, BodyOperation& operation);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "numerics/errors.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/place_internal.h"
@@ -11,6 +13,23 @@ std::string Place::path() const {
   const std::string before = parent_->path();
   if (index_ >= 0) return fmt::format("{}[{}]", before, index_);
   return before.empty() ? std::string(name_) : fmt::format("{}.{}", before, name_);
+}
+
+bool Place::is(std::string_view path) const {
+  if (parent_ == nullptr) return path.empty();
+  if (index_ < 0) {
+    if (!path.ends_with(name_)) return false;
+    path.remove_suffix(name_.size());
+    if (parent_->parent_ == nullptr) return path.empty();
+    return path.ends_with('.') && parent_->is(path.substr(0, path.size() - 1));
+  }
+  const std::size_t bracket = path.ends_with(']') ? path.rfind('[') : std::string_view::npos;
+  if (bracket == std::string_view::npos) return false;
+  char digits[24];
+  const char* const end = std::to_chars(digits, digits + sizeof digits, index_).ptr;
+  const std::string_view stated = path.substr(bracket + 1, path.size() - bracket - 2);
+  return stated == std::string_view(digits, static_cast<std::size_t>(end - digits)) &&
+         parent_->is(path.substr(0, bracket));
 }
 
 void Place::fail(std::string_view message) const {

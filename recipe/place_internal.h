@@ -21,6 +21,8 @@ class Place {
 
   // The path "layers[0].lobes[3].bandwidth", which is empty for the recipe as a whole.
   std::string path() const;
+  // Whether path() is this text, without making the text.
+  bool is(std::string_view path) const;
   // Throws InputError "file: path: message" on one line.
   [[noreturn]] void fail(std::string_view message) const;
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "recipe/body.h"
+#include "recipe/family.h"
 #include "recipe/landforms.h"
 #include "recipe/limits.h"
 #include "recipe/noise_layers.h"
@@ -76,6 +77,7 @@ struct Recipe {
   std::optional<MetaballBody> body;  // fit_gabor writes recipes without a body
   std::vector<Layer> layers;         // at least one in a recipe without a body
   std::optional<Erosion> erosion;    // only in a recipe with a body
+  std::optional<Family> family;      // what differs between members; the recipe itself stands for none
 };
 
 }  // namespace astrolith

@@ -163,6 +163,8 @@ void visit_fields(FieldVisitor& v, Recipe& recipe) {
   v.field("layers", recipe.layers);
   v.rule(check_layer_uses, recipe);
   v.field("erosion", recipe.erosion);
+  v.field("family", recipe.family);
+  v.rule(check_family, recipe);
 }
 
 }  // namespace astrolith

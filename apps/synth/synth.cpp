@@ -6,6 +6,7 @@
 
 #include "apps/output_names.h"
 #include "apps/program.h"
+#include "apps/synth/synth_members.h"
 #include "apps/synth/synth_mesh.h"
 #include "apps/synth/synth_texture.h"
 #include "geometry/io/mesh_io.h"
@@ -28,6 +29,7 @@ struct Options {
   fs::path written_recipe;  // where to write the recipe that is made; empty = nowhere
   TextureRequest texture;
   MeshRequest mesh;
+  MembersRequest members;
   double vary = 0.0;  // 0 = the recipe itself
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
@@ -68,11 +70,15 @@ void declare_options(Program& program, Options& options) {
                   "in it, as JSON or compact (.astro); without -o nothing else")
       .placeholder("FILE.json");
   declare_texture_options(program, options.texture);
+  declare_members_options(program, options.members);
   for (const char* of_mesh :
        {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
         "--target", "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view",
         "--sun", "--gravity", "--height-map"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
+  }
+  for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--predict", "--height-map"}) {
+    program.app.option("--members").excludes(program.app.option(of_one));
   }
   program.app.option("--seed")
       .description("replaces the recipe's seed when given; with --vary the number of the variation")
@@ -123,13 +129,16 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
 
 // Refuses outputs that cannot be written before any work.
 void check_outputs(const Program& program, const Options& options) {
+  if (!options.members.range.empty()) {
+    check_members(options.members, options.mesh, {options.output, options.written_recipe});
+  }
   if (!options.written_recipe.empty()) {
     require_extension(options.written_recipe, {".json", ".astro"});
-    require_writable(options.written_recipe);
+    if (options.members.range.empty()) require_writable(options.written_recipe);
   }
   if (options.texture.size.empty()) {
     if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
-    check_mesh_outputs(program, options.mesh, options.output);
+    if (options.members.range.empty()) check_mesh_outputs(program, options.mesh, options.output);
   } else if (!options.output.empty()) {
     require_extension(options.output, {".png", ".tif", ".tiff"});
   }
@@ -147,11 +156,15 @@ void synthesize(Program& program, const Options& options) {
                      ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
                      "with --texture WxH");
   }
+  const fs::path& body_file = options.base.empty() ? options.recipe : options.base;
+  if (!options.members.range.empty()) {
+    return make_members(program, options.members, options.mesh, {options.output, options.written_recipe},
+                        recipe, body_file);
+  }
   const Recipe made = options.vary > 0.0 ? varied(program, options, recipe) : recipe;
   if (!options.written_recipe.empty()) write_loaded_recipe(made, options.written_recipe);
   if (options.output.empty() && !options.mesh.size.only_predict) return;
-  make_mesh(program, options.mesh, made, options.base.empty() ? options.recipe : options.base,
-            options.output);
+  make_mesh(program, options.mesh, made, body_file, options.output);
 }
 
 }  // namespace

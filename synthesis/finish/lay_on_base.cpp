@@ -36,6 +36,9 @@ double unit_ratio(const Recipe& details, const std::string& details_name, const 
 Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,
                    const std::string& base_name) {
   if (!base.body) throw InputError(base_name + ": body: absent; give a recipe with a body as the base");
+  if (details.family) {
+    throw InputError(details_name + ": family: has other places on a base; state it in the merged recipe");
+  }
   const double ratio = unit_ratio(details, details_name, base, base_name);
   Recipe result = base;
   for (const Layer& layer : details.layers) result.layers.push_back(rescaled(layer, ratio));

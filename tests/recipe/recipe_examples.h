@@ -57,7 +57,10 @@ inline const std::string kCompleteRecipe = R"({
     {"type": "phasor", "amplitude": 0.01, "frequency": 6, "cell_size": 0.75, "profile": "square", "direction": [0, 1, 0],
      "combine": {"type": "warp", "direction": [0.5, 0, 2]}}
   ],
-  "erosion": {"talus_angle": 35, "iterations": 500, "density": 1500, "rotation_period": 4.3}
+  "erosion": {"talus_angle": 35, "iterations": 500, "density": 1500, "rotation_period": 4.3},
+  "family": {"any_view": true, "any_sun": true, "fields": [
+    {"field": "layers[0].amplitude", "distribution": "normal", "low": 0.01, "high": 0.05, "mean": 0.03, "deviation": 0.01},
+    {"field": "layers[0].octaves", "distribution": "choice", "values": [2, 3]}]}
 }
 )";
 
@@ -227,6 +230,10 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("talus_angle": 35)", R"("talus_angle": 90)", R"(erosion.talus_angle: must be from 1 to 85, is 90)"},
       {R"("iterations": 500)", R"("iterations": 0)",
        R"(erosion.iterations: must be an integer from 1 to 100000)"},
+      {R"("low": 0.01)", R"("low": "x")", R"(family.fields[0].low: must be a number, is the string "x")"},
+      {R"("low": 0.01)", R"("low": 1)", R"(family.fields[0].high: must be at least low, 1, is 0.05)", false},
+      {R"("layers[0].octaves", "dist)", R"("layers[0].octave", "dist)",
+       R"(family.fields[1].field: names no number of this recipe: "layers[0].octave")", false},
       {R"("density": 1500)", R"("density": 0)", R"(erosion.density: must be from 1 to 30000, is 0)"},
       {R"("rotation_period": 4.3)", R"("rotation_period": 1e-3)",
        R"(erosion.rotation_period: must be from 0.01 to 1e+06)"},

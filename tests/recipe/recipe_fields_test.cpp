@@ -82,6 +82,8 @@ std::map<std::string, Fields> described() {
   return {{"document", fields_of(Recipe{})},
           {"provenance", fields_of(Provenance{})},
           {"erosion", fields_of(Erosion{})},
+          {"family", fields_of(Family{})},
+          {"drawn_field", fields_of(DrawnField{})},
           {"metaballs", fields_of(MetaballBody{})},
           {"r_function", fields_of(operation(Operator::kUnion))},
           {"blend", fields_of(operation(Operator::kBlend))},

@@ -1,0 +1,274 @@
+#include "apps/synth/synth_members.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "apps/counted.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+#include "recipe/recipe_json.h"
+#include "recipe/sha256.h"
+#include "synthesis/finish/family_member.h"
+#include "tasks/synthesis/load_recipe.h"
+#include "tasks/synthesis/manifest.h"
+
+namespace astrolith {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kNumberMark = "{member}";
+constexpr std::uint64_t kMostMembers = std::uint64_t{1} << 53;  // as JSON keeps whole numbers
+
+struct Range {
+  std::uint64_t begin = 0, end = 0;
+};
+
+std::uint64_t member_number(std::string_view text) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size() || number > kMostMembers) {
+    throw InputError("members: must be A:B, whole numbers up to 2^53, as in 0:1000");
+  }
+  return number;
+}
+
+Range parse_range(const std::string& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  if (colon == text.size()) throw InputError("members: must be A:B, members A to B - 1, as in 0:1000");
+  const std::string_view view = text;
+  const Range range{member_number(view.substr(0, colon)), member_number(view.substr(colon + 1))};
+  if (range.begin >= range.end) {
+    throw InputError(fmt::format("members: {}:{} holds no member; the second number must be the greater one",
+                                 range.begin, range.end));
+  }
+  return range;
+}
+
+void require_mark(const fs::path& name, const std::string& option) {
+  if (name.empty() || name.string().find(kNumberMark) != std::string::npos) return;
+  throw InputError(
+      option + ": every member writes a file of its own; put {member} into the name, as in body_{member}" +
+      name.extension().string());
+}
+
+fs::path numbered(const fs::path& pattern, std::uint64_t member) {
+  std::string name = pattern.string();
+  const std::string digits = fmt::format("{:07}", member);
+  for (std::size_t at = 0; (at = name.find(kNumberMark, at)) != std::string::npos; at += digits.size()) {
+    name.replace(at, kNumberMark.size(), digits);
+  }
+  return name;
+}
+
+// The SHA-256 of what all members have in common: the recipe and the options that change files.
+std::string hash_of_family(const Program& program, const Recipe& recipe) {
+  constexpr std::array kNoEffect{"base",    "device",       "members",   "manifest",
+                                 "preview", "feature-list", "max-memory"};
+  Sha256 hash;
+  const std::string text = recipe_to_json(recipe);
+  hash.update(text.data(), text.size());
+  for (const auto& [name, value] : program.given_options()) {
+    if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
+    const std::string line = name + "=" + value + "\n";
+    hash.update(line.data(), line.size());
+  }
+  return hash.hex();
+}
+
+// While it lives, the program says nothing and writes another summary.
+class Aside {
+ public:
+  explicit Aside(Program& program)
+      : program_(program),
+        quiet_(std::exchange(program.quiet, true)),
+        summary_(std::exchange(program.summary, {})) {}
+  Aside(const Aside&) = delete;
+  Aside& operator=(const Aside&) = delete;
+  ~Aside() {
+    program_.quiet = quiet_;
+    program_.summary = std::move(summary_);
+  }
+
+ private:
+  Program& program_;
+  bool quiet_;
+  Json summary_;
+};
+
+class MemberMaker {
+ public:
+  MemberMaker(Program& program, const MembersRequest& request, const MeshRequest& mesh,
+              const MemberFiles& files, const Recipe& recipe, const fs::path& file)
+      : program_(program),
+        mesh_(mesh),
+        files_(files),
+        recipe_(recipe),
+        file_(file),
+        manifest_(request.manifest),
+        family_(hash_of_family(program, recipe)) {}
+
+  const Manifest& manifest() const { return manifest_; }
+
+  bool is_finished(std::uint64_t member) const { return manifest_.has(member, family_, names_of(member)); }
+
+  void make(std::uint64_t number) const {
+    const auto start = std::chrono::steady_clock::now();
+    const FamilyMember member = family_member(recipe_, number);
+    Json line = {
+        {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
+    for (const auto& [field, value] : member.drawn) line["drawn"][field] = value;
+    make_mesh_of(number, member, line);
+    if (!files_.recipe.empty()) write_loaded_recipe(member.recipe, numbered(files_.recipe, number));
+    std::vector<ManifestFile> written;
+    for (const fs::path& name : names_of(number)) written.push_back(manifest_.file_of(name));
+    line["files"] = to_json(written);
+    line["version"] = program_.tool();
+    line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    manifest_.append(line);
+  }
+
+  // The names of all files of a member, in the order of the manifest's lines.
+  std::vector<fs::path> names_of(std::uint64_t member) const {
+    std::vector<fs::path> names;
+    for (const fs::path& pattern : {files_.mesh, mesh_.preview.file, mesh_.landforms, files_.recipe}) {
+      if (!pattern.empty()) names.push_back(numbered(pattern, member));
+    }
+    return names;
+  }
+
+ private:
+  void make_mesh_of(std::uint64_t number, const FamilyMember& member, Json& line) const {
+    if (files_.mesh.empty()) return;
+    MeshRequest request = mesh_;
+    request.preview.file = numbered(mesh_.preview.file, number);
+    request.landforms = numbered(mesh_.landforms, number);
+    if (recipe_.family && !mesh_.preview.file.empty()) add_light_and_view(member, request.preview, line);
+    const Aside aside(program_);
+    make_mesh(program_, request, member.recipe, file_, numbered(files_.mesh, number));
+    for (const char* figure : {"vertices", "triangles", "closed", "manifold", "genus", "components"}) {
+      if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];
+    }
+  }
+
+  void add_light_and_view(const FamilyMember& member, PreviewRequest& preview, Json& line) const {
+    if (recipe_.family->any_view) {
+      preview.views = {{member.view.x, member.view.y, member.view.z}};
+      line["view"] = {member.view.x, member.view.y, member.view.z};
+    }
+    if (recipe_.family->any_sun) {
+      preview.sun = {member.sun.x, member.sun.y, member.sun.z};
+      line["sun"] = {member.sun.x, member.sun.y, member.sun.z};
+    }
+  }
+
+  Program& program_;
+  const MeshRequest& mesh_;
+  const MemberFiles& files_;
+  const Recipe& recipe_;
+  const fs::path& file_;
+  Manifest manifest_;
+  std::string family_;
+};
+
+struct Tally {
+  std::uint64_t made = 0, there = 0, failed = 0;
+};
+
+// Makes one member. False where it failed, which has been said then.
+bool make_or_report(Program& program, const MemberMaker& maker, std::uint64_t number) {
+  try {
+    maker.make(number);
+    return true;
+  } catch (const std::exception& e) {
+    if (!Program::interrupted()) program.report_failure(fmt::format("member {}: {}", number, e.what()));
+    return false;
+  }
+}
+
+Tally make_range(Program& program, const MemberMaker& maker, const Range& range) {
+  const Progress progress = program.progress("members");
+  Tally tally;
+  for (std::uint64_t number = range.begin; number < range.end; ++number) {
+    const double share =
+        static_cast<double>(number - range.begin) / static_cast<double>(range.end - range.begin);
+    if (!progress(share, fmt::format("member {}", number))) break;
+    if (maker.is_finished(number)) {
+      ++tally.there;
+    } else if (make_or_report(program, maker, number)) {
+      ++tally.made;
+    } else if (!Program::interrupted()) {
+      ++tally.failed;
+    }
+  }
+  if (!Program::interrupted()) progress(1.0, "");
+  return tally;
+}
+
+// Folders are made, and what cannot be written is refused, before any work.
+void prepare_outputs(const Program& program, const MemberMaker& maker, const MeshRequest& mesh,
+                     const MemberFiles& files, std::uint64_t first) {
+  for (const fs::path& name : maker.names_of(first)) {
+    if (name.has_parent_path()) make_output_folder(name.parent_path());
+  }
+  MeshRequest request = mesh;
+  request.preview.file = numbered(mesh.preview.file, first);
+  request.landforms = numbered(mesh.landforms, first);
+  check_mesh_outputs(program, request, numbered(files.mesh, first));
+}
+
+}  // namespace
+
+void declare_members_options(Program& program, MembersRequest& request) {
+  Option members =
+      program.app
+          .add_option("--members", request.range,
+                      "make members A to B - 1 of the recipe's family instead, each with files of its own: "
+                      "{member} in their names stands for its number. Member 4711 is the same body on every "
+                      "machine")
+          .placeholder("A:B");
+  program.app
+      .add_option("--manifest", request.manifest,
+                  "with --members: a file that gets a line of JSON for each finished member. Members that it "
+                  "has, and whose files are whole, are not made again")
+      .needs(members)
+      .placeholder("FILE.jsonl");
+}
+
+void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files) {
+  parse_range(request.range);
+  if (request.manifest.empty())
+    throw InputError("manifest: is required with --members; add --manifest bodies.jsonl");
+  require_mark(files.mesh, "--output");
+  require_mark(files.recipe, "--write-recipe");
+  require_mark(mesh.preview.file, "--preview");
+  require_mark(mesh.landforms, "--feature-list");
+}
+
+void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
+                  const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
+  const Range range = parse_range(request.range);
+  if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
+  const MemberMaker maker(program, request, mesh, files, recipe, file);
+  prepare_outputs(program, maker, mesh, files, range.begin);
+  if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
+    program.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again",
+                            request.manifest.string(),
+                            counted(static_cast<std::size_t>(unreadable), "line")));
+  }
+  const Tally tally = make_range(program, maker, range);
+  program.summary["members"] = {
+      {"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
+  program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}", request.manifest.string(),
+                          tally.made, tally.there, tally.failed, range.end - range.begin));
+}
+
+}  // namespace astrolith

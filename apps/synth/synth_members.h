@@ -1,0 +1,32 @@
+// The part of synth that makes many members of a family, each with files of its own, and a manifest of them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "apps/synth/synth_mesh.h"
+
+namespace astrolith {
+
+struct MembersRequest {
+  std::string range;               // "A:B": members A to B - 1; empty = the recipe itself
+  std::filesystem::path manifest;  // of finished members
+};
+
+// What each member writes. "{member}" in a name stands for the member's number in seven digits or more.
+struct MemberFiles {
+  std::filesystem::path mesh;    // empty = none
+  std::filesystem::path recipe;  // empty = none
+};
+
+void declare_members_options(Program& program, MembersRequest& request);
+
+// Throws InputError for a range without members, and for a name that would be the same for all members.
+void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files);
+
+// Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
+// the others go on. `file` is the recipe's, for messages. Throws InputError where no member can be made.
+void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
+                  const MemberFiles& files, const Recipe& recipe, const std::filesystem::path& file);
+
+}  // namespace astrolith

@@ -1,0 +1,60 @@
+// The manifest of a set of bodies: a file of lines, one JSON object for each finished member.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace astrolith {
+
+struct ManifestFile {
+  std::string name;  // relative to the manifest's folder
+  std::uint64_t bytes = 0;
+  std::string sha256;
+
+  bool operator==(const ManifestFile&) const = default;
+};
+
+struct ManifestEntry {
+  std::string family;  // the SHA-256 of what all members have in common
+  std::vector<ManifestFile> files;
+};
+
+class Manifest {
+ public:
+  // Reads the file, which need not exist. Of several lines about one member the last counts. A line that is
+  // no such object, as a process that died leaves it, counts as none. Throws InputError for a file that
+  // cannot be read or has more than 256 MB.
+  explicit Manifest(std::filesystem::path file);
+
+  int unreadable_lines() const { return unreadable_lines_; }
+
+  // Whether the member has been finished for this family with files of these names (as given to file_of),
+  // which all are there still, byte for byte.
+  bool has(std::uint64_t member, const std::string& family,
+           const std::vector<std::filesystem::path>& files) const;
+
+  // Name, size and hash of a file that is there. Throws InputError when it cannot be read.
+  ManifestFile file_of(const std::filesystem::path& file) const;
+
+  // Appends the line of a finished member: `line` has "member", "family", "files" and what else is to be
+  // kept. Throws as append_line() does.
+  void append(const nlohmann::ordered_json& line) const;
+
+ private:
+  std::string name_of(const std::filesystem::path& file) const;
+  void read();
+  bool read_line(const std::string& line);
+
+  std::filesystem::path file_;
+  std::map<std::uint64_t, ManifestEntry> entries_;
+  int unreadable_lines_ = 0;
+};
+
+// The files as a manifest's line states them.
+nlohmann::ordered_json to_json(const std::vector<ManifestFile>& files);
+
+}  // namespace astrolith

@@ -1,0 +1,147 @@
+// synth --members, run as a user runs it.
+#include <nlohmann/json.hpp>
+
+#include "recipe/sha256.h"
+#include "tests/apps/program_runner.h"
+#include "tests/apps/synth_runner.h"
+
+namespace astrolith {
+namespace {
+
+using nlohmann::json;
+using testing::expect_refusal;
+using testing::Outcome;
+using testing::run_program;
+using testing::text_of;
+
+const std::string kFamily = R"({"format_version": 1, "length_unit": "m",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100], [80, 0, 0, 60]]},
+  "layers": [{"type": "simplex", "amplitude": 1, "frequency": 0.01, "octaves": 2}],
+  "family": {"any_view": true, "fields": [
+    {"field": "layers[0].amplitude", "distribution": "uniform", "low": 1, "high": 10},
+    {"field": "body.spheres[1].radius", "distribution": "uniform", "low": 40, "high": 90}]}})";
+
+class SynthMembers : public ::testing::Test {
+ protected:
+  std::string name(const std::string& file) const { return (folder_ / file).string(); }
+
+  Outcome make(const std::string& range, std::vector<std::string> more = {}, const std::string& set = "set") {
+    std::vector<std::string> arguments{recipe_,
+                                       "--members",
+                                       range,
+                                       "-o",
+                                       name(set + "/body_{member}.ply"),
+                                       "--manifest",
+                                       name(set + "/set.jsonl"),
+                                       "--resolution",
+                                       "20"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(kSynth, arguments);
+  }
+  // The manifest's lines by member, without what depends on the moment.
+  std::map<int, json> manifest(const std::string& set = "set") const {
+    std::map<int, json> entries;
+    std::ifstream file(name(set + "/set.jsonl"));
+    for (std::string line; std::getline(file, line);) {
+      json entry = json::parse(line, nullptr, false);
+      if (entry.is_discarded()) continue;
+      entry.erase("seconds");
+      entries[entry["member"].get<int>()] = entry;
+    }
+    return entries;
+  }
+  void expect_made(const Outcome& outcome, const std::string& counts) {
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_NE(outcome.errors.find(counts), std::string::npos) << outcome.errors;
+  }
+
+  testing::WorkFolder folder_;
+  const std::string recipe_ = folder_.write("family.json", kFamily);
+};
+
+TEST_F(SynthMembers, EachHasFilesAndALine) {
+  expect_made(
+      make("3:6", {"--preview", name("set/{member}.png"), "--write-recipe", name("set/{member}.json")}),
+      "3 made, 0 already there, 0 failed, of 3");
+  const auto entries = manifest();
+  ASSERT_EQ(entries.size(), 3u);
+  for (const auto& [number, entry] : entries) {
+    EXPECT_EQ(entry["files"].size(), 3u);
+    for (const json& file : entry["files"]) {
+      const std::string path = name("set/" + file["name"].get<std::string>());
+      EXPECT_EQ(sha256_of_file(path), file["sha256"]);
+      EXPECT_EQ(text_of(path).size(), file["bytes"]);
+    }
+    EXPECT_GE(entry["drawn"]["layers[0].amplitude"], 1.0);
+    EXPECT_TRUE(entry["closed"]);
+    EXPECT_EQ(entry["view"].size(), 3u);
+  }
+  EXPECT_NE(entries.at(3)["files"][0]["sha256"], entries.at(4)["files"][0]["sha256"]);
+  // The member's own recipe makes the member's mesh.
+  const Outcome alone =
+      run_program(kSynth, {name("set/0000004.json"), "-o", name("alone.ply"), "--resolution", "20"});
+  EXPECT_EQ(alone.status, 0) << alone.errors;
+  EXPECT_EQ(sha256_of_file(name("alone.ply")), entries.at(4)["files"][0]["sha256"]);
+}
+
+TEST_F(SynthMembers, RangesThreadsAndOrderDoNotMatter) {
+  expect_made(make("0:4"), "4 made");
+  expect_made(make("2:4", {"--threads", "1"}, "other"), "2 made");
+  expect_made(make("0:2", {"--threads", "2"}, "other"), "2 made");
+  EXPECT_EQ(manifest(), manifest("other"));
+}
+
+TEST_F(SynthMembers, WhatIsThereIsNotMadeAgainAndWhatIsDamagedIs) {
+  expect_made(make("0:3"), "3 made, 0 already there");
+  const auto before = manifest();
+  expect_made(make("0:4"), "1 made, 3 already there");
+  std::ofstream(name("set/body_0000001.ply"), std::ios::app) << "x";
+  std::filesystem::remove(name("set/body_0000002.ply"));
+  expect_made(make("0:3"), "2 made, 1 already there");
+  auto after = manifest();
+  after.erase(3);
+  EXPECT_EQ(after, before);
+  // Another size is another set.
+  expect_made(make("0:1", {"--min-component", "0.1"}), "1 made, 0 already there");
+}
+
+TEST_F(SynthMembers, AManifestThatWasCutShortIsGoneOnWith) {
+  expect_made(make("0:3"), "3 made");
+  const auto before = manifest();
+  const std::string text = text_of(name("set/set.jsonl"));
+  std::filesystem::resize_file(name("set/set.jsonl"), text.size() - 40);
+  const Outcome outcome = make("0:3");
+  expect_made(outcome, "1 made, 2 already there");
+  EXPECT_NE(outcome.errors.find("1 line cut short"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(manifest(), before);
+}
+
+TEST_F(SynthMembers, AMemberThatFailsIsNamedAndTheOthersGoOn) {
+  // A folder stands where a member's mesh should be.
+  std::filesystem::create_directories(name("set/body_0000001.ply"));
+  const Outcome outcome = make("0:3");
+  EXPECT_EQ(outcome.status, 1) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("synth: member 1: "), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("2 made, 0 already there, 1 failed, of 3"), std::string::npos)
+      << outcome.errors;
+  EXPECT_EQ(manifest().size(), 2u);
+}
+
+TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& culprit) {
+    arguments.insert(arguments.begin(), recipe_);
+    expect_refusal(folder_, kSynth, arguments, culprit);
+  };
+  const std::string mesh = name("{member}.ply"), manifest = name("m.jsonl");
+  refused({"--members", "5:5", "-o", mesh, "--manifest", manifest}, "--members: 5:5 holds no member");
+  refused({"--members", "7:5", "-o", mesh, "--manifest", manifest}, "--members: 7:5 holds no member");
+  refused({"--members", "-1:5", "-o", mesh, "--manifest", manifest}, "--members: must be A:B");
+  refused({"--members", "0:9007199254740993", "-o", mesh, "--manifest", manifest}, "--members: must be A:B");
+  refused({"--members", "12", "-o", mesh, "--manifest", manifest}, "--members: must be A:B");
+  refused({"--members", "0:2", "-o", name("body.ply"), "--manifest", manifest},
+          "--output: every member writes");
+  refused({"--members", "0:2", "-o", mesh}, "--manifest: is required");
+}
+
+}  // namespace
+}  // namespace astrolith
