@@ -42,7 +42,16 @@ from astrolith.synthesis import (
 )
 
 if TYPE_CHECKING:
-    from astrolith.estimation import ShapeFit, TextureFit, classify, fit_shape, fit_texture, train_classifier
+    from astrolith.estimation import (
+        Packing,
+        ShapeFit,
+        TextureFit,
+        classify,
+        fit_shape,
+        fit_texture,
+        pack_spheres,
+        train_classifier,
+    )
 
 __all__ = [
     "Description",
@@ -50,6 +59,7 @@ __all__ = [
     "Gravity",
     "HeightMap",
     "Mesh",
+    "Packing",
     "Recipe",
     "ShapeFit",
     "Texture",
@@ -64,6 +74,7 @@ __all__ = [
     "gravity",
     "height_map",
     "mesh",
+    "pack_spheres",
     "read_mesh",
     "render",
     "texture",
@@ -72,7 +83,16 @@ __all__ = [
     "write_mesh",
 ]
 
-_ESTIMATION = ("ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "train_classifier")
+_ESTIMATION = (
+    "Packing",
+    "ShapeFit",
+    "TextureFit",
+    "classify",
+    "fit_shape",
+    "fit_texture",
+    "pack_spheres",
+    "train_classifier",
+)
 
 
 def __getattr__(name: str) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import Mesh, MeshLike, arrays_of
+from astrolith._mesh import MeshLike, arrays_of, unit_of
 from astrolith._options import Progress
 from astrolith._recipe import RecipeLike, Record, json_of, records
 
@@ -96,15 +96,6 @@ def _is_recipe(body: Any) -> bool:
     return isinstance(body, Mapping) or (isinstance(body, (str, os.PathLike)) and os.fspath(body).endswith((".json", ".astro")))
 
 
-def _unit_of(mesh: Any, unit: Optional[str]) -> str:
-    stated = mesh.length_unit if isinstance(mesh, Mesh) else ""
-    if unit is not None:
-        _arrays.choice(unit, "unit", _UNITS)
-    if stated and unit not in (None, stated):
-        raise ValueError(f"unit: the mesh states {stated}; leave the argument out")
-    return _arrays.choice(stated or unit or "km", "mesh.length_unit", _UNITS)
-
-
 def gravity(
     body: Union[MeshLike, RecipeLike],
     density: float,
@@ -188,7 +179,7 @@ def gravity(
             raise ValueError("unit: a recipe states its own; leave the argument out")
     else:
         arrays = arrays_of(body, "body")
-        name, length_unit = arrays.name, _unit_of(body, unit)
+        name, length_unit = arrays.name, unit_of(body, unit, _UNITS)
     table, columns, figures = _synthesis.gravity(
         name,
         None if arrays is None else arrays.vertices,

@@ -89,6 +89,18 @@ def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
     return Arrays(name, checked, _arrays.faces_of(faces, f"{name}.faces", len(checked), empty=no_faces), normals)
 
 
+def unit_of(mesh: MeshLike, unit: Optional[str], units: tuple[str, ...]) -> str:
+    """The unit of a mesh's vertices: what the mesh states, else the argument `unit`, else km."""
+    stated = mesh.length_unit if isinstance(mesh, Mesh) else ""
+    if unit is not None:
+        _arrays.choice(unit, "unit", units)
+    if stated in units and unit not in (None, stated):
+        raise ValueError(f"unit: the mesh states {stated}; leave the argument out")
+    if stated and stated not in units and unit is None:
+        raise ValueError(f"unit: is missing; the mesh states {stated}, which is none of {', '.join(units)}")
+    return unit or stated or "km"
+
+
 def _plain(array: Any) -> Any:
     """The array itself where it belongs to a class derived from ndarray, such as trimesh's."""
     return array.view(np.ndarray) if isinstance(array, np.ndarray) else array

@@ -14,11 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _estimation, _options
-from astrolith._mesh import MeshLike, arrays_of
+from astrolith._mesh import MeshLike, arrays_of, unit_of
 from astrolith._options import Progress
+from astrolith._packing import Packing, pack_spheres
 from astrolith._recipe import PathLike, Recipe, Record, records
 
-__all__ = ["ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "train_classifier"]
+__all__ = ["Packing", "ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "pack_spheres", "train_classifier"]
 
 
 @dataclasses.dataclass(eq=False)
@@ -39,10 +40,15 @@ class TextureFit:
 
     spectrum_residual is the distance from the photo's spectrum, weak where it is above weak_above; band_overlap is
     the share of the variance in the right octave.
+
+    `spectrum` is there where it was asked for: the power spectrum of the lobes on the grid of the image's DFT, float64
+    (height, width), or (layers, height, width) where there are several. It is ``abs(numpy.fft.fft2(image)) ** 2 /
+    image.size`` of a texture's expectation, frequency 0 first. Images above 1024 pixels have a grid of at most 1024.
     """
 
     recipe: Recipe
     figures: Record
+    spectrum: Optional[npt.NDArray[np.float64]] = None
 
 
 def _given(**arguments: Any) -> list[tuple[str, str]]:
@@ -58,6 +64,13 @@ def _name(file: Optional[PathLike]) -> Optional[str]:
     return None if file is None else os.fspath(file)
 
 
+def _most_spheres(spheres: Optional[int], size: Optional[int]) -> int:
+    """The largest number of metaballs; 0: as many as follow from the size of the recipe."""
+    if spheres is not None:
+        return _arrays.integer(spheres, "spheres", 1, 10000)
+    return 200 if size is None else 0
+
+
 _KERNELS = ("gaussian", "metaball", "soft_object", "wyvill", "cauchy")
 _OPTIMIZERS = ("pso", "crs2", "isres", "esch", "sbplx", "cmaes")
 
@@ -67,6 +80,7 @@ def fit_shape(
     faces: Optional[npt.ArrayLike] = None,
     *,
     spheres: Optional[int] = None,
+    bytes: Optional[int] = None,
     kernel: Optional[str] = None,
     subtract: Optional[float] = None,
     points: Optional[int] = None,
@@ -96,7 +110,10 @@ def fit_shape(
         The name of a file, a mesh, or (n, 3) float vertices; then `faces` are (m, 3) indices. The recipe of a file
         states the file's name and hash, and has the bytes that the program writes.
     spheres
-        Largest number of metaballs, 1 to 10000; default 200.
+        Largest number of metaballs, 1 to 10000; default 200, or what follows from `bytes`.
+    bytes
+        Round the numbers of the metaballs so that ``recipe.write("name.astro")`` takes at most so many bytes, 100 to
+        1000000, for the least error. The recipe then states no provenance. Needs `base_only`, and takes no `micro`.
     kernel
         "gaussian" (default), "metaball", "soft_object", "wyvill" or "cauchy".
     subtract
@@ -124,7 +141,7 @@ def fit_shape(
         Seconds after which the best so far is returned, measured figures included; default 0, none. The result then
         depends on the machine.
     unit
-        The unit of the vertices, "km" (default) or "m".
+        The unit of the vertices, "km" or "m"; default: what a Mesh states, else "km".
     seed
         0 to 2**53 - 1; default 1.
     checkpoint
@@ -151,13 +168,15 @@ def fit_shape(
     if not file:
         arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
     given = _given(
-        spheres=spheres, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
+        spheres=spheres, bytes=bytes, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
         population=population, generations=generations, base_only=base_only, unit=unit, seed=seed,
         details=_name(details), micro=_name(micro), mm_per_px=mm_per_px, micro_height=micro_height, device=device,
         time_limit=time_limit,
     )  # fmt: skip
     if details is not None and (base_only or generations is not None):
         raise ValueError("details: there is no search then; leave out base_only and generations")
+    if bytes is not None and (not base_only or micro is not None):
+        raise ValueError("bytes: are those of a bare body; pass base_only=True and leave out micro")
     if micro is None and (mm_per_px is not None or micro_height is not None):
         raise ValueError("micro: is missing; mm_per_px and micro_height are of its layers")
     if kernel not in (None, "gaussian") and subtract:
@@ -167,7 +186,8 @@ def fit_shape(
         None if arrays is None else arrays.vertices,
         None if arrays is None else arrays.faces,
         _arrays.choice(kernel or "gaussian", "kernel", _KERNELS),
-        200 if spheres is None else _arrays.integer(spheres, "spheres", 1, 10000),
+        _most_spheres(spheres, bytes),
+        0 if bytes is None else _arrays.integer(bytes, "bytes", 100, 1000000),
         0.5 if subtract is None else _arrays.number(subtract, "subtract", 0.0, 0.9),
         0 if points is None else _arrays.integer(points, "points", 0, 10**7),
         0.0 if tolerance is None else _arrays.number(tolerance, "tolerance", 0.0, 1e18),
@@ -181,7 +201,7 @@ def fit_shape(
         0.0 if micro_height is None else _arrays.number(micro_height, "micro_height", 1e-12, 1e12),
         _arrays.choice(device or "auto", "device", ("auto", "cpu", "cuda")),
         0.0 if time_limit is None else _arrays.number(time_limit, "time_limit", 0.0, 1e9),
-        _arrays.choice(unit or "km", "unit", ("km", "m")),
+        unit_of(mesh, unit, ("km", "m")),
         _name(checkpoint) or "",
         _name(report) or "",
         given,
@@ -235,6 +255,7 @@ def fit_texture(
     penalty: Optional[float] = None,
     gap: Optional[float] = None,
     max_memory: Optional[float] = None,
+    spectrum: bool = False,
     report: Optional[PathLike] = None,
     seed: Optional[int] = None,
     threads: int = 0,
@@ -271,6 +292,8 @@ def fit_texture(
         Sparsity penalty over the largest useful one (default 0.03), and the certified gap (default 1e-4).
     max_memory
         Refuse fits that are predicted to need more gigabytes; default: three quarters of the machine's.
+    spectrum
+        Whether the result shall have the lobes' power spectrum, what ``fit_gabor --spectrum`` writes.
     report
         A folder for a page, index.html, and pictures of photo and noise, spectra and lobes.
 
@@ -297,8 +320,8 @@ def fit_texture(
         raise ValueError("output: is missing; an exemplar layer names an image beside its recipe")
     if kind != "gabor" and colors:
         raise ValueError("model: an exemplar has no colours yet; leave out channels")
-    if kind == "exemplar" and report is not None:
-        raise ValueError('model: "exemplar" fits no lobes that a report could show; use "auto"')
+    if kind == "exemplar" and (report is not None or spectrum):
+        raise ValueError('model: "exemplar" fits no lobes that report or spectrum could show; use "auto"')
     if max_memory is None:
         most_bytes = 0.75 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     else:
@@ -307,13 +330,14 @@ def fit_texture(
         model=model, max_memory=max_memory, channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
         height_rms=height_rms, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty, gap=gap, seed=seed,
     )  # fmt: skip
-    json, figures = _estimation.fit_texture(
+    json, figures, power = _estimation.fit_texture(
         file or "image",
         planes,
         kind,
         _name(output) or "",
         _name(report) or "",
         most_bytes,
+        bool(spectrum),
         colors,
         0 if detrend is None else _arrays.integer(detrend, "detrend", 0, 6),
         _arrays.choice(detrend_by or "subtraction", "detrend_by", ("subtraction", "division")) == "division",
@@ -331,8 +355,8 @@ def fit_texture(
         progress,
     )
     if not json and output is not None:
-        return TextureFit(Recipe.read(output), records(figures))
-    return TextureFit(Recipe(records(json)), records(figures))
+        return TextureFit(Recipe.read(output), records(figures), power)
+    return TextureFit(Recipe(records(json)), records(figures), power)
 
 
 _CLASS_FEATURES = ("ahd", "wahl", "d2", "shapedna")

@@ -149,16 +149,19 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   if (fit.interrupted && stopped()) measure_fit(target, arguments.fit, fit);
   Recipe recipe;
   recipe.length_unit = arguments.unit;
-  recipe.seed = arguments.fit.seed;
-  recipe.provenance = std::move(provenance);
   recipe.body = fit.body;
+  const bool counts_bytes = arguments.fit.bytes > 0;  // every other field would take some
+  if (!counts_bytes) {
+    recipe.seed = arguments.fit.seed;
+    recipe.provenance = std::move(provenance);
+  }
   nlohmann::ordered_json details;
   const bool with_details = !arguments.details.base_only || !arguments.details.micro.empty();
   if (with_details && !stopped() && limit.allows_more()) {
     add_details(target, arguments, checkpoint, limit, state, recipe, details);
     measure_recipe(target, recipe, arguments.fit, fit);
   }
-  note_achieved(fit, recipe);
+  if (!counts_bytes) note_achieved(fit, recipe);
   if (!arguments.report.empty() && !stopped()) {
     const std::filesystem::path file = arguments.name;
     write_fit_report(target, fit, file.filename().string(), arguments.report);
@@ -171,11 +174,12 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   return {recipe_to_json(recipe), figures.dump()};
 }
 
+// `spheres` 0: as many as follow from the bytes.
 std::pair<std::string, std::string> fit_shape_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
-    const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, double subtract,
-    std::int64_t points, double tolerance, const std::string& optimizer, int population, int generations,
-    bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
+    const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, int bytes,
+    double subtract, std::int64_t points, double tolerance, const std::string& optimizer, int population,
+    int generations, bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
     double micro_height, const std::string& device, double time_limit, const std::string& unit,
     const std::string& checkpoint, const std::string& report, const Options& options, std::uint64_t seed,
     int threads, nb::object progress) {
@@ -184,7 +188,9 @@ std::pair<std::string, std::string> fit_shape_in_job(
                            unit, checkpoint,           report, options};
   arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
                                        [&](Kernel k) { return kernel_word(k) == kernel; });
-  arguments.fit.spheres = spheres;
+  arguments.fit.spheres = spheres > 0 ? spheres : spheres_for_bytes(bytes);
+  arguments.fit.bytes = bytes;
+  arguments.fit.length_unit = unit;
   arguments.fit.subtract = subtract;
   arguments.fit.points = points;
   arguments.fit.tolerance = tolerance;
@@ -240,14 +246,15 @@ NB_MODULE(_estimation, module) {
   using namespace astrolith::python;
   namespace nb = nanobind;
   declare_common(module);
+  declare_packing(module);
   declare_texture_fit(module);
   module.def("fit_shape", &fit_shape_in_job, nb::arg("name"), nb::arg("vertices").noconvert().none(),
-             nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("subtract"),
-             nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"), nb::arg("population"),
-             nb::arg("generations"), nb::arg("base_only"), nb::arg("details"), nb::arg("micro"),
-             nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"), nb::arg("time_limit"),
-             nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"), nb::arg("options"), nb::arg("seed"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("bytes"),
+             nb::arg("subtract"), nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"),
+             nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"),
+             nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"),
+             nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"),
+             nb::arg("options"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),
              nb::arg("depth"), nb::arg("components"), nb::arg("seed"), nb::arg("threads"),

@@ -24,6 +24,7 @@ std::string tool_named(const std::string& program);
 // The provenance of a fit to a file, or to arrays, which have no name.
 Provenance provenance_of(const std::string& program, const std::string& file, const Options& options);
 
+void declare_packing(nanobind::module_& module);
 void declare_texture_fit(nanobind::module_& module);
 
 }  // namespace astrolith::python

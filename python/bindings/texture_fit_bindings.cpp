@@ -4,12 +4,14 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,7 @@ struct TextureArguments {
   std::optional<std::vector<GreyImage>> planes;  // in place of the file
   std::string model, output, report;             // output, report: empty for none
   double most_bytes = 0.0;
+  bool spectrum = false;  // whether the spectra of the lobes are wanted
   PhotoFitOptions fit;
   PhotoRecipeOptions recipe;
   Options options;
@@ -51,6 +54,11 @@ std::vector<GreyImage> planes_of(const Planes& image) {
   }
   return planes;
 }
+
+struct FittedTexture {
+  Fitted fitted;
+  SpectraArray spectra;  // empty where they were not asked for
+};
 
 // Results that cannot be written are refused before the work.
 void require_results(const TextureArguments& a) {
@@ -116,7 +124,7 @@ bool compare_textures(const TextureArguments& a, const PhotoFit& photo, const Re
   return exemplar->scores[static_cast<int>(exemplar->variant)].sum() < lobes.sum();
 }
 
-Fitted fit(const TextureArguments& a, JobState& state) {
+FittedTexture fit(const TextureArguments& a, JobState& state) {
   require_results(a);
   nlohmann::ordered_json figures;
   std::vector<std::string> remarks;
@@ -126,7 +134,7 @@ Fitted fit(const TextureArguments& a, JobState& state) {
     figures.update(exemplar_figures(*exemplar));
     figures["remarks"] = remarks;
   }
-  if (a.model == "exemplar") return written_exemplar(a, *exemplar, std::move(figures));
+  if (a.model == "exemplar") return {written_exemplar(a, *exemplar, std::move(figures)), {}};
   check_memory(a);
   const Progress pursuit = state.progress("pursuit");
   const PhotoFit photo =
@@ -136,23 +144,35 @@ Fitted fit(const TextureArguments& a, JobState& state) {
   figures["model"] = "gabor";
   figures.update(photo_figures(photo));
   figures["remarks"] = photo.remarks;
+  SpectraArray spectra;
+  if (a.spectrum) spectra = fitted_spectra(photo);
   const bool more = (exemplar || !a.report.empty()) && !state.stopped();
   if (more && compare_textures(a, photo, recipe, exemplar, state, figures)) {
-    return written_exemplar(a, *exemplar, std::move(figures));
+    return {written_exemplar(a, *exemplar, std::move(figures)), std::move(spectra)};
   }
   if (!a.output.empty()) write_recipe(recipe, a.output);
-  return {recipe_to_json(recipe), figures.dump()};
+  return {{recipe_to_json(recipe), figures.dump()}, std::move(spectra)};
 }
 
-// Returns the recipe, empty for an exemplar layer, whose recipe lies in the file `output`; and the figures.
-std::pair<std::string, std::string> fit_texture(const std::string& name, const std::optional<Planes>& image,
-                                                const std::string& model, const std::string& output,
-                                                const std::string& report, double most_bytes, bool colors,
-                                                int detrend, bool by_division, int lobes, double mm_per_px,
-                                                const std::string& unit, double height_rms, bool periodogram,
-                                                bool fista, double penalty, double gap, const Options& given,
-                                                std::uint64_t seed, int threads, nb::object progress) {
-  TextureArguments arguments{name, {}, model, output, report, most_bytes, {}, {}, given};
+// The spectra as an array of (layers x height x width) or (height x width), or None.
+std::optional<NumpyArray<double>> array_of_spectra(SpectraArray&& spectra) {
+  if (spectra.power.empty()) return std::nullopt;
+  const auto side = [&](std::size_t k) { return static_cast<std::size_t>(spectra.shape[k]); };
+  if (spectra.shape.size() == 2) return array_of<double>(std::move(spectra.power), {side(0), side(1)});
+  return array_of<double>(std::move(spectra.power), {side(0), side(1), side(2)});
+}
+
+// What a fit gives: the recipe, empty for an exemplar layer, whose recipe lies in the file `output`; the
+// figures; the spectra where they were asked for.
+using TextureResult = std::tuple<std::string, std::string, std::optional<NumpyArray<double>>>;
+
+TextureResult fit_texture(const std::string& name, const std::optional<Planes>& image,
+                          const std::string& model, const std::string& output, const std::string& report,
+                          double most_bytes, bool spectrum, bool colors, int detrend, bool by_division,
+                          int lobes, double mm_per_px, const std::string& unit, double height_rms,
+                          bool periodogram, bool fista, double penalty, double gap, const Options& given,
+                          std::uint64_t seed, int threads, nb::object progress) {
+  TextureArguments arguments{name, {}, model, output, report, most_bytes, spectrum, {}, {}, given};
   PhotoFitOptions& options = arguments.fit;
   options.colors = colors;
   options.detrend_degree = detrend;
@@ -166,20 +186,20 @@ std::pair<std::string, std::string> fit_texture(const std::string& name, const s
   if (image) arguments.planes = planes_of(*image);
   const std::string stem = image ? "" : std::filesystem::path(name).stem().string();
   arguments.recipe = {stem, mm_per_px, unit, height_rms, seed};
-  const Fitted fitted =
+  FittedTexture made =
       run_job(std::move(progress), threads, [arguments](JobState& state) { return fit(arguments, state); });
-  return {fitted.json, fitted.figures};
+  return {made.fitted.json, made.fitted.figures, array_of_spectra(std::move(made.spectra))};
 }
 
 }  // namespace
 
 void declare_texture_fit(nb::module_& module) {
   module.def("fit_texture", &fit_texture, nb::arg("name"), nb::arg("image").noconvert().none(),
-             nb::arg("model"), nb::arg("output"), nb::arg("report"), nb::arg("most_bytes"), nb::arg("colors"),
-             nb::arg("detrend"), nb::arg("by_division"), nb::arg("lobes"), nb::arg("mm_per_px"),
-             nb::arg("unit"), nb::arg("height_rms"), nb::arg("periodogram"), nb::arg("fista"),
-             nb::arg("penalty"), nb::arg("gap"), nb::arg("options"), nb::arg("seed"), nb::arg("threads"),
-             nb::arg("progress").none());
+             nb::arg("model"), nb::arg("output"), nb::arg("report"), nb::arg("most_bytes"),
+             nb::arg("spectrum"), nb::arg("colors"), nb::arg("detrend"), nb::arg("by_division"),
+             nb::arg("lobes"), nb::arg("mm_per_px"), nb::arg("unit"), nb::arg("height_rms"),
+             nb::arg("periodogram"), nb::arg("fista"), nb::arg("penalty"), nb::arg("gap"), nb::arg("options"),
+             nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 }  // namespace astrolith::python

@@ -78,6 +78,38 @@ def test_arrays_give_the_body_that_their_file_gives(peanut, tmp_path):
     assert of_arrays.recipe.provenance.get("input_name", "") == ""
 
 
+@pytest.mark.parametrize("spheres", [None, 12])
+def test_a_fit_in_few_bytes_has_the_bytes_of_fit_shape(peanut, program, tmp_path, spheres):
+    astrolith.write_mesh(peanut, tmp_path / "peanut.ply")
+    words = [] if spheres is None else ["--spheres", spheres]
+    program("fit_shape", "peanut.ply", "-o", "program.astro", "--base-only", "--bytes", 150, "--unit", "m",
+            "--population", 4, "--seed", 3, *words)  # fmt: skip
+    fit = astrolith.fit_shape(tmp_path / "peanut.ply", base_only=True, bytes=150, unit="m", population=4, seed=3, spheres=spheres)
+    fit.recipe.write(tmp_path / "package.astro")
+    written = (tmp_path / "package.astro").read_bytes()
+    assert written == (tmp_path / "program.astro").read_bytes() and len(written) <= 150
+    assert fit.recipe.provenance.get("tool", "") == ""
+
+
+def test_bytes_are_those_of_a_bare_body(peanut, example):
+    for more in ({}, {"base_only": True, "micro": example("rubble_pile")}):
+        with pytest.raises(ValueError, match="^bytes: are those of a bare body; pass base_only=True"):
+            astrolith.fit_shape(peanut, bytes=150, **more)
+    with pytest.raises(ValueError, match="^bytes: must be from 100"):
+        astrolith.fit_shape(peanut, bytes=99, base_only=True)
+
+
+def test_a_fit_takes_the_unit_that_a_mesh_states(peanut):
+    fast = {**FAST, "base_only": True, "points": 500}
+    in_metres = astrolith.Mesh(peanut.vertices, peanut.faces, length_unit="m")
+    assert astrolith.fit_shape(in_metres, **fast).recipe.length_unit == "m"
+    with pytest.raises(ValueError, match="^unit: the mesh states m; leave the argument out"):
+        astrolith.fit_shape(in_metres, unit="km", **fast)
+    in_inches = astrolith.Mesh(peanut.vertices, peanut.faces, length_unit="in")
+    with pytest.raises(ValueError, match="^unit: is missing; the mesh states in, which is none of km, m"):
+        astrolith.fit_shape(in_inches, **fast)
+
+
 def test_ctrl_c_in_a_fit_is_quick_and_leaves_a_checkpoint_that_goes_on(peanut, tmp_path):
     checkpoint = tmp_path / "checkpoint.json"
     options = {**FAST, "generations": 4000}
@@ -113,6 +145,24 @@ def test_a_texture_of_a_photo_has_the_recipe_of_fit_gabor(example, program, tmp_
     assert of_array.recipe.layers[0].lobes == fit.recipe.layers[0].lobes
 
 
+@pytest.mark.parametrize("channels", ["luminance", "pca"])
+def test_the_spectrum_of_the_lobes_is_what_fit_gabor_writes(program, tmp_path, channels):
+    rows, columns = np.indices((48, 64))
+    grey = 128 + 40 * np.sin(0.7 * columns) + 20 * np.cos(1.1 * rows + 0.3 * columns) + (rows * 7 + columns * 3) % 23
+    image = np.dstack([grey, 0.8 * grey, 255 - grey * 0.6]).clip(0, 255).astype(np.uint8)
+    (tmp_path / "rock.png").write_bytes(png(image))
+    program("fit_gabor", "rock.png", "-o", "r.json", "--lobes", "6", "--channels", channels, "--spectrum", "s.npy")
+    fit = astrolith.fit_texture(tmp_path / "rock.png", lobes=6, channels=channels, spectrum=True)
+    wanted = np.load(tmp_path / "s.npy")
+    assert fit.spectrum.dtype == np.float64 and fit.spectrum.shape == wanted.shape
+    assert fit.spectrum.tobytes() == wanted.tobytes()
+    assert wanted.shape == (48, 64) if channels == "luminance" else wanted.shape[1:] == (48, 64)
+    without = astrolith.fit_texture(tmp_path / "rock.png", lobes=6, channels=channels)
+    assert without.spectrum is None and without.recipe == fit.recipe
+    with pytest.raises(ValueError, match='^model: "exemplar" fits no lobes that report or spectrum'):
+        astrolith.fit_texture(image, model="exemplar", output=tmp_path / "e.json", spectrum=True)
+
+
 @pytest.mark.parametrize("model", ["exemplar", "auto"])
 def test_an_exemplar_of_a_photo_has_the_bytes_of_fit_gabor(program, tmp_path, model):
     rows, columns = np.indices((64, 64))
@@ -144,17 +194,17 @@ def test_a_photo_beyond_the_memory_is_refused(tmp_path):
     assert 0.5 < fit.figures.variance_ratio_synthesized < 1.5
 
 
-def png(grey):
-    """The bytes of an 8-bit grey PNG."""
+def png(pixels):
+    """The bytes of an 8-bit PNG, grey or RGB."""
     import struct
     import zlib
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    height, width = grey.shape
-    rows = b"".join(b"\0" + row.tobytes() for row in grey)
-    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    height, width = pixels.shape[:2]
+    rows = b"".join(b"\0" + row.tobytes() for row in pixels)
+    header = struct.pack(">IIBBBBB", width, height, 8, 0 if pixels.ndim == 2 else 2, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 

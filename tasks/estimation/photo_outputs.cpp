@@ -101,15 +101,22 @@ void write_reports(const std::filesystem::path& image, const PhotoFit& photo,
   }
 }
 
-void write_spectra(const PhotoFit& photo, const std::filesystem::path& file) {
+SpectraArray fitted_spectra(const PhotoFit& photo) {
   const PowerSpectrum& first = photo.channels.front().fit.fitted;
-  std::vector<int> shape{first.height, first.width};
-  std::vector<double> power;
+  SpectraArray spectra{{first.height, first.width}, {}};
   for (const FittedChannel& channel : photo.channels) {
-    power.insert(power.end(), channel.fit.fitted.power.begin(), channel.fit.fitted.power.end());
+    const std::vector<double>& power = channel.fit.fitted.power;
+    spectra.power.insert(spectra.power.end(), power.begin(), power.end());
   }
-  if (photo.channels.size() > 1) shape.insert(shape.begin(), static_cast<int>(photo.channels.size()));
-  write_npy(power, shape, file);
+  if (photo.channels.size() > 1) {
+    spectra.shape.insert(spectra.shape.begin(), static_cast<int>(photo.channels.size()));
+  }
+  return spectra;
+}
+
+void write_spectra(const PhotoFit& photo, const std::filesystem::path& file) {
+  const SpectraArray spectra = fitted_spectra(photo);
+  write_npy(spectra.power, spectra.shape, file);
 }
 
 }  // namespace astrolith

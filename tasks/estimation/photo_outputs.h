@@ -22,7 +22,16 @@ double synthesized_variance_ratio(const PhotoFit& photo, const std::vector<std::
 void write_reports(const std::filesystem::path& image, const PhotoFit& photo,
                    const std::vector<std::vector<float>>& syntheses, const std::filesystem::path& folder);
 
-// Writes the fitted spectra: (height x width), or (channels x height x width) where there are several.
+// Power spectra as one array: (height x width), or (channels x height x width) where there are several.
+struct SpectraArray {
+  std::vector<int> shape;
+  std::vector<double> power;
+};
+
+// The spectra of the lobes: |DFT|^2 / (width height) on the grid of the image's DFT, frequency 0 first.
+SpectraArray fitted_spectra(const PhotoFit& photo);
+
+// Writes the fitted spectra as a .npy file.
 void write_spectra(const PhotoFit& photo, const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -17,9 +17,12 @@ struct PackingTable {
   double density = 0.0;      // kg / m^3, >= 0; 0 leaves the masses out
 };
 
-// Writes the columns x, y, z and radius, and the mass in kg if a density is given. The spheres share the mass
-// of the whole body in proportion to their volumes, so that the mascons (point masses at the centres) weigh
-// as much as the body. Throws InputError if the file cannot be written.
+// The mass of each sphere in kg. The spheres share the mass of the whole body in proportion to their volumes,
+// so that the mascons (point masses at the centres) weigh as much as the body.
+std::vector<double> sphere_masses(const std::vector<Sphere>& spheres, const PackingTable& table);
+
+// Writes the columns x, y, z and radius, and the masses if a density is given. Throws InputError if the file
+// cannot be written.
 void write_packing_table(const std::vector<Sphere>& spheres, const PackingTable& table,
                          const std::filesystem::path& file);
 
