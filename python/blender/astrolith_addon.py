@@ -176,8 +176,8 @@ def material_of(name, image, texture_length, with_colors):
     surface = nodes["Principled BSDF"]
     surface.inputs["Roughness"].default_value = 1.0
     surface.inputs["Base Color"].default_value = (0.18, 0.173, 0.162, 1.0)
-    if "Specular" in surface.inputs:
-        surface.inputs["Specular"].default_value = 0.0
+    specular = "Specular" if "Specular" in surface.inputs else "Specular IOR Level"  # Blender 3.4, 4.0
+    surface.inputs[specular].default_value = 0.0
     if image:
         coordinates, mapping, texture = (nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "Mapping", "TexImage"))
         mapping.inputs["Scale"].default_value = (1 / texture_length,) * 3

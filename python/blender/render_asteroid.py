@@ -71,11 +71,13 @@ def main():
     scene.render.filepath = str(options.picture.resolve())
     bpy.ops.render.render(write_still=True)
     mesh = made.data
+    surface = mesh.materials[0].node_tree.nodes["Principled BSDF"]
     print("ASTEROID " + json.dumps({
         "vertices": len(mesh.vertices), "triangles": len(mesh.polygons), "smooth": all(p.use_smooth for p in mesh.polygons),
         "dimensions": list(made.dimensions), "metres": made["metres_per_blender_unit"], "by": made["made_by"],
         "colors": [a.name for a in mesh.color_attributes], "images": [i.name for i in bpy.data.images if i.packed_file],
         "normals": mesh.has_custom_normals, "seed": made["astrolith_seed"],
+        "specular": [i.default_value for i in surface.inputs if i.name in ("Specular", "Specular IOR Level")],
     }))  # fmt: skip
 
 

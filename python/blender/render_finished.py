@@ -33,11 +33,12 @@ def texture(nodes, links, file, space, scale):
 def material(scale):
     made = bpy.data.materials.new("rock")
     made.use_nodes = True
-    made.cycles.displacement_method = "BOTH"
+    (made if hasattr(made, "displacement_method") else made.cycles).displacement_method = "BOTH"  # Blender 4.1, 3.4
     nodes, links = made.node_tree.nodes, made.node_tree.links
     surface, end = nodes["Principled BSDF"], nodes["Material Output"]
     surface.inputs["Roughness"].default_value = 1.0
-    surface.inputs["Specular"].default_value = 0.0
+    specular = "Specular" if "Specular" in surface.inputs else "Specular IOR Level"  # Blender 3.4, 4.0
+    surface.inputs[specular].default_value = 0.0
     colour = texture(nodes, links, colour_file, "sRGB", scale)
     links.new(colour.outputs["Color"], surface.inputs["Base Color"])
     relief = nodes.new("ShaderNodeDisplacement")
@@ -51,7 +52,10 @@ def material(scale):
 def body():
     bpy.ops.object.select_all(action="SELECT")
     bpy.ops.object.delete()
-    bpy.ops.import_mesh.ply(filepath=mesh_file)
+    if bpy.app.version < (4, 0, 0):
+        bpy.ops.import_mesh.ply(filepath=mesh_file)
+    else:
+        bpy.ops.wm.ply_import(filepath=mesh_file)
     made = bpy.context.object
     bpy.ops.object.shade_smooth()
     made.data.materials.append(material(1.0 / float(length)))

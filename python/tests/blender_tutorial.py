@@ -51,7 +51,7 @@ def displaced(height, midlevel, method, scale=1.0):
     material = bpy.data.materials.new("displaced")
     material.use_nodes = True
     if method:
-        material.cycles.displacement_method = method
+        (material if hasattr(material, "displacement_method") else material.cycles).displacement_method = method
     nodes, links = material.node_tree.nodes, material.node_tree.links
     texture, displacement = nodes.new("ShaderNodeTexImage"), nodes.new("ShaderNodeDisplacement")
     texture.image = bpy.data.images.new("height", 8, 8, float_buffer=True)
@@ -85,7 +85,8 @@ def displaced(height, midlevel, method, scale=1.0):
 
 
 found = {
-    "ply": imported(bpy.ops.import_mesh.ply, PLY),
+    "version": list(bpy.app.version),
+    "ply": imported(bpy.ops.import_mesh.ply if bpy.app.version < (4, 0, 0) else bpy.ops.wm.ply_import, PLY),
     "glb": imported(bpy.ops.import_scene.gltf, GLB),
     "height": image(HEIGHT, "Non-Color"),
     "colour": image(COLOUR),
