@@ -102,3 +102,8 @@ def __getattr__(name: str) -> Any:
 
         return getattr(astrolith.estimation, name)
     raise AttributeError(f"module 'astrolith' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """The public names, also of the fits that are not loaded yet, and of the modules."""
+    return sorted({*__all__, "bridges", "estimation", "synthesis"})

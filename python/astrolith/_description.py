@@ -37,6 +37,9 @@ class Description:
     undefined_curvatures: int
     remarks: list[str]
 
+    def __repr__(self) -> str:
+        return f"<astrolith.Description: {self.points} points, histogram {self.histogram.shape}>"
+
 
 _FEATURES = ("ahd", "wahl")
 

@@ -32,6 +32,11 @@ class Field:
     def __init__(self, recipe: RecipeLike) -> None:
         json, name = json_of(recipe)
         self._field = _synthesis.Field(json, name)
+        self._name = name
+
+    def __repr__(self) -> str:
+        (x, y, z), (right, far, up) = self.bounds
+        return f"<astrolith.Field of {self._name}: within ({x:.4g}, {y:.4g}, {z:.4g}) and ({right:.4g}, {far:.4g}, {up:.4g})>"
 
     def value(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> npt.NDArray[np.float64]:
         """Evaluate F, in length units.

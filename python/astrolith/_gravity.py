@@ -38,6 +38,9 @@ class Gravity:
     columns: list[str]
     figures: Record
 
+    def __repr__(self) -> str:
+        return f"<astrolith.Gravity: {len(self.table)} {self.figures['places']}, columns {', '.join(self.columns)}>"
+
     def _column(self, name: str) -> npt.NDArray[np.float64]:
         if name not in self.columns:
             raise ValueError(f"{name}: points have no normals, so there is none; ask for facets or vertices")

@@ -45,6 +45,9 @@ class HeightMap:
     up: tuple[float, float, float]
     body_frame: str = ""
 
+    def __repr__(self) -> str:
+        return f"<astrolith.HeightMap: {self.heights.shape} heights in metres, {self.pixel:.4g} m a pixel>"
+
 
 def height_map(
     recipe: RecipeLike,

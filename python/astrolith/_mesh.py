@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import Any, Optional, Union
+from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -77,6 +77,8 @@ def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
         vertices, faces = mesh.vertices, mesh.faces
         if isinstance(mesh, Mesh):
             normals = mesh.normals
+    elif isinstance(mesh, Mapping):
+        raise ValueError(f"{name}: is a recipe, and must be a mesh; pass astrolith.mesh({name})")
     else:
         raise ValueError(
             f"{name}: must be a Mesh, a pair (vertices, faces), an object with both or a file, and is {type(mesh).__name__}"
@@ -131,7 +133,7 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
 
 
 def write_mesh(mesh: MeshLike, file: PathLike) -> None:
-    """Write .ply (binary, float32), .obj (text), .stl (binary) or .glb, whole or not at all.
+    """Write .ply (binary, float32), .obj (text), .stl (binary), .glb, .icq or .tab, whole or not at all.
 
     A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply.
 

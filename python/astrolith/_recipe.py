@@ -53,6 +53,11 @@ class Recipe(Record):
     AttributeError: seeed: no such field; there are ...
     """
 
+    def __init__(self, *fields: Any, **more: Any) -> None:
+        if fields and isinstance(fields[0], (str, os.PathLike)):
+            raise ValueError("recipe: a file is read by Recipe.read(file), a text by Recipe.from_json(text)")
+        super().__init__(*fields, **more)
+
     @classmethod
     def from_json(cls, text: str, name: str = "recipe") -> "Recipe":
         """Read a JSON text.

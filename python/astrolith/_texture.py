@@ -34,6 +34,10 @@ class Texture:
     height_unit: str = ""
     height_rms: float = 0.0
 
+    def __repr__(self) -> str:
+        scale = f", rms {self.height_rms:.4g} {self.height_unit}" if self.content == "height" else ""
+        return f"<astrolith.Texture: {self.content} {self.values.shape}{scale}>"
+
 
 def texture(
     recipe: RecipeLike,

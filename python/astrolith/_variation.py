@@ -23,6 +23,9 @@ class Variation:
     mean_distance: float
     max_distance: float
 
+    def __repr__(self) -> str:
+        return f"<astrolith.Variation: similarity {self.similarity:.4f}, mean distance {self.mean_distance:.4f} of the diagonal>"
+
 
 def vary(
     recipe: RecipeLike,

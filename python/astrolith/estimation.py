@@ -33,6 +33,10 @@ class ShapeFit:
     recipe: Recipe
     figures: Record
 
+    def __repr__(self) -> str:
+        spheres = len(self.recipe.body.spheres) + len(self.recipe.body.get("subtract", []))
+        return f"<astrolith.ShapeFit: {spheres} metaballs, mean distance {self.figures.mean_distance:.4g} of the diagonal>"
+
 
 @dataclasses.dataclass(eq=False)
 class TextureFit:
@@ -49,6 +53,9 @@ class TextureFit:
     recipe: Recipe
     figures: Record
     spectrum: Optional[npt.NDArray[np.float64]] = None
+
+    def __repr__(self) -> str:
+        return f"<astrolith.TextureFit: {self.figures.model}, {len(self.recipe.layers)} layers of noise or image>"
 
 
 def _given(**arguments: Any) -> list[tuple[str, str]]:
@@ -215,6 +222,8 @@ def fit_shape(
 def _planes(image: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """(planes, height, width) float64, full scale 1."""
     array = np.asarray(image)
+    if array.ndim == 3 and array.shape[2] == 4:
+        raise ValueError("image: has four channels; numpy.ascontiguousarray(image[..., :3]) leaves out alpha")
     if array.ndim not in (2, 3) or array.ndim == 3 and array.shape[2] != 3:
         raise ValueError(f"image: has the shape {array.shape}; it must be (height, width) or (height, width, 3)")
     if not array.flags.c_contiguous:

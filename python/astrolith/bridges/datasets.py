@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Iterator, Optional, Sequence
+import os
+from typing import Any, Callable, Iterable, Iterator, Mapping, Optional, Sequence, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,7 @@ class Bodies:
 
     Item k is a dictionary: ``recipe`` (the recipe's number), ``seed``, ``vertices`` (n, 3) float32, ``faces`` (m, 3)
     int64 and ``normals`` (n, 3) float32; with `points`, ``points`` and ``point_normals`` (points, 3) float32 instead.
-    An item is the same whenever and wherever it is made.
+    An item is the same whenever and wherever it is made. A slice gives a list of items.
 
     Parameters
     ----------
@@ -56,8 +57,10 @@ class Bodies:
         points: int = 0,
         threads: int = 1,
     ) -> None:
-        if isinstance(recipes, (str, dict)):
+        if isinstance(recipes, (str, os.PathLike, Mapping)):
             raise ValueError("recipes: must be a list of recipes; put the one into a list")
+        if not isinstance(seeds, Iterable):
+            raise ValueError(f"seeds: must be whole numbers, such as range(100), and is {seeds!r}")
         self._recipes = list(recipes)
         self._seeds = [_options.seed(seed) for seed in seeds]
         self._resolution = _arrays.integer(resolution, "resolution", 4, 8192)
@@ -71,7 +74,18 @@ class Bodies:
     def __iter__(self) -> Iterator[dict[str, Any]]:
         return (self[k] for k in range(len(self)))
 
-    def __getitem__(self, index: int) -> dict[str, Any]:
+    def __repr__(self) -> str:
+        return f"<astrolith.bridges.Bodies: {len(self._recipes)} recipes x {len(self._seeds)} seeds, resolution {self._resolution}>"
+
+    @overload
+    def __getitem__(self, index: int) -> dict[str, Any]: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[dict[str, Any]]: ...
+
+    def __getitem__(self, index: Union[int, slice]) -> Union[dict[str, Any], list[dict[str, Any]]]:
+        if isinstance(index, slice):
+            return [self[k] for k in range(*index.indices(len(self)))]
         length = len(self)
         k = index.__index__()
         if not -length <= k < length:
