@@ -55,7 +55,7 @@ class TextureFit:
     spectrum: Optional[npt.NDArray[np.float64]] = None
 
     def __repr__(self) -> str:
-        return f"<astrolith.TextureFit: {self.figures.model}, {len(self.recipe.layers)} layers of noise or image>"
+        return f"<astrolith.TextureFit: {self.figures.model}, layers: {len(self.recipe.layers)}>"
 
 
 def _given(**arguments: Any) -> list[tuple[str, str]]:

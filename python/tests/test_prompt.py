@@ -39,7 +39,7 @@ def test_fits_show_in_a_line(ball):
     pytest.importorskip("astrolith._estimation")
     rows, columns = np.indices((48, 48))
     image = (128 + 40 * np.sin(0.7 * columns + 0.2 * rows) + (rows * 7 + columns * 3) % 23).astype(np.uint8)
-    assert repr(astrolith.fit_texture(image, lobes=3)) == "<astrolith.TextureFit: gabor, 1 layers of noise or image>"
+    assert repr(astrolith.fit_texture(image, lobes=3)) == "<astrolith.TextureFit: gabor, layers: 1>"
     assert repr(astrolith.pack_spheres(ball, spheres=2)).startswith("<astrolith.Packing: 2 spheres fill ")
     fit = astrolith.fit_shape(ball, spheres=4, points=500, population=2, base_only=True)
     assert repr(fit).startswith("<astrolith.ShapeFit: ") and len(repr(fit)) < 250
