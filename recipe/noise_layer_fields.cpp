@@ -164,6 +164,7 @@ void visit_fields(FieldVisitor& v, ExemplarLayer& layer) {
   v.field("anchor_spacing", layer.anchor_spacing, range(0.1, 2.0));
   v.word("border", layer.border, kExemplarBorders, border_word);
   v.word("rotation", layer.rotation, kExemplarRotations, rotation_word);
+  v.field_if(layer.color, "color", layer.color);
 }
 
 static void visit_row(FieldVisitor& v, CellEdges& lattice) {

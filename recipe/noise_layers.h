@@ -180,6 +180,11 @@ constexpr std::string_view rotation_word(ExemplarRotation rotation) {
 // four anchors, its coordinates u_k in their frames, and the Gaussianised exemplar g,
 //   z = sum_k w_k^exponent g(u_k + offset_k) / sqrt(sum_k w_k^(2 exponent)),   height = quantile(normal(z)).
 // The height has mean 0. Its standard deviation is height_rms, or height_range times that of the image.
+//
+// With `color` the layer also paints. The image's colours are taken along their principal axes, and each axis
+// is Gaussianised and blended as above, with the weights and offsets of the height. The layer's weight (mask,
+// locality) blends the colour over that of the layers before it. A layer that combines as a warp or a mask
+// paints nothing.
 struct ExemplarLayer {
   static constexpr std::string_view kType = "exemplar";
 
@@ -195,11 +200,16 @@ struct ExemplarLayer {
   double anchor_spacing = 0.5;  // cube root of the volume per anchor, in shorter sides of the image, [0.1, 2]
   ExemplarBorder border = ExemplarBorder::kRepeat;
   ExemplarRotation rotation = ExemplarRotation::kNone;
+  bool color = false;  // whether the layer paints the colours of the image
 
   // The image, which load_recipe() decodes. It is no field of the file. Null: the layer cannot be evaluated.
   std::shared_ptr<const ExemplarImage> pixels;
 
   bool has_height() const { return height_rms != 0.0 || height_range != 0.0; }
+  // Whether the layer paints the surface of a body.
+  bool paints() const {
+    return color && use.combination.kind != Combine::kWarp && use.combination.kind != Combine::kMask;
+  }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     pixel_size *= ratio;

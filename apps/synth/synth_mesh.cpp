@@ -20,6 +20,7 @@
 #include "numerics/files/output_file.h"
 #include "recipe/sha256.h"
 #include "synthesis/field/landform_list.h"
+#include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
 #include "tasks/synthesis/body_mesh.h"
 
@@ -100,22 +101,32 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
          (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
 }
 
+// Whether the format has a place for the colours of vertices.
+bool holds_colors(const fs::path& output) {
+  return output.extension() == ".ply" || output.extension() == ".glb";
+}
+
 // Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
 // erosion changes the finished mesh. The other formats, erosion and the picture need the whole mesh in
 // memory.
 class MeshOutput {
  public:
   MeshOutput(const std::string& tool, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
-             const Region& region, const fs::path& output)
-      : output_(output), info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
+             const Region& region, const ImplicitField& field, const fs::path& output)
+      : output_(output),
+        center_(region.center),
+        info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
     if (region.is_patch) info_.origin = region.center;
+    if (has_colors(recipe) && (holds_colors(output) || !request.preview.file.empty())) {
+      colors_.emplace(recipe, file.string(), field);
+    }
     if (request.labels) {
       labels_.emplace(recipe, file.string(), region.cube());
       info_.notes = labels_->legend();
     }
     const bool streamed = output.extension() == ".ply" && !recipe.erosion && !request.gravity.wanted();
     if (!streamed || !request.preview.file.empty() || !request.height_map.empty()) sinks_.add(collector_);
-    if (streamed) stream(region.center, request.points);
+    if (streamed) stream(request.points);
   }
   MeshOutput(const MeshOutput&) = delete;
   MeshOutput& operator=(const MeshOutput&) = delete;
@@ -123,6 +134,11 @@ class MeshOutput {
   MeshSink& sink() { return sinks_; }
   // The mesh in memory; empty where nothing needs it there.
   TriangleMesh& collected() { return collector_.mesh; }
+
+  // Paints the mesh in memory. Call it when the mesh is complete.
+  void paint() {
+    if (colors_) collector_.mesh.colors = colors_->colors_of(center_, collector_.mesh);
+  }
 
   // Completes the file. Before that it does not exist. Quantities, if any, are properties of its vertices.
   void write(const std::vector<VertexValues>& quantities) {
@@ -136,18 +152,20 @@ class MeshOutput {
   }
 
  private:
-  void stream(const Vec3d& center, bool only_points) {
+  void stream(bool only_points) {
     VertexLabeller labeller;
-    if (labels_) {
-      labeller = [this, center](auto vertices, auto out) { labels_->label(center, vertices, out); };
-    }
-    writer_ = std::make_unique<PlyStreamWriter>(output_, info_, std::move(labeller));
+    VertexPainter painter;
+    if (labels_) labeller = [this](auto vertices, auto out) { labels_->label(center_, vertices, out); };
+    if (colors_) painter = [this](auto vertices, auto out) { colors_->paint(center_, vertices, out); };
+    writer_ = std::make_unique<PlyStreamWriter>(output_, info_, std::move(labeller), std::move(painter));
     points_ = std::make_unique<PointsOnly>(*writer_);
     sinks_.add(only_points ? static_cast<MeshSink&>(*points_) : *writer_);
   }
 
   fs::path output_;
+  Vec3d center_;  // of the patch; 0 for a whole mesh
   MeshFileInfo info_;
+  std::optional<SurfaceColors> colors_;  // absent where nothing shows them
   std::optional<SurfaceLabels> labels_;
   MeshCollector collector_;
   std::unique_ptr<PlyStreamWriter> writer_;
@@ -169,7 +187,7 @@ struct MeshJob {
 // Makes the mesh and all files that were asked for.
 void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen) {
   const auto& [request, recipe, file, region, field, resolution, output] = job;
-  MeshOutput result(program.tool(), request, recipe, file, region, output);
+  MeshOutput result(program.tool(), request, recipe, file, region, field, output);
   ExtentOfMesh extent;
   SinkList sinks;
   sinks.add(result.sink());
@@ -185,6 +203,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     extent.measure(result.collected());
   }
 
+  result.paint();
   std::vector<VertexValues> quantities;
   if (request.gravity.wanted())
     quantities = vertex_gravity(program, request.gravity, recipe, result.collected());
@@ -194,6 +213,13 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
   if (!request.landforms.empty()) write_landform_list(field, recipe, region.cube(), request.landforms);
   summarize_mesh(program, region, made.statistics, report);
+  if (has_colors(recipe)) {
+    program.summary["vertex_colors"] = holds_colors(output);
+    if (!holds_colors(output)) {
+      program.say("note: " + output.extension().string() +
+                  " holds no colours, which the recipe's layers have; write a .ply or a .glb");
+    }
+  }
   summarize_output(program, output);
   program.say(output.string() + ": " + describe_mesh(report, request) + ", " +
               size_words(extent.box.extent(), recipe.length_unit) + chosen.remark());

@@ -3,11 +3,17 @@
 #include "apps/output_names.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/srgb.h"
 #include "synthesis/picture/image_file.h"
 #include "synthesis/picture/preview.h"
 
 namespace astrolith {
 namespace {
+
+Vec3f linear_color(const VertexColor& color) {
+  const auto linear = [](std::uint8_t byte) { return static_cast<float>(linear_of_srgb(byte / 255.0)); };
+  return {linear(color[0]), linear(color[1]), linear(color[2])};
+}
 
 Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
 
@@ -56,6 +62,7 @@ void write_preview(const Program& program, const PreviewRequest& request, const 
     options.views.clear();
     for (const Direction& view : request.views) options.views.push_back(view_from(vector_of(view)));
   }
+  for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
   write_png8_rgb(render_preview(mesh, options, program.progress("preview")), request.file);
 }
 

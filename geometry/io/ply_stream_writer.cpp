@@ -16,9 +16,10 @@ static_assert(std::endian::native == std::endian::little, "vertices are written 
 static_assert(sizeof(MeshVertex) == 6 * sizeof(float), "a vertex is six floats without gaps");
 
 static_assert(sizeof(VertexLabel) == 8, "a label is an int32 and a float without gaps");
+static_assert(sizeof(VertexColor) == 3, "a colour is three bytes without gaps");
 
 std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
-                       bool with_normals, bool with_labels) {
+                       const PlyVertexParts& parts) {
   std::string header = "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& line : info_lines(info)) header += "comment " + line + "\n";
   const std::string vertices = std::to_string(num_vertices);
@@ -28,10 +29,13 @@ std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std
   header += "comment " + std::string(kLongestCounts - vertices.size() - triangles.size(), '.') + "\n";
   header += "element vertex " + vertices + "\n";
   for (const char* name : {"x", "y", "z"}) header += std::string("property float ") + name + "\n";
-  if (with_normals) {
+  if (parts.normals) {
     for (const char* name : {"nx", "ny", "nz"}) header += std::string("property float ") + name + "\n";
   }
-  if (with_labels) header += "property int label\nproperty float elevation\n";
+  if (parts.colors) {
+    for (const char* name : {"red", "green", "blue"}) header += std::string("property uchar ") + name + "\n";
+  }
+  if (parts.labels) header += "property int label\nproperty float elevation\n";
   header += "element face " + triangles + "\nproperty list uchar uint vertex_indices\n";
   return header + "end_header\n";
 }
@@ -44,8 +48,8 @@ std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle) {
 }
 
 PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info,
-                                 VertexLabeller labeller)
-    : target_(file), info_(info), labeller_(std::move(labeller)), out_(file) {
+                                 VertexLabeller labeller, VertexPainter painter)
+    : target_(file), info_(info), labeller_(std::move(labeller)), painter_(std::move(painter)), out_(file) {
   spill_ = open_nameless_file(file);
   if (!spill_) fail_spill();
   const std::string text = header();
@@ -53,7 +57,7 @@ PlyStreamWriter::PlyStreamWriter(const std::filesystem::path& file, const MeshFi
 }
 
 std::string PlyStreamWriter::header() const {
-  return ply_header(info_, num_vertices_, num_triangles_, true, labeller_ != nullptr);
+  return ply_header(info_, num_vertices_, num_triangles_, {true, painter_ != nullptr, labeller_ != nullptr});
 }
 
 void PlyStreamWriter::add_vertices(std::span<const MeshVertex> vertices) {
@@ -61,20 +65,23 @@ void PlyStreamWriter::add_vertices(std::span<const MeshVertex> vertices) {
   if (num_vertices_ > static_cast<std::uint64_t>(kMaxVertices)) {
     throw WorkError(target_.string() + ": more than 2^32 - 1 vertices; choose a smaller resolution");
   }
-  if (labeller_) {
-    write_labelled(vertices);
+  if (labeller_ || painter_) {
+    write_with_extras(vertices);
   } else {
     out_.write(vertices.data(), vertices.size_bytes());
   }
 }
 
-void PlyStreamWriter::write_labelled(std::span<const MeshVertex> vertices) {
-  std::vector<VertexLabel> labels(vertices.size());
-  labeller_(vertices, labels);
+void PlyStreamWriter::write_with_extras(std::span<const MeshVertex> vertices) {
+  std::vector<VertexLabel> labels(labeller_ ? vertices.size() : 0);
+  std::vector<VertexColor> colors(painter_ ? vertices.size() : 0);
+  if (labeller_) labeller_(vertices, labels);
+  if (painter_) painter_(vertices, colors);
   BufferedOutput buffer(out_);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     buffer.append_value(vertices[i]);
-    buffer.append_value(labels[i]);
+    if (painter_) buffer.append_value(colors[i]);
+    if (labeller_) buffer.append_value(labels[i]);
   }
   buffer.flush();
 }

@@ -23,6 +23,9 @@ struct VertexLabel {
 // Fills in the labels of as many vertices.
 using VertexLabeller = std::function<void(std::span<const MeshVertex>, std::span<VertexLabel>)>;
 
+// Fills in the colours of as many vertices.
+using VertexPainter = std::function<void(std::span<const MeshVertex>, std::span<VertexColor>)>;
+
 //   PlyStreamWriter writer("bennu.ply", {.length_unit = "km"});
 //   mesh_field(field, bounds, 512, writer);
 //   writer.finish();                    // without this call no file appears
@@ -32,9 +35,10 @@ using VertexLabeller = std::function<void(std::span<const MeshVertex>, std::span
 // is appended at the end. The bytes depend on the vertices and triangles alone, not on how calls group them.
 class PlyStreamWriter : public MeshSink {
  public:
-  // Throws InputError when the folder cannot be written. With a labeller, each vertex has an int32 label and
-  // a float32 elevation behind its normal.
-  PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info, VertexLabeller labeller = {});
+  // Throws InputError when the folder cannot be written. With a painter, each vertex has its colour as three
+  // uchar behind its normal. With a labeller, an int32 label and a float32 elevation follow.
+  PlyStreamWriter(const std::filesystem::path& file, const MeshFileInfo& info, VertexLabeller labeller = {},
+                  VertexPainter painter = {});
 
   // Both throw WorkError when the disk is full. add_vertices also throws it for more than 2^32 - 1 vertices,
   // add_triangles for a triangle that names a vertex not yet given.
@@ -51,11 +55,12 @@ class PlyStreamWriter : public MeshSink {
   [[noreturn]] void fail_spill() const;
   void append_spill();
   std::string header() const;
-  void write_labelled(std::span<const MeshVertex> vertices);
+  void write_with_extras(std::span<const MeshVertex> vertices);
 
   std::filesystem::path target_;
   MeshFileInfo info_;
   VertexLabeller labeller_;  // null where no labels are written
+  VertexPainter painter_;    // null where no colours are written
   OutputFile out_;
   FileHandle spill_;
   std::uint64_t num_vertices_ = 0;

@@ -22,12 +22,14 @@ void write_ply_values(const TriangleMesh& mesh, std::span<const VertexValues> qu
   }
   OutputFile out(file);
   BufferedOutput buffer(out);
-  const bool with_normals = !mesh.normals.empty();
+  const bool with_normals = !mesh.normals.empty(), with_colors = !mesh.colors.empty();
   buffer.append(header_with(
-      ply_header(info, mesh.vertices.size(), mesh.triangles.size(), with_normals, false), quantities));
+      ply_header(info, mesh.vertices.size(), mesh.triangles.size(), {with_normals, with_colors, false}),
+      quantities));
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     buffer.append_value(to_float(mesh.vertices[i]));
     if (with_normals) buffer.append_value(to_float(mesh.normals[i]));
+    if (with_colors) buffer.append_value(mesh.colors[i]);
     for (const VertexValues& q : quantities) buffer.append_value(static_cast<float>(q.values[i]));
   }
   for (const Triangle& triangle : mesh.triangles) {

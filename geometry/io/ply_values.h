@@ -16,10 +16,10 @@ struct VertexValues {
   std::vector<double> values;
 };
 
-// Writes a binary little-endian PLY: float32 x y z (and normals where the mesh has them), then each quantity
-// as a float32 property of the vertex, which MeshLab, ParaView and CloudCompare show. The mesh must be as
-// write_mesh() wants it. Throws InputError when the file cannot be written, WorkError when writing fails or
-// when a quantity has another number of values than the mesh has vertices.
+// Writes a binary little-endian PLY: float32 x y z (and normals and uchar red green blue where the mesh has
+// them), then each quantity as a float32 property of the vertex, which MeshLab, ParaView and CloudCompare
+// show. The mesh must be as write_mesh() wants it. Throws InputError when the file cannot be written,
+// WorkError when writing fails or when a quantity has another number of values than the mesh has vertices.
 void write_ply_values(const TriangleMesh& mesh, std::span<const VertexValues> quantities,
                       const std::filesystem::path& file, const MeshFileInfo& info);
 

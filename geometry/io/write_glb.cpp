@@ -1,16 +1,18 @@
 // glTF 2.0 in its binary container (Khronos, sections 3 and 4.4): one chunk of JSON and one chunk of numbers.
+#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "geometry/io/mesh_writers_internal.h"
+#include "numerics/srgb.h"
 
 namespace astrolith {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFloat = 5126, kUnsignedInt = 5125;                 // component types
-constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;  // targets of buffer views
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123;  // component types
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;          // targets of buffer views
 
 // Metres in one unit of length; 1 for units whose length is unknown.
 double metres_per(const std::string& length_unit) {
@@ -35,7 +37,7 @@ class GlbDocument {
     document_["scene"] = 0;
     document_["scenes"] = Json::array({{{"nodes", {0}}}});
     document_["nodes"] = Json::array({node(info)});
-    document_["materials"] = Json::array({material()});
+    document_["materials"] = Json::array({material(mesh)});
     add_arrays();
     document_["buffers"] = Json::array({{{"byteLength", num_bytes_}}});
   }
@@ -59,11 +61,14 @@ class GlbDocument {
     return result;
   }
 
-  // A material without shine; the default of glTF is fully metallic.
-  static Json material() {
-    return {{"name", "regolith"},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor", {0.5, 0.5, 0.5, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
+  // A material without shine; the default of glTF is fully metallic. Its colour multiplies those of the
+  // vertices.
+  static Json material(const TriangleMesh& mesh) {
+    const double base = mesh.colors.empty() ? 0.5 : 1.0;
+    return {
+        {"name", "regolith"},
+        {"pbrMetallicRoughness",
+         {{"baseColorFactor", {base, base, base, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}}};
   }
 
   void add_arrays() {
@@ -74,6 +79,10 @@ class GlbDocument {
     document_["accessors"].back()["max"] = vector_json(high);
     if (!mesh_.normals.empty()) {
       attributes["NORMAL"] = add_array(mesh_.normals.size(), kArrayBuffer, kFloat, "VEC3", 12);
+    }
+    if (!mesh_.colors.empty()) {
+      attributes["COLOR_0"] = add_array(mesh_.colors.size(), kArrayBuffer, kUnsignedShort, "VEC4", 8);
+      document_["accessors"].back()["normalized"] = true;
     }
     const int indices = add_array(3 * mesh_.triangles.size(), kElementArrayBuffer, kUnsignedInt, "SCALAR", 4);
     const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
@@ -95,6 +104,15 @@ class GlbDocument {
   Json document_;
   std::uint64_t num_bytes_ = 0;  // a multiple of four: every array holds 4-byte numbers
 };
+
+// The linear light of each sRGB byte, full scale = 65535: glTF stores colours of vertices in linear light.
+std::array<std::uint16_t, 256> linear_shorts() {
+  std::array<std::uint16_t, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table[i] = static_cast<std::uint16_t>(65535.0 * linear_of_srgb(static_cast<double>(i) / 255.0) + 0.5);
+  }
+  return table;
+}
 
 void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::string_view type) {
   buffer.append_value(static_cast<std::uint32_t>(bytes));
@@ -121,6 +139,11 @@ void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   append_chunk_header(buffer, document.num_bytes(), {"BIN\0", 4});
   for (const Vec3d& v : mesh.vertices) buffer.append_value(to_float(v));
   for (const Vec3d& n : mesh.normals) buffer.append_value(to_float(n));
+  const std::array<std::uint16_t, 256> linear = linear_shorts();
+  for (const VertexColor& c : mesh.colors) {
+    buffer.append_value(
+        std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}});
+  }
   for (const Triangle& t : mesh.triangles) buffer.append_value(t);
   buffer.flush();
   out.commit();

@@ -1,11 +1,15 @@
 #include "synthesis/exemplar/plane_exemplar.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "numerics/scalar_math.h"
+#include "synthesis/exemplar/exemplar_colors.h"
 #include "synthesis/exemplar/exemplar_noise.h"
 
 namespace astrolith {
@@ -80,6 +84,10 @@ void draw_tile(const ExemplarPlane& plane, int x0, int y0, std::vector<float>& t
   }
 }
 
+std::array<float, 3> float_parts(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 }  // namespace
 
 std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::string& place, int width,
@@ -102,6 +110,27 @@ std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::st
   }
   report(progress, 1.0, "texture");
   return texture;
+}
+
+std::vector<float> synthesize_exemplar_colors(const ExemplarLayer& layer, const std::string& place, int width,
+                                              int height, const PlaneExemplarOptions& options,
+                                              const Progress& progress) {
+  const ExemplarColors colors = exemplar_colors(layer, place);
+  const std::array<float, 3> mean = float_parts(colors.mean);
+  std::vector<float> rgb(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = mean[i % 3];
+  for (std::size_t k = 0; k < colors.channels.size(); ++k) {
+    const ColorChannel& channel = colors.channels[k];
+    const auto share = [&](double done, std::string_view words) {
+      return report(progress, (static_cast<double>(k) + done) / static_cast<double>(colors.channels.size()),
+                    words);
+    };
+    const std::vector<float> values =
+        synthesize_exemplar(channel.layer, place, width, height, options, share);
+    const std::array<float, 3> axis = float_parts(channel.axis);
+    for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = math::fma(axis[i % 3], values[i / 3], rgb[i]);
+  }
+  return rgb;
 }
 
 }  // namespace astrolith

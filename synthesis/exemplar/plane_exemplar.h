@@ -24,4 +24,10 @@ std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::st
                                        int height, const PlaneExemplarOptions& options,
                                        const Progress& progress = {});
 
+// The colours of a layer at the same pixels, with the weights and offsets of the heights: RGB (height x width
+// x 3), full scale = 1, not clamped to [0, 1]. Throws as synthesize_exemplar() does.
+std::vector<float> synthesize_exemplar_colors(const ExemplarLayer& layer, const std::string& place, int width,
+                                              int height, const PlaneExemplarOptions& options,
+                                              const Progress& progress = {});
+
 }  // namespace astrolith

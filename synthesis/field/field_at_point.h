@@ -100,6 +100,7 @@ ASTROLITH_HD inline float terrain_at(const FieldView& f, const BlockLists& lists
   for (std::uint32_t i = 0; i < f.num_layers; ++i) {
     const FieldLayer& layer = f.layers[i];
     if (decided(body.distance + state.elevation, layer.join.remaining_change)) break;
+    if (layer.join.idle()) continue;
     layer.noise.visit(LayerAtPoint{f, lists, layer, body, p, state});
   }
   return body.distance + state.elevation;
@@ -153,6 +154,7 @@ ASTROLITH_HD inline void field_at_tetrahedron(const FieldView& f, const BlockLis
   for (int k = 0; k < 4; ++k) body[k] = body_at(f.body, f.arrays, lists.metaballs, p[k]);
   for (std::uint32_t i = 0; i < f.num_layers; ++i) {
     const FieldLayer& layer = f.layers[i];
+    if (layer.join.idle()) continue;
     layer.noise.visit(LayerAtTetrahedron{f, lists, layer, body, p, state});
   }
   for (int k = 0; k < 4; ++k) {

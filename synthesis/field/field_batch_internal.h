@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "synthesis/field/field_model_internal.h"
+#include "synthesis/field/layer_paint_internal.h"
 
 namespace astrolith {
 
@@ -60,6 +62,15 @@ struct BatchLists {
 
 // Evaluates a layer at the points of a batch and joins it with the elevation so far (layer_join.h).
 void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
+
+// Blends the colours of a layer that paints over color[i] at the points of a batch. Expects the heights that
+// the layer's mask needs to be kept in the batch.
+void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
+                 Vec3f* color);
+
+// FieldBlock::paint() at n <= kBatch points of a block. `local` is as below.
+void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
+                 const PointArrays& at, Vec3f* color, const LocalPoints* local = nullptr);
 
 // value[i] = F at n <= kBatch points of a block. `local`, unless null, holds the same points in coordinates
 // local to an origin.

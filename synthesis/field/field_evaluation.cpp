@@ -109,18 +109,13 @@ void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<
   for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) value[origin[i]] += b.elevation[i];
 }
 
-}  // namespace
-
-void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
-                    const Accuracy& accuracy, float* value, const LocalPoints* local) {
+// Begins a batch: evaluates the bare body at n points. Returns where the metaballs are evaluated for them.
+PointArrays begin_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                        const LocalPoints* local, Batch& b) {
   const FieldView& f = model.tables;
   const BodyLeaf& first = f.leaf(0);
   const bool plain = f.body.plain();
-  // The band is a distance, and s may change faster than a distance by this factor.
-  const float band = accuracy.band * f.steepest;
-  Batch b;
   b.n = n;
-  b.tetrahedra = accuracy.tetrahedra;
   PointArrays metaballs_at = at;
   if (plain && first.warped) {
     warp_points(first.warp, f.arrays, n, at.x, at.y, at.z, b.mx.data(), b.my.data(), b.mz.data());
@@ -136,10 +131,39 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
     evaluate_body(f.body, f.arrays, lists.metaballs, n, metaballs_at.x, metaballs_at.y, metaballs_at.z,
                   b.distance.data(), b.gx.data(), b.gy.data(), b.gz.data());
   }
+  return metaballs_at;
+}
+
+}  // namespace
+
+void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                    const Accuracy& accuracy, float* value, const LocalPoints* local) {
+  Batch b;
+  b.tetrahedra = accuracy.tetrahedra;
+  const PointArrays metaballs_at = begin_batch(model, lists, n, at, local, b);
+  // The band is a distance, and s may change faster than a distance by this factor.
+  const float band = accuracy.band * model.tables.steepest;
   std::copy_n(b.distance.data(), n, value);
   const std::vector<std::uint32_t> boulders = boulders_around(model, n, at);
   if (!model.layers.empty()) add_elevations(model, lists, boulders, at, metaballs_at, local, band, b, value);
   for (const std::uint32_t k : boulders) join_boulder(model.boulders[k].kernel, n, at.x, at.y, at.z, value);
+}
+
+void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
+                 const PointArrays& at, Vec3f* color, const LocalPoints* local) {
+  Batch b;
+  const PointArrays metaballs_at = begin_batch(model, lists, n, at, local, b);
+  std::array<int, kBatch> origin;
+  const auto everywhere = [](int) { return true; };
+  keep_near_surface(n, 0.0f, everywhere, at, metaballs_at, local, b, origin);
+  std::fill_n(b.elevation.data(), n, 0.0f);
+  b.kept.resize(model.num_kept_heights);
+  auto paint = paints.begin();
+  for (std::size_t i = 0; i < model.layers.size() && paint != paints.end(); ++i) {
+    if (paint->layer == i) paint_layer(model, model.layers[i], *paint++, b, color);
+    b.spots = spots_of(lists.spots, i);
+    apply_layer(model, model.layers[i], b);
+  }
 }
 
 float value_at(const FieldModel& model, const Vec3d& p) {

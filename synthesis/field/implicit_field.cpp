@@ -112,6 +112,20 @@ void FieldBlock::evaluate_local(const Vec3d& origin, std::span<const float> x, s
   });
 }
 
+void FieldBlock::paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
+                       std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const {
+  if (origin != nullptr) check_origin(*model_, *origin);
+  for_each_batch(color.size(), [&](std::size_t i, std::size_t batch) {
+    const int n = static_cast<int>(batch);
+    const PointArrays given{&x[i], &y[i], &z[i]};
+    const BatchLists lists{metaballs_.lists(), spots_};
+    if (origin == nullptr) return paint_batch(*model_, lists, paints, n, given, &color[i]);
+    const LocalPoints local{*origin, given};
+    const BodyPoints at(local, batch);
+    paint_batch(*model_, lists, paints, n, at.arrays(), &color[i], &local);
+  });
+}
+
 void FieldBlock::evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x,
                                            std::span<const float> y, std::span<const float> z,
                                            std::span<float> value) const {

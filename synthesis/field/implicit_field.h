@@ -31,6 +31,7 @@ namespace astrolith {
 struct GaborCacheUse;  // synthesis/gabor/gabor_tiles.h
 struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
+struct LayerPaint;     // synthesis/field/layer_paint_internal.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
 struct LayerBoulders;  // synthesis/landforms/boulder_field.h
 
@@ -83,6 +84,13 @@ class FieldBlock {
   // value[i] = F of the body without layers and boulders, at points within the box.
   void evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                      std::span<float> value) const;
+
+  // Blends the colours of painting layers over color[i] in their order, at points within the box, full scale
+  // =
+  // 1. With `origin`, points are relative to it as in evaluate_local(); it is null for points of the body's
+  // frame.
+  void paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
+             std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const;
 
   const Box& box() const { return box_; }
 

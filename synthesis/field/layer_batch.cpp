@@ -163,7 +163,47 @@ void join_heights(const FieldModel& model, const LayerJoin& join, Batch& b) {
   if (join.changes_elevation()) join_elevations(join.how, b.n, weight, b.height.data(), b.elevation.data());
 }
 
+// Whether the noise of a layer is that in the frame of the field's patch.
+bool stands_in_patch(const FieldLayer& layer, const Batch& b) {
+  return b.origin != nullptr && layer.in_patch >= 0;
+}
+
+// Writes what a layer paints at the points of a batch.
+void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
+                     Vec3f* color) {
+  std::fill_n(color, b.n, paint.mean);
+  const bool in_patch = stands_in_patch(layer, b);
+  ExemplarNoise noise = *(in_patch ? noise_of(model, layer) : layer.noise).get_if<ExemplarNoise>();
+  if (noise.lattice.anchors.count == 0) return;
+  in_patch ? project_locally(model, b) : project(model, b);
+  const PointArrays p = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
+                                 : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+  const ExemplarAnchor* anchors = model.tables.arrays[noise.lattice.anchors];
+  for (const PaintChannel& channel : paint.channels) {
+    noise.texture = channel.texture;
+    evaluate_heights(noise, paint.arrays, anchors, b.n, p.x, p.y, p.z, b.height.data());
+    const Vec3f& axis = channel.axis;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+      color[i] = {math::fma(axis.x, b.height[i], color[i].x), math::fma(axis.y, b.height[i], color[i].y),
+                  math::fma(axis.z, b.height[i], color[i].z)};
+    }
+  }
+}
+
 }  // namespace
+
+void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
+                 Vec3f* color) {
+  std::array<Vec3f, kBatch> painted;
+  evaluate_colors(model, layer, paint, b, painted.data());
+  const float* weight = layer_weights(model, layer.join, b);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(b.n); ++i) {
+    const float w = weight == nullptr ? 1.0f : weight[i];
+    const auto blend = [w](float below, float above) { return math::fma(w, above, (1.0f - w) * below); };
+    color[i] = {blend(color[i].x, painted[i].x), blend(color[i].y, painted[i].y),
+                blend(color[i].z, painted[i].z)};
+  }
+}
 
 void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
   if (const CraterRelief* relief = layer.noise.get_if<CraterRelief>()) {
@@ -172,7 +212,8 @@ void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
                   b.py.data(), b.pz.data(), b.elevation.data());
     return;
   }
-  const bool in_patch = b.origin != nullptr && layer.in_patch >= 0;
+  if (layer.join.idle()) return;
+  const bool in_patch = stands_in_patch(layer, b);
   (in_patch ? noise_of(model, layer) : layer.noise).visit(LayerHeights{model, layer, b, in_patch});
   join_heights(model, layer.join, b);
 }

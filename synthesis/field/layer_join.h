@@ -51,6 +51,9 @@ struct LayerJoin {
   ASTROLITH_HD bool changes_elevation() const {
     return how.kind != Combine::kWarp && how.kind != Combine::kMask;
   }
+  // Whether the layer's heights serve nothing: they neither change the elevation, nor displace or mask other
+  // layers. Such a layer is not evaluated.
+  ASTROLITH_HD bool idle() const { return how.kind == Combine::kMask && keeps < 0; }
   ASTROLITH_HD bool weighted() const { return local || mask >= 0; }
 };
 

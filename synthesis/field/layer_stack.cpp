@@ -88,7 +88,7 @@ class LayerStack {
     model_.gabor_caches.resize(model_.gabor_lists.size());
   }
   void add(const ExemplarLayer& layer) {
-    if (!layer.has_height()) return;
+    if (!layer.has_height() && !layer.paints()) return;
     const ExemplarNoise made = make_exemplar(layer, place_of(index_), model_.arrays);
     exemplars_.emplace(index_, made);
     push(layer, placed(layer, made, supports_, model_.arrays));
@@ -305,11 +305,20 @@ class LayerStack {
     model_.patch_warp = warp;
   }
 
+  // Whether the layer changes no elevation, but paints the surface.
+  template <class AnyLayer>
+  static bool has_no_height(const AnyLayer& layer) {
+    if constexpr (std::is_same_v<AnyLayer, ExemplarLayer>) return !layer.has_height();
+    return false;
+  }
+
   template <class AnyLayer, typename Noise>
   void push(const AnyLayer& layer, const Noise& noise, std::uint32_t first_list = 0) {
     const LayerUse& use = *use_of(recipe_.layers[static_cast<std::size_t>(index_)]);
     LayerJoin join;
     join.how = use.combination;
+    const bool only_paints = has_no_height(layer);
+    if (only_paints) join.how.kind = Combine::kMask;
     join.height_bound = height_bound_of(layer, noise);
     join.displaced = displaced_;
     if (use.locality) {
@@ -317,7 +326,8 @@ class LayerStack {
       join.locality = make_local_weight(*use.locality, *recipe_.body, place_of(index_), model_.arrays);
     }
     if (use.mask) set_mask(*use.mask, join);
-    if (is_masking(index_)) slots_[index_] = join.keeps = static_cast<int>(model_.num_kept_heights++);
+    if (is_masking(index_) && !only_paints)
+      slots_[index_] = join.keeps = static_cast<int>(model_.num_kept_heights++);
     const double before = model_.height_bound;
     model_.height_bound = elevation_bound(join.how, before, join.height_bound);
     if (join.changes_elevation()) {

@@ -6,6 +6,7 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <utility>
 
 #include "numerics/errors.h"
 
@@ -84,10 +85,7 @@ std::vector<std::uint16_t> grey_of(const std::vector<std::uint16_t>& channels, i
     if (count == 1) {
       grey[i] = channels[i];
     } else {
-      // The luma in whole ten-thousandths, rounded to the nearest.
-      const std::uint32_t luma =
-          2126u * channels[3 * i] + 7152u * channels[3 * i + 1] + 722u * channels[3 * i + 2];
-      grey[i] = static_cast<std::uint16_t>((luma + 5000u) / 10000u);
+      grey[i] = luma_of(channels[3 * i], channels[3 * i + 1], channels[3 * i + 2]);
     }
   }
   return grey;
@@ -118,7 +116,9 @@ GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::strin
   std::vector<png_bytep> rows(static_cast<std::size_t>(size.height));
   const int count = read_pixels(reader.png, reader.info, size, channels.data(), rows.data());
   if (count == 0) throw InputError(damaged);
-  return {size.width, size.height, grey_of(channels, count, pixels)};
+  std::vector<std::uint16_t> grey = grey_of(channels, count, pixels);
+  if (count == 1) channels.clear();
+  return {size.width, size.height, std::move(grey), std::move(channels)};
 }
 
 }  // namespace astrolith

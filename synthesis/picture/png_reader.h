@@ -1,4 +1,4 @@
-// Reads PNG files as grey images.
+// Reads PNG files as grey images, with their colours.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,16 @@ struct GreyPng {
   int width = 0;
   int height = 0;
   std::vector<std::uint16_t> values;
+  std::vector<std::uint16_t> rgb = {};  // (height x width x 3); empty where the file is grey
 };
 
-// Decodes a PNG file that was read into memory. Channels have 1 to 16 bits; palettes are expanded, colours
-// become the luma 0.2126 R + 0.7152 G + 0.0722 B of the stored values, and alpha is ignored. Throws
+// The luma 0.2126 R + 0.7152 G + 0.0722 B of stored values, rounded to the nearest.
+constexpr std::uint16_t luma_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+  return static_cast<std::uint16_t>((2126u * red + 7152u * green + 722u * blue + 5000u) / 10000u);
+}
+
+// Decodes a PNG file that was read into memory. Channels have 1 to 16 bits; palettes are expanded, `values`
+// is the luma of colours, and alpha is ignored. Throws
 // InputError, which names `file`: for bytes that are no PNG, for a damaged file, and for sides outside
 // least_side to most_side, before anything is decoded.
 GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::string& file, int least_side,

@@ -55,8 +55,9 @@ void load_exemplar(ExemplarLayer& layer, const std::filesystem::path& folder, co
   }
   GreyPng png =
       decode_grey_png(bytes, place + ".image: " + file.string(), kLeastExemplarSide, kMostExemplarSide);
-  layer.pixels = std::make_shared<ExemplarImage>(
-      ExemplarImage{png.width, png.height, std::move(png.values), std::filesystem::absolute(file)});
+  if (!layer.color) png.rgb.clear();
+  layer.pixels = std::make_shared<ExemplarImage>(ExemplarImage{
+      png.width, png.height, std::move(png.values), std::filesystem::absolute(file), std::move(png.rgb)});
 }
 
 }  // namespace

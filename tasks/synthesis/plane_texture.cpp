@@ -12,6 +12,17 @@
 namespace astrolith {
 namespace {
 
+// The place of the first layer with a colour; the number of layers where none has one.
+std::size_t first_colored_layer(const Recipe& recipe) {
+  std::size_t i = 0;
+  for (; i < recipe.layers.size(); ++i) {
+    const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i]);
+    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe.layers[i]);
+    if ((gabor != nullptr && gabor->color) || (exemplar != nullptr && exemplar->color)) break;
+  }
+  return i;
+}
+
 // The place of the first layer that a plane can show.
 std::size_t first_plane_layer(const Recipe& recipe, const std::string& file) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
@@ -52,6 +63,17 @@ PlaneTexture draw_heights(ExemplarLayer layer, std::size_t index, const std::str
   return texture;
 }
 
+PlaneTexture draw_colors(const ExemplarLayer& layer, std::size_t index, const std::string& file,
+                         const PlaneTextureRequest& request, std::uint64_t seed, const Progress& progress) {
+  PlaneTexture texture;
+  texture.channels = 3;
+  const std::string place = file + ": layers[" + std::to_string(index) + "]";
+  const int number = layer_number(layer.seed, static_cast<int>(index));
+  texture.values = synthesize_exemplar_colors(layer, place, request.width, request.height,
+                                              {seed, number, request.tileable}, progress);
+  return texture;
+}
+
 PlaneTexture draw_colors(const std::vector<GaborLayer>& layers, const PlaneTextureRequest& request,
                          const TextureOptions& options, const Progress& progress) {
   PlaneTexture texture;
@@ -61,42 +83,78 @@ PlaneTexture draw_colors(const std::vector<GaborLayer>& layers, const PlaneTextu
   return texture;
 }
 
-}  // namespace
-
-PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
-                          const Progress& progress) {
-  check_side(request.width);
-  check_side(request.height);
-  const std::vector<GaborLayer> layers = colored_layers(recipe);
-  if (request.content == "color" && layers.empty()) {
-    throw InputError(file +
-                     ": layers: none has a color; fit a photo with fit_gabor --channels pca, or draw the "
-                     "height");
-  }
+TextureOptions gabor_options(const Recipe& recipe, const PlaneTextureRequest& request) {
   TextureOptions options{recipe.seed};
   if (request.tileable) {
     options.period_width = request.width;
     options.period_height = request.height;
   }
-  std::atomic<bool> stopped{false};
-  const Progress watched = [&](double fraction, std::string_view words) {
-    const bool go_on = report(progress, fraction, words);
-    if (!go_on) stopped = true;
-    return go_on;
-  };
-  const bool colors = !layers.empty() && request.content != "height";
-  PlaneTexture texture;
-  if (colors) {
-    texture = draw_colors(layers, request, options, watched);
-  } else {
-    const std::size_t first = first_plane_layer(recipe, file);
-    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe.layers[first]);
-    texture = exemplar != nullptr
-                  ? draw_heights(*exemplar, first, file, request, recipe.seed, watched)
-                  : draw_heights(std::get<GaborLayer>(recipe.layers[first]), request, options, watched);
+  return options;
+}
+
+// A recipe's textures, with one progress that remembers whether it was told to stop.
+class PlaneDrawing {
+ public:
+  PlaneDrawing(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
+               const Progress& progress)
+      : recipe_(recipe), file_(file), request_(request) {
+    check_side(request.width);
+    check_side(request.height);
+    progress_ = [this, &progress](double fraction, std::string_view words) {
+      const bool go_on = report(progress, fraction, words);
+      if (!go_on) stopped_ = true;
+      return go_on;
+    };
   }
-  if (stopped) throw WorkError("stopped before the texture was complete");
-  return texture;
+  PlaneDrawing(const PlaneDrawing&) = delete;
+  PlaneDrawing& operator=(const PlaneDrawing&) = delete;
+
+  PlaneTexture heights(std::size_t i) {
+    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe_.layers[i]);
+    return finished(exemplar != nullptr ? draw_heights(*exemplar, i, file_, request_, recipe_.seed, progress_)
+                                        : draw_heights(std::get<GaborLayer>(recipe_.layers[i]), request_,
+                                                       gabor_options(recipe_, request_), progress_));
+  }
+
+  // The colours of an exemplar layer, or of all Gabor layers that have one.
+  PlaneTexture colors(std::size_t i) {
+    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe_.layers[i]);
+    return finished(exemplar != nullptr ? draw_colors(*exemplar, i, file_, request_, recipe_.seed, progress_)
+                                        : draw_colors(colored_layers(recipe_), request_,
+                                                      gabor_options(recipe_, request_), progress_));
+  }
+
+  void expect_complete() const {
+    if (stopped_) throw WorkError("stopped before the texture was complete");
+  }
+
+ private:
+  PlaneTexture finished(PlaneTexture texture) const {
+    expect_complete();
+    return texture;
+  }
+
+  const Recipe& recipe_;
+  const std::string& file_;
+  const PlaneTextureRequest& request_;
+  Progress progress_;
+  std::atomic<bool> stopped_{false};
+};
+
+}  // namespace
+
+PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
+                          const Progress& progress) {
+  PlaneDrawing drawing(recipe, file, request, progress);
+  const std::size_t colored = first_colored_layer(recipe);
+  const bool has_color = colored < recipe.layers.size();
+  if (request.content == "color" && !has_color) {
+    throw InputError(file +
+                     ": layers: none has a color; fit a photo with fit_gabor --channels pca, or draw the "
+                     "height");
+  }
+  const bool colors = has_color && request.content != "height";
+  return colors ? drawing.colors(colored) : drawing.heights(first_plane_layer(recipe, file));
 }
 
 }  // namespace astrolith

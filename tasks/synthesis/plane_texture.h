@@ -1,5 +1,6 @@
-// A recipe's texture layers drawn on a plane: the heights of the first Gabor or exemplar layer, or the
-// colours of all Gabor layers that have one.
+// A recipe's texture layers drawn on a plane: the heights of the first Gabor or exemplar layer, or colours.
+// Colours are those of the first layer with a color: of this layer alone if it is an exemplar, else of all
+// Gabor layers that have one.
 #pragma once
 
 #include <cstddef>

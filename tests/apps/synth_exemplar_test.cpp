@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
@@ -42,8 +43,8 @@ class SynthExemplar : public ::testing::Test {
     const std::string body = R"("body": {"type": "metaballs", "spheres": [[0, 0, 0, 10]]},)";
     return folder_.write("r.json", R"({"format_version": 1, "length_unit": "m", )" + (with_body ? body : "") +
                                        R"("layers": [{"type": "exemplar", "image": ")" + image +
-                                       R"(", "image_sha256": ")" + hash +
-                                       R"(", "height_rms": 0.05, "pixel_size": 0.05}]})");
+                                       R"(", "image_sha256": ")" + hash + R"(", "pixel_size": 0.05, )" +
+                                       fields_ + R"(}]})");
   }
   std::string recipe_of(const std::string& image) const {
     return recipe_of(image, sha256_of_file(folder_ / image));
@@ -59,6 +60,7 @@ class SynthExemplar : public ::testing::Test {
     expect_refusal(folder_, kSynth, {recipe, "--resolution", "64", "-o", name("x.ply")}, culprit);
   }
 
+  std::string fields_ = R"("height_rms": 0.05)";  // of the layer
   testing::WorkFolder folder_;
 };
 
@@ -120,6 +122,28 @@ TEST_F(SynthExemplar, WrittenRecipesFindTheirImages) {
   make_mesh(recipe, "a.ply");
   make_mesh(written, "b.ply");
   EXPECT_EQ(text_of(name("a.ply")), text_of(name("b.ply")));
+}
+
+// Vertices have colours in .ply and .glb, and other formats say that they have none.
+TEST_F(SynthExemplar, PaintsVertices) {
+  write_image("i.png", 64, PNG_FORMAT_RGB, 3);
+  const std::string plain = recipe_of("i.png");
+  make_mesh(plain, "plain.ply");
+  fields_ = R"("height_rms": 0.05, "color": true)";
+  const std::string recipe = recipe_of("i.png");
+  make_mesh(recipe, "one.ply", "1");
+  make_mesh(recipe, "two.ply", "2");
+  const std::string bytes = text_of(name("one.ply"));
+  EXPECT_EQ(bytes, text_of(name("two.ply")));
+  EXPECT_NE(bytes.find("property uchar red"), std::string::npos);
+  EXPECT_EQ(text_of(name("plain.ply")).find("property uchar red"), std::string::npos);
+  make_mesh(recipe, "m.glb");
+  EXPECT_NE(text_of(name("m.glb")).find("COLOR_0"), std::string::npos);
+  const testing::Outcome stl =
+      run_program(kSynth, {recipe, "--resolution", "64", "-o", name("m.stl"), "--summary", name("s.json")});
+  EXPECT_EQ(stl.status, 0) << stl.errors;
+  EXPECT_NE(stl.errors.find(".stl holds no colours"), std::string::npos) << stl.errors;
+  EXPECT_NE(text_of(name("s.json")).find("\"vertex_colors\": false"), std::string::npos);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ inline const std::string kCompleteRecipe = R"({
     {"type": "random_phase", "height_rms": 0.01, "waves": 8, "frequency_min": 2, "frequency_max": 5.5, "randomness": 0.5,
      "combine": {"type": "blend", "operator": "intersection", "width": 0.002}},
     {"type": "exemplar", "image": "images/gravel.png", "image_sha256": "0123456789abcdef0123456789ABCDEF0123456789abcdef0123456789abcdef",
-     "height_range": -0.25, "anchor_spacing": 0.35, "border": "mirror", "rotation": "quarter"},
+     "height_range": -0.25, "anchor_spacing": 0.35, "border": "mirror", "rotation": "quarter", "color": true},
     {"type": "phasor", "amplitude": 0.01, "frequency": 6, "cell_size": 0.75, "profile": "square", "direction": [0, 1, 0],
      "combine": {"type": "warp", "direction": [0.5, 0, 2]}}
   ],

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "numerics/hash_random.h"
@@ -60,6 +61,26 @@ inline ExemplarLayer exemplar_layer(double pixel_size, double height_rms) {
   layer.pixels = image;
   layer.pixel_size = pixel_size;
   layer.height_rms = height_rms;
+  return layer;
+}
+
+// The stones in colour: their grey values over a ground whose red and blue vary by themselves.
+inline ExemplarLayer colored_layer(double pixel_size, double height_rms) {
+  static const std::shared_ptr<const ExemplarImage> image = [] {
+    ExemplarImage colored = *stones(96, 80);
+    const std::shared_ptr<const ExemplarImage> tints = stones(80, 96);
+    for (std::size_t i = 0; i < colored.values.size(); ++i) {
+      const int grey = colored.values[i], tint = tints->values[i],
+                shade = tints->values[(7 * i + 13) % tints->values.size()];
+      colored.rgb.push_back(static_cast<std::uint16_t>((6 * grey + 4 * tint) / 10));
+      colored.rgb.push_back(static_cast<std::uint16_t>(grey));
+      colored.rgb.push_back(static_cast<std::uint16_t>((6 * grey + 2 * shade) / 10));
+    }
+    return std::make_shared<const ExemplarImage>(std::move(colored));
+  }();
+  ExemplarLayer layer = exemplar_layer(pixel_size, height_rms);
+  layer.pixels = image;
+  layer.color = true;
   return layer;
 }
 

@@ -45,6 +45,37 @@ void stream(const TriangleMesh& mesh, std::size_t portion, PlyStreamWriter& writ
   EXPECT_EQ(next_triangle, triangles.size());
 }
 
+// Colours that tell the vertices apart.
+void paint(std::span<const MeshVertex> vertices, std::span<VertexColor> colors) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const auto part = [](float v) { return static_cast<std::uint8_t>(128.0f + 40.0f * v); };
+    const Vec3f& p = vertices[i].position;
+    colors[i] = {part(p.x), part(p.y), part(p.z)};
+  }
+}
+
+TEST(PlyStreamWriter, StreamedColoursAreThoseOfWriteMesh) {
+  const ScratchFolder folder;
+  TriangleMesh mesh = body();
+  const std::vector<MeshVertex> vertices = as_floats(mesh);
+  mesh.colors.resize(vertices.size());
+  paint(vertices, mesh.colors);
+  const MeshFileInfo info{"km", "body-fixed", ""};
+  write_mesh(mesh, folder / "whole.ply", info);
+  PlyStreamWriter writer(folder / "streamed.ply", info, {}, paint);
+  stream(mesh, 7, writer);
+  writer.finish();
+  const std::string bytes = file_content(folder / "whole.ply");
+  EXPECT_TRUE(file_content(folder / "streamed.ply") == bytes);
+  EXPECT_NE(bytes.find("property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"),
+            std::string::npos);
+  const std::size_t first = bytes.find("end_header\n") + 11 + 6 * sizeof(float);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(static_cast<std::uint8_t>(bytes[first + k]), mesh.colors[0][k]);
+  }
+  EXPECT_EQ(read_mesh(folder / "whole.ply").triangles, mesh.triangles);
+}
+
 TEST(PlyStreamWriter, BytesDoNotDependOnPortionsAndEqualThoseOfWriteMesh) {
   const ScratchFolder folder;
   const TriangleMesh mesh = body();

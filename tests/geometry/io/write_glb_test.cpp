@@ -65,6 +65,30 @@ TEST_F(WriteGlb, ArraysComeBack) {
   for (std::size_t i = 0; i < indices.size(); ++i) ASSERT_EQ(indices[i], mesh.triangles[i / 3][i % 3]);
 }
 
+// Colours are sRGB in the mesh and linear light in the file, where the material must not darken them.
+TEST_F(WriteGlb, ColoursAreLinearLight) {
+  mesh.colors.assign(mesh.vertices.size(), {0, 188, 255});
+  write_mesh(mesh, folder / "c.glb", {"km", "body-fixed", ""});
+  tinygltf::TinyGLTF loader;
+  std::string error, warning;
+  ASSERT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "c.glb").string())) << error;
+  EXPECT_EQ(error + warning, "");
+  const int number = model.meshes.at(0).primitives.at(0).attributes.at("COLOR_0");
+  const auto& accessor = model.accessors.at(static_cast<std::size_t>(number));
+  EXPECT_EQ(accessor.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+  EXPECT_EQ(accessor.type, TINYGLTF_TYPE_VEC4);
+  EXPECT_TRUE(accessor.normalized);
+  const auto colors = array<std::array<std::uint16_t, 4>>(number);
+  ASSERT_EQ(colors.size(), mesh.vertices.size());
+  for (const auto& color : colors) {
+    ASSERT_EQ(color[0], 0);
+    ASSERT_NEAR(color[1] / 65535.0, 0.5029, 1e-4);  // ((188 / 255 + 0.055) / 1.055)^2.4
+    ASSERT_EQ(color[2], 65535);
+    ASSERT_EQ(color[3], 65535);
+  }
+  EXPECT_EQ(model.materials.at(0).pbrMetallicRoughness.baseColorFactor, std::vector<double>(4, 1.0));
+}
+
 TEST_F(WriteGlb, BoundsAreThoseOfThePositions) {
   const auto& accessor = model.accessors.at(0);
   const Box box = mesh.bounds();

@@ -1,0 +1,168 @@
+#include "synthesis/field/surface_colors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "numerics/parallel_for.h"
+#include "synthesis/exemplar/exemplar_colors.h"
+#include "synthesis/field/block_lists.h"
+#include "synthesis/field/field_at_point.h"
+#include "synthesis/field/field_mesh.h"
+#include "tests/synthesis/bodies.h"
+#include "tests/synthesis/exemplars.h"
+
+namespace astrolith {
+namespace {
+
+using testing::colored_layer;
+using testing::exemplar_layer;
+using testing::sphere_recipe;
+
+TriangleMesh mesh_of(const Recipe& recipe) {
+  const ImplicitField field(recipe);
+  MeshCollector collector;
+  mesh_field(field, field.bounds(), 40, collector);
+  return collector.mesh;
+}
+
+std::vector<VertexColor> colors_of(const Recipe& recipe, const TriangleMesh& mesh) {
+  const ImplicitField field(recipe);
+  return SurfaceColors(recipe, "r", field).colors_of({}, mesh);
+}
+
+// F at the vertices of a mesh.
+std::vector<float> values_at(const ImplicitField& field, const TriangleMesh& mesh) {
+  std::vector<float> values;
+  for (const Vec3d& p : mesh.vertices) values.push_back(static_cast<float>(field.value(p)));
+  return values;
+}
+
+// A grey image of a hundredth of the body's radius from black to white: the colour tells the height.
+TEST(SurfaceColors, ColoursFitTheHeights) {
+  Recipe recipe = sphere_recipe(1.0), bare = recipe;
+  ExemplarLayer layer = exemplar_layer(0.01, 0.0);
+  layer.height_range = 0.01;
+  layer.color = true;
+  recipe.layers = {layer};
+  const TriangleMesh mesh = mesh_of(recipe);
+  const std::vector<float> with = values_at(ImplicitField(recipe), mesh),
+                           without = values_at(ImplicitField(bare), mesh);
+  const std::vector<VertexColor> colors = colors_of(recipe, mesh);
+  const double mean = exemplar_colors(layer, "r").mean.x;
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const double height = (static_cast<double>(with[i]) - static_cast<double>(without[i])) / 0.01;
+    ASSERT_NEAR(colors[i][0] / 255.0, mean + height, 0.004);
+    ASSERT_EQ(colors[i][0], colors[i][1]);
+  }
+}
+
+TEST(SurfaceColors, AMaskAndTheOrderOfLayersSayWhoPaints) {
+  Recipe recipe = sphere_recipe(1.0);
+  FractalLayer hills = testing::fractal_layer(0.05, 2.0, 1);
+  hills.name = "hills";
+  ExemplarLayer stones = colored_layer(0.01, 0.0);
+  stones.use.mask = LayerMask{"hills", 0.0, 1e-4};
+  recipe.layers = {hills, stones};
+  const TriangleMesh mesh = mesh_of(recipe);
+  const std::vector<float> with = values_at(ImplicitField(recipe), mesh),
+                           without = values_at(ImplicitField(sphere_recipe(1.0)), mesh);
+  const std::vector<VertexColor> colors = colors_of(recipe, mesh);
+  std::size_t bare = 0;
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const double hill = static_cast<double>(with[i]) - static_cast<double>(without[i]);
+    if (hill < -1e-3) {
+      ASSERT_EQ(colors[i], kBareColor);
+    }
+    if (colors[i] == kBareColor) ++bare;
+  }
+  EXPECT_GT(bare, colors.size() / 4);
+  EXPECT_LT(bare, colors.size() * 3 / 4);
+  ExemplarLayer later = colored_layer(0.02, 0.0);
+  Recipe both = recipe, last = recipe;
+  both.layers.push_back(later);
+  last.layers[1] = BoulderLayer{};
+  last.layers.push_back(later);
+  EXPECT_EQ(colors_of(both, mesh), colors_of(last, mesh));
+}
+
+// A layer that only paints moves nothing, not even one that replaces elevations. This holds for many points
+// together and for one point.
+TEST(SurfaceColors, ALayerOfColourAloneMovesNothing) {
+  Recipe plain = sphere_recipe(1.0);
+  plain.layers = {testing::fractal_layer(0.05, 2.0, 3), BoulderLayer{}};
+  Recipe painted = plain;
+  ExemplarLayer layer = colored_layer(0.01, 0.0);
+  layer.use.combination.kind = Combine::kReplace;
+  painted.layers[1] = layer;
+  const TriangleMesh mesh = mesh_of(plain);
+  const ImplicitField field(painted);
+  EXPECT_EQ(mesh_of(painted).vertices.size(), mesh.vertices.size());
+  EXPECT_EQ(values_at(field, mesh), values_at(ImplicitField(plain), mesh));
+  const FieldView& tables = field.tables();
+  BlockListStore blocks(tables);
+  blocks.add(tables, field.bounds());
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += 50) {
+    const Vec3f p = to_float(mesh.vertices[i]);
+    ASSERT_EQ(field_at(tables, blocks.view().block(0), p, kExactEverywhere),
+              static_cast<float>(field.value(mesh.vertices[i])));
+  }
+}
+
+TEST(SurfaceColors, HaveTheSameBytesForOneThreadAndForManyAndInPortions) {
+  Recipe recipe = sphere_recipe(1.0);
+  recipe.layers = {colored_layer(0.01, 0.01)};
+  const TriangleMesh mesh = mesh_of(recipe);
+  const auto painted = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return colors_of(recipe, mesh);
+  };
+  const std::vector<VertexColor> all = painted(1);
+  EXPECT_EQ(all, painted(2));
+  const ImplicitField field(recipe);
+  const SurfaceColors colors(recipe, "r", field);
+  for (std::size_t i = 0; i < all.size(); i += 37) {
+    const MeshVertex vertex{to_float(mesh.vertices[i]), {}};
+    VertexColor color{};
+    colors.paint({}, {&vertex, 1}, {&color, 1});
+    ASSERT_EQ(color, all[i]);
+  }
+}
+
+// The layer is too fine for coordinates of the body and lies in the frame of a patch, where its colour fits
+// its height as well.
+TEST(SurfaceColors, APatchHasTheColoursOfItsFineLayers) {
+  Recipe recipe = sphere_recipe(1e4), bare = recipe;
+  ExemplarLayer layer = exemplar_layer(0.05, 0.0);
+  layer.height_range = 1.0;
+  layer.color = true;
+  recipe.layers = {layer};
+  const Vec3d center{1e4, 0, 0};
+  const PatchCube cube{center, 20.0};
+  const ImplicitField field(recipe, "r", cube), ground(bare, "r", cube);
+  ASSERT_TRUE(field.has_patch_layers());
+  std::vector<float> x, y, z;
+  std::vector<MeshVertex> vertices;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3f p{0.0f, 0.5f * static_cast<float>(i % 20) - 5.0f, 0.5f * static_cast<float>(i / 20) - 5.0f};
+    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+    vertices.push_back({p, {}});
+  }
+  const auto heights = [&](const ImplicitField& of) {
+    std::vector<float> values(x.size());
+    const Box box{center - Vec3d{6, 6, 6}, center + Vec3d{6, 6, 6}};
+    of.gather(box).evaluate_local(center, x, y, z, values, kExactEverywhere);
+    return values;
+  };
+  const std::vector<float> with = heights(field), without = heights(ground);
+  std::vector<VertexColor> colors(vertices.size());
+  SurfaceColors(recipe, "r", field).paint(center, vertices, colors);
+  const double mean = exemplar_colors(layer, "r").mean.x;
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const double height = static_cast<double>(with[i]) - static_cast<double>(without[i]);
+    ASSERT_NEAR(colors[i][0] / 255.0, mean + height, 0.006) << i;
+  }
+}
+
+}  // namespace
+}  // namespace astrolith
