@@ -87,9 +87,16 @@ void declare_options(Program& program, Options& options) {
 
 void make_texture(Program& program, const Options& options, const Recipe& recipe) {
   require_extension(options.output, {".png", ".tif", ".tiff"});
-  require_writable(options.output);
+  const std::vector<fs::path> files = texture_files(options.texture, options.output);
+  for (const fs::path& file : files) {
+    require_writable(file);
+    for (const Layer& layer : recipe.layers) {
+      const auto* exemplar = std::get_if<ExemplarLayer>(&layer);
+      if (exemplar != nullptr && exemplar->pixels) require_other_file(file, exemplar->pixels->file);
+    }
+  }
   write_texture(program, options.texture, recipe, options.recipe, options.output);
-  summarize_output(program, options.output);
+  summarize_output(program, files.front());
 }
 
 Recipe read_input(const Program& program, const Options& options) {

@@ -10,6 +10,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/image_file.h"
+#include "synthesis/picture/surface_maps.h"
 #include "tasks/synthesis/plane_texture.h"
 
 namespace astrolith {
@@ -92,11 +93,64 @@ void write_colors(Program& program, const TextureRequest& request, const PlaneTe
   program.summary["share_outside_full_scale"] =
       static_cast<double>(outside) / static_cast<double>(rgb.size());
   program.say(output.string() + ": colours of " +
-              counted(static_cast<std::size_t>(texture.layers), "Gabor layer") + ", " + request.size +
+              counted(static_cast<std::size_t>(texture.layers), "texture layer") + ", " + request.size +
               " pixels");
 }
 
+// "rock.png" and "normal" give "rock_normal" with the extension.
+fs::path map_name(const fs::path& output, const std::string& map, const char* extension) {
+  return fs::path(output).replace_filename(output.stem().string() + "_" + map + extension);
+}
+
+// The files of a material, by their map.
+struct MaterialFiles {
+  explicit MaterialFiles(const fs::path& output)
+      : height(map_name(output, "height", ".tif")),
+        color(map_name(output, "color", ".png")),
+        normal(map_name(output, "normal", ".png")),
+        occlusion(map_name(output, "occlusion", ".png")) {}
+  fs::path height, color, normal, occlusion;
+};
+
+void summarize_material(Program& program, const Recipe& recipe, const PlaneMaterial& material,
+                        const MaterialFiles& files) {
+  const auto [low, high] = std::minmax_element(material.height.values.begin(), material.height.values.end());
+  program.summary["content"] = "material";
+  program.summary["height_unit"] = recipe.length_unit;
+  program.summary["pixel_size"] = material.pixel_size;
+  program.summary["height_rms"] = material.height.height_rms;
+  program.summary["least_height"] = *low;
+  program.summary["greatest_height"] = *high;
+  program.summary["normal_convention"] = "OpenGL";
+  program.summary["occlusion_reach"] = kOcclusionReach;
+  program.summary["files"]["height"] = files.height.string();
+  if (material.color) program.summary["files"]["color"] = files.color.string();
+  program.summary["files"]["normal"] = files.normal.string();
+  program.summary["files"]["occlusion"] = files.occlusion.string();
+}
+
+void write_material(Program& program, const TextureRequest& request, const Recipe& recipe,
+                    const fs::path& file, const fs::path& output, const TextureSize& size) {
+  const MaterialFiles files(output);
+  const PlaneMaterial material = draw_material(
+      recipe, file.string(), {size.width, size.height, "", request.tileable}, program.progress("texture"));
+  write_tiff_float(material.height.values, size.width, size.height, files.height);
+  if (material.color) write_picture({size, 3, material.color->values, 0.0, 1.0}, request.bits, files.color);
+  write_picture({size, 3, material.normal, 0.5, 0.5}, request.bits, files.normal);
+  write_picture({size, 1, material.occlusion, 0.0, 1.0}, request.bits, files.occlusion);
+  summarize_material(program, recipe, material, files);
+  program.say(files.height.string() + ": height in " + recipe.length_unit +
+              (material.color ? "; with it colour, normals" : "; with it normals (no layer has a color)") +
+              " and occlusion as .png, " + request.size + " pixels");
+}
+
 }  // namespace
+
+std::vector<fs::path> texture_files(const TextureRequest& request, const fs::path& output) {
+  if (request.content != "material") return {output};
+  const MaterialFiles files(output);
+  return {files.height, files.color, files.normal, files.occlusion};
+}
 
 void declare_texture_options(Program& program, TextureRequest& request) {
   CommandLine& app = program.app;
@@ -107,8 +161,11 @@ void declare_texture_options(Program& program, TextureRequest& request) {
                  "heights, a .png "
                  "maps -4 to +4 standard deviations to its full scale)")
       .placeholder("WxH");
-  app.add_option("--texture-of", request.content, "what --texture draws: height or color")
-      .check(one_of({"height", "color"}))
+  app.add_option("--texture-of", request.content,
+                 "what --texture draws: height, color, or material: of -o rock.png the files rock_height.tif "
+                 "(32-bit floats, length units), rock_color.png, rock_normal.png (OpenGL: x right, y up) and "
+                 "rock_occlusion.png (open sky in 16 directions up to 64 pixels away)")
+      .check(one_of({"height", "color", "material"}))
       .default_text("");
   app.add_flag("--tileable", request.tileable, "the texture repeats without a seam in both directions");
   app.add_option("--bits", request.bits, "bits for each channel of a texture's .png")
@@ -122,6 +179,7 @@ void write_texture(Program& program, const TextureRequest& request, const Recipe
   program.summary["width"] = size.width;
   program.summary["height"] = size.height;
   program.summary["tileable"] = request.tileable;
+  if (request.content == "material") return write_material(program, request, recipe, file, output, size);
   const PlaneTexture texture =
       draw_texture(recipe, file.string(), {size.width, size.height, request.content, request.tileable},
                    program.progress("texture"));

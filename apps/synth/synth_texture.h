@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/program.h"
 #include "recipe/recipe.h"
@@ -11,10 +12,14 @@ namespace astrolith {
 
 struct TextureRequest {
   std::string size;     // "1024x1024"; empty = no texture
-  std::string content;  // "height" or "color"; empty = colours where layers have them
+  std::string content;  // "height", "color" or "material"; empty = colours where layers have them
   bool tileable = false;
   int bits = 16;  // in a channel of a PNG
 };
+
+// The files that the request makes for an output: the output itself, or the maps of a material.
+std::vector<std::filesystem::path> texture_files(const TextureRequest& request,
+                                                 const std::filesystem::path& output);
 
 void declare_texture_options(Program& program, TextureRequest& request);
 

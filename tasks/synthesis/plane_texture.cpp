@@ -8,6 +8,7 @@
 #include "synthesis/exemplar/plane_exemplar.h"
 #include "synthesis/gabor/color_texture.h"
 #include "synthesis/gabor/gabor_texture.h"
+#include "synthesis/picture/surface_maps.h"
 
 namespace astrolith {
 namespace {
@@ -83,6 +84,12 @@ PlaneTexture draw_colors(const std::vector<GaborLayer>& layers, const PlaneTextu
   return texture;
 }
 
+// The side of a pixel of a Gabor or exemplar layer, length units.
+double pixel_size_of(const Layer& layer) {
+  const auto* exemplar = std::get_if<ExemplarLayer>(&layer);
+  return exemplar != nullptr ? exemplar->pixel_size : std::get<GaborLayer>(layer).pixel_size;
+}
+
 TextureOptions gabor_options(const Recipe& recipe, const PlaneTextureRequest& request) {
   TextureOptions options{recipe.seed};
   if (request.tileable) {
@@ -124,6 +131,7 @@ class PlaneDrawing {
                                                       gabor_options(recipe_, request_), progress_));
   }
 
+  const Progress& progress() const { return progress_; }
   void expect_complete() const {
     if (stopped_) throw WorkError("stopped before the texture was complete");
   }
@@ -155,6 +163,27 @@ PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const P
   }
   const bool colors = has_color && request.content != "height";
   return colors ? drawing.colors(colored) : drawing.heights(first_plane_layer(recipe, file));
+}
+
+PlaneMaterial draw_material(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
+                            const Progress& progress) {
+  const std::size_t first = first_plane_layer(recipe, file);
+  const std::string place = file + ": layers[" + std::to_string(first) + "]";
+  const Layer& layer = recipe.layers[first];
+  PlaneDrawing drawing(recipe, file, request, progress);
+  PlaneMaterial material;
+  material.pixel_size = pixel_size_of(layer);
+  material.height = drawing.heights(first);
+  if (!material.height.has_height) {
+    throw InputError(place + ".height_rms: is 0, and a material needs a relief; state the height");
+  }
+  if (first_colored_layer(recipe) == first) material.color = drawing.colors(first);
+  const HeightGrid grid{material.height.values, request.width, request.height, material.pixel_size,
+                        request.tileable};
+  material.normal = normal_map(grid, drawing.progress());
+  material.occlusion = occlusion_map(grid, drawing.progress());
+  drawing.expect_complete();
+  return material;
 }
 
 }  // namespace astrolith

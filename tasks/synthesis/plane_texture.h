@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,19 @@ struct PlaneTexture {
 // asks to stop.
 PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
                           const Progress& progress);
+
+// The maps of a material, which belong to the same pixels of the recipe's first Gabor or exemplar layer.
+struct PlaneMaterial {
+  PlaneTexture height;
+  std::optional<PlaneTexture> color;  // absent where the layer has no color
+  std::vector<float> normal;          // normal_map() of the heights
+  std::vector<float> occlusion;       // occlusion_map() of the heights
+  double pixel_size = 1.0;            // length units
+};
+
+// Draws a material; the request's content is not read. Throws as draw_texture() does, and InputError for a
+// layer without a height.
+PlaneMaterial draw_material(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
+                            const Progress& progress);
 
 }  // namespace astrolith

@@ -146,5 +146,44 @@ TEST_F(SynthExemplar, PaintsVertices) {
   EXPECT_NE(text_of(name("s.json")).find("\"vertex_colors\": false"), std::string::npos);
 }
 
+TEST_F(SynthExemplar, WritesMaterials) {
+  write_image("i.png", 64, PNG_FORMAT_RGB, 3);
+  const std::string hash = sha256_of_file(folder_ / "i.png");
+  const auto draw = [&](const std::string& output) {
+    return run_program(kSynth, {recipe_of("i.png", hash, false), "--texture", "100x80", "--texture-of",
+                                "material", "--tileable", "-o", name(output), "--summary", name("s.json")});
+  };
+  EXPECT_EQ(draw("grey.png").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(name("grey_color.png")));
+  fields_ = R"("height_range": 0.1, "color": true)";
+  const testing::Outcome outcome = draw("rock.png");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  for (const char* file : {"rock_height.tif", "rock_color.png", "rock_normal.png", "rock_occlusion.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(name(file))) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(name("rock.png")));
+  const auto summary = nlohmann::json::parse(text_of(name("s.json")));
+  EXPECT_EQ(summary["content"], "material");
+  EXPECT_EQ(summary["normal_convention"], "OpenGL");
+  EXPECT_EQ(summary["pixel_size"], 0.05);
+  EXPECT_EQ(summary["files"]["color"], name("rock_color.png"));
+  fields_ = R"("color": true)";
+  const testing::Outcome flat = draw("flat.png");
+  EXPECT_EQ(flat.status, 2);
+  EXPECT_NE(flat.errors.find("layers[0].height_rms: is 0"), std::string::npos) << flat.errors;
+  EXPECT_FALSE(std::filesystem::exists(name("flat_normal.png")));
+}
+
+// A map of a material must not destroy the image that it is made from.
+TEST_F(SynthExemplar, RefusesMaterialsOverTheirImage) {
+  write_image("rock_color.png", 64, PNG_FORMAT_RGB, 3);
+  const std::string before = text_of(name("rock_color.png"));
+  const testing::Outcome outcome =
+      run_program(kSynth, {recipe_of("rock_color.png", sha256_of_file(folder_ / "rock_color.png"), false),
+                           "--texture", "100x80", "--texture-of", "material", "-o", name("rock.png")});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(text_of(name("rock_color.png")), before);
+}
+
 }  // namespace
 }  // namespace astrolith
