@@ -64,7 +64,8 @@ void add_photo_options(CommandLine& app, Options& o) {
          "--channels", o.channels,
          "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
          "the values as stored, gamma-encoded) or pca (a layer for each principal axis of the "
-         "colours; synth --texture then paints in colour)")
+         "colours; synth --texture then paints in colour). With pca an exemplar keeps the colours of "
+         "its image, and its height is that of their luma")
       .check(one_of({"luminance", "pca"}));
   Option detrend =
       app.add_option(
@@ -244,10 +245,10 @@ void say_result(const PhotoFit& photo, const Options& o, const Program& program)
 
 PreparedExemplar prepare(Program& program, const Options& o) {
   const TrendModel trend = photo_options(program, o).trend;
-  const ImageFile read = read_exemplar_photo(o.image, o.photo.detrend_degree, trend);
+  const ColorImageFile read =
+      read_exemplar_photo(o.image, o.channels == "pca", o.photo.detrend_degree, trend);
   for (const std::string& remark : read.remarks) program.say(o.image + ": " + remark);
-  PreparedExemplar prepared =
-      prepare_exemplar(read.image, o.image, program.seed, program.progress("exemplar"));
+  PreparedExemplar prepared = prepare_photo(read.planes, o.image, program.seed, program.progress("exemplar"));
   program.summary.update(exemplar_figures(prepared));
   const TextureScore& best = prepared.scores[static_cast<int>(prepared.variant)];
   program.say(fmt::format(
@@ -278,9 +279,6 @@ bool exemplar_is_nearer(Program& program, const PreparedExemplar& prepared, cons
 }
 
 void check_model(const Options& o) {
-  if (o.model != "gabor" && o.channels != "luminance") {
-    throw InputError("--model: an exemplar has no colours yet; use --channels luminance");
-  }
   if (o.model == "exemplar" && !(o.report_folder.empty() && o.spectrum_file.empty())) {
     throw InputError(
         "--model exemplar: fits no lobes that --report or --spectrum could show; use --model auto");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "numerics/errors.h"
+#include "numerics/srgb.h"
 
 namespace astrolith {
 namespace {

@@ -16,11 +16,6 @@ struct GreyPng {
   std::vector<std::uint16_t> rgb = {};  // (height x width x 3); empty where the file is grey
 };
 
-// The luma 0.2126 R + 0.7152 G + 0.0722 B of stored values, rounded to the nearest.
-constexpr std::uint16_t luma_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
-  return static_cast<std::uint16_t>((2126u * red + 7152u * green + 722u * blue + 5000u) / 10000u);
-}
-
 // Decodes a PNG file that was read into memory. Channels have 1 to 16 bits; palettes are expanded, `values`
 // is the luma of colours, and alpha is ignored. Throws
 // InputError, which names `file`: for bytes that are no PNG, for a damaged file, and for sides outside

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
@@ -17,10 +18,23 @@ void flatten_exemplar_photo(GreyImage& photo, int degree, TrendModel trend, cons
   }
 }
 
-ImageFile read_exemplar_photo(const std::string& file, int degree, TrendModel trend) {
-  ImageFile read = read_grey_image(file);
-  flatten_exemplar_photo(read.image, degree, trend, file);
+ColorImageFile read_exemplar_photo(const std::string& file, bool colors, int degree, TrendModel trend) {
+  ColorImageFile read;
+  if (colors) {
+    read = read_color_image(file);
+  } else {
+    ImageFile grey = read_grey_image(file);
+    read.planes.push_back(std::move(grey.image));
+    read.remarks = std::move(grey.remarks);
+  }
+  for (GreyImage& plane : read.planes) flatten_exemplar_photo(plane, degree, trend, file);
   return read;
+}
+
+PreparedExemplar prepare_photo(const std::vector<GreyImage>& planes, const std::string& name,
+                               std::uint64_t seed, const Progress& progress) {
+  return planes.size() == 1 ? prepare_exemplar(planes.front(), name, seed, progress)
+                            : prepare_exemplar(planes, name, seed, progress);
 }
 
 Recipe exemplar_recipe(const PreparedExemplar& prepared, const PhotoRecipeOptions& options) {
@@ -44,7 +58,12 @@ fs::path exemplar_image_of(const fs::path& recipe) {
 void write_exemplar_recipe(Recipe recipe, const fs::path& file) {
   const fs::path image = exemplar_image_of(file);
   auto& layer = std::get<ExemplarLayer>(recipe.layers.front());
-  write_png16_grey(layer.pixels->values, layer.pixels->width, layer.pixels->height, image);
+  const ExemplarImage& pixels = *layer.pixels;
+  if (layer.color) {
+    write_png16_rgb(pixels.rgb, pixels.width, pixels.height, image);
+  } else {
+    write_png16_grey(pixels.values, pixels.width, pixels.height, image);
+  }
   layer.image = image.filename().string();
   layer.image_sha256 = sha256_of_file(image);
   write_recipe(recipe, file);

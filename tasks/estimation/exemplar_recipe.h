@@ -13,8 +13,12 @@
 
 namespace astrolith {
 
-// The photo's luma without its slow changes of brightness, with the reader's remarks; `degree` 0: as it is.
-ImageFile read_exemplar_photo(const std::string& file, int degree, TrendModel trend);
+// The photo without its slow changes of brightness, with the reader's remarks; `degree` 0: as it is. There
+// are three planes where `colors` is set, else one, the luma.
+ColorImageFile read_exemplar_photo(const std::string& file, bool colors, int degree, TrendModel trend);
+// Prepares a photo of one plane, or of red, green and blue. Throws as prepare_exemplar() does.
+PreparedExemplar prepare_photo(const std::vector<GreyImage>& planes, const std::string& name,
+                               std::uint64_t seed, const Progress& progress);
 // Takes a polynomial of the degree out of a photo that is large enough for an exemplar.
 void flatten_exemplar_photo(GreyImage& photo, int degree, TrendModel trend, const std::string& name);
 

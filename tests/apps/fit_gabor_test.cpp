@@ -65,6 +65,14 @@ TEST_F(FitGabor, WritesAnExemplarAndItsImage) {
   EXPECT_EQ(text_of(folder_ / "rock_exemplar.png"), image);
 }
 
+TEST_F(FitGabor, AnExemplarKeepsColours) {
+  fit("rock.json", {"--model", "exemplar", "--channels", "pca", "--height-rms", "0.5"});
+  const auto layer = std::get<ExemplarLayer>(read_recipe(folder_ / "rock.json").layers[0]);
+  EXPECT_TRUE(layer.color);
+  EXPECT_EQ(layer.height_rms, 0.5);
+  EXPECT_EQ(text_of(folder_ / "rock_exemplar.png")[25], '\2') << "colour type RGB";
+}
+
 TEST_F(FitGabor, AutoTakesTheNearerModelByItsScores) {
   fit("rock.json", {"--model", "auto", "--summary", (folder_ / "s.json").string()});
   const auto summary = nlohmann::json::parse(text_of(folder_ / "s.json"));
@@ -86,7 +94,7 @@ TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
   expect_refusal(folder_, kFitGabor, {flat, "--model", "exemplar", "-o", out}, "one grey value");
   expect_refusal(folder_, kFitGabor, {small, "--model", "exemplar", "-o", out}, "16 x 16 pixels");
   expect_refusal(folder_, kFitGabor, {small, "--model", "exemplar", "--channels", "pca", "-o", out},
-                 "--model");
+                 "16 x 16 pixels");
   expect_refusal(folder_, kFitGabor,
                  {small, "--model", "exemplar", "--report", (folder_ / "report").string(), "-o", out},
                  "--report");

@@ -109,6 +109,11 @@ def runs(folder):
     yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
     yield ["synth", folder / "grey.json", "-o", folder / "grey_texture.png", "--texture", "64x64"]
     yield ["synth", folder / "color.json", "-o", folder / "color_texture.png", "--texture", "64x64"]
+    material = ["--texture", "64x64", "--texture-of", "material"]
+    yield ["synth", folder / "color.json", "-o", folder / "material.png", *material]
+    painted = folder / "painted.json"
+    yield ["fit_gabor", color, "-o", painted, "--model", "exemplar", "--channels", "pca", "--mm-per-px", "1e4", "--unit", "km"]
+    yield ["synth", painted, "--base", plain, *mesh]
     fit = ["fit_shape", ball, "--spheres", "6", "-o"]
     yield [*fit, folder / "base.json", "--base-only"]
     yield [*fit, folder / "fit.json", "--population", "4", "--generations", "2", "--variations", "1"]

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -10,6 +11,7 @@
 
 #include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/errors.h"
+#include "numerics/srgb.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/exemplar/plane_exemplar.h"
 
@@ -71,12 +73,66 @@ GreyImage continued(const GreyImage& photo, ExemplarVariant variant) {
   return variant == ExemplarVariant::kMatched ? with_ranks_of(periodic, photo) : periodic;
 }
 
-ExemplarLayer layer_of_variant(const GreyImage& photo, ExemplarVariant variant) {
+// The colours in 16 bits of full scale, with their luma.
+ExemplarImage colors_in_16_bits(const std::vector<GreyImage>& planes) {
+  ExemplarImage result{planes[0].width, planes[0].height, {}, {}, {}};
+  for (std::size_t i = 0; i < planes[0].values.size(); ++i) {
+    std::array<std::uint16_t, 3> pixel{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      pixel[k] = static_cast<std::uint16_t>(std::lround(65535.0 * std::clamp(planes[k].values[i], 0.0, 1.0)));
+    }
+    result.rgb.insert(result.rgb.end(), pixel.begin(), pixel.end());
+    result.values.push_back(luma_of(pixel[0], pixel[1], pixel[2]));
+  }
+  return result;
+}
+
+// The image of a variant: of a grey photo, which is one plane, or of red, green and blue.
+ExemplarImage image_of_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant) {
+  if (planes.size() == 1) return in_16_bits(continued(planes.front(), variant));
+  std::vector<GreyImage> colors;
+  for (const GreyImage& plane : planes) colors.push_back(continued(plane, variant));
+  return colors_in_16_bits(colors);
+}
+
+ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, const GreyImage& photo,
+                               ExemplarVariant variant) {
   ExemplarLayer layer;
-  layer.pixels = std::make_shared<const ExemplarImage>(in_16_bits(continued(photo, variant)));
+  layer.pixels = std::make_shared<const ExemplarImage>(image_of_variant(planes, variant));
   layer.border = variant == ExemplarVariant::kMirrored ? ExemplarBorder::kMirror : ExemplarBorder::kRepeat;
   layer.height_rms = round_to_seven_digits(photo_moments(photo).deviation);
+  layer.color = planes.size() == 3;
   return layer;
+}
+
+// `photo` is the grey photo, or the luma of the planes.
+PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const GreyImage& photo,
+                                 const std::string& name, std::uint64_t seed, const Progress& progress) {
+  check_photo(photo, name);
+  PreparedExemplar best;
+  for (const ExemplarVariant variant : kExemplarVariants) {
+    const int number = static_cast<int>(variant);
+    if (!report(progress, number / 3.0, "exemplar"))
+      throw WorkError("stopped before the exemplar was prepared");
+    ExemplarLayer layer = layer_of_variant(planes, photo, variant);
+    best.scores[number] = texture_score(exemplar_texture_like(layer, photo, seed), photo);
+    if (number > 0 && best.scores[number].sum() >= best.scores[static_cast<int>(best.variant)].sum())
+      continue;
+    best.variant = variant;
+    best.layer = std::move(layer);
+  }
+  report(progress, 1.0, "exemplar");
+  return best;
+}
+
+void check_colors(const std::vector<GreyImage>& planes, const std::string& name) {
+  for (const GreyImage& plane : planes) {
+    const auto [least, greatest] = std::minmax_element(plane.values.begin(), plane.values.end());
+    if (*least >= -1.0 && *greatest <= 2.0) continue;
+    throw InputError(fmt::format(
+        "{}: has values of {:g} to {:g}, and colours are 0 to 1; scale them, or fit the luminance", name,
+        *least, *greatest));
+  }
 }
 
 }  // namespace
@@ -97,21 +153,23 @@ GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& pho
 
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
                                   const Progress& progress) {
-  check_photo(photo, name);
-  PreparedExemplar best;
-  for (const ExemplarVariant variant : kExemplarVariants) {
-    const int number = static_cast<int>(variant);
-    if (!report(progress, number / 3.0, "exemplar"))
-      throw WorkError("stopped before the exemplar was prepared");
-    ExemplarLayer layer = layer_of_variant(photo, variant);
-    best.scores[number] = texture_score(exemplar_texture_like(layer, photo, seed), photo);
-    if (number > 0 && best.scores[number].sum() >= best.scores[static_cast<int>(best.variant)].sum())
-      continue;
-    best.variant = variant;
-    best.layer = std::move(layer);
+  return nearest_variant({photo}, photo, name, seed, progress);
+}
+
+PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
+                                  std::uint64_t seed, const Progress& progress) {
+  check_colors(planes, name);
+  return nearest_variant(planes, luma_of(planes), name, seed, progress);
+}
+
+GreyImage luma_of(const std::vector<GreyImage>& planes) {
+  GreyImage luma{planes[0].width, planes[0].height, {}};
+  luma.values.reserve(planes[0].values.size());
+  for (std::size_t i = 0; i < planes[0].values.size(); ++i) {
+    luma.values.push_back(0.2126 * planes[0].values[i] + 0.7152 * planes[1].values[i] +
+                          0.0722 * planes[2].values[i]);
   }
-  report(progress, 1.0, "exemplar");
-  return best;
+  return luma;
 }
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "estimation/gabor/exemplar/texture_score.h"
 #include "estimation/gabor/image/grey_image.h"
@@ -32,6 +33,16 @@ struct PreparedExemplar {
 inline constexpr int kLeastTextureSide = 32;
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
                                   const Progress& progress = {});
+
+// The same for a photo in colour: red, green and blue of one size, full scale = 1. The layer has the colours
+// and paints. Its height is that of their luma, and the scores are those of the luma. The variant changes
+// each plane by itself; values beyond 0 to 1 are cut off. Throws InputError also for a photo with values
+// beyond -1 to 2, which are no colours.
+PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
+                                  std::uint64_t seed, const Progress& progress = {});
+
+// The luma of three planes: 0.2126 R + 0.7152 G + 0.0722 B.
+GreyImage luma_of(const std::vector<GreyImage>& planes);
 
 // A texture of an exemplar layer, in the grey values of the photo that it was made from.
 GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed);

@@ -54,6 +54,30 @@ TEST(ExemplarPreparation, TakesTheVariantWithTheBestScore) {
   EXPECT_LT(prepared.scores[static_cast<int>(prepared.variant)].sum(), 0.25);
 }
 
+// The image has the photo's colours, and its luma is the height.
+TEST(ExemplarPreparation, KeepsTheColoursOfAPhoto) {
+  GreyImage red = discs(96), green = red, blue = red;
+  for (double& v : green.values) v = 0.1 + 0.7 * v;
+  for (std::size_t i = 0; i < blue.values.size(); ++i) blue.values[i] = 0.5 - 0.2 * blue.values[i];
+  const PreparedExemplar prepared = prepare_exemplar(std::vector<GreyImage>{red, green, blue}, "p", 1);
+  const ExemplarImage& image = *prepared.layer.pixels;
+  EXPECT_TRUE(prepared.layer.color);
+  ASSERT_EQ(image.rgb.size(), 3 * image.values.size());
+  double photo = 0.0, kept = 0.0;
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const double luma =
+        0.2126 * image.rgb[3 * i] + 0.7152 * image.rgb[3 * i + 1] + 0.0722 * image.rgb[3 * i + 2];
+    ASSERT_NEAR(image.values[i], luma, 0.51);
+    photo += blue.values[i] / static_cast<double>(image.values.size());
+    kept += image.rgb[3 * i + 2] / 65535.0 / static_cast<double>(image.values.size());
+  }
+  EXPECT_NEAR(kept, photo, 1e-3);
+  const PreparedExemplar grey = prepare_exemplar(luma_of(std::vector<GreyImage>{red, green, blue}), "p", 1);
+  EXPECT_EQ(grey.layer.height_rms, prepared.layer.height_rms);
+  blue.values[5] = 300.0;
+  EXPECT_THROW(prepare_exemplar(std::vector<GreyImage>{red, green, blue}, "p", 1), InputError);
+}
+
 TEST(ExemplarPreparation, RefusesPhotosThatAreTooSmallOrFlat) {
   EXPECT_THROW(prepare_exemplar(discs(24), "p", 1), InputError);
   EXPECT_THROW(prepare_exemplar({64, 64, std::vector<double>(4096, 0.5)}, "p", 1), InputError);
