@@ -74,6 +74,14 @@ def column(value: Any, name: str, dtype: Any, length: int) -> npt.NDArray[Any]:
     return array
 
 
+def colors(value: Any, name: str, length: int) -> npt.NDArray[np.uint8]:
+    """(n, 3) uint8, one colour for each vertex."""
+    array = _array(value, name)
+    if array.shape != (length, 3) or array.dtype != np.uint8:
+        raise ValueError(f"{name}: has the shape {array.shape} of {array.dtype}; it must be ({length}, 3) of uint8")
+    return array
+
+
 def vector(value: Any, name: str, length: int = 3) -> tuple[float, ...]:
     """`length` finite numbers."""
     try:

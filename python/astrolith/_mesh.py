@@ -36,6 +36,8 @@ class Mesh:
         The place that vertices are relative to, in the recipe's frame; None: the frame's own origin.
     figures
         What ``synth --summary`` states: triangles, closed, genus, components, cell, layers_left_out and more.
+    colors
+        (n, 3) uint8 sRGB that the layers paint; or None.
     """
 
     vertices: npt.NDArray[Any]
@@ -49,6 +51,7 @@ class Mesh:
     origin: Optional[tuple[float, float, float]] = None
     legend: list[str] = dataclasses.field(default_factory=list)
     figures: Record = dataclasses.field(default_factory=Record)
+    colors: Optional[npt.NDArray[np.uint8]] = None
 
     def __repr__(self) -> str:
         unit = f", {self.length_unit}" if self.length_unit else ""
@@ -135,7 +138,8 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
 def write_mesh(mesh: MeshLike, file: PathLike) -> None:
     """Write .ply (binary, float32), .obj (text), .stl (binary), .glb, .icq or .tab, whole or not at all.
 
-    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply.
+    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply,
+    colours into .ply and .glb.
 
     Raises
     ------
@@ -152,6 +156,7 @@ def write_mesh(mesh: MeshLike, file: PathLike) -> None:
             raise ValueError("mesh.normals: are missing; labels are written with normals only")
         labels = _arrays.column(made.labels, "mesh.labels", np.int32, len(arrays.vertices))
         elevations = _arrays.column(made.elevations, "mesh.elevations", np.float32, len(arrays.vertices))
+    colors = None if made.colors is None else _arrays.colors(made.colors, "mesh.colors", len(arrays.vertices))
     origin = None if made.origin is None else _arrays.vector(made.origin, "mesh.origin")
     _synthesis.write_mesh(
         os.fspath(file),
@@ -160,6 +165,7 @@ def write_mesh(mesh: MeshLike, file: PathLike) -> None:
         arrays.normals,
         labels,
         elevations,
+        colors,
         made.length_unit,
         made.frame,
         made.comment,

@@ -68,7 +68,7 @@ def mesh(
     Returns
     -------
     Mesh
-        float32 vertices and normals, uint32 faces.
+        float32 vertices and normals, uint32 faces, and uint8 colors where a layer of the recipe paints.
 
     Raises
     ------
@@ -110,6 +110,7 @@ def mesh(
         made["normals"],
         made.get("labels"),
         made.get("elevations"),
+        colors=made.get("colors"),
         length_unit=fields["length_unit"] if "length_unit" in fields else "km",
         frame=fields["frame"] if "frame" in fields else "",
         comment="made by synth " + _synthesis.version(),

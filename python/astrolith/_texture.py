@@ -50,15 +50,15 @@ def texture(
     threads: int = 0,
     progress: Progress = None,
 ) -> Texture:
-    """Draw the Gabor layers of a recipe on a plane, as ``synth --texture`` does into a .tif.
+    """Draw the Gabor or exemplar layers of a recipe on a plane, as ``synth --texture`` does into a .tif.
 
     Parameters
     ----------
     width, height
         Pixels, 1 to 16384.
     content
-        "height": the heights of the first Gabor layer; "color": the colours of all that have one. None: colours
-        where layers have them.
+        "height": the heights of the first Gabor or exemplar layer; "color": the colours of the first layer that has
+        some, with those of all other Gabor layers if it is one. None: colours where layers have them.
     tileable
         Whether the texture repeats in both directions without a seam.
 

@@ -284,7 +284,8 @@ def fit_texture(
         Write the recipe to this file. Models other than "gabor" need it, since an exemplar layer names an image,
         which becomes RECIPE_exemplar.png beside it.
     channels
-        "luminance" (default; one layer) or "pca" (a layer for each principal axis of the colours).
+        "luminance" (default; one layer) or "pca" (a layer for each principal axis of the colours; an exemplar keeps
+        the colours of its image).
     detrend, detrend_by
         Degree of a polynomial that is taken out first (0 to 6; default 0), by "subtraction" (default) or "division".
     lobes
@@ -327,8 +328,6 @@ def fit_texture(
     kind = _arrays.choice(model or "gabor", "model", ("gabor", "exemplar", "auto"))
     if kind != "gabor" and output is None:
         raise ValueError("output: is missing; an exemplar layer names an image beside its recipe")
-    if kind != "gabor" and colors:
-        raise ValueError("model: an exemplar has no colours yet; leave out channels")
     if kind == "exemplar" and (report is not None or spectrum):
         raise ValueError('model: "exemplar" fits no lobes that report or spectrum could show; use "auto"')
     if max_memory is None:

@@ -18,6 +18,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
+#include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
@@ -81,6 +82,7 @@ struct MadeMesh {
   int resolution = 0;
   std::vector<std::string> legend;
   std::vector<LayerLeftOut> left_out;
+  std::vector<VertexColor> colors;  // empty where no layer paints
 };
 
 Vec3f narrowed(const Vec3d& v) {
@@ -101,6 +103,15 @@ ErosionStatistics erode_arrays(const Erosion& erosion, ArraySink& arrays, const 
   return done;
 }
 
+std::vector<VertexColor> colors_of(const ArraySink& arrays, const SurfaceColors& colors,
+                                   const Vec3d& origin) {
+  std::vector<MeshVertex> vertices;
+  for (const Vec3f& position : arrays.vertices) vertices.push_back({position, {}});
+  std::vector<VertexColor> painted(vertices.size());
+  colors.paint(origin, vertices, painted);
+  return painted;
+}
+
 MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
   const std::filesystem::path file = arguments.name;
@@ -112,7 +123,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
     labels.emplace(recipe, arguments.name, region.cube());
     labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
   }
-  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, {}, {}};
+  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, {}, {}, {}};
   made.resolution = arguments.triangles > 0.0
                         ? resolution_for_triangles(field, recipe, region, arguments.triangles)
                         : arguments.resolution;
@@ -121,6 +132,9 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
       {recipe, field, file, region, made.resolution, arguments.min_component, MeshingDevice::kCpu},
       made.arrays, stage);
   if (recipe.erosion) made.erosion = erode_arrays(*recipe.erosion, made.arrays, state.progress("erosion"));
+  if (has_colors(recipe)) {
+    made.colors = colors_of(made.arrays, SurfaceColors(recipe, arguments.name, field), region.center);
+  }
   if (labels) made.legend = labels->legend();
   made.left_out.assign(field.left_out().begin(), field.left_out().end());
   return made;
@@ -178,6 +192,7 @@ Fields mesh(const std::string& json, const std::string& name, int resolution, do
     result["elevations"] = array_of<float>(std::move(arrays.elevations), {n});
     result["legend"] = made.legend;
   }
+  if (!made.colors.empty()) result["colors"] = array_of<std::uint8_t>(std::move(made.colors), {n, 3});
   return result;
 }
 
@@ -197,11 +212,17 @@ Fields read(const std::string& file, bool points_allowed, nb::object progress) {
 using Labels = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Elevations = nb::ndarray<const float, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
-// Writes a PLY file whose vertices have labels.
+using Colors = nb::ndarray<const std::uint8_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+// Writes a PLY file whose vertices have labels, and colours where the mesh has them.
 void write_labelled(const TriangleMesh& mesh, const std::vector<VertexLabel>& labels,
                     const std::filesystem::path& file, const MeshFileInfo& info) {
-  PlyStreamWriter writer(file, info,
-                         [&](auto, auto out) { std::copy(labels.begin(), labels.end(), out.begin()); });
+  VertexPainter painter;
+  if (!mesh.colors.empty()) {
+    painter = [&](auto, auto out) { std::copy(mesh.colors.begin(), mesh.colors.end(), out.begin()); };
+  }
+  PlyStreamWriter writer(
+      file, info, [&](auto, auto out) { std::copy(labels.begin(), labels.end(), out.begin()); }, painter);
   std::vector<MeshVertex> vertices(mesh.vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     vertices[i] = {narrowed(mesh.vertices[i]), narrowed(mesh.normals[i])};
@@ -213,8 +234,8 @@ void write_labelled(const TriangleMesh& mesh, const std::vector<VertexLabel>& la
 
 void write(const std::string& file, const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
            const std::optional<Rows<double>>& normals, const std::optional<Labels>& labels,
-           const std::optional<Elevations>& elevations, const std::string& length_unit,
-           const std::string& frame, const std::string& comment,
+           const std::optional<Elevations>& elevations, const std::optional<Colors>& colors,
+           const std::string& length_unit, const std::string& frame, const std::string& comment,
            const std::optional<std::array<double, 3>>& origin, const std::vector<std::string>& notes) {
   MeshFileInfo info{length_unit, frame, comment, {}, notes};
   if (origin) info.origin = Vec3d{(*origin)[0], (*origin)[1], (*origin)[2]};
@@ -224,7 +245,12 @@ void write(const std::string& file, const Rows<double>& vertices, const Rows<std
       of_vertices.push_back({labels->data()[i], elevations->data()[i]});
     }
   }
-  run_job(nb::none(), 0, [=, mesh = mesh_of(vertices, faces, normals)](JobState&) {
+  TriangleMesh mesh = mesh_of(vertices, faces, normals);
+  for (std::size_t i = 0; colors && i < colors->shape(0); ++i) {
+    const std::uint8_t* c = colors->data() + 3 * i;
+    mesh.colors.push_back({c[0], c[1], c[2]});
+  }
+  run_job(nb::none(), 0, [=, mesh = std::move(mesh)](JobState&) {
     if (of_vertices.empty()) {
       write_mesh(mesh, file, info);
     } else {
@@ -244,8 +270,8 @@ void bind_meshes(nb::module_& module) {
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
              nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),
-             nb::arg("length_unit"), nb::arg("frame"), nb::arg("comment"), nb::arg("origin").none(),
-             nb::arg("notes"));
+             nb::arg("colors").noconvert().none(), nb::arg("length_unit"), nb::arg("frame"),
+             nb::arg("comment"), nb::arg("origin").none(), nb::arg("notes"));
   module.def("version", [] { return kCodeVersion.text(); });
 }
 

@@ -84,15 +84,17 @@ void check_memory(const TextureArguments& a) {
 
 PreparedExemplar prepare(const TextureArguments& a, JobState& state, std::vector<std::string>& remarks) {
   const PhotoFitOptions& fit = a.fit;
-  ImageFile photo;
+  ColorImageFile photo;
   if (a.planes) {
-    photo.image = a.planes->front();
-    flatten_exemplar_photo(photo.image, fit.detrend_degree, fit.trend, a.name);
+    photo.planes = *a.planes;
+    for (GreyImage& plane : photo.planes) {
+      flatten_exemplar_photo(plane, fit.detrend_degree, fit.trend, a.name);
+    }
   } else {
-    photo = read_exemplar_photo(a.name, fit.detrend_degree, fit.trend);
+    photo = read_exemplar_photo(a.name, fit.colors, fit.detrend_degree, fit.trend);
     remarks = photo.remarks;
   }
-  return prepare_exemplar(photo.image, a.name, fit.seed, state.progress("exemplar"));
+  return prepare_photo(photo.planes, a.name, fit.seed, state.progress("exemplar"));
 }
 
 void state_origin(const TextureArguments& a, Recipe& recipe) {

@@ -48,6 +48,24 @@ def test_the_mesh_is_that_of_the_program(recipe_file, program, tmp_path, monkeyp
         assert (made.vertices == wanted.vertices).all() and (made.faces == wanted.faces).all()
 
 
+def test_colors_are_those_of_the_program(recipe_file, program, tmp_path):
+    document = json.loads(recipe_file.read_text())
+    document["layers"][0]["color"] = True
+    recipe_file.write_text(json.dumps(document))
+    made = astrolith.mesh(recipe_file, resolution=40)
+    assert made.colors.shape == made.vertices.shape and made.colors.dtype == np.uint8
+    assert np.ptp(made.colors) > 100
+    for name in ("mesh.ply", "mesh.glb"):
+        program("synth", recipe_file, "-o", name, "--resolution", "40")
+        astrolith.write_mesh(made, tmp_path / ("own_" + name))
+        assert (tmp_path / ("own_" + name)).read_bytes() == (tmp_path / name).read_bytes()
+    colors = astrolith.texture(recipe_file, 64, 64)
+    assert colors.content == "color" and colors.values.shape == (64, 64, 3)
+    made.colors = made.colors[:5]
+    with pytest.raises(ValueError, match="mesh.colors"):
+        astrolith.write_mesh(made, tmp_path / "wrong.ply")
+
+
 def test_a_written_recipe_finds_its_image(recipe_file, tmp_path):
     recipe = astrolith.Recipe.read(recipe_file)
     other = tmp_path / "elsewhere"
