@@ -16,8 +16,7 @@ namespace astrolith {
 // - .stl: ascii and binary; corners at the same coordinates become one vertex
 // - .off: with or without colours and normals
 // - .tab .plt .txt: PDS plate model with rows "i x y z" and "i a b c", with rows "x y z" and "a b c" below
-// both
-//   counts in one line, or with rows "v x y z" and "f a b c"
+//   both counts in one line, or with rows "v x y z" and "f a b c"
 // - .icq (or .tab .plt .txt): Gaskell's implicitly connected quadrilaterals; the faces' edges are merged
 // - .bmf: bodies of OpenUniverse, in kilometres; welded, with one winding of each triangle
 // For any other extension the content decides. Polygons become fans. Lengths stay in the file's unit.

@@ -85,10 +85,9 @@ class FieldBlock {
   void evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                      std::span<float> value) const;
 
-  // Blends the colours of painting layers over color[i] in their order, at points within the box, full scale
-  // =
-  // 1. With `origin`, points are relative to it as in evaluate_local(); it is null for points of the body's
-  // frame.
+  // Blends the colours of painting layers over color[i] in their order, at points within the box; full scale
+  // is 1. With `origin`, points are relative to it as in evaluate_local(); it is null for points of the
+  // body's frame.
   void paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
              std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const;
 
