@@ -63,7 +63,7 @@ double draws_of_tile(const SurfaceBand& band, const MeshEstimate& mesh, double b
 }
 
 const SurfaceBand& band_of(const FieldView& field, const ImpulseList& list) {
-  const GaborSurfaceNoise& noise = *field.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
+  const GaborSurfaceNoise& noise = *gabor_impulses_of(field.layers[list.layer].noise);
   return field.arrays[noise.bands][list.element];
 }
 

@@ -15,7 +15,7 @@ std::string obstacle_on_gpu(const FieldView& field, double block_side) {
   if (field.num_kept_heights > kMostKeptHeights) return "masks by more than four layers";
   double gabor_cells = 0.0, spot_cells = 0.0;
   for (const FieldLayer& layer : std::span(field.layers, field.num_layers)) {
-    if (const auto* gabor = layer.noise.get_if<GaborSurfaceNoise>()) {
+    if (const auto* gabor = gabor_impulses_of(layer.noise)) {
       gabor_cells += cells_of(*gabor, field.arrays, block_side + 2.0 * field.height_bound);
     } else if (const auto* spots = layer.noise.get_if<SpotNoise>()) {
       spot_cells += cells_of(*spots, field.arrays, block_side);

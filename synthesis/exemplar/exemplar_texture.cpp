@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "numerics/errors.h"
@@ -167,6 +168,11 @@ double mean_square(const Plane& coefficients) {
   return sum / static_cast<double>(correlated.values.size());
 }
 
+void scale_to_unit_mean_square(Plane& plane) {
+  const double gain = 1.0 / std::sqrt(mean_square(plane));
+  for (double& value : plane.values) value *= gain;
+}
+
 // The spline coefficients of the Gaussianised image, of mean square 1.
 Plane gaussianised(const ExemplarImage& image, const std::vector<GreyLevel>& levels, bool mirror) {
   std::vector<double> deviates(kGreyValues);
@@ -180,8 +186,7 @@ Plane gaussianised(const ExemplarImage& image, const std::vector<GreyLevel>& lev
   plane.values.reserve(image.values.size());
   for (const std::uint16_t value : image.values) plane.values.push_back(deviates[value]);
   plane.filter_lines([mirror](std::vector<double>& line) { prefilter(line, mirror); });
-  const double gain = 1.0 / std::sqrt(mean_square(plane));
-  for (double& value : plane.values) value *= gain;
+  scale_to_unit_mean_square(plane);
   return plane;
 }
 
@@ -242,6 +247,40 @@ std::vector<float> height_table(const std::vector<GreyShare>& distribution, doub
   return heights;
 }
 
+// The heights of a Gaussian texture: the deviate, which levels off smoothly between 4.5 and 5 deviations.
+std::vector<float> gaussian_height_table(double height_rms) {
+  constexpr double kStraight = 4.5;
+  std::vector<float> heights;
+  for (int i = -1; i <= kExemplarHeights + 1; ++i) {
+    const double z = (2.0 * i / kExemplarHeights - 1.0) * double{kLargestExemplarDeviation};
+    const double beyond = std::max(std::fabs(z) - kStraight, 0.0);
+    const double level = std::min(std::fabs(z), kStraight) + beyond - beyond * beyond;
+    heights.push_back(static_cast<float>(height_rms * std::copysign(level, z)));
+  }
+  return heights;
+}
+
+ExemplarTexture texture_of(const Plane& plane, const std::vector<float>& heights, ArrayStore& arrays) {
+  double largest = 0.0;
+  for (const double value : plane.values) largest = std::max(largest, std::fabs(value));
+  const double unit = largest / (double{kExemplarZeroCode} - 1.0);
+  const auto [least, greatest] = std::minmax_element(heights.begin(), heights.end());
+  const int periods = plane.mirror ? 2 : 1;
+  const double period_x = periods * plane.width, period_y = periods * plane.height;
+  return {static_cast<float>(plane.width),
+          static_cast<float>(plane.height),
+          static_cast<float>(period_x),
+          static_cast<float>(period_y),
+          static_cast<float>(1.0 / period_x),
+          static_cast<float>(1.0 / period_y),
+          plane.width,
+          static_cast<float>(unit),
+          arrays.add(packed(plane, unit)),
+          arrays.add(heights),
+          double{*least},
+          double{*greatest}};
+}
+
 }  // namespace
 
 double exemplar_height_rms(const ExemplarLayer& layer) {
@@ -262,27 +301,17 @@ ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::str
   }
   const GreyMoments moments = moments_of(levels, image.values.size());
   const Plane plane = gaussianised(image, levels, layer.border == ExemplarBorder::kMirror);
-  double largest = 0.0;
-  for (const double value : plane.values) largest = std::max(largest, std::fabs(value));
-  const double unit = largest / (double{kExemplarZeroCode} - 1.0);
   const double gain = layer.height_range != 0.0 ? layer.height_range : layer.height_rms / moments.deviation;
   const std::vector<float> heights =
       height_table(distribution_of(levels, image.values.size()), moments.mean, gain);
-  const auto [least, greatest] = std::minmax_element(heights.begin(), heights.end());
-  const int periods = plane.mirror ? 2 : 1;
-  const double period_x = periods * image.width, period_y = periods * image.height;
-  return {static_cast<float>(image.width),
-          static_cast<float>(image.height),
-          static_cast<float>(period_x),
-          static_cast<float>(period_y),
-          static_cast<float>(1.0 / period_x),
-          static_cast<float>(1.0 / period_y),
-          image.width,
-          static_cast<float>(unit),
-          arrays.add(packed(plane, unit)),
-          arrays.add(heights),
-          double{*least},
-          double{*greatest}};
+  return texture_of(plane, heights, arrays);
+}
+
+ExemplarTexture make_gaussian_texture(int side, std::vector<double> coefficients, double height_rms,
+                                      ArrayStore& arrays) {
+  Plane plane{side, side, false, std::move(coefficients)};
+  scale_to_unit_mean_square(plane);
+  return texture_of(plane, gaussian_height_table(height_rms), arrays);
 }
 
 }  // namespace astrolith

@@ -60,6 +60,10 @@ struct LayerAtPoint {
     join(height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list,
                    projected_point(f, body)));
   }
+  ASTROLITH_HD void operator()(const TiledGaborNoise& noise) const {
+    join(height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list,
+                   projected_point(f, body)));
+  }
   ASTROLITH_HD void operator()(const ExemplarNoise& noise) const {
     join(height_at(noise, f.arrays, projected_point(f, body)));
   }
@@ -132,17 +136,22 @@ struct LayerAtTetrahedron {
   const Vec3f* p;
   FieldState* state;
 
-  ASTROLITH_HD void operator()(const GaborSurfaceNoise& noise) const {
+  ASTROLITH_HD void operator()(const GaborSurfaceNoise& noise) const { join_gabor(noise); }
+  ASTROLITH_HD void operator()(const TiledGaborNoise& noise) const { join_gabor(noise); }
+  template <class Noise>
+  ASTROLITH_HD void operator()(const Noise& noise) const {
+    for (int k = 0; k < 4; ++k) LayerAtPoint{f, lists, layer, body[k], p[k], state[k]}(noise);
+  }
+
+ private:
+  template <class GaborNoise>
+  ASTROLITH_HD void join_gabor(const GaborNoise& noise) const {
     Vec3f projected[4];
     float heights[4];
     for (int k = 0; k < 4; ++k) projected[k] = projected_point(f, body[k]);
     tetrahedron_heights(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list, projected,
                         heights);
     for (int k = 0; k < 4; ++k) join_height(f, layer.join, p[k], heights[k], state[k]);
-  }
-  template <class Noise>
-  ASTROLITH_HD void operator()(const Noise& noise) const {
-    for (int k = 0; k < 4; ++k) LayerAtPoint{f, lists, layer, body[k], p[k], state[k]}(noise);
   }
 };
 

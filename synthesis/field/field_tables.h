@@ -10,6 +10,7 @@
 #include "numerics/plain_variant.h"
 #include "synthesis/body/body_tables.h"
 #include "synthesis/exemplar/exemplar_noise.h"
+#include "synthesis/exemplar/tiled_gabor_noise.h"
 #include "synthesis/field/layer_join.h"
 #include "synthesis/gabor/gabor_surface_noise.h"
 #include "synthesis/landforms/boulder_field.h"
@@ -25,7 +26,13 @@ namespace astrolith {
 // The table of kinds: every type that a layer of heights can have. A new noise in space needs an entry here,
 // a make_noise, a height_at, an evaluate_heights and a bound_heights, and nothing else.
 using LayerNoise = PlainVariant<FractalNoise, SparseNoise, SpotNoise, PhasorNoise, RandomPhaseNoise,
-                                CraterRelief, GaborSurfaceNoise, ExemplarNoise>;
+                                CraterRelief, GaborSurfaceNoise, ExemplarNoise, TiledGaborNoise>;
+
+// The impulses of a layer of Gabor noise; null for other layers.
+ASTROLITH_HD inline const GaborSurfaceNoise* gabor_impulses_of(const LayerNoise& noise) {
+  const TiledGaborNoise* tiled = noise.get_if<TiledGaborNoise>();
+  return tiled != nullptr ? &tiled->narrow : noise.get_if<GaborSurfaceNoise>();
+}
 
 // A layer and how it joins the layers before it. Craters change the elevation by their own rule, so that only
 // the bounds in their `join` are read.

@@ -79,7 +79,10 @@ struct LayerHeights {
     const PointArrays p = points();
     evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data(), b.spots);
   }
-  void operator()(const GaborSurfaceNoise& noise) const {
+  void operator()(const GaborSurfaceNoise& noise) const { evaluate_gabor(noise); }
+  void operator()(const TiledGaborNoise& noise) const { evaluate_gabor(noise); }
+  template <class GaborNoise>
+  void evaluate_gabor(const GaborNoise& noise) const {
     GaborGround ground{model.body, arrays(), model.metaballs.lists()};
     if (in_patch) {
       project_locally(model, b);
@@ -114,7 +117,8 @@ struct LayerHeights {
   PointArrays points() const {
     return in_patch ? local_points(b) : displaced(b, {b.x.data(), b.y.data(), b.z.data()});
   }
-  void add_gabor(const GaborSurfaceNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
+  template <class GaborNoise>
+  void add_gabor(const GaborNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
                  const PointArrays& p) const {
     if (b.tetrahedra) {
       evaluate_tetrahedron_heights(noise, ground, caches, b.n, p.x, p.y, p.z, b.height.data());

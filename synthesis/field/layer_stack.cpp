@@ -81,10 +81,20 @@ class LayerStack {
   }
   void add(const GaborLayer& layer) {
     if (!(layer.height_rms > 0.0)) return;  // a layer of colour alone has no height
+    if (layer.evaluation == GaborEvaluation::kTiles) return add_tiled(layer);
     const GaborSurfaceNoise noise =
         make_noise(layer, recipe_.seed, number_of(layer), supports_, model_.arrays);
     check_work(layer);
     push(layer, noise, add_lists(noise.bands.count, model_.gabor_lists));
+    model_.gabor_caches.resize(model_.gabor_lists.size());
+  }
+  void add_tiled(const GaborLayer& layer) {
+    const TiledGaborLayer tiled{layer,
+                                make_phase_tiles(layer, recipe_.seed, number_of(layer), model_.arrays)};
+    tiled_gabor_.emplace(index_, tiled);
+    const TiledGaborNoise noise = placed(tiled, supports_, model_.arrays);
+    check_work(tiled.set.narrow);
+    push(tiled, noise, add_lists(noise.narrow.bands.count, model_.gabor_lists));
     model_.gabor_caches.resize(model_.gabor_lists.size());
   }
   void add(const ExemplarLayer& layer) {
@@ -201,12 +211,34 @@ class LayerStack {
                      " are allowed; " + remedy);
   }
 
+  // A Gabor layer with `evaluation: tiles`, and what is made of it for every frame.
+  struct TiledGaborLayer : GaborLayer {
+    PhaseTileSet set;
+  };
+
   // An exemplar with the anchors of a frame, which are added to `arrays`.
   ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& made, const NoiseFrame& frame,
                        ArrayStore& arrays) const {
+    return placed_exemplar(made, layer, recipe_.seed, number_of(layer), frame, ground_of(frame), arrays);
+  }
+  // Tiles with the anchors of a frame, and the impulses of the narrow lobes.
+  TiledGaborNoise placed(const TiledGaborLayer& layer, const NoiseFrame& frame, ArrayStore& arrays) const {
+    std::vector<ExemplarNoise> tiles;
+    for (const PhaseTileSet::Tile& tile : layer.set.tiles) {
+      tiles.push_back(placed_exemplar(tile.made, tile.layer, tile.seed, 0, frame, ground_of(frame), arrays));
+    }
+    return join_phase_tiles(layer, layer.set, tiles, gabor_impulses(layer.set.narrow, frame, arrays), arrays);
+  }
+  GaborSurfaceNoise gabor_impulses(const GaborLayer& layer, const NoiseFrame& frame,
+                                   ArrayStore& arrays) const {
+    const Vec3d e = supports_.extent();
+    return make_noise(layer, recipe_.seed, number_of(layer), frame, std::max({e.x, e.y, e.z}), arrays);
+  }
+  // The body for the anchors of a frame. It is valid until the model's arrays grow.
+  GaborGround ground_of(const NoiseFrame& frame) const {
     GaborGround ground{model_.body, model_.arrays.view(), model_.metaballs.lists()};
     if (frame.moved) ground.origin = &frame.origin;
-    return placed_exemplar(made, layer, recipe_.seed, number_of(layer), frame, ground, arrays);
+    return ground;
   }
 
   // The noise of a layer in a frame with an origin of its own.
@@ -214,9 +246,10 @@ class LayerStack {
   auto moved_noise(const AnyLayer& layer, const NoiseFrame& frame, ArrayStore& arrays) const {
     if constexpr (std::is_same_v<AnyLayer, ExemplarLayer>) {
       return placed(layer, exemplars_.at(index_), frame, arrays);
+    } else if constexpr (std::is_same_v<AnyLayer, TiledGaborLayer>) {
+      return placed(layer, frame, arrays);
     } else if constexpr (std::is_same_v<AnyLayer, GaborLayer>) {
-      const Vec3d e = supports_.extent();
-      return make_noise(layer, recipe_.seed, number_of(layer), frame, std::max({e.x, e.y, e.z}), arrays);
+      return gabor_impulses(layer, frame, arrays);
     } else {
       return make_noise(layer, recipe_.seed, number_of(layer), frame, arrays);
     }
@@ -267,6 +300,11 @@ class LayerStack {
     const double warp = model_.patch_warp ? model_.patch_warp->bound : 0.0;
     for (const PatchLayer& l : patch_layers_) {
       index_ = l.index;
+      const auto tiled = tiled_gabor_.find(l.index);
+      if (tiled != tiled_gabor_.end()) {
+        add_patch_noise(tiled->second, l, patch, warp);
+        continue;
+      }
       std::visit([&](const auto& layer) { add_patch_noise(layer, l, patch, warp); },
                  recipe_.layers[static_cast<std::size_t>(l.index)]);
     }
@@ -276,7 +314,8 @@ class LayerStack {
   template <class AnyLayer>
   void add_patch_noise(const AnyLayer& layer, const PatchLayer& l, const PatchCube& patch, double warp) {
     if constexpr (requires { layer.use; }) {
-      const bool on_surface = std::is_same_v<AnyLayer, GaborLayer> || std::is_same_v<AnyLayer, ExemplarLayer>;
+      const bool on_surface =
+          std::is_base_of_v<GaborLayer, AnyLayer> || std::is_same_v<AnyLayer, ExemplarLayer>;
       const double reach = 2.0 * patch.side + (on_surface ? warp + model_.height_bound : l.displaced);
       const NoiseFrame frame(widened(Box{{}, {}}, reach), patch.center);
       const auto noise = moved_noise(layer, frame, model_.arrays);
@@ -286,6 +325,8 @@ class LayerStack {
       model_.patch_caches.emplace_back();
       if constexpr (std::is_same_v<AnyLayer, GaborLayer>)
         model_.patch_caches.back().resize(noise.bands.count);
+      if constexpr (std::is_same_v<AnyLayer, TiledGaborLayer>)
+        model_.patch_caches.back().resize(noise.narrow.bands.count);
     }
   }
   // The body's warp in the frame of the patch, with the octaves that it has in the body's frame.
@@ -394,6 +435,7 @@ class LayerStack {
   std::vector<PatchLayer> patch_layers_;
   double spot_draws_ = 0.0, gabor_draws_ = 0.0;  // by draws_at_a_point()
   std::map<int, ExemplarNoise> exemplars_;       // without anchors, by the layer's place in the recipe
+  std::map<int, TiledGaborLayer> tiled_gabor_;   // by the layer's place in the recipe
   std::optional<BareSurface> bare_;              // made for the first layer that needs it
   int index_ = 0;
 };

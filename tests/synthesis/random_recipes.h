@@ -84,6 +84,18 @@ inline BoulderLayer random_boulders(CounterRandom& random) {
   return layer;
 }
 
+// A Gabor layer by impulses, one by tiles and impulses, or an exemplar layer.
+inline Layer random_texture(CounterRandom& random) {
+  const auto kind = random.below(3);
+  if (kind == 0) return exemplar_layer(0.01, 0.01);
+  GaborLayer layer = gabor_layer(0.03, 0.005);
+  if (kind == 1) {
+    layer.evaluation = GaborEvaluation::kTiles;
+    layer.lobes.push_back({8, 0.5, 0.0, 1.0});
+  }
+  return layer;
+}
+
 inline Layer random_layer(CounterRandom& random) {
   switch (random.below(9)) {
     case 0:
@@ -99,7 +111,7 @@ inline Layer random_layer(CounterRandom& random) {
     case 5:
       return random_boulders(random);
     case 6:
-      return random.below(2) == 0 ? Layer(gabor_layer(0.03, 0.005)) : Layer(exemplar_layer(0.01, 0.01));
+      return random_texture(random);
     default:
       return random_fractal(random);
   }

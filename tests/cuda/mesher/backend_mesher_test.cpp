@@ -96,6 +96,18 @@ TEST(BackendMesher, MakesTheExemplarsOfTheCpu) {
   expect_same(on_twin(field, 40), on_cpu(field, 40));
 }
 
+TEST(BackendMesher, MakesTheGaborTilesOfTheCpu) {
+  Recipe recipe = potato_recipe(10, 8);
+  GaborLayer layer = testing::gabor_layer(0.05, 0.01);
+  layer.evaluation = GaborEvaluation::kTiles;
+  layer.lobes.push_back({6, 0.5, 0.0, 1.0});  // too narrow for a tile
+  recipe.layers = {layer};
+  const ImplicitField field(recipe);
+  ASSERT_EQ(field.tables().gabor_lists.count, 1u);
+  ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
+  expect_same(on_twin(field, 40), on_cpu(field, 40));
+}
+
 // The field is exactly zero at some samples, and some cells have many such samples.
 TEST(BackendMesher, TreatsTiesAsTheCpu) {
   Recipe recipe = sphere_recipe(1.0);
