@@ -37,6 +37,7 @@ struct Options {
   std::string unit = "m";
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";
+  std::string evaluation = "impulses";
   double mm_per_px = 0.0;      // 0 = no physical scale
   double height_rms = -1.0;    // negative = the exemplar's own
   double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
@@ -90,6 +91,11 @@ void add_layer_options(CommandLine& app, Options& o) {
          "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
       .check(above_zero())
       .default_text("");
+  app.add_option("--evaluation", o.evaluation,
+                 "how the Gabor layer's lobes become heights on a surface: impulses (exact) or tiles (wide "
+                 "lobes as random-phase tiles, many times faster); the summary's tiles_distance says what "
+                 "tiles cost")
+      .check(one_of({"impulses", "tiles"}));
   app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
       .check(one_of({"m", "km"}));
   app.add_option(
@@ -168,7 +174,12 @@ void predict_memory(Program& program, const Options& o, const PhotoFitOptions& p
 }
 
 PhotoRecipeOptions recipe_options(const Program& program, const Options& o) {
-  return {std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit, o.height_rms, program.seed};
+  return {std::filesystem::path(o.image).stem().string(),
+          o.mm_per_px,
+          o.unit,
+          o.height_rms,
+          program.seed,
+          o.evaluation == "tiles" ? GaborEvaluation::kTiles : GaborEvaluation::kImpulses};
 }
 
 void set_provenance(const Program& program, const Options& o, Recipe& recipe) {

@@ -1,11 +1,16 @@
 #include "tasks/estimation/photo_recipe.h"
 
+#include <algorithm>
+
+#include "estimation/gabor/exemplar/tiled_spectrum.h"
+
 namespace astrolith {
 namespace {
 
 GaborLayer make_layer(const PhotoRecipeOptions& o, const FittedChannel& channel, bool first) {
   GaborLayer layer = layer_of(channel, first);
   layer.name = o.layer_name;
+  layer.evaluation = o.evaluation;
   const double per_unit = o.unit == "km" ? 1e6 : 1e3;  // millimetres
   layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / per_unit : 1.0;
   if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
@@ -27,11 +32,19 @@ nlohmann::ordered_json details(const std::vector<BandVariance>& bands) {
   return list;
 }
 
+// What `evaluation: tiles` would cost the fit's lobes, on a grid of at most 256 x 256 frequencies.
+double tiles_distance_of(const GaborFit& fit) {
+  constexpr int kMostFrequencies = 256;
+  return tiles_distance(fit.lobes, std::min(fit.fitted.width, kMostFrequencies),
+                        std::min(fit.fitted.height, kMostFrequencies));
+}
+
 nlohmann::ordered_json details(const FittedChannel& channel) {
   const GaborFit& fit = channel.fit;
   const LobeQuality& q = fit.quality;
   return {{"lobes", fit.lobes.size()},
           {"pursuit_lobes", fit.pursuit_lobes},
+          {"tiles_distance", tiles_distance_of(fit)},
           {"pursuit_gap", fit.pursuit.relative_gap},
           {"pursuit_reached", fit.pursuit.reached},
           {"refinement_reached", fit.refinement_reached},
