@@ -75,9 +75,9 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
 }
 
 void check_detail_inputs(const DetailArguments& arguments) {
-  if (!arguments.transfer.empty()) read_details(arguments.transfer);
+  Recipe unused;
+  if (!arguments.transfer.empty()) unused.layers = read_details(arguments.transfer).layers;
   if (!arguments.micro.empty() && arguments.micro != "auto") {
-    Recipe unused;
     add_micro_layers(arguments.micro, arguments.mm_per_px, arguments.micro_height_mm, unused);
   }
 }

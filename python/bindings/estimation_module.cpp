@@ -88,9 +88,9 @@ std::unique_ptr<CandidateEvaluator> evaluator_on(const std::string& device) {
 
 // Inputs and results that cannot be used are refused before the work.
 void check_files(const ShapeArguments& a) {
-  if (!a.details.transfer.empty()) read_details(a.details.transfer);
+  Recipe unused;
+  if (!a.details.transfer.empty()) unused.layers = read_details(a.details.transfer).layers;
   if (!a.details.micro.empty() && a.details.micro != "auto") {
-    Recipe unused;
     add_micro_layers(a.details.micro, a.details.mm_per_px, a.details.micro_height, unused);
   }
   if (!a.report.empty()) require_folder_can_be_made(a.report);

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "estimation/shape/details/detailed_check.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
@@ -22,6 +26,55 @@ double size_of(const Recipe& recipe) {
   return box.diagonal();
 }
 
+std::string place_of(std::string_view option, const std::string& file, std::size_t layer) {
+  return fmt::format("{}: {}: layers[{}]", option, file, layer);
+}
+
+// A fit knows no groups of metaballs, so that no layer of its recipe can be bound to one.
+void check_no_group(const Layer& layer, const std::string& place) {
+  const LayerUse* use = use_of(layer);
+  if (use == nullptr || !use->locality) return;
+  throw InputError(place +
+                   ".locality.group: a fitted body has no groups; take `locality` out of the layer, or lay "
+                   "it on the recipe with synth --base once that has the group");
+}
+
+// Only Gabor layers are taken from a photo's recipe. Expects a recipe that was read without errors.
+void check_masking_layer(const Recipe& rock, std::size_t index, const std::string& place) {
+  const LayerUse* use = use_of(rock.layers[index]);
+  if (use == nullptr || !use->mask) return;
+  const int masking = find_layer(std::span(rock.layers).first(index), use->mask->layer);
+  if (masking >= 0 && std::holds_alternative<GaborLayer>(rock.layers[static_cast<std::size_t>(masking)]))
+    return;
+  throw InputError(place +
+                   ".mask.layer: names a layer that is no Gabor layer, and only Gabor layers are taken; take "
+                   "`mask` out of the layer");
+}
+
+void check_not_after_warp(const std::vector<Layer>& before, const std::string& place) {
+  const auto warps = [](const Layer& layer) {
+    const LayerUse* use = use_of(layer);
+    return use != nullptr && use->combination.kind == Combine::kWarp;
+  };
+  if (std::none_of(before.begin(), before.end(), warps)) return;
+  throw InputError(place +
+                   ": a Gabor layer cannot stand after a layer that warps, which --details has; take that "
+                   "layer out of the recipe of --details");
+}
+
+// The layer with pixels of this size, and with its heights multiplied by a ratio.
+GaborLayer scaled(const GaborLayer& layer, double pixel_size, double height) {
+  GaborLayer result = layer;
+  result.pixel_size = pixel_size;
+  result.height_rms *= height;
+  result.use.combination.width *= height;
+  if (result.use.mask) {
+    result.use.mask->from *= height;
+    result.use.mask->to *= height;
+  }
+  return result;
+}
+
 }  // namespace
 
 Recipe read_details(const std::string& file) {
@@ -32,6 +85,8 @@ Recipe read_details(const std::string& file) {
                      "synth --base");
   }
   if (other.layers.empty()) throw InputError(file + ": layers: none; give a recipe with details");
+  for (std::size_t i = 0; i < other.layers.size(); ++i)
+    check_no_group(other.layers[i], place_of("--details", file, i));
   return other;
 }
 
@@ -58,14 +113,17 @@ void add_micro_layers(const std::string& file, double mm_per_px, double height_m
   }
   const double unit = rock.length_unit == recipe.length_unit ? 1.0 : rock.length_unit == "km" ? 1e3 : 1e-3;
   const double height = height_mm > 0.0 ? mm * height_mm / first->height_rms : unit;
-  for (const Layer& layer : rock.layers) {
-    if (const auto* gabor = std::get_if<GaborLayer>(&layer)) {
-      GaborLayer micro = *gabor;
-      micro.pixel_size = mm_per_px > 0.0 ? mm * mm_per_px : unit * gabor->pixel_size;
-      micro.height_rms *= height;
-      recipe.layers.push_back(micro);
-    }
+  std::vector<Layer> added;
+  for (std::size_t i = 0; i < rock.layers.size(); ++i) {
+    const auto* gabor = std::get_if<GaborLayer>(&rock.layers[i]);
+    if (gabor == nullptr) continue;
+    const std::string place = place_of("--micro", file, i);
+    check_no_group(*gabor, place);
+    check_masking_layer(rock, i, place);
+    check_not_after_warp(recipe.layers, place);
+    added.push_back(scaled(*gabor, mm_per_px > 0.0 ? mm * mm_per_px : unit * gabor->pixel_size, height));
   }
+  recipe.layers.insert(recipe.layers.end(), added.begin(), added.end());
 }
 
 std::string add_residual_texture(const TargetBody& target, std::uint64_t seed, const Progress& progress,

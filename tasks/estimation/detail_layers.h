@@ -10,8 +10,8 @@
 
 namespace astrolith {
 
-// Reads a recipe whose layers can be scaled to another body. Throws InputError for one without body or
-// layers.
+// Reads a recipe whose layers can be scaled to a fitted body. Throws InputError for one without body or
+// layers, and for a layer with a locality group, since a fitted body has no groups.
 Recipe read_details(const std::string& file);
 
 // Adds the layers of another recipe, scaled by the ratio of the two bodies' bounding-box diagonals. Returns
@@ -20,7 +20,9 @@ double transfer_details(const Recipe& other, Recipe& recipe);
 
 // Adds the Gabor layers of a photo's recipe as the finest detail. `mm_per_px` is the size of a pixel,
 // `height_mm` the root mean square height of the first layer, both in millimetres; 0: as the photo's recipe
-// says. Throws InputError for a recipe without a Gabor layer, or in pixels without both sizes.
+// says. Throws InputError for a recipe without a Gabor layer, or in pixels without both sizes. It also throws
+// for a layer that a locality group, a mask by another kind of layer or a warp of the recipe makes
+// impossible.
 void add_micro_layers(const std::string& file, double mm_per_px, double height_mm, Recipe& recipe);
 
 // Adds a layer of Gabor noise like the heights that the base leaves of the target. Returns a sentence about

@@ -221,6 +221,66 @@ TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
   EXPECT_NEAR(layer.height_rms, 0.003, 1e-12);
 }
 
+// Refused before the mesh is read: the mesh does not exist here.
+TEST_F(FitShape, LayersThatAFittedBodyCannotHaveAreRefusedBeforeAnyWork) {
+  Recipe rock;
+  rock.body.emplace().spheres.push_back({{0, 0, 0}, 1.0});
+  rock.body->groups.push_back({"head", {0}});
+  FractalLayer waves;
+  waves.name = "waves";
+  waves.amplitude = 0.1;
+  GaborLayer gravel;
+  gravel.height_rms = 0.2;
+  gravel.lobes.push_back({4, 0.1, 0.05, 0.04});
+  rock.layers = {waves, gravel};
+  const auto refuse = [&](const std::string& option, const Recipe& recipe, const std::string& words) {
+    write_recipe(recipe, folder_ / "rock.json");
+    expect_refusal(folder_, kFitShape,
+                   {(folder_ / "none.obj").string(), "-o", (folder_ / "no.json").string(), option,
+                    (folder_ / "rock.json").string()},
+                   words);
+  };
+  Recipe grouped = rock;
+  use_of(grouped.layers[1])->locality = {"head", 0.5};
+  for (const std::string option : {"--micro", "--details"}) {
+    refuse(option, grouped,
+           option + ": " + (folder_ / "rock.json").string() +
+               ": layers[1].locality.group: a fitted body has no groups; take `locality` out of the layer");
+  }
+  Recipe masked = rock;
+  use_of(masked.layers[1])->mask = {"waves", 0.0, 0.1};
+  refuse("--micro", masked, "layers[1].mask.layer: names a layer that is no Gabor layer");
+}
+
+// Heights of a mask and of a joint are heights of the layers.
+TEST_F(FitShape, MicroLayersScaleTheirMasksAndJointsWithTheirHeights) {
+  fit("egg.json", {"--base-only"});
+  Recipe rock;
+  rock.length_unit = "m";
+  GaborLayer gravel;
+  gravel.name = "gravel";
+  gravel.pixel_size = 20.0;
+  gravel.height_rms = 2.0;
+  gravel.lobes.push_back({4, 0.1, 0.05, 0.04});
+  GaborLayer sand = gravel;
+  sand.name = "sand";
+  sand.use.mask = {"gravel", 1.0, 2.0};
+  sand.use.combination.kind = Combine::kBlend;
+  sand.use.combination.width = 1.0;
+  rock.layers = {gravel, sand};
+  write_recipe(rock, folder_ / "rock.json");
+  const std::string mesh = (folder_ / "egg.obj").string(), out = (folder_ / "out.json").string();
+  const testing::Outcome outcome =
+      run_program(kFitShape, {mesh, "-o", out, "--spheres", "12", "--points", "400", "--population", "4",
+                              "--base-only", "--micro", (folder_ / "rock.json").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto& layer = std::get<GaborLayer>(read_recipe(out).layers.at(1));
+  EXPECT_NEAR(layer.height_rms, 0.002, 1e-12);  // km
+  EXPECT_NEAR(layer.use.mask->from, 0.001, 1e-12);
+  EXPECT_NEAR(layer.use.mask->to, 0.002, 1e-12);
+  EXPECT_NEAR(layer.use.combination.width, 0.001, 1e-12);
+}
+
 // The preparation of the mesh has no result that could be written.
 TEST_F(FitShape, ATimeLimitBelowThePreparationIsRefusedWithTheTimeThatItNeeds) {
   const std::string mesh = folder_.write("large.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 150, 200));
