@@ -1,19 +1,27 @@
 #include "apps/synth/synth_cost.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <string>
 
+#include "apps/memory_use.h"
 #include "geometry/io/ply_stream_writer.h"
+#include "gravity/polyhedron_gravity.h"
 #include "gravity/vertical_directions.h"
 #include "numerics/portable_double.h"
 #include "recipe/sha256.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
+#include "synthesis/field/surface_labels.h"
 #include "synthesis/finish/erosion.h"
 #include "synthesis/gabor/gabor_tiles.h"
 #include "synthesis/mesh/manifold_check.h"
+#include "tasks/synthesis/mesh_estimate.h"
 
 namespace astrolith {
 namespace {
@@ -67,6 +75,34 @@ const SurfaceBand& band_of(const FieldView& field, const ImpulseList& list) {
   return field.arrays[noise.bands][list.element];
 }
 
+// The memory of the cache of one list whose tiles all together take so many bytes.
+double kept_bytes(double bytes, int threads) {
+  // The memory of heaps over what they hold. Two or more threads have heaps of their own.
+  const double gaps = threads > 1 ? 1.25 : 1.1;
+  return bytes > kMostCacheBytes ? gaps * kMostCacheBytes : bytes;
+}
+
+// Memory of the tree of gravity for each triangle: its facets, nodes and multipoles.
+double bytes_of_gravity(double triangles) {
+  constexpr double kNode = sizeof(GravityNode) + sizeof(GravityMultipoles);
+  constexpr double kFacet = sizeof(std::array<Vec3d, 3>);
+  double leaf = std::max(triangles, 1.0);
+  while (leaf > double(GravityDetail{}.leaf_facets)) leaf *= 0.5;
+  return kFacet + 2.0 * kNode / leaf;
+}
+
+// Vertices number first .. first + run - 1 of a mesh, as often as it takes for so many.
+std::vector<MeshVertex> repeated(const TriangleMesh& mesh, std::size_t first, std::size_t run,
+                                 std::size_t count) {
+  std::vector<MeshVertex> vertices(count);
+  for (std::size_t i = 0; i < count; ++i)
+    vertices[i].position = to_float(mesh.vertices[first + i * run / count]);
+  return vertices;
+}
+
+// Seconds that all threads of this process have spent.
+double seconds_of_process() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 Recipe ball() {
   Recipe recipe;
   recipe.body = MetaballBody{};
@@ -76,16 +112,18 @@ Recipe ball() {
 
 }  // namespace
 
-OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use) {
+OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use, double triangles) {
   const std::string extension = output.extension().string();
   // Half a vertex and half a normal as doubles, and a triangle; half of one array is copied as it grows.
   const double collected = 36.0 + 6.0;
   // The tables of an erosion are gone before a picture is drawn.
   // Facets and multipoles of the tree of gravity, and eight columns of values at half a vertex.
-  const double attracted = use.gravity ? 72.0 + 740.0 + 8.0 * 8.0 : 0.0;
+  const double attracted = use.gravity ? bytes_of_gravity(triangles) + 8.0 * 8.0 : 0.0;
   const double rendered =
       std::max({use.preview ? 120.0 : 0.0, use.erosion ? kBytesOfSlides : 0.0, attracted});
-  if (extension == ".ply") return {25.0, rendered > 0.0 ? collected + rendered : 0.0};
+  // Two numbers of four bytes at half a vertex with labels, eight with gravity.
+  const double values = use.labels ? 4.0 : use.gravity ? 16.0 : 0.0;
+  if (extension == ".ply") return {25.0 + values, rendered > 0.0 ? collected + rendered : 0.0};
   if (extension == ".stl") return {50.0, collected + rendered};
   if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
   return {75.0, collected + rendered};
@@ -115,13 +153,26 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
 }
 
 double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const double> bytes, int threads) {
-  // The memory of heaps over what they hold. Two or more threads have heaps of their own.
-  const double gaps = threads > 1 ? 1.25 : 1.1;
   double more = 0.0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    more += (bytes[i] > kMostCacheBytes ? gaps * kMostCacheBytes : bytes[i]) - before[i].held_bytes;
-  }
+  for (std::size_t i = 0; i < before.size(); ++i)
+    more += kept_bytes(bytes[i], threads) - before[i].held_bytes;
   return more;
+}
+
+double label_cache_bytes(const LabelCost& labels, std::span<const double> bytes, int threads) {
+  double more = 0.0;
+  for (std::size_t i = 0; i < labels.fields.size(); ++i)
+    more += labels.fields[i] * kept_bytes(bytes[i], threads);
+  return more;
+}
+
+double label_tile_seconds(const LabelCost& labels, const GaborCost& tiles) {
+  double all = 0.0, drawn = 0.0;
+  for (std::size_t i = 0; i < labels.fields.size(); ++i) {
+    all += tiles.bytes[i];
+    drawn += labels.fields[i] * tiles.bytes[i];
+  }
+  return all > 0.0 ? tiles.seconds * drawn / all : 0.0;
 }
 
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
@@ -154,6 +205,56 @@ ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const
       std::max(kBytesOfFacet * of_lattice * of_lattice - kBytesOfSlides, 0.0) * mesh.triangles;
   const double verticals = seconds_of_verticals * finer * finer + kSecondsOfVertical * mesh.triangles;
   return {verticals, std::min(growing, clock.seconds() * ratio + most_sweeps), bytes};
+}
+
+LabelCost label_cost(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                     const MeshEstimate& mesh) {
+  constexpr int kCells = 24;
+  constexpr double kShare = 0.01, kMostRuns = 12.0, kMostRunsWithImpulses = 2.0;
+  const TriangleMesh coarse = coarse_region(field, recipe, region, std::min(kCells, mesh.resolution));
+  if (coarse.vertices.empty() || !(mesh.vertices > 0.0)) return {};
+  LabelCost cost;
+  const double held = static_cast<double>(resident_bytes()), start = seconds_of_process();
+  const SurfaceLabels labels(recipe, "recipe", region.cube());
+  cost.serial_seconds = seconds_of_process() - start;
+  cost.bytes = std::max(static_cast<double>(resident_bytes()) - held, 0.0);
+  cost.fields = labels.fields_with_impulses();
+  // A run of the coarse mesh is as wide as a chunk of the mesh, which has more vertices in each row.
+  const double finer = std::max(double(mesh.resolution) / kCells, 1.0);
+  const auto run =
+      static_cast<std::size_t>(std::clamp(double(kLabelsChunk) / finer, 1.0, double(coarse.vertices.size())));
+  const int runs = static_cast<int>(std::clamp(kShare * mesh.vertices / kLabelsChunk, 1.0,
+                                               cost.fields.empty() ? kMostRuns : kMostRunsWithImpulses));
+  std::vector<VertexLabel> made(kLabelsChunk);
+  double seconds = 0.0;
+  for (int i = 0; i < runs; ++i) {
+    const auto first =
+        static_cast<std::size_t>(double(coarse.vertices.size() - run) * (i + 0.5) / double(runs));
+    const std::vector<MeshVertex> vertices = repeated(coarse, first, run, kLabelsChunk);
+    // The first time draws tiles of impulses, which are counted apart.
+    if (!cost.fields.empty()) labels.label(region.center, vertices, made);
+    const ProcessorClock clock;
+    labels.label(region.center, vertices, made);
+    seconds += clock.seconds();
+  }
+  cost.parallel_seconds = seconds * mesh.vertices / (double(runs) * double(kLabelsChunk));
+  return cost;
+}
+
+double gravity_seconds(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
+  constexpr int kMostCells = 24, kFewestCells = 10;
+  constexpr double kTolerance = 1e-6;
+  const int cells = std::min(std::clamp(mesh.resolution / 8, kFewestCells, kMostCells), mesh.resolution);
+  const TriangleMesh coarse = coarse_region(field, recipe, {}, cells);
+  if (coarse.vertices.empty()) return 0.0;
+  const double start = seconds_of_process();
+  const PolyhedronGravity gravity(coarse);
+  gravity.at(coarse.vertices, kTolerance);
+  // Each doubling of the facets adds this share, as measured on three examples.
+  constexpr double kMoreOfDoubling = 0.058;
+  const double finer = std::max(mesh.vertices / double(coarse.vertices.size()), 1.0);
+  const double deeper = 1.0 + kMoreOfDoubling * double(std::bit_width(static_cast<std::uint64_t>(finer)) - 1);
+  return (seconds_of_process() - start) * finer * deeper;
 }
 
 double meshing_bytes(const MeshEstimate& mesh) {

@@ -9,6 +9,7 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/gabor/gabor_tiles.h"
 #include "synthesis/mesh/mesh_sample.h"
+#include "tasks/synthesis/mesh_region.h"
 
 namespace astrolith {
 
@@ -18,6 +19,7 @@ struct MeshUse {
   bool erosion = false;
   bool twice = false;  // small pieces are left out, for which the mesh is made twice
   bool gravity = false;
+  bool labels = false;
 };
 
 // What a format takes for each triangle and its half vertex, bytes.
@@ -25,7 +27,7 @@ struct OutputCost {
   double file;
   double memory;
 };
-OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use);
+OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use, double triangles);
 
 // The tiles of Gabor impulses that a mesh draws.
 struct GaborCost {
@@ -50,6 +52,26 @@ struct ErosionCost {
 // A mesh of a sixth of the cells is made and eroded. Sweeps take longer on finer meshes, so that the seconds
 // of an erosion that has far to go are rough.
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh);
+
+// What the label and the elevation of each vertex add to a mesh.
+struct LabelCost {
+  double serial_seconds = 0.0;    // for the fields of all layers, which are made once
+  double parallel_seconds = 0.0;  // of one processor, without the tiles of Gabor impulses
+  double bytes = 0.0;             // of these fields, without their tiles
+  std::vector<int> fields;        // for each list of Gabor impulses, the number of these fields that have it
+};
+// Labels some vertices of a coarse mesh, in runs that are as wide as those of the mesh.
+LabelCost label_cost(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                     const MeshEstimate& mesh);
+
+// The tiles of Gabor impulses that these fields draw, each field its own: their memory at the end, and the
+// seconds of one processor.
+double label_cache_bytes(const LabelCost& labels, std::span<const double> bytes, int threads);
+double label_tile_seconds(const LabelCost& labels, const GaborCost& tiles);
+
+// Seconds of one processor for the gravity at all vertices: that of a coarse mesh, scaled by the vertices and
+// by the depth of the tree.
+double gravity_seconds(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh);
 
 // Seconds for a triangle and its half vertex to be checked, written and hashed. Found by doing so with a
 // small mesh, in some milliseconds.

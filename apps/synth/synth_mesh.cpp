@@ -287,7 +287,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   check_request(request, region, recipe, file);
   const ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));
   const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(), recipe.erosion.has_value(),
-                    request.least_component > 0.0, request.gravity.wanted()};
+                    request.least_component > 0.0, request.gravity.wanted(), request.labels};
   const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
   report_layers_left_out(program, field, recipe, file, region.is_patch);

@@ -23,7 +23,8 @@ constexpr int kWorthPredicting = 256;
 
 struct Prediction {
   double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0, seconds = 0.0;
-  double own_seconds = 0.0;  // that the prediction itself took
+  double own_seconds = 0.0;      // that the prediction itself took
+  double own_evaluations = 0.0;  // of the field, by the estimate of its blocks and triangles
 };
 
 int threads_of(const Program& program) {
@@ -48,23 +49,30 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   const double seconds_before = seconds_so_far(program), peak_before = static_cast<double>(peak_bytes());
   const MeshEstimate estimate = estimate_region(mesh.field, mesh.recipe, mesh.region, resolution, budget);
   const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
-  const OutputCost output = output_cost(mesh.output, mesh.use);
+  const OutputCost output = output_cost(mesh.output, mesh.use, estimate.triangles);
   const ErosionCost erosion =
       mesh.use.erosion ? erosion_cost(mesh.field, mesh.recipe, estimate) : ErosionCost{};
   // A peak that the sample made is one of blocks, which the mesh will have too.
   const double peak_after = static_cast<double>(peak_bytes());
   const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
-  const double working = std::max(meshing_bytes(estimate), erosion.bytes) +
+  const LabelCost labels =
+      mesh.use.labels ? label_cost(mesh.field, mesh.recipe, mesh.region, estimate) : LabelCost{};
+  const double gravity = mesh.use.gravity ? gravity_seconds(mesh.field, mesh.recipe, estimate) : 0.0;
+  const double working = std::max(meshing_bytes(estimate), erosion.bytes) + labels.bytes +
                          more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(program)) +
+                         label_cache_bytes(labels, gabor_tiles.bytes, threads_of(program)) +
                          output.memory * estimate.triangles;
   const double times = mesh.use.twice ? 2.0 : 1.0;
   Prediction predicted;
   predicted.triangles = estimate.triangles;
   predicted.file_bytes = output.file * estimate.triangles;
   predicted.peak_bytes = std::max(peak_after, held + working);
-  const double parallel = times * (estimate.seconds + gabor_tiles.seconds) + erosion.parallel_seconds;
-  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
+  const double parallel = times * (estimate.seconds + gabor_tiles.seconds) + erosion.parallel_seconds +
+                          labels.parallel_seconds + label_tile_seconds(labels, gabor_tiles) + gravity;
+  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds +
+                        labels.serial_seconds;
   predicted.seconds = seconds_before + parallel / threads_of(program) + serial;
+  predicted.own_evaluations = estimate.spent_evaluations;
   predicted.own_seconds = clock.seconds();
   return predicted;
 }
@@ -73,7 +81,7 @@ void check_memory(const MeshSizeRequest& request, int resolution, const PlannedM
                   const Prediction& predicted) {
   const double limit = memory_limit(request.max_memory_gb);
   if (predicted.peak_bytes <= limit) return;
-  const bool collected = output_cost(mesh.output, mesh.use).memory > 0.0;
+  const bool collected = output_cost(mesh.output, mesh.use, predicted.triangles).memory > 0.0;
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",
@@ -120,11 +128,10 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
   const Prediction predicted =
       predict(program, resolution, mesh, request.only_predict ? kForFigures : kForMemory);
   program.summary["resolution"] = resolution;
-  program.summary["predicted"] = {{"triangles", predicted.triangles},
-                                  {"file_bytes", predicted.file_bytes},
-                                  {"peak_bytes", predicted.peak_bytes},
-                                  {"seconds", predicted.seconds},
-                                  {"own_seconds", predicted.own_seconds}};
+  program.summary["predicted"] = {
+      {"triangles", predicted.triangles},     {"file_bytes", predicted.file_bytes},
+      {"peak_bytes", predicted.peak_bytes},   {"seconds", predicted.seconds},
+      {"own_seconds", predicted.own_seconds}, {"own_evaluations", predicted.own_evaluations}};
   check_memory(request, resolution, mesh, predicted);
   program.say(fmt::format("resolution {}: about {} triangles, {} file, {} memory, about {:.0f} s", resolution,
                           rounded_count(predicted.triangles), byte_words(predicted.file_bytes),

@@ -37,15 +37,19 @@ MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolu
   return sample_patch<kBlockCells>(field, patch_size, resolution, size);
 }
 
-TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution) {
+TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made) {
   MeshCollector collector;
-  mesh_field<kCoarseBlockCells>(field, field.bounds(), resolution, collector);
+  const MeshStatistics statistics =
+      mesh_field<kCoarseBlockCells>(field, field.bounds(), resolution, collector);
+  if (made != nullptr) *made = statistics;
   return std::move(collector.mesh);
 }
 
-TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution) {
+TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution,
+                            MeshStatistics* made) {
   MeshCollector collector;
-  mesh_patch<kCoarseBlockCells>(field, patch_size, resolution, collector);
+  const MeshStatistics statistics = mesh_patch<kCoarseBlockCells>(field, patch_size, resolution, collector);
+  if (made != nullptr) *made = statistics;
   return std::move(collector.mesh);
 }
 

@@ -22,9 +22,10 @@ MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int res
                           const SampleSize& size);
 MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolution, const SampleSize& size);
 
-// A coarse mesh of a field, as a place for probes: whole, and of a patch.
-TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution);
-TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution);
+// A coarse mesh of a field, as a place for probes: whole, and of a patch. `made`, if given, gets its counts.
+TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made = nullptr);
+TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution,
+                            MeshStatistics* made = nullptr);
 
 // A mesh to be probed (synthesis/mesh/surface_probes.h).
 struct ProbedMesh {

@@ -6,12 +6,12 @@
 
 #include "numerics/interval.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/gabor/gabor_tiles.h"
 
 namespace astrolith {
 namespace {
 
-constexpr std::size_t kLabelsChunk = 256;  // points of one gathered block
-constexpr double kRounding = 4e-6;         // rounding of F, relative to the largest coordinate
+constexpr double kRounding = 4e-6;  // rounding of F, relative to the largest coordinate
 
 bool is_boulders(const Layer& layer) { return std::holds_alternative<BoulderLayer>(layer); }
 
@@ -59,6 +59,16 @@ SurfaceLabels::SurfaceLabels(const Recipe& recipe, const std::string& name,
   const double largest =
       in_patch_ ? std::max(patch->side, whole.height_bound()) : largest_coordinate(whole.bounds());
   rounding_ = static_cast<float>(kRounding * largest);
+}
+
+// A field has the lists of the layers up to its own, which are the first lists of the whole recipe.
+std::vector<int> SurfaceLabels::fields_with_impulses() const {
+  std::vector<int> counts(stages_.back().field.gabor_caches().size(), 0);
+  for (const Stage& stage : stages_) {
+    const std::size_t lists = stage.field.gabor_caches().size();
+    for (std::size_t i = 0; i < lists; ++i) ++counts[i];
+  }
+  return counts;
 }
 
 void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> vertices,

@@ -12,6 +12,8 @@
 
 namespace astrolith {
 
+inline constexpr std::size_t kLabelsChunk = 256;  // vertices that are labelled at once
+
 // Label 0 is the bare body, and label i + 1 is layer i of the recipe. A layer's change at a point is the
 // difference of the elevations with and without it, above the layers before it. Boulders come last, as they
 // lie on all other layers. The label of a point is that of the largest |change|, and the earlier one of two
@@ -26,6 +28,9 @@ class SurfaceLabels {
   // centre of the patch, if there is one. Elevations are
   // above the bare body, in length units. Both spans have one size.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels) const;
+
+  // For each list of Gabor impulses of the whole recipe, the number of fields of this object that have it.
+  std::vector<int> fields_with_impulses() const;
 
   // One line for each label, such as: label 2: craters "old ones".
   std::vector<std::string> legend() const { return legend_; }

@@ -13,9 +13,10 @@
 namespace astrolith {
 
 struct BlockCost {
-  double seconds = 0.0;          // of one processor
-  double caching_seconds = 0.0;  // by which meshing the block first took longer than again
-  double spent_seconds = 0.0;    // of one processor, for finding these figures
+  double seconds = 0.0;            // of one processor
+  double caching_seconds = 0.0;    // by which meshing the block first took longer than again
+  double spent_seconds = 0.0;      // of one processor, for finding these figures
+  double spent_evaluations = 0.0;  // of the field, for finding these figures
   double evaluations = 0.0, list_bytes = 0.0;
   LayerCounts counts;
 };
@@ -53,7 +54,10 @@ BlockCost cost_of_meshing(const BlockGrid<B>& grid, int z, const BlockNode<Block
   count_rows(grid.window_of(block.x, block.y, z), block);
   cost.counts = number_rows(layer);
   std::vector<MeshVertex> vertices(cost.counts.vertices);
-  cost.evaluations = own + double(make_vertices(grid, z, node.field, 0, block, std::span(vertices)));
+  const auto of_vertices =
+      static_cast<double>(make_vertices(grid, z, node.field, 0, block, std::span(vertices)));
+  cost.evaluations = own + of_vertices;
+  cost.spent_evaluations = samples + of_vertices;
   make_lone_polygons(grid, z, cost.counts, block);
   cost.seconds += rest.seconds();
   cost.spent_seconds = clock.seconds();
@@ -70,6 +74,7 @@ BlockCost cost_of_block(const BlockGrid<B>& grid, int z, const BlockNode<Block>&
     cost = cost_of_meshing(grid, z, node, with_neighbour);
     cost.caching_seconds = std::max(first.seconds - cost.seconds, 0.0);
     cost.spent_seconds += first.spent_seconds;
+    cost.spent_evaluations += first.spent_evaluations;
   }
   if constexpr (requires { node.field.list_bytes(); }) cost.list_bytes = node.field.list_bytes();
   return cost;

@@ -55,9 +55,11 @@ MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)
     size.nodes = std::min(static_cast<int>(growth * size.nodes), kMostNodes);
     size.blocks = std::min(static_cast<int>(growth * size.blocks), kMostBlocks);
     const double caching = estimate.caching_seconds, sampled = estimate.sampled_blocks;
+    const double evaluations = estimate.spent_evaluations;
     estimate = sample(size);
     estimate.caching_seconds += caching;
     estimate.sampled_blocks += sampled;
+    estimate.spent_evaluations += evaluations;
     spent += estimate.spent_seconds;
   }
   estimate.spent_seconds = spent;

@@ -26,10 +26,11 @@ struct MeshEstimate {
   int resolution = 0;
   double step = 0.0;  // edge of a cell, length units
   double blocks = 0.0, evaluations = 0.0, vertices = 0.0, triangles = 0.0;
-  double sampled_blocks = 0.0;   // blocks that were meshed by this sample and the smaller ones before it
-  double seconds = 0.0;          // of one processor, for finding and meshing all blocks
-  double finding_seconds = 0.0;  // the part of these for finding the blocks
-  double spent_seconds = 0.0;    // of one processor, for the sample
+  double sampled_blocks = 0.0;     // blocks that were meshed by this sample and the smaller ones before it
+  double seconds = 0.0;            // of one processor, for finding and meshing all blocks
+  double finding_seconds = 0.0;    // the part of these for finding the blocks
+  double spent_seconds = 0.0;      // of one processor, for the sample
+  double spent_evaluations = 0.0;  // of the field, for the sample
   double caching_seconds = 0.0;  // of one processor, by which meshing the sample first took longer than again
   double list_bytes = 0.0;       // memory of the field narrowed to one block
   // The most blocks in one layer, and in three successive layers.
@@ -186,6 +187,7 @@ class MeshSampler {
       estimate_.seconds += weight * cost.seconds;
       estimate_.list_bytes += weight * cost.list_bytes;
       estimate_.spent_seconds += cost.spent_seconds;
+      estimate_.spent_evaluations += cost.spent_evaluations;
       estimate_.caching_seconds += cost.caching_seconds;
     }
     if (weights > 0.0) estimate_.list_bytes /= weights;

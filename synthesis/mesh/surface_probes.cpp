@@ -18,6 +18,7 @@ MeshEstimate improved_by_probes(const MeshEstimate& estimate, const ProbedSurfac
                                 const ProbeSums& sums) {
   MeshEstimate better = estimate;
   better.spent_seconds += sums.spent_seconds;
+  better.spent_evaluations += sums.spent_evaluations;
   if (estimate.whole || sums.probes == 0 || !(sums.weights > 0.0) || !(estimate.blocks > 0.0)) return better;
   const double side = kBlockCells * estimate.step;
   const double probes = double(sums.probes);

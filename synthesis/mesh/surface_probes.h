@@ -28,6 +28,7 @@ struct ProbeSums {
   double weights = 0.0, seconds = 0.0, evaluations = 0.0, list_bytes = 0.0;
   int meshed_blocks = 0;
   double caching_seconds = 0.0, spent_seconds = 0.0;
+  double spent_evaluations = 0.0;  // of the field, for all probes
 };
 
 // The estimate with the counts of probes of its surface, and with the seconds that follow from them.
@@ -57,7 +58,8 @@ class SurfaceProber {
       const ProbedSurface::Point place = surface_.point(i);
       const Vec3d center = on_surface(place);
       const double area = surface_.area_within(window(place.position).samples_box());
-      if (area > 0.0) sums.triangles_per_area += triangles_around(center) / area;
+      sums.spent_evaluations += kStepsToSurface;
+      if (area > 0.0) sums.triangles_per_area += triangles_around(center, sums) / area;
       if (costs_) look_along(center, place.normal, i, sums);
       ++sums.probes;
       sums.spent_seconds += clock.seconds();
@@ -66,6 +68,8 @@ class SurfaceProber {
 
  private:
   using Block = decltype(std::declval<const Field&>().gather(Box{}));
+
+  static constexpr int kStepsToSurface = 2;
 
   double side() const { return B * step_; }
 
@@ -95,14 +99,14 @@ class SurfaceProber {
   // The point of the surface near a point of the coarse one. F is nearly a distance there.
   Vec3d on_surface(const ProbedSurface::Point& place) const {
     double offset = 0.0;
-    for (int step = 0; step < 2; ++step) {
+    for (int step = 0; step < kStepsToSurface; ++step) {
       offset += value_at(place.position + offset * place.normal);
       offset = std::clamp(offset, -reach_, reach_);
     }
     return place.position + offset * place.normal;
   }
 
-  double triangles_around(const Vec3d& center) const {
+  double triangles_around(const Vec3d& center, ProbeSums& sums) const {
     const Window place = window(center);
     const BlockNode<Block> node = node_of(place);
     if (node.field.content() != BlockContent::kMixed) return 0.0;
@@ -111,7 +115,7 @@ class SurfaceProber {
     LayerBlock<B>& block = layer.blocks.front();
     Owners<B> owners{};
     owners[0] = &block;
-    evaluate_samples(place.grid, 0, node.field, owners, block);
+    sums.spent_evaluations += static_cast<double>(evaluate_samples(place.grid, 0, node.field, owners, block));
     take_signs(block);
     count_rows(place.grid.window_of(0, 0, 0), block);
     return double(number_rows(layer).triangles);
@@ -145,6 +149,7 @@ class SurfaceProber {
     sums.evaluations += weight * cost.evaluations;
     sums.list_bytes += weight * cost.list_bytes;
     sums.caching_seconds += cost.caching_seconds;
+    sums.spent_evaluations += cost.spent_evaluations;
     ++sums.meshed_blocks;
   }
 

@@ -44,6 +44,16 @@ ImplicitField base_of(const ImplicitField& field, const Recipe& recipe) {
   return ImplicitField(bare);
 }
 
+TriangleMesh coarse_mesh_in(const ImplicitField& base, const Region& region, int cells,
+                            double* evaluations = nullptr) {
+  MeshStatistics made;
+  TriangleMesh mesh = region.is_patch
+                          ? coarse_mesh_of(PatchField(base, region.center), region.size, cells, &made)
+                          : coarse_mesh_of(base, cells, &made);
+  if (evaluations != nullptr) *evaluations += static_cast<double>(made.evaluations);
+  return mesh;
+}
+
 // Probes of the mesh of one region, at one resolution, on a coarse surface.
 class RegionProbes {
  public:
@@ -55,10 +65,8 @@ class RegionProbes {
   void look_from(int cells) {
     const ProcessorClock clock;
     cells_ = std::min(cells, resolution_);
-    TriangleMesh mesh = region_.is_patch
-                            ? coarse_mesh_of(PatchField(base_, region_.center), region_.size, cells_)
-                            : coarse_mesh_of(base_, cells_);
-    surface_ = ProbedSurface(std::move(mesh), slab_of(field_, region_, resolution_));
+    surface_ = ProbedSurface(coarse_mesh_in(base_, region_, cells_, &evaluations_),
+                             slab_of(field_, region_, resolution_));
     seconds_ = clock.seconds();
   }
 
@@ -78,6 +86,7 @@ class RegionProbes {
 
   int cells() const { return cells_; }
   double coarse_seconds() const { return seconds_; }
+  double coarse_evaluations() const { return evaluations_; }  // of all coarse surfaces so far
   const ProbedSurface& surface() const { return surface_; }
   const ProbeSums& sums() const { return sums_; }
 
@@ -87,7 +96,7 @@ class RegionProbes {
   const Region& region_;
   int resolution_;
   int cells_ = 0;
-  double seconds_ = 0.0;
+  double seconds_ = 0.0, evaluations_ = 0.0;
   ProbedSurface surface_;
   ProbeSums sums_;
 };
@@ -128,17 +137,24 @@ MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, c
   const double of_surface = take_surface(probes, resolution, kOfSurface * allowed(sample));
   MeshEstimate estimate = sample;
   estimate.spent_seconds += of_surface;
+  estimate.spent_evaluations += probes.coarse_evaluations();
   if (probes.surface().empty()) return estimate;
   for (int more = kFirstProbes; more >= kFewestProbes;) {
     probes.add(more, sample.with_neighbour);
     estimate = improved_by_probes(sample, probes.surface(), probes.sums());
     estimate.spent_seconds += of_surface;
+    estimate.spent_evaluations += probes.coarse_evaluations();
     const double of_probe = probes.sums().spent_seconds / probes.sums().probes;
     const double left = allowed(estimate) - estimate.spent_seconds;
     const int most = std::min(3 * probes.sums().probes, kMostProbes - probes.sums().probes);
     more = std::min(int(std::clamp(left / std::max(of_probe, 1e-6), 0.0, 1e6)), most);
   }
   return estimate;
+}
+
+TriangleMesh coarse_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
+                           int cells) {
+  return coarse_mesh_in(base_of(field, recipe), region, cells);
 }
 
 int resolution_for_triangles(const ImplicitField& field, const Recipe& recipe, const Region& region,

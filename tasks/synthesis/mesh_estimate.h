@@ -1,6 +1,7 @@
 // What the mesh of a region takes, estimated before it is made.
 #pragma once
 
+#include "geometry/triangle_mesh.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesh_sample.h"
 #include "tasks/synthesis/mesh_region.h"
@@ -18,6 +19,10 @@ struct EstimateBudget {
 // surface of that. Throws what mesh_region throws.
 MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
                              int resolution, const EstimateBudget& budget);
+
+// A coarse mesh of a region, of at most `cells` cells, which stands for the surface where a cost is sampled.
+// Where layers have impulses it is the mesh of the body without its layers. Throws what mesh_region throws.
+TriangleMesh coarse_region(const ImplicitField& field, const Recipe& recipe, const Region& region, int cells);
 
 // The resolution at which the whole mesh, or the patch, has about so many triangles. The estimates look at a
 // fixed number of places, so that the resolution is the same on every machine. Throws InputError where the

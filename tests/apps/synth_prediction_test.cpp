@@ -117,6 +117,83 @@ TEST_F(SynthPrediction, PredictionMeetsTheMesh) {
   EXPECT_GE(made.at("peak_bytes").get<double>(), 0.5 * of_mesh.at("peak_bytes").get<double>());
 }
 
+// A body with craters, boulders and noise.
+const std::string kWithLandforms = R"({"format_version": 1, "length_unit": "m",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100], [100, 0, 0, 75]]},
+  "layers": [{"type": "simplex", "amplitude": 4, "frequency": 0.02, "octaves": 4},
+             {"type": "craters", "population": {"count": 60, "least_diameter": 10, "greatest_diameter": 60,
+                                                "exponent": 2}},
+             {"type": "boulders", "population": {"count": 80, "least_diameter": 8, "greatest_diameter": 25,
+                                                 "exponent": 2}}]})";
+// Noise in the space around a body.
+const std::string kHills = R"({"format_version": 1, "length_unit": "m",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
+  "layers": [{"type": "simplex", "amplitude": 0.08, "frequency": 2, "octaves": 6}]})";
+
+// Samples are counted, because seconds depend on what else the machine does.
+TEST_F(SynthPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  for (const std::string& content : {kTwoSpheres, kHills, kWithLandforms}) {
+    const std::string recipe = folder_.write("r.json", content);
+    const auto figures = [&](std::vector<std::string> more) {
+      std::vector<std::string> arguments{recipe, "-o", output, "--resolution", "320", "--summary", summary};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      EXPECT_EQ(run_program(kSynth, arguments).status, 0);
+      return nlohmann::json::parse(text_of(summary));
+    };
+    const double own = figures({"--predict"}).at("predicted").at("own_evaluations").get<double>();
+    const double of_mesh = figures({}).at("evaluations").get<double>();
+    EXPECT_GT(own, 0.0);
+    EXPECT_LE(own, 0.05 * of_mesh) << content;
+  }
+}
+
+TEST_F(SynthPrediction, TrianglesAreMetOnRoughBodiesToo) {
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  for (const std::string& content : {kHills, kWithLandforms}) {
+    const std::string recipe = folder_.write("r.json", content);
+    const testing::Outcome made =
+        run_program(kSynth, {recipe, "-o", output, "--triangles", "100000", "--summary", summary});
+    ASSERT_EQ(made.status, 0) << made.errors;
+    EXPECT_NEAR(nlohmann::json::parse(text_of(summary)).at("triangles").get<double>(), 100e3, 10e3)
+        << content;
+  }
+}
+
+// Labels evaluate the field of every layer at every vertex, and gravity sums over the body at every vertex.
+TEST_F(SynthPrediction, LabelsAndGravityAreCounted) {
+  std::string layers;
+  for (int i = 0; i < 12; ++i) {
+    layers += std::string(i > 0 ? "," : "") +
+              R"({"type": "simplex", "amplitude": 0.002, "frequency": 2, "octaves": 8, "seed": )" +
+              std::to_string(i) + "}";
+  }
+  const std::string recipe = folder_.write("r.json", R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]}, "layers": [)" +
+                                                         layers + "]}");
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  const auto figures = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{recipe,      "-o", output,      "--resolution", "96",
+                                       "--threads", "1",  "--summary", summary};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(kSynth, arguments).status, 0);
+    return nlohmann::json::parse(text_of(summary));
+  };
+  const auto predicted = [&](std::vector<std::string> more) {
+    more.push_back("--predict");
+    return figures(more).at("predicted");
+  };
+  const double plain = predicted({}).at("seconds").get<double>();
+  for (const std::vector<std::string>& of :
+       {std::vector<std::string>{"--labels"}, {"--gravity", "2000", "5"}}) {
+    const auto& with = predicted(of);
+    EXPECT_GT(with.at("seconds").get<double>(), 1.3 * plain) << of[0];
+    figures(of);
+    EXPECT_NEAR(with.at("file_bytes").get<double>() / double(std::filesystem::file_size(output)), 1.0, 0.08)
+        << of[0];
+  }
+}
+
 // An eroded mesh is held in memory, with its edges and verticals, beside the tiles of impulses.
 TEST_F(SynthPrediction, MemoryOfErosionIsPredicted) {
   if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer's memory is not predicted";
