@@ -10,10 +10,13 @@ def row(cells):
 
 
 def leading_clauses(text, longest):
-    """As many clauses from the text's start as `longest` characters hold, one at least; commas, colons and
-    semicolons outside `code` part them."""
-    ends = [found.start() for found in re.finditer(r"`[^`]*`|[,:;](?= )", text) if found[0][0] != "`"]
-    return text[: max([end for end in ends if end <= longest], default=ends[0] if ends else len(text))]
+    """As many clauses from the text's start as `longest` characters hold, or as many words where they hold no clause;
+    commas, colons and semicolons outside `code` part clauses."""
+    for pattern in (r"`[^`]*`|[,:;](?= )", r"`[^`]*`| "):
+        ends = [found.start() for found in re.finditer(pattern, text) if found[0][0] != "`"]
+        if fitting := [end for end in ends if end <= longest]:
+            return text[: fitting[-1]]
+    return text
 
 
 def narrow_table(rows, shortened):
