@@ -69,6 +69,7 @@ TEST_F(WriteGlb, ArraysComeBack) {
 TEST_F(WriteGlb, ColoursAreLinearLight) {
   mesh.colors.assign(mesh.vertices.size(), {0, 188, 255});
   write_mesh(mesh, folder / "c.glb", {"km", "body-fixed", ""});
+  model = {};
   tinygltf::TinyGLTF loader;
   std::string error, warning;
   ASSERT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "c.glb").string())) << error;
