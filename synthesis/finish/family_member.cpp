@@ -10,7 +10,7 @@ namespace astrolith {
 namespace {
 
 // Streams of a member's seed; drawn fields have those from kFirstField on.
-enum Stream : std::uint64_t { kView, kSun, kFirstField };
+enum MemberStream : std::uint64_t { kView, kSun, kFirstField };
 
 double normal_within(const DrawnField& drawn, CounterRandom& random) {
   while (true) {

@@ -1,0 +1,51 @@
+# A folder of shape models through fit_shape: a recipe and a report each, and a table of all.
+#
+#   snakemake -s workflows/fits.smk --profile workflows/profiles/local --config models=shapes folder=fits
+#
+# A model that cannot be fitted stands in the table with the reason, and the others go on. Models whose recipe is there
+# are not fitted again. Settings:
+#   models      the folder of the shape models
+#   folder      where all goes (default fits)
+#   options     further options of fit_shape, such as "--spheres 100 --base-only"
+#   program     fit_shape itself, where it is not in PATH
+import pathlib
+
+if "models" not in config:
+    raise WorkflowError("state the folder of the shape models: --config models=shapes")
+
+WORKFLOWS = pathlib.Path(workflow.basedir)
+FOLDER = str(config.get("folder", "fits"))
+PROGRAM = str(config.get("program", "fit_shape"))
+OPTIONS = str(config.get("options", ""))
+FORMATS = {".obj", ".ply", ".stl", ".off", ".tab", ".plt", ".icq", ".bmf"}
+MODELS = {file.stem: str(file) for file in sorted(pathlib.Path(config["models"]).iterdir()) if file.suffix in FORMATS}
+if not MODELS:
+    raise WorkflowError(f"{config['models']}: holds no shape model ({' '.join(sorted(FORMATS))})")
+
+
+wildcard_constraints:
+    name="[^/]+",
+
+
+rule all:
+    input: f"{FOLDER}/fits.csv", f"{FOLDER}/index.html"
+
+
+# The shell ends well in any case, so that one bad model does not keep the table from being made.
+rule fit:
+    input: lambda wildcards: MODELS[wildcards.name]
+    output: f"{FOLDER}/messages/{{name}}.txt"
+    params: folder=FOLDER
+    threads: 1
+    shell:
+        "mkdir -p {params.folder}/recipes {params.folder}/summaries {params.folder}/reports;"
+        " {PROGRAM} {input:q} -o {params.folder}/recipes/{wildcards.name:q}.json --threads {threads} --quiet"
+        " --summary {params.folder}/summaries/{wildcards.name:q}.json"
+        " --report {params.folder}/reports/{wildcards.name:q} {OPTIONS} >{output:q} 2>&1 ||"
+        " rm -f {params.folder}/summaries/{wildcards.name:q}.json"
+
+
+rule table:
+    input: expand(f"{FOLDER}/messages/{{name}}.txt", name=MODELS)
+    output: f"{FOLDER}/fits.csv", f"{FOLDER}/index.html"
+    shell: "{WORKFLOWS}/fit_table.py {FOLDER}"
