@@ -6,7 +6,8 @@
       --most-gigabytes 500    exit status 1 where the set would take more, before anything is made
       --most-hours 48         the same for hours of one processor
 
-Prints JSON: `seconds` of a processor and `bytes` of a member, `hours` of one processor and `gigabytes` of all, `members_per_job`.
+Prints JSON: `seconds` of a processor and `bytes` of a member, `hours` of one processor and `gigabytes` of all, and
+`members_per_job`.
 """
 import argparse
 import json
