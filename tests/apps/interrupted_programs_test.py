@@ -14,6 +14,8 @@ import sys
 import tempfile
 import time
 
+from summary_fields_test import write_ball
+
 PROGRAMS, MESH, PHOTO = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
 MOMENTS = int(sys.argv[4]) if len(sys.argv) > 4 else 2
 LONGEST = float(sys.argv[5]) if len(sys.argv) > 5 else 5.0
@@ -38,10 +40,10 @@ if not (MESH.exists() and PHOTO.exists()):
 
 def folder_of_inputs(folder):
     (folder / "body.json").write_text(BODY)
-    for kind in ("one", "two"):
+    for kind, least_length in (("long", 2.0), ("short", 1.0)):
         (folder / "shapes" / kind).mkdir(parents=True)
-        for copy in range(4):
-            (folder / "shapes" / kind / f"{copy}{MESH.suffix}").symlink_to(MESH)
+        for k in range(4):
+            write_ball(folder / "shapes" / kind / f"{k}.obj", least_length + 0.1 * k)
 
 
 def interrupted(folder, name, arguments, after):
