@@ -73,28 +73,32 @@ void check_list(const Family& family, const Place& place) {
 class NumberSetter final : public FieldVisitor {
  public:
   NumberSetter(const Place& place, const std::vector<std::string_view>& fields,
-               const std::vector<double>& numbers)
+               const std::vector<double>& numbers, bool only_asks = false)
       : FieldVisitor(Task::kDescribe, place),
         fields_(fields),
         numbers_(numbers),
-        found_(fields.size(), false) {}
+        found_(fields.size(), false),
+        whole_(fields.size(), false),
+        only_asks_(only_asks) {}
 
   int first_missing() const {
     const auto missing = std::find(found_.begin(), found_.end(), false);
     return missing == found_.end() ? -1 : static_cast<int>(missing - found_.begin());
   }
+  // Whether a field holds a whole number.
+  bool is_whole(std::size_t i) const { return whole_[i]; }
 
  private:
   void visit_number(double& number, const NumberLimits&) override {
     if (const double* wanted = wanted_here()) number = *wanted;
   }
   void visit_integer(int& number, const IntegerLimits& limits) override {
-    if (const double* wanted = wanted_here()) {
+    if (const double* wanted = wanted_whole()) {
       number = static_cast<int>(whole(*wanted, limits.low, limits.high));
     }
   }
   void visit_seed(std::uint64_t& number) override {
-    if (const double* wanted = wanted_here()) {
+    if (const double* wanted = wanted_whole()) {
       number = static_cast<std::uint64_t>(whole(*wanted, 0.0, 0x1.0p53 - 1.0));
     }
   }
@@ -107,7 +111,16 @@ class NumberSetter final : public FieldVisitor {
     return value;
   }
 
+  // Of a field that holds a whole number. Null while the setter only asks which fields do.
+  const double* wanted_whole() {
+    const double* const wanted = wanted_here();
+    if (wanted == nullptr) return nullptr;
+    whole_[static_cast<std::size_t>(wanted - numbers_.data())] = true;
+    return only_asks_ ? nullptr : wanted;
+  }
+
   const double* wanted_here() {
+    if (place().is("format_version")) return nullptr;
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (!place().is(fields_[i])) continue;
       found_[i] = true;
@@ -118,8 +131,37 @@ class NumberSetter final : public FieldVisitor {
 
   const std::vector<std::string_view>& fields_;
   const std::vector<double>& numbers_;
-  std::vector<bool> found_;
+  std::vector<bool> found_, whole_;
+  bool only_asks_;
 };
+
+bool draws_whole_numbers(const DrawnField& drawn) {
+  return drawn.distribution == Distribution::kInteger ||
+         (drawn.distribution == Distribution::kChoice &&
+          std::all_of(drawn.values.begin(), drawn.values.end(), [](double v) { return v == std::floor(v); }));
+}
+
+// A field that holds a whole number must draw one.
+void check_whole_numbers(const Recipe& recipe, const Place& place) {
+  const std::vector<DrawnField>& drawn = recipe.family->fields;
+  std::vector<std::string_view> fields;
+  for (const DrawnField& d : drawn) fields.push_back(d.field);
+  const std::vector<double> ones(drawn.size(), 1.0);  // any number will do
+  Recipe changed = recipe;
+  const std::string name = "recipe";
+  const Place root(name);
+  NumberSetter setter(root, fields, ones, true);
+  setter.visit(changed);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (!setter.is_whole(i) || draws_whole_numbers(drawn[i])) continue;
+    place.field("family")
+        .field("fields")
+        .element(i)
+        .field("distribution")
+        .fail("must be \"integer\", or a choice among whole numbers, since " + drawn[i].field +
+              " is a whole number");
+  }
+}
 
 using EndOf = double (*)(const DrawnField&);
 
@@ -188,6 +230,7 @@ void visit_fields(FieldVisitor& v, Family& family) {
 
 void check_family(const Recipe& recipe, const Place& place) {
   if (!recipe.family || recipe.family->fields.empty()) return;
+  check_whole_numbers(recipe, place);
   check_end(recipe, least_of, "least", place);
   check_end(recipe, greatest_of, "greatest", place);
 }

@@ -69,12 +69,34 @@ fs::path numbered(const fs::path& pattern, std::uint64_t member) {
   return name;
 }
 
+// Whether a member of some number has this name.
+bool is_numbered(const fs::path& pattern, const fs::path& name) {
+  const std::string before = pattern.string().substr(0, pattern.string().find(kNumberMark));
+  const std::string text = name.string();
+  if (!text.starts_with(before)) return false;
+  std::uint64_t number = 0;
+  const auto parsed = std::from_chars(text.data() + before.size(), text.data() + text.size(), number);
+  return parsed.ec == std::errc() && numbered(pattern, number) == name;
+}
+
+void require_no_output(const fs::path& manifest, const std::vector<fs::path>& patterns) {
+  for (const fs::path& pattern : patterns) {
+    if (pattern.empty() ||
+        !is_numbered(fs::absolute(pattern).lexically_normal(), fs::absolute(manifest).lexically_normal()))
+      continue;
+    throw InputError("manifest: " + manifest.string() +
+                     " is also the name of a member's file; choose another");
+  }
+}
+
 // The SHA-256 of what all members have in common: the recipe and the options that change files.
 std::string hash_of_family(const Program& program, const Recipe& recipe) {
   constexpr std::array kNoEffect{"base",    "device",       "members",   "manifest",
                                  "preview", "feature-list", "max-memory"};
   Sha256 hash;
-  const std::string text = recipe_to_json(recipe);
+  Recipe undescribed = recipe;
+  undescribed.description.clear();
+  const std::string text = recipe_to_json(undescribed);
   hash.update(text.data(), text.size());
   for (const auto& [name, value] : program.given_options()) {
     if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
@@ -117,10 +139,12 @@ class MemberMaker {
         family_(hash_of_family(program, recipe)) {}
 
   const Manifest& manifest() const { return manifest_; }
+  bool continues_another_set() const { return manifest_.has_other_family(family_); }
 
   bool is_finished(std::uint64_t member) const { return manifest_.has(member, family_, names_of(member)); }
 
   void make(std::uint64_t number) const {
+    make_folders(number);
     const auto start = std::chrono::steady_clock::now();
     const FamilyMember member = family_member(recipe_, number);
     Json line = {
@@ -134,6 +158,12 @@ class MemberMaker {
     line["version"] = program_.tool();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     manifest_.append(line);
+  }
+
+  void make_folders(std::uint64_t number) const {
+    for (const fs::path& name : names_of(number)) {
+      if (name.has_parent_path()) make_output_folder(name.parent_path());
+    }
   }
 
   // The names of all files of a member, in the order of the manifest's lines.
@@ -216,9 +246,7 @@ Tally make_range(Program& program, const MemberMaker& maker, const Range& range)
 // Folders are made, and what cannot be written is refused, before any work.
 void prepare_outputs(const Program& program, const MemberMaker& maker, const MeshRequest& mesh,
                      const MemberFiles& files, std::uint64_t first) {
-  for (const fs::path& name : maker.names_of(first)) {
-    if (name.has_parent_path()) make_output_folder(name.parent_path());
-  }
+  maker.make_folders(first);
   MeshRequest request = mesh;
   request.preview.file = numbered(mesh.preview.file, first);
   request.landforms = numbered(mesh.landforms, first);
@@ -251,6 +279,7 @@ void check_members(const MembersRequest& request, const MeshRequest& mesh, const
   require_mark(files.recipe, "--write-recipe");
   require_mark(mesh.preview.file, "--preview");
   require_mark(mesh.landforms, "--feature-list");
+  require_no_output(request.manifest, {files.mesh, files.recipe, mesh.preview.file, mesh.landforms});
 }
 
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
@@ -258,6 +287,12 @@ void make_members(Program& program, const MembersRequest& request, const MeshReq
   const Range range = parse_range(request.range);
   if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
   const MemberMaker maker(program, request, mesh, files, recipe, file);
+  if (maker.continues_another_set()) {
+    throw InputError(
+        request.manifest.string() +
+        ": has members of another recipe, or made with other options; name another manifest and other "
+        "files, or remove it to make all members anew");
+  }
   prepare_outputs(program, maker, mesh, files, range.begin);
   if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
     program.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again",
@@ -267,8 +302,9 @@ void make_members(Program& program, const MembersRequest& request, const MeshReq
   const Tally tally = make_range(program, maker, range);
   program.summary["members"] = {
       {"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
-  program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}", request.manifest.string(),
-                          tally.made, tally.there, tally.failed, range.end - range.begin));
+  program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", request.manifest.string(),
+                          tally.made, tally.there, tally.failed, range.end - range.begin,
+                          Program::interrupted() ? "; stopped, the same command goes on" : ""));
 }
 
 }  // namespace astrolith

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::string_view kBeginOfLine = R"({"member":)";
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
 
 bool is_entry(const json& line) {
@@ -44,7 +45,12 @@ void Manifest::read() {
   std::ifstream stream(file_);
   if (!stream) throw InputError(file_.string() + ": cannot be read; check its permissions");
   for (std::string line; std::getline(stream, line);) {
-    if (!read_line(line)) ++unreadable_lines_;
+    if (read_line(line)) continue;
+    ++unreadable_lines_;
+    // A process that died leaves the beginning of a line. Any other file is somebody's, and must not grow.
+    if (entries_.empty() && !line.starts_with(kBeginOfLine.substr(0, line.size()))) {
+      throw InputError(file_.string() + ": is there, and is no manifest; name another file");
+    }
   }
 }
 
@@ -85,6 +91,11 @@ bool Manifest::has(std::uint64_t member, const std::string& family,
          std::equal(
              stated.begin(), stated.end(), files.begin(),
              [](const ManifestFile& s, const fs::path& file) { return s.sha256 == sha256_of_file(file); });
+}
+
+bool Manifest::has_other_family(const std::string& family) const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [&](const auto& entry) { return entry.second.family != family; });
 }
 
 void Manifest::append(const nlohmann::ordered_json& line) const {

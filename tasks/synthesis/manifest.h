@@ -27,7 +27,7 @@ class Manifest {
  public:
   // Reads the file, which need not exist. Of several lines about one member the last counts. A line that is
   // no such object, as a process that died leaves it, counts as none. Throws InputError for a file that
-  // cannot be read or has more than 256 MB.
+  // cannot be read, has more than 256 MB or is no manifest.
   explicit Manifest(std::filesystem::path file);
 
   int unreadable_lines() const { return unreadable_lines_; }
@@ -36,6 +36,9 @@ class Manifest {
   // which all are there still, byte for byte.
   bool has(std::uint64_t member, const std::string& family,
            const std::vector<std::filesystem::path>& files) const;
+
+  // Whether a member stands in it that another recipe or other options made.
+  bool has_other_family(const std::string& family) const;
 
   // Name, size and hash of a file that is there. Throws InputError when it cannot be read.
   ManifestFile file_of(const std::filesystem::path& file) const;

@@ -101,8 +101,33 @@ TEST_F(SynthMembers, WhatIsThereIsNotMadeAgainAndWhatIsDamagedIs) {
   auto after = manifest();
   after.erase(3);
   EXPECT_EQ(after, before);
-  // Another size is another set.
-  expect_made(make("0:1", {"--min-component", "0.1"}), "1 made, 0 already there");
+}
+
+TEST_F(SynthMembers, AnotherSetIsNotWrittenOverThisOne) {
+  expect_made(make("0:2"), "2 made");
+  const std::string mesh = text_of(name("set/body_0000000.ply")), lines = text_of(name("set/set.jsonl"));
+  const Outcome other = make("0:2", {"--min-component", "0.1"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.errors.find("has members of another recipe, or made with other options"), std::string::npos)
+      << other.errors;
+  EXPECT_EQ(text_of(name("set/body_0000000.ply")), mesh);
+  EXPECT_EQ(text_of(name("set/set.jsonl")), lines);
+}
+
+TEST_F(SynthMembers, MembersMayHaveFoldersOfTheirOwn) {
+  const Outcome outcome = run_program(kSynth, {recipe_, "--members", "0:2", "-o", name("{member}/body.ply"),
+                                               "--manifest", name("set.jsonl"), "--resolution", "20"});
+  expect_made(outcome, "2 made");
+  EXPECT_TRUE(std::filesystem::exists(name("0000001/body.ply")));
+}
+
+TEST_F(SynthMembers, AFileOfSomebodyElseIsNoManifest) {
+  const std::string photo = folder_.write("photo.jpg", std::string(3000, 'x') + "\n");
+  const Outcome outcome =
+      run_program(kSynth, {recipe_, "--members", "0:2", "-o", name("{member}.ply"), "--manifest", photo});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.errors.find("is no manifest"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(text_of(photo).size(), 3001u);
 }
 
 TEST_F(SynthMembers, AManifestThatWasCutShortIsGoneOnWith) {
@@ -141,6 +166,7 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
   refused({"--members", "0:2", "-o", name("body.ply"), "--manifest", manifest},
           "--output: every member writes");
   refused({"--members", "0:2", "-o", mesh}, "--manifest: is required");
+  refused({"--members", "0:2", "-o", mesh, "--manifest", name("0000012.ply")}, "--manifest: ");
 }
 
 }  // namespace

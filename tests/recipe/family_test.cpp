@@ -78,10 +78,16 @@ TEST(Family, RefusesWhatNoMemberCouldBe) {
       refusal_of_field(field + R"("distribution": "normal", "mean": 0, "deviation": 1, "low": 5, "high": 9)"),
       "f.json: family.fields[0].low: and high must hold a tenth of a deviation within two of them about the "
       "mean");
-  EXPECT_EQ(refusal_of_field(R"("field": "layers[0].octaves", "low": 1, "high": 2.5)"),
-            "f.json: family: with the greatest numbers, layers[0].octaves: must be an integer from 1 to 24, "
-            "is drawn as "
-            "2.5");
+  EXPECT_EQ(
+      refusal_of_field(R"("field": "layers[0].octaves", "low": 1, "high": 2.5)"),
+      "f.json: family.fields[0].distribution: must be \"integer\", or a choice among whole numbers, since "
+      "layers[0].octaves is a whole number");
+  EXPECT_EQ(
+      refusal_of_field(R"("field": "layers[0].octaves", "distribution": "integer", "low": 1, "high": 99)")
+          .rfind("f.json: family: with the greatest numbers, layers[0].octaves: must be an integer", 0),
+      0u);
+  EXPECT_EQ(refusal_of_field(R"("field": "format_version", "distribution": "integer", "low": 1, "high": 1)"),
+            "f.json: family.fields[0].field: names no number of this recipe: \"format_version\"");
   EXPECT_EQ(refusal_of_field(R"("field": "layers[0].frequency", "low": -1, "high": 1)")
                 .rfind("f.json: family: with the least numbers, layers[0].frequency: must be above 0", 0),
             0u);
