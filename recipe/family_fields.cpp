@@ -111,7 +111,7 @@ class NumberSetter final : public FieldVisitor {
     return value;
   }
 
-  // Of a field that holds a whole number. Null while the setter only asks which fields do.
+  // The number for a field that holds a whole one. It is null while the setter only asks which fields do.
   const double* wanted_whole() {
     const double* const wanted = wanted_here();
     if (wanted == nullptr) return nullptr;

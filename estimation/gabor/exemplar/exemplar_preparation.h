@@ -34,10 +34,10 @@ inline constexpr int kLeastTextureSide = 32;
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
                                   const Progress& progress = {});
 
-// The same for a photo in colour: red, green and blue of one size, full scale = 1. The layer has the colours
-// and paints. Its height is that of their luma, and the scores are those of the luma. The variant changes
-// each plane by itself; values beyond 0 to 1 are cut off. Throws InputError also for a photo with values
-// beyond -1 to 2, which are no colours.
+// Prepares a photo in colour alike: red, green and blue of one size, full scale = 1. The layer has the
+// colours and paints. Its height is that of their luma, and the scores are those of the luma. The variant
+// changes each plane by itself; values beyond 0 to 1 are cut off. Throws InputError also for a photo with
+// values beyond -1 to 2, which are no colours.
 PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
                                   std::uint64_t seed, const Progress& progress = {});
 
