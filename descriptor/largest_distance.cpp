@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "numerics/host_device.h"
-#include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -46,7 +46,7 @@ ASTROLITH_SIMD_CLONES double farthest_squared(const double* x, const double* y, 
 
 }  // namespace
 
-double largest_distance(std::span<const Vec3d> points) {
+double largest_distance(std::span<const Vec3d> points, const Progress& progress) {
   if (points.size() < 2) return 0;
   const ByRadius p(points);
   const auto n = static_cast<std::int64_t>(points.size());
@@ -60,9 +60,9 @@ double largest_distance(std::span<const Vec3d> points) {
   const auto reach = std::partition_point(p.radius.begin(), p.radius.end(),
                                           [&](double r) { return r + p.radius[0] >= bound; });
   std::vector<double> rows(static_cast<std::size_t>(reach - p.radius.begin()), 0.0);
-  parallel_for(
-      0, static_cast<std::int64_t>(rows.size()),
-      [&](std::int64_t i) { rows[static_cast<std::size_t>(i)] = row(i); }, 64);
+  const auto count = static_cast<std::int64_t>(rows.size());
+  reported_parallel_for({0, count, count}, progress, "largest distance",
+                        [&](std::int64_t i) { rows[static_cast<std::size_t>(i)] = row(i); });
   for (const double r : rows) largest = std::max(largest, r);
   return std::sqrt(largest);
 }

@@ -11,6 +11,7 @@
 #include "geometry/surface/sample_curvature.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -108,13 +109,14 @@ ShapeDescription describe_shape(const TriangleMesh& mesh, const DescriptionOptio
                                 const Progress& progress) {
   check(options);
   ShapeDescription result;
-  const SurfaceSamples s = sample_poisson_disk(mesh, options.points, options.seed);
+  const SurfaceSamples s = sample_poisson_disk(mesh, options.points, options.seed, SampleNormals::triangle,
+                                               at_beginning(progress));
   result.points = static_cast<std::int64_t>(s.points.size());
   if (options.features == PairFeatures::wahl) {
     result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress, options.count_pairs);
   } else {
     const double radius = kCurvatureRadius * std::sqrt(point_spread(s.points).mean_square);
-    add_curvature(s, sample_curvature(mesh, s, radius), options, progress, result);
+    add_curvature(s, sample_curvature(mesh, s, radius, at_beginning(progress)), options, progress, result);
   }
   return result;
 }
@@ -129,7 +131,8 @@ ShapeDescription describe_shape(std::span<const Vec3d> points, std::span<const V
   if (options.features == PairFeatures::wahl) {
     result.histogram = surflet_histogram(s.points, s.normals, options.bins, progress, options.count_pairs);
   } else {
-    add_curvature(s, point_curvature(s.points, s.normals), options, progress, result);
+    add_curvature(s, point_curvature(s.points, s.normals, kCurvatureNeighbours, at_beginning(progress)),
+                  options, progress, result);
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include "descriptor/local_features.h"
 #include "descriptor/pair_count.h"
 #include "numerics/errors.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -66,8 +67,8 @@ std::vector<std::uint64_t> local_last(std::span<const std::uint64_t> counts, std
 }
 
 PairInput pair_input(std::span<const Vec3d> points, std::vector<Vec3d> unit_normals,
-                     std::vector<std::int32_t> local, int num_local, int bins) {
-  const double max_distance = largest_distance(points);
+                     std::vector<std::int32_t> local, int num_local, int bins, const Progress& progress) {
+  const double max_distance = largest_distance(points, at_beginning(progress));
   return {
       scaled(points, max_distance), std::move(unit_normals), std::move(local), num_local, bins, max_distance};
 }
@@ -101,13 +102,13 @@ std::vector<double> ShapeHistogram::frequencies() const {
 ShapeHistogram surflet_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals, int bins,
                                  const Progress& progress, const PairCounter& counter) {
   check(points, normals, bins);
-  const PairInput input =
-      pair_input(points, unit_vectors(normals), std::vector<std::int32_t>(points.size(), 0), 1, bins);
+  const PairInput input = pair_input(points, unit_vectors(normals),
+                                     std::vector<std::int32_t>(points.size(), 0), 1, bins, progress);
   return histogram_of(input, counts_of(input, progress, counter));
 }
 
 PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                    std::span<const double> curvatures, int bins) {
+                    std::span<const double> curvatures, int bins, const Progress& progress) {
   check(points, normals, bins);
   if (curvatures.size() != points.size()) {
     refuse(std::to_string(points.size()) + " points have " + std::to_string(curvatures.size()) +
@@ -120,7 +121,7 @@ PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normal
   }
   std::vector<Vec3d> unit = unit_vectors(normals);
   std::vector<std::int32_t> local = local_codes(points, unit, curvatures, bins);
-  return pair_input(points, std::move(unit), std::move(local), bins * bins, bins);
+  return pair_input(points, std::move(unit), std::move(local), bins * bins, bins, progress);
 }
 
 ShapeHistogram ahd_histogram(const PairInput& input, std::span<const std::uint64_t> counts) {
@@ -132,7 +133,7 @@ ShapeHistogram ahd_histogram(const PairInput& input, std::span<const std::uint64
 ShapeHistogram ahd_histogram(std::span<const Vec3d> points, std::span<const Vec3d> normals,
                              std::span<const double> curvatures, int bins, const Progress& progress,
                              const PairCounter& counter) {
-  const PairInput input = ahd_input(points, normals, curvatures, bins);
+  const PairInput input = ahd_input(points, normals, curvatures, bins, progress);
   return ahd_histogram(input, counts_of(input, progress, counter));
 }
 

@@ -38,7 +38,8 @@ struct PairInput {
   double max_distance = 0.0;  // in the unit of the points
 };
 PairInput ahd_input(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                    std::span<const double> curvatures, int bins = kDefaultBins);
+                    std::span<const double> curvatures, int bins = kDefaultBins,
+                    const Progress& progress = {});
 ShapeHistogram ahd_histogram(const PairInput& input, std::span<const std::uint64_t> counts);
 
 }  // namespace astrolith

@@ -19,6 +19,12 @@ struct ReportedRange {
   std::int64_t begin = 0, end = 0, total = 0;
 };
 
+// The callback for a preparation that is short beside the work that follows: the fraction stays 0.
+inline Progress at_beginning(const Progress& progress) {
+  if (!progress) return {};
+  return [progress](double, std::string_view words) { return progress(0, words); };
+}
+
 // Calls body(i) for every i of the range and reports the fraction of `total` that is done about every tenth
 // of a second. Throws WorkError when progress asks to stop. The clock decides only how many indices lie
 // between two reports.

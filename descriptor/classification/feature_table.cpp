@@ -1,8 +1,8 @@
 #include "descriptor/classification/feature_table.h"
 
-#include <atomic>
 #include <mutex>
 #include <stdexcept>
+#include <string_view>
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_topology.h"
@@ -43,21 +43,29 @@ FeatureTable features_of_files(std::span<const std::filesystem::path> files, con
   std::vector<std::string> failures(files.size()), remarks(files.size());
   std::mutex reporting;
   std::size_t done = 0;
-  std::atomic<bool> stopped{false};
+  bool stopped = false;
+  const auto go_on = [&](const std::filesystem::path& file, std::size_t newly_done) {
+    const std::lock_guard lock(reporting);
+    done += newly_done;
+    const double fraction = static_cast<double>(done) / static_cast<double>(files.size());
+    stopped = stopped || !report(progress, fraction, file.filename().string());
+    return !stopped;
+  };
   parallel_for(0, static_cast<std::int64_t>(files.size()), [&](std::int64_t index) {
-    if (stopped) return;
     const auto i = static_cast<std::size_t>(index);
+    // A large file asks within its own work too, so that a stop need not wait for it.
+    const Progress within = [&](double, std::string_view) { return go_on(files[i], 0); };
+    if (!within(0, "")) return;
     try {
       const TriangleMesh mesh = read_mesh(files[i]);
-      table.rows[i] = shape_features(mesh, options);
+      table.rows[i] = shape_features(mesh, options, within);
       remarks[i] = open_remark(files[i], mesh);
     } catch (const std::runtime_error& e) {  // InputError, WorkError
+      const std::lock_guard lock(reporting);
+      if (stopped) return;
       failures[i] = naming(files[i], e.what());
     }
-    const std::lock_guard lock(reporting);
-    ++done;
-    const double fraction = static_cast<double>(done) / static_cast<double>(files.size());
-    if (!report(progress, fraction, files[i].filename().string())) stopped = true;
+    go_on(files[i], 1);
   });
   if (stopped && done < files.size()) throw WorkError("features: stopped; run it again");
   keep_filled(failures, table.failures);

@@ -96,15 +96,18 @@ std::size_t feature_count(const FeatureOptions& options) {
   return static_cast<std::size_t>(options.eigenvalues);
 }
 
-std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options) {
+std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options,
+                                  const Progress& progress) {
   check(options);
   switch (options.kind) {
     case FeatureKind::wahl:
     case FeatureKind::ahd:
-      return scaled(describe_shape(mesh, description(options, options.points)).histogram.frequencies());
+      return scaled(
+          describe_shape(mesh, description(options, options.points), progress).histogram.frequencies());
     case FeatureKind::d2:
-      return distribution_features(sample_poisson_disk(mesh, options.points, options.seed).points,
-                                   options.bins);
+      return distribution_features(
+          sample_poisson_disk(mesh, options.points, options.seed, SampleNormals::triangle, progress).points,
+          options.bins);
     case FeatureKind::shapedna:
       break;
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -42,8 +43,10 @@ std::size_t feature_count(const FeatureOptions& options);
 // The feature vector of a mesh. For a histogram it holds the frequencies times the number of bins. The mean
 // feature is then 1, which matters because OpenCV's forest takes values that differ by less than 2.4e-7 as
 // equal. For shapedna it holds the eigenvalues over 4 pi i, to which the i-th eigenvalue of every surface
-// tends (Weyl's law). Throws InputError for shapes that the descriptor refuses.
-std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options);
+// tends (Weyl's law). Throws InputError for shapes that the descriptor refuses, and WorkError when progress
+// asks to stop.
+std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options,
+                                  const Progress& progress = {});
 
 // The feature vector of (n) points of a surface with (n) normals, all of which are used.
 std::vector<float> point_features(std::span<const Vec3d> points, std::span<const Vec3d> normals,

@@ -11,13 +11,14 @@
 #include "geometry/points/point_grid_internal.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
 
 constexpr std::int64_t kCandidatesPerSample = 5;
+constexpr std::size_t kRemovalsPerReport = 4096;  // some hundredths of a second
 // The number of candidates must fit into 32 bits.
 constexpr std::int64_t kMaxSamples = std::numeric_limits<std::int32_t>::max() / kCandidatesPerSample;
 
@@ -55,19 +56,22 @@ class Crowding {
   double reach_, floor_;
 };
 
+void go_on_or_stop(const Progress& progress) {
+  if (!report(progress, 1, "sampling")) throw WorkError("sampling: stopped");
+}
+
 // Removes the most crowded point until n are left; which[i] tells whether point i stays.
-std::vector<bool> eliminate(const std::vector<Vec3d>& points, std::int64_t n, const Crowding& crowding) {
+std::vector<bool> eliminate(const std::vector<Vec3d>& points, std::int64_t n, const Crowding& crowding,
+                            const Progress& progress) {
   const PointGrid grid(points, crowding.reach());
   std::vector<double> weights(points.size(), 0.0);
-  parallel_for(
-      0, static_cast<std::int64_t>(points.size()),
-      [&](std::int64_t i) {
-        double sum = 0;
-        grid.for_each_neighbour(static_cast<std::uint32_t>(i),
-                                [&](std::uint32_t, double d2) { sum += crowding.weight(d2); });
-        weights[static_cast<std::size_t>(i)] = sum;
-      },
-      256);
+  const auto count = static_cast<std::int64_t>(points.size());
+  reported_parallel_for({0, count, count}, progress, "sampling", [&](std::int64_t i) {
+    double sum = 0;
+    grid.for_each_neighbour(static_cast<std::uint32_t>(i),
+                            [&](std::uint32_t, double d2) { sum += crowding.weight(d2); });
+    weights[static_cast<std::size_t>(i)] = sum;
+  });
   // Weights only fall, so that no entry of the queue is too low. An entry that is out of date goes back with
   // its present weight. Of equal weights the highest index is removed first.
   std::priority_queue<std::pair<double, std::uint32_t>> queue;
@@ -81,6 +85,7 @@ std::vector<bool> eliminate(const std::vector<Vec3d>& points, std::int64_t n, co
       continue;
     }
     stays[i] = false;
+    if (queue.size() % kRemovalsPerReport == 0) go_on_or_stop(progress);
     grid.for_each_neighbour(i, [&](std::uint32_t j, double d2) { weights[j] -= crowding.weight(d2); });
   }
   return stays;
@@ -104,7 +109,7 @@ double poisson_disk_radius(double area, std::int64_t n) {
 }
 
 SurfaceSamples sample_surface(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
-                              SampleNormals kind) {
+                              SampleNormals kind, const Progress& progress) {
   check_count(n);
   const std::vector<double> areas = cumulative_areas(mesh);
   const auto size = static_cast<std::size_t>(n);
@@ -112,39 +117,36 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, std::int64_t n, std::uin
   const std::vector<Vec3d> smooth = interpolate ? vertex_normals(mesh) : std::vector<Vec3d>();
   SurfaceSamples samples{std::vector<Vec3d>(size), std::vector<Vec3d>(size),
                          std::vector<std::uint32_t>(size)};
-  parallel_for(
-      0, n,
-      [&](std::int64_t index) {
-        const auto i = static_cast<std::size_t>(index);
-        CounterRandom random(seed, i);
-        const auto found = std::upper_bound(areas.begin(), areas.end(), areas.back() * random.uniform());
-        // Rounding may push the drawn area onto the total. The last triangle with an area then takes the
-        // sample.
-        const auto t = static_cast<std::size_t>(
-            (found == areas.end() ? std::lower_bound(areas.begin(), areas.end(), areas.back()) : found) -
-            areas.begin());
-        const auto [a, b, c] = mesh.triangles[t];
-        // These weights are uniform over the triangle: the square root makes up for the crowding at corner a.
-        const double root = std::sqrt(random.uniform()), split = random.uniform();
-        const double wa = 1 - root, wb = root * (1 - split), wc = root * split;
-        samples.points[i] = wa * mesh.vertices[a] + wb * mesh.vertices[b] + wc * mesh.vertices[c];
-        samples.normals[i] = interpolate ? normalized(wa * smooth[a] + wb * smooth[b] + wc * smooth[c])
-                                         : triangle_normal(mesh, mesh.triangles[t]);
-        samples.triangles[i] = static_cast<std::uint32_t>(t);
-      },
-      1024);
+  reported_parallel_for({0, n, n}, progress, "sampling", [&](std::int64_t index) {
+    const auto i = static_cast<std::size_t>(index);
+    CounterRandom random(seed, i);
+    const auto found = std::upper_bound(areas.begin(), areas.end(), areas.back() * random.uniform());
+    // Rounding may push the drawn area onto the total. The last triangle with an area then takes the
+    // sample.
+    const auto t = static_cast<std::size_t>(
+        (found == areas.end() ? std::lower_bound(areas.begin(), areas.end(), areas.back()) : found) -
+        areas.begin());
+    const auto [a, b, c] = mesh.triangles[t];
+    // These weights are uniform over the triangle: the square root makes up for the crowding at corner a.
+    const double root = std::sqrt(random.uniform()), split = random.uniform();
+    const double wa = 1 - root, wb = root * (1 - split), wc = root * split;
+    samples.points[i] = wa * mesh.vertices[a] + wb * mesh.vertices[b] + wc * mesh.vertices[c];
+    samples.normals[i] = interpolate ? normalized(wa * smooth[a] + wb * smooth[b] + wc * smooth[c])
+                                     : triangle_normal(mesh, mesh.triangles[t]);
+    samples.triangles[i] = static_cast<std::uint32_t>(t);
+  });
   return samples;
 }
 
 SurfaceSamples sample_poisson_disk(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
-                                   SampleNormals kind) {
+                                   SampleNormals kind, const Progress& progress) {
   check_count(n);
   if (n == 0) return {};
-  const SurfaceSamples candidates = sample_surface(mesh, kCandidatesPerSample * n, seed, kind);
+  const SurfaceSamples candidates = sample_surface(mesh, kCandidatesPerSample * n, seed, kind, progress);
   const double max_radius = poisson_disk_radius(surface_area(mesh), n);
   const double min_radius =
       max_radius * 0.65 * (1 - portable::pow(1.0 / static_cast<double>(kCandidatesPerSample), 1.5));
-  return only(candidates, eliminate(candidates.points, n, Crowding(max_radius, min_radius)));
+  return only(candidates, eliminate(candidates.points, n, Crowding(max_radius, min_radius), progress));
 }
 
 }  // namespace astrolith

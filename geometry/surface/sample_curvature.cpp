@@ -8,7 +8,7 @@
 #include "geometry/mesh_normals.h"
 #include "geometry/points/point_tree_internal.h"
 #include "geometry/surface/curvature.h"
-#include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 #include "numerics/tangent_frame.h"
 
 namespace astrolith {
@@ -18,15 +18,13 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // The curvatures curvature_at(i), i = 0 .. n - 1. Values that are not finite count as undefined and become 0.
 template <typename CurvatureAt>
-SampleCurvature at_all(std::size_t n, const CurvatureAt& curvature_at) {
+SampleCurvature at_all(std::size_t n, const Progress& progress, const CurvatureAt& curvature_at) {
   SampleCurvature result;
   result.gaussian.assign(n, 0.0);
-  parallel_for(
-      0, static_cast<std::int64_t>(n),
-      [&](std::int64_t i) {
-        result.gaussian[static_cast<std::size_t>(i)] = curvature_at(static_cast<std::size_t>(i));
-      },
-      64);
+  const auto count = static_cast<std::int64_t>(n);
+  reported_parallel_for({0, count, count}, progress, "curvature", [&](std::int64_t i) {
+    result.gaussian[static_cast<std::size_t>(i)] = curvature_at(static_cast<std::size_t>(i));
+  });
   for (double& k : result.gaussian) {
     if (std::isfinite(k)) continue;
     k = 0;
@@ -65,11 +63,12 @@ double quadric_curvature(const std::vector<Vec3d>& heights) {
 
 }  // namespace
 
-SampleCurvature sample_curvature(const TriangleMesh& mesh, const SurfaceSamples& samples, double radius) {
+SampleCurvature sample_curvature(const TriangleMesh& mesh, const SurfaceSamples& samples, double radius,
+                                 const Progress& progress) {
   const VertexCurvature of_vertices = vertex_curvature(mesh);
   const std::vector<Vec3d> normals = vertex_normals(mesh);
   const PointTree tree(mesh.vertices);
-  SampleCurvature result = at_all(samples.points.size(), [&](std::size_t i) {
+  SampleCurvature result = at_all(samples.points.size(), progress, [&](std::size_t i) {
     const Vec3d& place = samples.points[i];
     const double corner = farthest_corner(mesh, mesh.triangles[samples.triangles[i]], place);
     double integral = 0, area = 0;
@@ -87,10 +86,10 @@ SampleCurvature sample_curvature(const TriangleMesh& mesh, const SurfaceSamples&
   return result;
 }
 
-SampleCurvature point_curvature(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                int neighbours) {
+SampleCurvature point_curvature(std::span<const Vec3d> points, std::span<const Vec3d> normals, int neighbours,
+                                const Progress& progress) {
   const PointTree tree(points);
-  return at_all(points.size(), [&](std::size_t i) {
+  return at_all(points.size(), progress, [&](std::size_t i) {
     const auto [x, y] = crossed_tangents(normals[i]);
     std::vector<Vec3d> heights;
     for (const std::uint32_t j : tree.nearest(points[i], static_cast<std::size_t>(neighbours))) {

@@ -7,6 +7,7 @@
 
 #include "geometry/surface/mesh_sampling.h"
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -25,8 +26,9 @@ struct SampleCurvature {
 // w_v falls to 0 smoothly, since a sharp border would cut bumps in two. r is `radius`, or more where the
 // sample's triangle has a corner farther away. A vertex whose normal looks away from the sample's normal lies
 // on another side of a thin body and is not counted. radius >= 0 in the unit of the mesh. Throws InputError
-// for indices out of range.
-SampleCurvature sample_curvature(const TriangleMesh& mesh, const SurfaceSamples& samples, double radius);
+// for indices out of range, and WorkError when progress asks to stop.
+SampleCurvature sample_curvature(const TriangleMesh& mesh, const SurfaceSamples& samples, double radius,
+                                 const Progress& progress = {});
 
 // The number of neighbours that a quadric is fitted to: somewhat more than two rings of evenly spread points.
 inline constexpr int kCurvatureNeighbours = 24;
@@ -34,8 +36,9 @@ inline constexpr int kCurvatureNeighbours = 24;
 // The curvature from (n) points and (n) unit normals alone. The quadric z = a x^2 / 2 + b x y + c y^2 / 2 + d
 // x + e y + f is fitted by least squares to the nearest points, the point itself among them, in the frame of
 // the point's normal; K = (a c - b^2) / (1 + d^2 + e^2)^2. Neighbours whose normal looks away are left out. K
-// is undefined where the neighbours do not determine the six coefficients.
+// is undefined where the neighbours do not determine the six coefficients. Throws WorkError when progress
+// asks to stop.
 SampleCurvature point_curvature(std::span<const Vec3d> points, std::span<const Vec3d> normals,
-                                int neighbours = kCurvatureNeighbours);
+                                int neighbours = kCurvatureNeighbours, const Progress& progress = {});
 
 }  // namespace astrolith

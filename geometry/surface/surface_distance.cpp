@@ -7,22 +7,19 @@
 
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
-#include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
 
 std::vector<double> distances(const TriangleMesh& from, const SurfaceTree& to, std::int64_t samples,
-                              std::uint64_t seed) {
-  const SurfaceSamples points = sample_surface(from, samples, seed);
+                              std::uint64_t seed, const Progress& progress) {
+  const SurfaceSamples points = sample_surface(from, samples, seed, SampleNormals::triangle, progress);
   std::vector<double> result(points.points.size());
-  parallel_for(
-      0, samples,
-      [&](std::int64_t i) {
-        const auto k = static_cast<std::size_t>(i);
-        result[k] = to.closest(points.points[k]).distance;
-      },
-      256);
+  reported_parallel_for({0, samples, samples}, progress, "distances", [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    result[k] = to.closest(points.points[k]).distance;
+  });
   return result;
 }
 
@@ -40,16 +37,16 @@ DistanceFigures figures(std::vector<double> d) {
 }  // namespace
 
 SurfaceDistanceReport surface_distance(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples,
-                                       std::uint64_t seed) {
-  return surface_distance(a, SurfaceTree(a), b, SurfaceTree(b), samples, seed);
+                                       std::uint64_t seed, const Progress& progress) {
+  return surface_distance(a, SurfaceTree(a), b, SurfaceTree(b), samples, seed, progress);
 }
 
 SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_of_a,
                                        const TriangleMesh& b, const SurfaceTree& tree_of_b,
-                                       std::int64_t samples, std::uint64_t seed) {
+                                       std::int64_t samples, std::uint64_t seed, const Progress& progress) {
   if (samples <= 0) throw InputError("surface distance: needs at least one sample");
-  std::vector<double> both = distances(a, tree_of_b, samples, seed);
-  const std::vector<double> back = distances(b, tree_of_a, samples, seed);
+  std::vector<double> both = distances(a, tree_of_b, samples, seed, progress);
+  const std::vector<double> back = distances(b, tree_of_a, samples, seed, progress);
   SurfaceDistanceReport report;
   report.from_a_to_b = figures(both);
   report.from_b_to_a = figures(back);

@@ -5,6 +5,7 @@
 
 #include "geometry/surface/surface_tree.h"
 #include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -21,13 +22,15 @@ struct SurfaceDistanceReport {
 };
 
 // Measures from `samples` > 0 area-weighted points on each mesh. `max` is a lower bound of the Hausdorff
-// distance. Throws InputError when samples <= 0 and where SurfaceTree and sample_surface do.
+// distance. Throws InputError when samples <= 0 and where SurfaceTree and sample_surface do, and WorkError
+// when progress asks to stop.
 SurfaceDistanceReport surface_distance(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples,
-                                       std::uint64_t seed);
+                                       std::uint64_t seed, const Progress& progress = {});
 
 // The distance between two meshes whose trees have been built before.
 SurfaceDistanceReport surface_distance(const TriangleMesh& a, const SurfaceTree& tree_of_a,
                                        const TriangleMesh& b, const SurfaceTree& tree_of_b,
-                                       std::int64_t samples, std::uint64_t seed);
+                                       std::int64_t samples, std::uint64_t seed,
+                                       const Progress& progress = {});
 
 }  // namespace astrolith

@@ -233,9 +233,10 @@ std::pair<std::vector<std::string>, std::vector<double>> classify(const std::str
                                                                   const Rows<double>& vertices,
                                                                   const Rows<std::uint32_t>& faces,
                                                                   int threads, nb::object progress) {
-  return run_job(std::move(progress), threads, [model, mesh = mesh_of(vertices, faces, {})](JobState&) {
+  return run_job(std::move(progress), threads, [model, mesh = mesh_of(vertices, faces, {})](JobState& state) {
     const ShapeClassifier classifier = read_classifier(model);
-    return std::pair(classifier.classes, classifier.votes(shape_features(mesh, classifier.features)));
+    return std::pair(classifier.classes,
+                     classifier.votes(shape_features(mesh, classifier.features, state.progress("describe"))));
   });
 }
 

@@ -43,8 +43,8 @@ void compare_histograms(const NamedMesh& a, const NamedMesh& b, bool with_floor,
 }
 
 void compare_surfaces(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples, std::uint64_t seed,
-                      nlohmann::ordered_json& result) {
-  const SurfaceDistanceReport d = surface_distance(a, b, samples, seed);
+                      const Progress& progress, nlohmann::ordered_json& result) {
+  const SurfaceDistanceReport d = surface_distance(a, b, samples, seed, progress);
   const double diagonal = a.bounds().diagonal();
   result["mean_distance"] = d.mean / diagonal;
   result["p99_distance"] = d.p99 / diagonal;
@@ -62,7 +62,7 @@ Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const Descript
   Comparison comparison;
   comparison.figures = nlohmann::ordered_json::object();
   compare_histograms(a, b, with_floor, {options, progress, comparison.remarks}, comparison.figures);
-  compare_surfaces(a.mesh, b.mesh, samples, options.seed, comparison.figures);
+  compare_surfaces(a.mesh, b.mesh, samples, options.seed, progress("distance"), comparison.figures);
   return comparison;
 }
 

@@ -118,6 +118,20 @@ TEST(PoissonDisk, SameForAnyThreadCount) {
   EXPECT_EQ(sample_poisson_disk(mesh, 500, 6).points, one);
 }
 
+// A stop acts in each part: while candidates are drawn, while their crowding is summed, and while they go.
+TEST(PoissonDisk, StopsWhenAsked) {
+  int reports = 0;
+  const auto count = [&](double, std::string_view) { return ++reports > 0; };
+  sample_poisson_disk(cube(), 20000, 1, SampleNormals::triangle, count);
+  ASSERT_GT(reports, 20);
+  for (const int last : {1, 20}) {
+    int asked = 0;
+    const auto stop_at_last = [&](double, std::string_view) { return ++asked < last; };
+    EXPECT_THROW(sample_poisson_disk(cube(), 20000, 1, SampleNormals::triangle, stop_at_last), WorkError);
+    EXPECT_EQ(asked, last);
+  }
+}
+
 TEST(MeshSampling, NothingToSample) {
   EXPECT_THROW(sample_surface({}, 10, 1), InputError);
   EXPECT_THROW(sample_surface({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}, {}}, 10, 1), InputError);
