@@ -251,7 +251,7 @@ void say_result(const PhotoFit& photo, const Options& o, const Program& program)
                     "the noise lacks; scale the photo down to that size to keep them",
                     100.0 * (1.0 - held), o.photo.fit.largest_side));
   }
-  program.say(photo.gaussianity().sentence);
+  program.say(photo.gaussianity().value().sentence);
 }
 
 PreparedExemplar prepare(Program& program, const Options& o) {

@@ -72,8 +72,8 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
 }
 
 std::vector<SpectralLobe> refined(const std::vector<SpectralLobe>& lobes, const std::vector<double>& weight,
-                                  GaborFit& fit) {
-  RefinedLobes best = fewest_lobes(lobes, fit.estimate, weight);
+                                  const Progress& progress, GaborFit& fit) {
+  RefinedLobes best = fewest_lobes(lobes, fit.estimate, weight, progress);
   fit.refinement_reached = best.reached;
   return std::move(best.lobes);
 }
@@ -124,7 +124,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   if (!(fit.exemplar_rms > kSmallestContrast))
     throw InputError(name +
                      ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
-  fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram)
+  fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram, progress)
                                                              : SpectrumEstimate{fit.periodogram, {}, 0.0};
   bool stopped = false;
   const auto heeded = [&](double fraction, std::string_view words) {
@@ -132,11 +132,12 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
     stopped = stopped || !goes_on;
     return goes_on;
   };
-  std::vector<SpectralLobe> lobes = pursue(fit, options, heeded);
+  std::vector<SpectralLobe> lobes;
+  if (heeded(0.0, "starting")) lobes = pursue(fit, options, heeded);
   fit.pursuit_lobes = static_cast<int>(lobes.size());
   const std::vector<double> weight = row_weights(fit.estimate.spectrum, options.target);
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
-  if (options.target == SpectrumTarget::kSmoothed) lobes = refined(lobes, weight, fit);
+  if (options.target == SpectrumTarget::kSmoothed) lobes = refined(lobes, weight, heeded, fit);
   if (lobes.empty()) {
     throw WorkError(name + (stopped ? ": stopped before a lobe was found; nothing is written"
                                     : ": no lobe was found; try a smaller penalty"));

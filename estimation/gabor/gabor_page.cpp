@@ -95,9 +95,9 @@ void write_gabor_page(const ReportPicture& exemplar, const ReportPicture& synthe
   const TurnableSurfaces reliefs{relief(exemplar, "photo"), relief(synthesis, "noise"), "", "", ""};
   write_report_page(
       {title,
-       channel.gaussianity.sentence,
+       channel.gaussianity.value().sentence,
        reliefs,
-       {texture_table(channel.gaussianity), fit_table(channel)},
+       {texture_table(channel.gaussianity.value()), fit_table(channel)},
        {{"report.png",
          "Photo and noise, the gap of the pursuit, and the spectra of the photo and of the fit."}}},
       folder / "index.html");

@@ -12,8 +12,9 @@
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/periodic_component.h"
+#include "numerics/errors.h"
 #include "numerics/hash_random.h"
-#include "numerics/parallel_for.h"
+#include "numerics/reported_loop.h"
 
 namespace astrolith {
 namespace {
@@ -261,6 +262,8 @@ std::vector<double> unusualness(const std::vector<Measures>& samples) {
   return largest;
 }
 
+constexpr const char* kWords = "comparing with Gaussian textures";
+
 // The largest measures of a photo that is close to, or roughly, a Gaussian texture.
 struct Limits {
   double skewness, excess_kurtosis, edges, spread;
@@ -317,11 +320,12 @@ std::string sentence_for(const Gaussianity& g) {
 // whole periods, 5.5 to 6.5 % of squares cut out of white noise, and 18 % of 64 x 64 squares cut out of a
 // smooth texture. In the last case the border is a large part of the square, and the periodic component
 // changes it.
-Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
+Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const Progress& progress) {
   const Tiling tiling(image);
   Surrogates noise(tiling, seed);
   MeasureSums photo;
   for (int t = 0; t < tiling.count(); ++t) {
+    if (!report(progress, 0.0, kWords)) throw WorkError("gaussianity: stopped");
     const GreyImage tile = decompose_periodic(tile_of(image, tiling, t)).periodic;
     photo.add(tile);
     noise.add_tile(tile);
@@ -329,7 +333,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed) {
   const int surrogates = std::clamp(kSurrogateTiles / tiling.count(), kFewestSurrogates, kMostSurrogates);
   std::vector<Measures> samples(static_cast<std::size_t>(surrogates) + 1);
   samples[0] = photo.measures();
-  parallel_for(1, surrogates + 1, [&](std::int64_t i) {
+  reported_parallel_for({1, surrogates + 1, surrogates + 1}, progress, kWords, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     samples[k] = noise.measure(k);
   });

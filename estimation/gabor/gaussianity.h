@@ -6,6 +6,7 @@
 #include <string>
 
 #include "estimation/gabor/image/grey_image.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -38,7 +39,7 @@ struct Gaussianity {
 // of all tiles are measured together. The image has sides >= 32 and is not constant. A likeness is kGaussian
 // where p is above 0.05. It is kClose, or else kRoughly, where |skewness| is up to 0.5 (1), |excess kurtosis|
 // up to 1 (2), edge_kurtosis up to 1.5 (3) and variance_spread up to 2 (4). An image beyond the limits of
-// kRoughly is kOutside for any p.
-Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed);
+// kRoughly is kOutside for any p. Throws WorkError when progress asks to stop.
+Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const Progress& progress = {});
 
 }  // namespace astrolith

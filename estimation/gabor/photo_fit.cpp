@@ -7,6 +7,7 @@
 
 #include "estimation/gabor/image/image_channels.h"
 #include "estimation/gabor/image/image_reader.h"
+#include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -52,6 +53,19 @@ double root_mean_square(const std::vector<FittedChannel>& channels, const Figure
     variance += c.variance();
   }
   return std::sqrt(square / variance);
+}
+
+bool less_plausible(const Gaussianity& a, const Gaussianity& b) {
+  return a.likeness != b.likeness ? a.likeness > b.likeness : a.p_value < b.p_value;
+}
+
+// The test of an exemplar; none when asked to stop, since the lobes are worth keeping without it.
+std::optional<Gaussianity> tested(const GreyImage& exemplar, std::uint64_t seed, const Progress& progress) {
+  try {
+    return test_gaussianity(exemplar, seed, progress);
+  } catch (const WorkError&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -123,15 +137,14 @@ double PhotoFit::variance_in_spectrum() const {
   return held / variance;
 }
 
-Gaussianity PhotoFit::gaussianity() const {
-  const auto less_plausible = [](const FittedChannel& a, const FittedChannel& b) {
-    if (a.gaussianity.likeness != b.gaussianity.likeness)
-      return a.gaussianity.likeness > b.gaussianity.likeness;
-    return a.gaussianity.p_value < b.gaussianity.p_value;
-  };
-  Gaussianity worst = std::min_element(channels.begin(), channels.end(), less_plausible)->gaussianity;
+std::optional<Gaussianity> PhotoFit::gaussianity() const {
+  Gaussianity worst;
   double smallest = 1.0;
-  for (const FittedChannel& c : channels) smallest = std::min(smallest, c.gaussianity.p_value);
+  for (const FittedChannel& c : channels) {
+    if (!c.gaussianity) return {};
+    if (&c == &channels.front() || less_plausible(*c.gaussianity, worst)) worst = *c.gaussianity;
+    smallest = std::min(smallest, c.gaussianity->p_value);
+  }
   worst.p_value = std::min(1.0, smallest * static_cast<double>(channels.size()));
   return worst;
 }
@@ -147,7 +160,8 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
       return report(progress, (static_cast<double>(k) + done) / count, words);
     };
     channel.fit = fit_gabor_lobes(channel.exemplar, name, options.fit, share);
-    channel.gaussianity = test_gaussianity(channel.exemplar, options.seed);
+    channel.gaussianity = tested(channel.exemplar, options.seed,
+                                 [&](double, std::string_view words) { return share(1.0, words); });
   }
   return photo;
 }

@@ -25,7 +25,7 @@ struct FittedChannel {
   GreyImage exemplar;
   std::optional<LayerColor> color;  // only where colours were fitted; the first channel holds the mean colour
   GaborFit fit;
-  Gaussianity gaussianity;
+  std::optional<Gaussianity> gaussianity;  // none where the fit was stopped
 
   // The variance that the lobes have, which is that of the periodogram.
   double variance() const { return fit.exemplar_rms * fit.exemplar_rms; }
@@ -52,8 +52,9 @@ struct PhotoFit {
   // that are wider than a tile.
   double variance_in_spectrum() const;
   // The judgement of the least plausible channel, with the smallest p-value of all channels. This p-value is
-  // multiplied by the number of channels, since the least of several is small more often (Bonferroni).
-  Gaussianity gaussianity() const;
+  // multiplied by the number of channels, since the least of several is small more often (Bonferroni). None
+  // where the fit was stopped.
+  std::optional<Gaussianity> gaussianity() const;
 };
 
 // Reads a photo and fits it. Throws as read_grey_image, remove_trend and fit_gabor_lobes do.

@@ -42,24 +42,27 @@ double tiles_distance_of(const GaborFit& fit) {
 nlohmann::ordered_json details(const FittedChannel& channel) {
   const GaborFit& fit = channel.fit;
   const LobeQuality& q = fit.quality;
-  return {{"lobes", fit.lobes.size()},
-          {"pursuit_lobes", fit.pursuit_lobes},
-          {"tiles_distance", tiles_distance_of(fit)},
-          {"pursuit_gap", fit.pursuit.relative_gap},
-          {"pursuit_reached", fit.pursuit.reached},
-          {"refinement_reached", fit.refinement_reached},
-          {"spectrum_distance", fit.spectrum_distance},
-          {"periodogram_distance", q.periodogram_distance},
-          {"perfect_periodogram_distance", q.perfect_distance},
-          {"spectrum_residual", q.residual},
-          {"weak_above", q.weak_above},
-          {"weak", q.weak()},
-          {"band_overlap", q.band_overlap},
-          {"bands", details(q.bands)},
-          {"variance", channel.variance()},
-          {"pixel_variance", channel.pixel_variance()},
-          {"variance_ratio_before_scaling", fit.variance_before_scaling},
-          {"gaussianity", channel.gaussianity.p_value}};
+  nlohmann::ordered_json figures = {{"lobes", fit.lobes.size()},
+                                    {"pursuit_lobes", fit.pursuit_lobes},
+                                    {"pursuit_gap", fit.pursuit.relative_gap},
+                                    {"pursuit_reached", fit.pursuit.reached},
+                                    {"refinement_reached", fit.refinement_reached},
+                                    {"spectrum_distance", fit.spectrum_distance},
+                                    {"periodogram_distance", q.periodogram_distance},
+                                    {"perfect_periodogram_distance", q.perfect_distance},
+                                    {"spectrum_residual", q.residual},
+                                    {"weak_above", q.weak_above},
+                                    {"weak", q.weak()},
+                                    {"band_overlap", q.band_overlap},
+                                    {"bands", details(q.bands)},
+                                    {"variance", channel.variance()},
+                                    {"pixel_variance", channel.pixel_variance()},
+                                    {"variance_ratio_before_scaling", fit.variance_before_scaling}};
+  if (channel.gaussianity) {  // a fit that was stopped ends at once, without the following
+    figures["tiles_distance"] = tiles_distance_of(fit);
+    figures["gaussianity"] = channel.gaussianity->p_value;
+  }
+  return figures;
 }
 
 }  // namespace
@@ -79,7 +82,6 @@ Recipe photo_recipe(const PhotoFit& photo, const PhotoRecipeOptions& o) {
 
 nlohmann::ordered_json photo_figures(const PhotoFit& photo) {
   nlohmann::ordered_json s;
-  const Gaussianity gaussianity = photo.gaussianity();
   s["lobes"] = photo.lobes();
   s["pursuit_gap"] = photo.pursuit_gap();
   s["pursuit_reached"] = photo.pursuit_reached();
@@ -90,8 +92,10 @@ nlohmann::ordered_json photo_figures(const PhotoFit& photo) {
   s["weak"] = photo.weak();
   s["band_overlap"] = photo.band_overlap();
   s["variance_in_spectrum"] = photo.variance_in_spectrum();
-  s["gaussianity"] = gaussianity.p_value;
-  s["gaussianity_details"] = details(gaussianity);
+  if (const std::optional<Gaussianity> gaussianity = photo.gaussianity()) {
+    s["gaussianity"] = gaussianity->p_value;
+    s["gaussianity_details"] = details(*gaussianity);
+  }
   int iterations = 0;
   double before_scaling = 0.0, variance = 0.0;
   for (const FittedChannel& channel : photo.channels) {

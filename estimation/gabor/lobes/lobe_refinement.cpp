@@ -25,6 +25,20 @@ class MisfitFunction : public ceres::FirstOrderFunction {
   const LobeMisfit& misfit_;
 };
 
+constexpr const char* kWords = "refining";
+
+// Ends the minimisation, with its best so far, when progress asks to stop.
+class StopWhenAsked : public ceres::IterationCallback {
+ public:
+  explicit StopWhenAsked(const Progress& progress) : progress_(progress) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return report(progress_, 1.0, kWords) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+  }
+
+ private:
+  const Progress& progress_;
+};
+
 // The optimal-transport distance: the root of the misfit, whose small offset e is neglected.
 double distance_of(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
   const LobeMisfit misfit(lobes, target);
@@ -34,7 +48,8 @@ double distance_of(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& 
 
 }  // namespace
 
-RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
+RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target,
+                          const Progress& progress) {
   if (lobes.empty()) return {};
   const LobeMisfit misfit(lobes, target);
   std::vector<double> parameters(static_cast<std::size_t>(misfit.parameters()), 0.0);
@@ -43,19 +58,22 @@ RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpe
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 40;
   options.function_tolerance = 1e-3;  // stop when a step lowers the misfit by a smaller share
+  StopWhenAsked stop_when_asked(progress);
+  options.callbacks.push_back(&stop_when_asked);
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, problem, parameters.data(), &summary);
   return {misfit.lobes_at(parameters), summary.termination_type == ceres::CONVERGENCE};
 }
 
 RefinedLobes fewest_lobes(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate,
-                          const std::vector<double>& weight) {
+                          const std::vector<double>& weight, const Progress& progress) {
+  if (!report(progress, 1.0, kWords)) return {lobes, false};
   const double allowed = estimate.standard_error / 3.0;
-  RefinedLobes best = refine_lobes(lobes, estimate.spectrum);
-  while (best.lobes.size() > 1) {
+  RefinedLobes best = refine_lobes(lobes, estimate.spectrum, progress);
+  while (best.lobes.size() > 1 && report(progress, 1.0, kWords)) {
     const auto fewer = static_cast<int>(0.75 * static_cast<double>(best.lobes.size()));
     RefinedLobes candidate = refine_lobes(
-        select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum);
+        select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum, progress);
     if (candidate.lobes.empty() || distance_of(candidate.lobes, estimate.spectrum) > allowed) break;
     best = std::move(candidate);
   }

@@ -6,6 +6,7 @@
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/log_spectrum_spline.h"
+#include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
@@ -66,10 +67,14 @@ struct TriedSpline {
 };
 
 // The splines of all widths, the roughest first; each fit starts from the one before it.
-std::vector<TriedSpline> try_widths(const PowerSpectrum& periodogram, const std::vector<double>& positions) {
+std::vector<TriedSpline> try_widths(const PowerSpectrum& periodogram, const std::vector<double>& positions,
+                                    const Progress& progress) {
   const LogSpectrumSpline spline(periodogram);
   std::vector<TriedSpline> tried;
   for (const double w : widths_tried(periodogram)) {
+    if (!report(progress, 0.0, "smoothing")) {
+      throw WorkError("stopped before the spectrum was estimated; nothing is written");
+    }
     TriedSpline next{w, {}, {}, spline.freedom(w)};
     next.g = symmetrised(spline.fit(w, tried.empty() ? std::vector<double>{} : tried.back().g), periodogram);
     next.scores = octave_scores(periodogram, next.g, next.freedom.parameters, positions);
@@ -127,9 +132,9 @@ void scale_to_variance(PowerSpectrum& spectrum, double variance) {
 
 }  // namespace
 
-SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram) {
+SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress) {
   const std::vector<double> positions = octave_positions(periodogram);
-  const std::vector<TriedSpline> tried = try_widths(periodogram, positions);
+  const std::vector<TriedSpline> tried = try_widths(periodogram, positions, progress);
   const std::vector<std::size_t> best = best_by_octave(tried);
   SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0};
   std::vector<double>& power = estimate.spectrum.power;

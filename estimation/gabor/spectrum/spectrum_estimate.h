@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "estimation/gabor/spectrum/power_spectrum.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -28,7 +29,7 @@ struct SpectrumEstimate {
 //   sum over the octave of n (g + I exp(-g)) + effective parameters per bin,
 //
 // and w is interpolated between octaves. Peaks near frequency 0 thus stay narrow, while flat regions are
-// smoothed widely. Frequency 0 holds no data and is left out.
-SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram);
+// smoothed widely. Frequency 0 holds no data and is left out. Throws WorkError when progress asks to stop.
+SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress = {});
 
 }  // namespace astrolith

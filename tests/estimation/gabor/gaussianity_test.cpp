@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimation/gabor/image/image_reader.h"
+#include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/estimation/gabor/known_spectrum.h"
 #include "tests/support/data.h"
@@ -19,6 +20,16 @@ TEST(Gaussianity, OfAGaussianTextureIsPlausible) {
     rejected += g.p_value <= 0.05;
   }
   EXPECT_LE(rejected, 2);  // expected 0.3 of 6
+}
+
+TEST(Gaussianity, StopsWhenAsked) {
+  const GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 1);
+  for (const int last : {1, 3}) {
+    int asked = 0;
+    const auto stop = [&](double, std::string_view) { return ++asked < last; };
+    EXPECT_THROW(test_gaussianity(image, 1, stop), WorkError);
+    EXPECT_EQ(asked, last);
+  }
 }
 
 TEST(Gaussianity, SeesALopsidedMarginal) {

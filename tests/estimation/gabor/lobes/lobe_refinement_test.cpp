@@ -92,5 +92,21 @@ TEST(FewestLobes, KeepsWhatTheEstimateIsWorth) {
   EXPECT_LE(optimal_transport_distance(sum_of(few, 64, 64), truth), 0.03);
 }
 
+TEST(FewestLobes, KeepsTheLobesWhenAskedToStop) {
+  const PowerSpectrum truth = sum_of(four_lobes(), 64, 64);
+  const std::vector<double> evenly(truth.power.size(), 1.0);
+  int asked = 0;
+  const auto stop = [&](double, std::string_view) { return ++asked < 4; };
+  const RefinedLobes at_once = fewest_lobes(disturbed(four_lobes()), {truth, {}, 0.09}, evenly,
+                                            [](double, std::string_view) { return false; });
+  const RefinedLobes soon = fewest_lobes(disturbed(four_lobes()), {truth, {}, 0.09}, evenly, stop);
+  EXPECT_FALSE(at_once.reached || soon.reached);
+  EXPECT_EQ(at_once.lobes.size(), 4u);
+  EXPECT_EQ(soon.lobes.size(), 4u);
+  EXPECT_LT(optimal_transport_distance(sum_of(soon.lobes, 64, 64), truth),
+            optimal_transport_distance(sum_of(at_once.lobes, 64, 64), truth));
+  EXPECT_EQ(asked, 5);  // the loop asks once more after the minimisation has ended
+}
+
 }  // namespace
 }  // namespace astrolith
