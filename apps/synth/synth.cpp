@@ -74,7 +74,7 @@ void declare_options(Program& program, Options& options) {
   for (const char* of_mesh :
        {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
         "--target", "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view",
-        "--sun", "--gravity", "--height-map"}) {
+        "--sun", "--gravity", "--height-map", "--uv"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--predict", "--height-map"}) {

@@ -60,6 +60,7 @@ void check_mesh_outputs(const Program& program, const MeshRequest& request, cons
   if (!output.empty()) {
     check_mesh_extension(output);
     if (request.points || request.labels || request.gravity.wanted()) require_extension(output, {".ply"});
+    if (request.texture_coordinates) require_extension(output, {".glb"});
     require_writable(output);
   }
   check_preview(program, request.preview);
@@ -117,6 +118,7 @@ class MeshOutput {
         center_(region.center),
         info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
     if (region.is_patch) info_.origin = region.center;
+    info_.texture_coordinates = request.texture_coordinates;
     if (has_colors(recipe) && (holds_colors(output) || !request.preview.file.empty())) {
       colors_.emplace(recipe, file.string(), field);
     }
@@ -265,6 +267,10 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       "with each vertex the layer that changed the surface most there (0 = the bare body, 1 = "
       "the recipe's first layer; the file's header says which is which) and the height of "
       "all layers (.ply)");
+  program.app.add_flag(
+      "--uv", request.texture_coordinates,
+      "texture coordinates in a .glb: u = 1/2 + longitude / 360 degrees, v from the north pole to "
+      "the south; vertices along the 180th meridian are then there twice");
   request.device.add_to(program.app);
   declare_preview_options(program, request.preview);
   program.app

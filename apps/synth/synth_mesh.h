@@ -25,6 +25,7 @@ struct MeshRequest {
   double least_component = 0.0;      // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;
+  bool texture_coordinates = false;  // in a .glb
   DeviceOption device;
 };
 

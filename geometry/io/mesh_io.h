@@ -39,6 +39,10 @@ struct MeshFileInfo {
   // origin of the frame.
   std::optional<Vec3d> origin = std::nullopt;
   std::vector<std::string> notes = {};  // further comment lines
+  // A .glb gets texture coordinates: u = 1/2 + longitude / 360 degrees, v = 1/2 - latitude / 180 degrees,
+  // seen from the origin of the frame. Vertices along the 180th meridian are then there twice, at equal
+  // places.
+  bool texture_coordinates = false;
 };
 
 // Writes .ply (binary little endian, float32), .obj (text, exact), .stl (binary, float32) or .glb (glTF 2.0,

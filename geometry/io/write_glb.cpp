@@ -2,7 +2,10 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 
+#include "geometry/io/longitude_latitude_internal.h"
 #include "geometry/io/mesh_writers_internal.h"
 #include "numerics/srgb.h"
 
@@ -32,7 +35,8 @@ std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh) {
 
 class GlbDocument {
  public:
-  GlbDocument(const TriangleMesh& mesh, const MeshFileInfo& info) : mesh_(mesh) {
+  GlbDocument(const TriangleMesh& mesh, const std::optional<LongitudeLatitude>& map, const MeshFileInfo& info)
+      : mesh_(mesh), map_(map), num_vertices_(map ? map->texcoords.size() : mesh.vertices.size()) {
     document_["asset"] = {{"version", "2.0"}, {"generator", "Astrolith"}, {"extras", extras(info)}};
     document_["scene"] = 0;
     document_["scenes"] = Json::array({{{"nodes", {0}}}});
@@ -74,16 +78,17 @@ class GlbDocument {
   void add_arrays() {
     const auto [low, high] = float_bounds(mesh_);
     Json attributes;
-    attributes["POSITION"] = add_array(mesh_.vertices.size(), kArrayBuffer, kFloat, "VEC3", 12);
+    attributes["POSITION"] = add_array(num_vertices_, kArrayBuffer, kFloat, "VEC3", 12);
     document_["accessors"].back()["min"] = vector_json(low);
     document_["accessors"].back()["max"] = vector_json(high);
     if (!mesh_.normals.empty()) {
-      attributes["NORMAL"] = add_array(mesh_.normals.size(), kArrayBuffer, kFloat, "VEC3", 12);
+      attributes["NORMAL"] = add_array(num_vertices_, kArrayBuffer, kFloat, "VEC3", 12);
     }
     if (!mesh_.colors.empty()) {
-      attributes["COLOR_0"] = add_array(mesh_.colors.size(), kArrayBuffer, kUnsignedShort, "VEC4", 8);
+      attributes["COLOR_0"] = add_array(num_vertices_, kArrayBuffer, kUnsignedShort, "VEC4", 8);
       document_["accessors"].back()["normalized"] = true;
     }
+    if (map_) attributes["TEXCOORD_0"] = add_array(num_vertices_, kArrayBuffer, kFloat, "VEC2", 8);
     const int indices = add_array(3 * mesh_.triangles.size(), kElementArrayBuffer, kUnsignedInt, "SCALAR", 4);
     const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
     document_["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
@@ -101,6 +106,8 @@ class GlbDocument {
   }
 
   const TriangleMesh& mesh_;
+  const std::optional<LongitudeLatitude>& map_;
+  std::uint64_t num_vertices_;  // those that are there twice counted twice
   Json document_;
   std::uint64_t num_bytes_ = 0;  // a multiple of four: every array holds 4-byte numbers
 };
@@ -114,6 +121,15 @@ std::array<std::uint16_t, 256> linear_shorts() {
   return table;
 }
 
+// One value for each vertex, and again for those that are there twice; none where the mesh has none.
+template <typename Value, typename Stored>
+void append_all(BufferedOutput& buffer, const std::vector<Value>& values,
+                std::span<const std::uint32_t> doubled, const Stored& stored) {
+  if (values.empty()) return;
+  for (const Value& value : values) buffer.append_value(stored(value));
+  for (const std::uint32_t vertex : doubled) buffer.append_value(stored(values[vertex]));
+}
+
 void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::string_view type) {
   buffer.append_value(static_cast<std::uint32_t>(bytes));
   buffer.append(type);
@@ -122,7 +138,9 @@ void append_chunk_header(BufferedOutput& buffer, std::uint64_t bytes, std::strin
 }  // namespace
 
 void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
-  const GlbDocument document(mesh, info);
+  std::optional<LongitudeLatitude> map;
+  if (info.texture_coordinates) map = longitude_latitude(mesh, info.origin.value_or(Vec3d{}));
+  const GlbDocument document(mesh, map, info);
   std::string json = document.json();
   json.resize((json.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + json.size() + 8 + document.num_bytes();
@@ -137,14 +155,17 @@ void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, cons
   append_chunk_header(buffer, json.size(), "JSON");
   buffer.append(json);
   append_chunk_header(buffer, document.num_bytes(), {"BIN\0", 4});
-  for (const Vec3d& v : mesh.vertices) buffer.append_value(to_float(v));
-  for (const Vec3d& n : mesh.normals) buffer.append_value(to_float(n));
-  const std::array<std::uint16_t, 256> linear = linear_shorts();
-  for (const VertexColor& c : mesh.colors) {
-    buffer.append_value(
-        std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}});
+  const std::span<const std::uint32_t> doubled = map ? std::span(map->doubled) : std::span<std::uint32_t>{};
+  const auto narrowed = [](const Vec3d& v) { return to_float(v); };
+  append_all(buffer, mesh.vertices, doubled, narrowed);
+  append_all(buffer, mesh.normals, doubled, narrowed);
+  append_all(buffer, mesh.colors, doubled, [linear = linear_shorts()](const VertexColor& c) {
+    return std::array<std::uint16_t, 4>{linear[c[0]], linear[c[1]], linear[c[2]], std::uint16_t{65535}};
+  });
+  if (map) {
+    for (const std::array<float, 2>& uv : map->texcoords) buffer.append_value(uv);
   }
-  for (const Triangle& t : mesh.triangles) buffer.append_value(t);
+  for (const Triangle& t : map ? map->triangles : mesh.triangles) buffer.append_value(t);
   buffer.flush();
   out.commit();
 }

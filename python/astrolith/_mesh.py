@@ -135,11 +135,21 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
     return Mesh(read["vertices"], read["faces"], read.get("normals"))
 
 
-def write_mesh(mesh: MeshLike, file: PathLike) -> None:
+def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     """Write .ply (binary, float32), .obj (text), .stl (binary), .glb, .icq or .tab, whole or not at all.
 
     A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply,
     colours into .ply and .glb.
+
+    Parameters
+    ----------
+    mesh
+        What is written.
+    file
+        The file, whose extension chooses the format.
+    uv
+        Texture coordinates in a .glb, by longitude and latitude; vertices along the 180th meridian are then there
+        twice.
 
     Raises
     ------
@@ -148,6 +158,8 @@ def write_mesh(mesh: MeshLike, file: PathLike) -> None:
     RuntimeError
         The disk is full, or float32 cannot hold the coordinates.
     """
+    if uv and not os.fspath(file).endswith(".glb"):
+        raise ValueError(f"{os.fspath(file)}: only a .glb gets texture coordinates; leave out uv")
     arrays = arrays_of(mesh, "mesh")
     made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces)
     labels = elevations = None
@@ -171,4 +183,5 @@ def write_mesh(mesh: MeshLike, file: PathLike) -> None:
         made.comment,
         origin,
         made.legend if labels is not None else [],
+        uv,
     )

@@ -76,6 +76,17 @@ def test_meshes_have_the_bytes_of_synth(example, program, tmp_path, name, option
     assert (tmp_path / "package.ply").read_bytes() == (tmp_path / "synth.ply").read_bytes()
 
 
+def test_texture_coordinates_have_the_bytes_of_synth(ball, program, tmp_path):
+    ball.write(tmp_path / "ball.json")
+    program("synth", "ball.json", "-o", "synth.glb", "--resolution", "24", "--uv")
+    mesh = astrolith.mesh(ball, resolution=24)
+    astrolith.write_mesh(mesh, tmp_path / "package.glb", uv=True)
+    assert (tmp_path / "package.glb").read_bytes() == (tmp_path / "synth.glb").read_bytes()
+    assert b"TEXCOORD_0" in (tmp_path / "synth.glb").read_bytes()
+    with pytest.raises(ValueError, match="only a .glb"):
+        astrolith.write_mesh(mesh, tmp_path / "package.ply", uv=True)
+
+
 @pytest.mark.parametrize("extension", ["obj", "stl", "glb"])
 def test_other_formats_and_patches_have_the_bytes_of_synth(ball, program, tmp_path, extension):
     ball.write(tmp_path / "ball.json")

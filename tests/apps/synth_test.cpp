@@ -148,6 +148,7 @@ TEST_F(Synth, EveryFormatHoldsTheSameMesh) {
     EXPECT_EQ(read_mesh(folder_ / name).triangles.size(), ply.triangles.size()) << name;
   }
   EXPECT_EQ(synthesise("out.glb", {}).substr(0, 4), "glTF");
+  EXPECT_NE(synthesise("uv.glb", {"--uv"}).find("TEXCOORD_0"), std::string::npos);
 }
 
 TEST_F(Synth, SameBytesForAnyThreadCount) {
@@ -187,6 +188,7 @@ TEST_F(Synth, PointsAreTheVerticesAlone) {
   EXPECT_EQ(body(points), body(mesh).substr(0, body(points).size()));
   const std::string recipe = folder_.write("r.json", kTwoSpheres);
   expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "out.obj").string(), "--points"}, ".ply");
+  expect_refusal(folder_, kSynth, {recipe, "-o", (folder_ / "out.obj").string(), "--uv"}, ".glb");
 }
 
 TEST_F(Synth, LabelsStandBesideTheNormals) {

@@ -9,6 +9,7 @@
 #include <tiny_gltf.h>
 #pragma GCC diagnostic pop
 
+#include <cmath>
 #include <cstring>
 
 #include "geometry/io/mesh_io.h"
@@ -88,6 +89,58 @@ TEST_F(WriteGlb, ColoursAreLinearLight) {
     ASSERT_EQ(color[3], 65535);
   }
   EXPECT_EQ(model.materials.at(0).pbrMetallicRoughness.baseColorFactor, std::vector<double>(4, 1.0));
+}
+
+// Every triangle covers less than half the map, and each of its corners has the coordinates of its place,
+// with u up to a whole turn. Vertices that are there twice are at equal places, one turn apart.
+TEST_F(WriteGlb, TextureCoordinatesAreLongitudeAndLatitude) {
+  mesh = icosphere(3, 0.5);  // about the origin of the frame, at (0, 0, -1) of the file's coordinates
+  for (Vec3d& v : mesh.vertices) v.z -= 1;
+  mesh.normals = vertex_normals(mesh);
+  mesh.colors.assign(mesh.vertices.size(), {1, 2, 3});
+  MeshFileInfo info{"km", "body-fixed", "", Vec3d{0, 0, 1}};
+  info.texture_coordinates = true;
+  write_mesh(mesh, folder / "uv.glb", info);
+  model = {};
+  tinygltf::TinyGLTF loader;
+  std::string error, warning;
+  ASSERT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "uv.glb").string())) << error;
+  EXPECT_EQ(error + warning, "");
+  const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
+  const auto positions = array<Vec3f>(primitive.attributes.at("POSITION"));
+  const auto normals = array<Vec3f>(primitive.attributes.at("NORMAL"));
+  const auto colors = array<std::array<std::uint16_t, 4>>(primitive.attributes.at("COLOR_0"));
+  const auto texcoords = array<std::array<float, 2>>(primitive.attributes.at("TEXCOORD_0"));
+  const auto indices = array<std::uint32_t>(primitive.indices);
+  ASSERT_GT(positions.size(), mesh.vertices.size());
+  ASSERT_LT(positions.size(), mesh.vertices.size() + 40);
+  ASSERT_EQ(texcoords.size(), positions.size());
+  ASSERT_EQ(normals.size(), positions.size());
+  ASSERT_EQ(colors.size(), positions.size());
+  constexpr double kPi = 3.14159265358979323846;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d place = Vec3d{positions[i].x, positions[i].y, positions[i].z + 1.0};
+    const double u = texcoords[i][0] - (i < mesh.vertices.size() ? 0 : 1);
+    if (std::hypot(place.x, place.y) > 1e-9) {
+      ASSERT_NEAR(u, 0.5 + std::atan2(place.y, place.x) / (2 * kPi), 1e-6);
+    }
+    ASSERT_NEAR(texcoords[i][1], 0.5 - std::asin(place.z / norm(place)) / kPi, 1e-6);
+    ASSERT_NEAR(dot(place, {normals[i].x, normals[i].y, normals[i].z}), 0.5, 0.01);
+  }
+  ASSERT_EQ(indices.size(), 3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    float west = 2, east = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t index = indices[3 * t + k];
+      west = std::min(west, texcoords[index][0]);
+      east = std::max(east, texcoords[index][0]);
+      ASSERT_EQ(positions[index].x, static_cast<float>(mesh.vertices[mesh.triangles[t][k]].x));
+      ASSERT_EQ(positions[index].y, static_cast<float>(mesh.vertices[mesh.triangles[t][k]].y));
+    }
+    const Vec3d& corner = mesh.vertices[mesh.triangles[t][0]];
+    const bool at_pole = std::hypot(corner.x, corner.y) < 0.2;
+    ASSERT_LT(east - west, at_pole ? 2.0f : 0.2f) << t;
+  }
 }
 
 TEST_F(WriteGlb, BoundsAreThoseOfThePositions) {
