@@ -1,5 +1,7 @@
 #include "apps/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -8,13 +10,27 @@
 #include <vector>
 
 namespace astrolith {
+namespace {
+
+// CLI11's range, with the limits as a reader writes them.
+template <typename Number>
+ValueCheck range_check(Number least, Number most) {
+  const CLI::Range range(least, most);
+  const auto check = [=](std::string& text) {
+    return range(text).empty() ? std::string()
+                               : fmt::format("must be a number between {} and {}, is {}", least, most, text);
+  };
+  return ValueCheck(CLI::Validator(check, range.get_description()));
+}
+
+}  // namespace
 
 ValueCheck::ValueCheck(CLI::Validator validator)
     : validator_(std::make_shared<const CLI::Validator>(std::move(validator))) {}
 
-ValueCheck in_range(int least, int most) { return ValueCheck(CLI::Range(least, most)); }
-ValueCheck in_range(std::int64_t least, std::int64_t most) { return ValueCheck(CLI::Range(least, most)); }
-ValueCheck in_range(double least, double most) { return ValueCheck(CLI::Range(least, most)); }
+ValueCheck in_range(int least, int most) { return range_check(least, most); }
+ValueCheck in_range(std::int64_t least, std::int64_t most) { return range_check(least, most); }
+ValueCheck in_range(double least, double most) { return range_check(least, most); }
 ValueCheck one_of(std::initializer_list<const char*> words) { return ValueCheck(CLI::IsMember(words)); }
 ValueCheck one_of(std::initializer_list<int> numbers) { return ValueCheck(CLI::IsMember(numbers)); }
 

@@ -235,11 +235,12 @@ std::string remedy(const PhotoFit& photo, const Options& o) {
 void say_result(const PhotoFit& photo, const Options& o, const Program& program) {
   const std::size_t layers = photo.channels.size();
   program.say(fmt::format(
-      "{}{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the photo's (weak above "
-      "{:.3f}), {:.1f} % "
-      "of the variance in the right octave",
+      "{}{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the smoothed one of the photo and, speckle "
+      "aside, "
+      "{:.3f} from the photo's own (weak above {:.3f}), {:.1f} % of the variance in the right octave",
       counted(photo.lobes(), "lobe"), layers > 1 ? fmt::format(" in {} layers", layers) : "",
-      photo.pursuit_gap(), photo.spectrum_residual(), photo.weak_above(), 100.0 * photo.band_overlap()));
+      photo.pursuit_gap(), photo.spectrum_distance(), photo.spectrum_residual(), photo.weak_above(),
+      100.0 * photo.band_overlap()));
   if (photo.weak()) {
     program.say("note: weak fit: a good one would be nearer to the photo's spectrum; " + remedy(photo, o));
   }

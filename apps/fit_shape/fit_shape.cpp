@@ -1,6 +1,7 @@
 // fit_shape: a closed mesh becomes a recipe of metaballs.
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
@@ -74,15 +75,18 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
 void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
                 bool with_details) {
   const SurfaceDistanceReport& d = fit.check.distance;
-  char line[240];
-  std::snprintf(line, sizeof line,
-                "%s (%zu subtractive)%s: mean distance %.4f %%, p99 %.4f %%, max %.4f %% of the "
-                "diagonal; similarity %.2f %% "
-                "(two samplings of the target: %.2f %%)",
-                counted(fit.body.num_metaballs(), "metaball").c_str(), fit.body.subtract.size(),
-                with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max,
-                100 * fit.similarity, 100 * fit.similarity_floor);
-  program.say(line);
+  // Details make a body as rough as the target, and not closer to it.
+  const std::string without = with_details && program.summary.contains("base")
+                                  ? fmt::format(" (mean {:.4f} % without details)",
+                                                100 * program.summary["base"]["mean_distance"].get<double>())
+                                  : "";
+  program.say(
+      fmt::format("{} ({} subtractive){}: mean distance {:.4f} %, p99 {:.4f} %, max {:.4f} % of the "
+                  "diagonal{}; similarity "
+                  "{:.2f} % (two samplings of the target: {:.2f} %)",
+                  counted(fit.body.num_metaballs(), "metaball"), fit.body.subtract.size(),
+                  with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max, without,
+                  100 * fit.similarity, 100 * fit.similarity_floor));
   if (fit.check.topology.components != target.components) {
     program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +
                 std::to_string(target.components) + "; give it more --spheres");

@@ -262,6 +262,7 @@ std::vector<double> unusualness(const std::vector<Measures>& samples) {
   return largest;
 }
 
+constexpr int kSmallSide = 128;  // sides of fewer pixels let most textures pass for Gaussian ones
 constexpr const char* kWords = "comparing with Gaussian textures";
 
 // The largest measures of a photo that is close to, or roughly, a Gaussian texture.
@@ -353,6 +354,10 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
   result.p_value = static_cast<double>(as_unusual) / (surrogates + 1);
   result.likeness = likeness_of(result);
   result.sentence = sentence_for(result);
+  if (std::min(image.width, image.height) < kSmallSide) {
+    result.sentence +=
+        fmt::format(" It is small, though: {} x {} pixels are little evidence.", image.width, image.height);
+  }
   return result;
 }
 

@@ -60,6 +60,20 @@ void load_exemplar(ExemplarLayer& layer, const std::filesystem::path& folder, co
       png.width, png.height, std::move(png.values), std::filesystem::absolute(file), std::move(png.rgb)});
 }
 
+// Throws InputError for a mesh or a photo, of which a fit makes a recipe.
+void require_no_input_of_fits(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
+    return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+  };
+  if (is_one_of({".ply", ".obj", ".stl", ".off", ".glb", ".tab", ".icq", ".bmf"})) {
+    throw InputError(file.string() + ": is a mesh and no recipe; fit_shape makes a recipe of it");
+  }
+  if (is_one_of({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {
+    throw InputError(file.string() + ": is a picture and no recipe; fit_gabor makes a recipe of a photo");
+  }
+}
+
 }  // namespace
 
 void load_exemplars(Recipe& recipe, const std::filesystem::path& folder, const std::string& name) {
@@ -70,6 +84,7 @@ void load_exemplars(Recipe& recipe, const std::filesystem::path& folder, const s
 }
 
 Recipe load_recipe(const std::filesystem::path& file) {
+  require_no_input_of_fits(file);
   Recipe recipe = read_recipe(file);
   load_exemplars(recipe, file.parent_path(), file.string());
   return recipe;

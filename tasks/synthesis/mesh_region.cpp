@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cuda/mesher/backend_mesher.h"
 #include "cuda/mesher/gpu_obstacle.h"
@@ -22,18 +23,30 @@ constexpr double kFinestCell = 0x1p-15;
 // The most cells along the longest side of a mesh that only looks whether there is a surface.
 constexpr int kLookAround = 64;
 
-// A point of the surface near p, found by Newton's steps along the gradient. Returns p where the steps do not
-// converge.
-Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
-  Vec3d q = p;
+// The point of the surface that Newton's steps along the gradient lead to; none where they do not converge.
+std::optional<Vec3d> down_the_gradient(const ImplicitField& field, Vec3d p) {
+  const double size = norm(field.bounds().extent());
   for (int step = 0; step < 64; ++step) {
-    const Vec3d gradient = field.gradient(q);
-    const double slope = squared_norm(gradient);
-    if (!(slope > 0.0)) return p;
-    q -= field.value(q) / slope * gradient;
-    if (!std::isfinite(squared_norm(q))) return p;
+    const double value = field.value(p);
+    if (std::abs(value) <= 1e-6 * size) return p;
+    const Vec3d gradient = field.gradient(p);
+    p -= value / squared_norm(gradient) * gradient;
+    if (!std::isfinite(squared_norm(p))) return {};
   }
-  return q;
+  return {};
+}
+
+// A point of the surface near p. Far from the body, where the field is flat, it is the nearest vertex of a
+// coarse mesh.
+Vec3d nearby_surface_point(const ImplicitField& field, const Vec3d& p) {
+  if (const std::optional<Vec3d> near = down_the_gradient(field, p)) return *near;
+  MeshCollector coarse;
+  mesh_field(field, field.bounds(), kLookAround, coarse);
+  const std::vector<Vec3d>& places = coarse.mesh.vertices;
+  const auto nearest = std::min_element(places.begin(), places.end(), [&](const Vec3d& a, const Vec3d& b) {
+    return squared_norm(a - p) < squared_norm(b - p);
+  });
+  return nearest == places.end() ? p : down_the_gradient(field, *nearest).value_or(*nearest);
 }
 
 // A body made by operations is evaluated in float coordinates of its frame. Finer cells would show their

@@ -116,6 +116,7 @@ TEST_F(SynthRegion, PatchesWithoutSurfaceSayWhereThereIsSome) {
     expect_refusal(folder_, kSynth, arguments, culprit);
   };
   refuse({"-1.5", "0", "0", "0.1"}, "there is some near -");
+  refuse({"-1000", "0", "0", "0.1"}, "there is some near -1.");  // where the field is flat
   refuse({"-1", "0", "0", "0"}, "--patch: has no centre or no side");
   refuse({"-1", "0", "0"}, "--patch");
   refuse({"-1", "0", "0", "0.1", "--tile", "1/2"}, "--tile");
