@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Shows Astrolith's main work on real input. A measured asteroid becomes a recipe, a photo of gravel becomes a Gabor layer,
-# and both together, with craters and boulders, become a watertight mesh with pictures. Installs missing packages, builds the programs and runs them.
+# Shows Astrolith's main work on real input. A measured asteroid becomes a recipe, a photo of gravel becomes a layer,
+# and both together, with craters and boulders, become a watertight mesh with pictures. Installs missing packages, builds
+# the programs and runs them.
 #   scripts/demo.sh [MESH]      MESH: any closed shape model, in place of the demo's own
 set -euo pipefail
 mesh=${1:+$(realpath "$1")}
@@ -13,7 +14,7 @@ scripts/fetch_data.sh
 # GPU code wherever there is a compiler for it.
 cuda=OFF
 nvidia-smi -L >/dev/null 2>&1 && cuda=ON
-scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape synth
+scripts/build.sh release -DASTROLITH_CUDA=$cuda fit_gabor fit_shape synth describe compare classify gravity
 
 # The shape model is a measured Itokawa where the data folder lies beside the checkout, else Debian's Gaspra.
 shape=${mesh:-../shared/data/shapes/itokawa_gaskell_49k.ply}
@@ -25,30 +26,31 @@ mkdir -p "$out"
 
 echo
 echo "1/3  A shape model becomes a recipe: fit_shape $shape"
-"$bin/fit_shape" "$shape" -o "$out/body.json" --spheres 200 \
+"$bin/fit_shape" "$shape" -o "$out/body.json" --spheres 200 --base-only \
   --report "$out/body_report" --summary "$out/body_summary.json"
 
 # The gravel becomes as large as boulders: a pixel is a thousandth of the body, and the relief is half a pixel.
 diagonal_km=$(awk -F '[:,]' '/"diagonal"/ {print $2}' "$out/body_summary.json")
 mm_per_px=$(awk "BEGIN {print $diagonal_km * 1e6 / 1000}")
 height_km=$(awk "BEGIN {print $diagonal_km * 0.0005}")
-echo "2/3  A photo becomes a Gabor layer: fit_gabor $photo"
-"$bin/fit_gabor" "$photo" -o "$out/gravel.json" --mm-per-px "$mm_per_px" --height-rms "$height_km" --unit km \
+echo "2/3  A photo becomes a layer: fit_gabor $photo"
+"$bin/fit_gabor" "$photo" -o "$out/gravel.json" --model auto --mm-per-px "$mm_per_px" \
+  --height-rms "$height_km" --unit km \
   --report "$out/gravel_report" --summary "$out/gravel_summary.json"
 
 echo "3/3  Recipes become meshes, pictures and a height map: synth"
 "$bin/synth" "$out/body.json" -o "$out/body.ply" --resolution 256 \
   --preview "$out/body.png" --summary "$out/body_mesh_summary.json"
 "$bin/synth" synthesis/layers/craters_and_boulders.json --base "$out/body.json" --write-recipe "$out/terrain.json"
-"$bin/synth" "$out/gravel.json" --base "$out/terrain.json" -o "$out/asteroid.ply" --resolution 400 \
+"$bin/synth" "$out/gravel.json" --base "$out/terrain.json" -o "$out/asteroid.ply" --resolution 400 --min-component 1e-3 \
   --preview "$out/asteroid.png" --summary "$out/asteroid_summary.json" --write-recipe "$out/asteroid.json"
 "$bin/synth" "$out/gravel.json" --texture 1024x1024 -o "$out/gravel_height.tif"
 
 cat <<EOF
 
 Done. Look at
-  $out/body_report/       the shape model, the fit and their differences
-  $out/gravel_report/     the photo, the noise made from it, their spectra
+  $out/body_report/index.html     the shape model, the fit and their differences
+  $out/gravel_report/index.html   the photo, noise with its spectrum, both spectra
   $out/asteroid.png       the finished asteroid: fit, craters, boulders and gravel
   $out/asteroid.ply       its watertight mesh, for Blender, MeshLab, CloudCompare or ParaView
   $out/asteroid.json      its recipe, made of body.json, gravel.json and synthesis/layers/; docs/recipe.md explains every field
