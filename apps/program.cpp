@@ -103,8 +103,9 @@ std::string unknown_option(const CLI::App& app) {
 }
 
 // The options that name a file to write, and those, beside the positional ones, that name a file to read.
-const std::vector<std::string> kOutputs{"output",       "summary",      "spectrum",   "preview",
-                                        "feature-list", "write-recipe", "height-map", "manifest"};
+const std::vector<std::string> kOutputs{"output",       "summary",      "spectrum",
+                                        "preview",      "preview-maps", "feature-list",
+                                        "write-recipe", "height-map",   "manifest"};
 const std::vector<std::string> kInputs{"base", "target", "points"};
 
 // Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".

@@ -73,8 +73,8 @@ void declare_options(Program& program, Options& options) {
   declare_members_options(program, options.members);
   for (const char* of_mesh :
        {"--resolution", "--triangles", "--max-memory", "--tile", "--patch", "--feature-list", "--vary",
-        "--target", "--min-component", "--predict", "--device", "--points", "--labels", "--preview", "--view",
-        "--sun", "--gravity", "--height-map", "--uv"}) {
+        "--target", "--min-component", "--predict", "--device", "--points", "--labels", "--preview",
+        "--preview-maps", "--view", "--sun", "--gravity", "--height-map", "--uv"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--predict", "--height-map"}) {

@@ -91,8 +91,8 @@ void require_no_output(const fs::path& manifest, const std::vector<fs::path>& pa
 
 // The SHA-256 of what all members have in common: the recipe and the options that change files.
 std::string hash_of_family(const Program& program, const Recipe& recipe) {
-  constexpr std::array kNoEffect{"base",    "device",       "members",   "manifest",
-                                 "preview", "feature-list", "max-memory"};
+  constexpr std::array kNoEffect{"base",    "device",       "members",      "manifest",
+                                 "preview", "preview-maps", "feature-list", "max-memory"};
   Sha256 hash;
   Recipe undescribed = recipe;
   undescribed.description.clear();
@@ -169,7 +169,8 @@ class MemberMaker {
   // The names of all files of a member, in the order of the manifest's lines.
   std::vector<fs::path> names_of(std::uint64_t member) const {
     std::vector<fs::path> names;
-    for (const fs::path& pattern : {files_.mesh, mesh_.preview.file, mesh_.landforms, files_.recipe}) {
+    for (const fs::path& pattern :
+         {files_.mesh, mesh_.preview.file, mesh_.preview.maps, mesh_.landforms, files_.recipe}) {
       if (!pattern.empty()) names.push_back(numbered(pattern, member));
     }
     return names;
@@ -180,6 +181,7 @@ class MemberMaker {
     if (files_.mesh.empty()) return;
     MeshRequest request = mesh_;
     request.preview.file = numbered(mesh_.preview.file, number);
+    request.preview.maps = numbered(mesh_.preview.maps, number);
     request.landforms = numbered(mesh_.landforms, number);
     if (recipe_.family && !mesh_.preview.file.empty()) add_light_and_view(member, request.preview, line);
     const Aside aside(program_);
@@ -249,6 +251,7 @@ void prepare_outputs(const Program& program, const MemberMaker& maker, const Mes
   maker.make_folders(first);
   MeshRequest request = mesh;
   request.preview.file = numbered(mesh.preview.file, first);
+  request.preview.maps = numbered(mesh.preview.maps, first);
   request.landforms = numbered(mesh.landforms, first);
   check_mesh_outputs(program, request, numbered(files.mesh, first));
 }
@@ -278,8 +281,10 @@ void check_members(const MembersRequest& request, const MeshRequest& mesh, const
   require_mark(files.mesh, "--output");
   require_mark(files.recipe, "--write-recipe");
   require_mark(mesh.preview.file, "--preview");
+  require_mark(mesh.preview.maps, "--preview-maps");
   require_mark(mesh.landforms, "--feature-list");
-  require_no_output(request.manifest, {files.mesh, files.recipe, mesh.preview.file, mesh.landforms});
+  require_no_output(request.manifest,
+                    {files.mesh, files.recipe, mesh.preview.file, mesh.preview.maps, mesh.landforms});
 }
 
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,

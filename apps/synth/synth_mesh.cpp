@@ -12,6 +12,7 @@
 #include "apps/synth/synth_erosion.h"
 #include "apps/synth/synth_height_map.h"
 #include "apps/synth/synth_left_out.h"
+#include "apps/synth/synth_preview_maps.h"
 #include "apps/synth/synth_region.h"
 #include "apps/synth/synth_sinks.h"
 #include "geometry/io/mesh_io.h"
@@ -211,6 +212,8 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     quantities = vertex_gravity(program, request.gravity, recipe, result.collected());
   result.write(quantities);
   if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
+  if (!request.preview.maps.empty())
+    write_preview_maps(program, request.preview, result.collected(), {recipe, file, region, field});
   if (!request.height_map.empty())
     write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
   if (!request.landforms.empty()) write_landform_list(field, recipe, region.cube(), request.landforms);

@@ -5,7 +5,6 @@
 #include "numerics/files/output_file.h"
 #include "numerics/srgb.h"
 #include "synthesis/picture/image_file.h"
-#include "synthesis/picture/preview.h"
 
 namespace astrolith {
 namespace {
@@ -25,6 +24,11 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
                   "also a picture of the mesh under sunlight, with shadows, from +x, +y, +z and obliquely")
       .placeholder("FILE.png");
   program.app
+      .add_option("--preview-maps", request.maps,
+                  "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
+                  "instance, the row of the --feature-list; with the cameras")
+      .placeholder("FILE.npz");
+  program.app
       .add_option("--view", request.views,
                   "look from this direction in the picture instead; may be given several times")
       .placeholder("X Y Z")
@@ -37,7 +41,7 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
 
 void check_preview(const Program& program, const PreviewRequest& request) {
   if (request.file.empty()) {
-    for (const char* name : {"--view", "--sun"}) {
+    for (const char* name : {"--preview-maps", "--view", "--sun"}) {
       if (program.app.option(name).count() > 0) {
         throw InputError(std::string(name) + ": is about a picture; add --preview FILE.png");
       }
@@ -46,6 +50,10 @@ void check_preview(const Program& program, const PreviewRequest& request) {
   }
   require_extension(request.file, {".png"});
   require_writable(request.file);
+  if (!request.maps.empty()) {
+    require_extension(request.maps, {".npz"});
+    require_writable(request.maps);
+  }
   for (const Direction& view : request.views) {
     if (!(squared_norm(vector_of(view)) > 0.0))
       throw InputError("--view: 0 0 0 is no direction; give another");
@@ -54,7 +62,7 @@ void check_preview(const Program& program, const PreviewRequest& request) {
     throw InputError("--sun: 0 0 0 is no direction; give another");
 }
 
-void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
+PreviewOptions preview_options(const Program& program, const PreviewRequest& request) {
   PreviewOptions options;
   options.seed = program.seed;
   options.sun = vector_of(request.sun);
@@ -62,6 +70,11 @@ void write_preview(const Program& program, const PreviewRequest& request, const 
     options.views.clear();
     for (const Direction& view : request.views) options.views.push_back(view_from(vector_of(view)));
   }
+  return options;
+}
+
+void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
+  PreviewOptions options = preview_options(program, request);
   for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
   write_png8_rgb(render_preview(mesh, options, program.progress("preview")), request.file);
 }

@@ -7,6 +7,7 @@
 
 #include "apps/program.h"
 #include "geometry/triangle_mesh.h"
+#include "synthesis/picture/preview.h"
 
 namespace astrolith {
 
@@ -14,14 +15,19 @@ using Direction = std::tuple<double, double, double>;
 
 struct PreviewRequest {
   std::filesystem::path file;    // empty = none
+  std::filesystem::path maps;    // of the same view, as numbers; empty = none
   std::vector<Direction> views;  // from the body to the viewer; empty = the standard ones
   Direction sun{-0.75, 0.45, 0.55};
 };
 
 void declare_preview_options(Program& program, PreviewRequest& request);
 
-// Throws InputError when the picture cannot be written, or when --view or --sun is given without --preview.
+// Throws InputError when the picture or its maps cannot be written, or when an option about the picture is
+// given without --preview.
 void check_preview(const Program& program, const PreviewRequest& request);
+
+// The views and the sun of the request, without colours.
+PreviewOptions preview_options(const Program& program, const PreviewRequest& request);
 
 void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);
 

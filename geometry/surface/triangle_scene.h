@@ -21,6 +21,7 @@ class TriangleScene {
   TriangleScene(const TriangleMesh& mesh, const Vec3d& center, double scale);
 
   Vec3d to_scene(const Vec3d& p) const { return scale_ * (p - center_); }
+  Vec3d from_scene(const Vec3d& p) const { return (1.0 / scale_) * p + center_; }
   // Scene lengths per mesh length.
   double scale() const { return scale_; }
   // An RTCScene of <embree3/rtcore.h>, which lives as long as this object.

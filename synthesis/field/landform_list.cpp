@@ -11,9 +11,8 @@
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/bare_body.h"
+#include "synthesis/field/listed_landforms.h"
 #include "synthesis/field/surface_crossing.h"
-#include "synthesis/landforms/boulder_field.h"
-#include "synthesis/landforms/crater_relief.h"
 
 namespace astrolith {
 namespace {
@@ -29,9 +28,8 @@ struct Row {
   int layer;
   std::string kind;
   Numbers numbers;
-  double radius;  // how far the landform reaches from its centre, length units
-  double top;     // the surface is looked for about this height above the centre ...
-  double reach;   // ... and so far from there, length units
+  double top;    // the surface is looked for about this height above the centre ...
+  double reach;  // ... and so far from there, length units
 };
 
 void set_point(Numbers& numbers, std::size_t column, const Vec3d& p) {
@@ -45,7 +43,7 @@ Vec3d center_of(const Row& row) {
 }
 
 Row crater_row(int layer, const PlacedCrater& c, double height_bound) {
-  Row row{layer, c.complex ? "complex crater" : "simple crater", {}, 0.5 * c.diameter, 0.0, height_bound};
+  Row row{layer, c.complex ? "complex crater" : "simple crater", {}, 0.0, height_bound};
   set_point(row.numbers, kCenterColumn, c.position);
   const std::array sizes{c.diameter, c.depth, c.rim_height, c.age};
   std::copy(sizes.begin(), sizes.end(), row.numbers.begin() + kFirstSizeColumn);
@@ -65,7 +63,7 @@ double half_extent(const PlacedBoulder& b, const Vec3d& direction) {
 
 Row boulder_row(int layer, const PlacedBoulder& b, const BareSurface& bare) {
   const double top = half_extent(b, bare.normal(b.center));
-  Row row{layer, "boulder", {}, 0.5 * std::max({b.axes.x, b.axes.y, b.axes.z}), top, top};
+  Row row{layer, "boulder", {}, top, top};
   set_point(row.numbers, kCenterColumn, b.center);
   const std::array<std::optional<double>, 9> sizes{b.axes.x, {},        {},     {},      b.axes.y,
                                                    b.axes.z, b.heading, b.tilt, b.burial};
@@ -73,23 +71,12 @@ Row boulder_row(int layer, const PlacedBoulder& b, const BareSurface& bare) {
   return row;
 }
 
-bool reaches(const Row& row, const PatchCube& cube) {
-  const Vec3d d = center_of(row) - cube.center;
-  const auto beyond = [&](double x) { return std::max(std::abs(x) - 0.5 * cube.side, 0.0); };
-  return norm(Vec3d{beyond(d.x), beyond(d.y), beyond(d.z)}) <= row.radius;
-}
-
 std::vector<Row> rows_of(const ImplicitField& field, const BareSurface& bare,
                          const std::optional<PatchCube>& patch) {
   std::vector<Row> rows;
-  const auto add = [&](Row row) {
-    if (!patch || reaches(row, *patch)) rows.push_back(std::move(row));
-  };
-  for (const LayerCraters& layer : field.craters()) {
-    for (const PlacedCrater& c : layer.craters) add(crater_row(layer.layer, c, field.height_bound()));
-  }
-  for (const LayerBoulders& layer : field.boulders()) {
-    for (const PlacedBoulder& b : layer.boulders) add(boulder_row(layer.layer, b, bare));
+  for (const ListedLandform& listed : listed_landforms(field, patch)) {
+    rows.push_back(listed.crater != nullptr ? crater_row(listed.layer, *listed.crater, field.height_bound())
+                                            : boulder_row(listed.layer, *listed.boulder, bare));
   }
   return rows;
 }

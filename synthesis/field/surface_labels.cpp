@@ -45,10 +45,11 @@ SurfaceLabels::SurfaceLabels(const Recipe& recipe, const std::string& name,
                              const std::optional<PatchCube>& patch) {
   Recipe so_far = recipe;
   std::fill(so_far.layers.begin(), so_far.layers.end(), idle());
-  stages_.push_back({0, ImplicitField(so_far, name, patch)});
+  stages_.push_back({0, false, ImplicitField(so_far, name, patch)});
   for (const std::size_t i : order_of_layers(recipe)) {
     so_far.layers[i] = recipe.layers[i];
-    stages_.push_back({static_cast<int>(i) + 1, ImplicitField(so_far, name, patch)});
+    stages_.push_back(
+        {static_cast<int>(i) + 1, is_boulders(recipe.layers[i]), ImplicitField(so_far, name, patch)});
   }
   legend_.push_back("label 0: the bare body");
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
@@ -73,16 +74,22 @@ std::vector<int> SurfaceLabels::fields_with_impulses() const {
 
 void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> vertices,
                           std::span<VertexLabel> labels) const {
+  label(origin, vertices, labels, {});
+}
+
+void SurfaceLabels::label(const Vec3d& origin, std::span<const MeshVertex> vertices,
+                          std::span<VertexLabel> labels, std::span<float> ground) const {
   const std::size_t chunks = (vertices.size() + kLabelsChunk - 1) / kLabelsChunk;
   parallel_for(0, static_cast<std::int64_t>(chunks), [&](std::int64_t c) {
     const std::size_t first = static_cast<std::size_t>(c) * kLabelsChunk;
     const std::size_t count = std::min(kLabelsChunk, vertices.size() - first);
-    label_some(origin, vertices.subspan(first, count), labels.subspan(first, count));
+    label_some(origin, vertices.subspan(first, count), labels.subspan(first, count),
+               ground.empty() ? ground : ground.subspan(first, count));
   });
 }
 
 void SurfaceLabels::label_some(const Vec3d& origin, std::span<const MeshVertex> vertices,
-                               std::span<VertexLabel> labels) const {
+                               std::span<VertexLabel> labels, std::span<float> ground) const {
   const std::size_t n = vertices.size();
   std::array<float, kLabelsChunk> x, y, z, lx, ly, lz, bare, before, after, largest;
   Box box;
@@ -112,6 +119,7 @@ void SurfaceLabels::label_some(const Vec3d& origin, std::span<const MeshVertex> 
       }
       labels[i].elevation = after[i] - bare[i];
     }
+    if (!ground.empty() && !stage.is_boulders) std::copy_n(after.begin(), n, ground.begin());
     before = after;
   }
 }

@@ -28,6 +28,9 @@ class SurfaceLabels {
   // centre of the patch, if there is one. Elevations are
   // above the bare body, in length units. Both spans have one size.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels) const;
+  // Also sets ground[i] to F of the body without its boulders at the point, length units.
+  void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
+             std::span<float> ground) const;
 
   // For each list of Gabor impulses of the whole recipe, the number of fields of this object that have it.
   std::vector<int> fields_with_impulses() const;
@@ -39,10 +42,12 @@ class SurfaceLabels {
   // The field with this layer and all that come before it.
   struct Stage {
     int label;
+    bool is_boulders;
     ImplicitField field;
   };
-  void label_some(const Vec3d& origin, std::span<const MeshVertex> vertices,
-                  std::span<VertexLabel> labels) const;
+  // `ground` may be empty.
+  void label_some(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
+                  std::span<float> ground) const;
 
   std::vector<Stage> stages_;  // the bare body first
   std::vector<std::string> legend_;

@@ -12,12 +12,12 @@
 #include "numerics/scalar_math.h"
 #include "numerics/tangent_frame.h"
 #include "synthesis/picture/colormap.h"
+#include "synthesis/picture/preview_rays_internal.h"
 #include "synthesis/picture/ray_scene_internal.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kFilled = 0.92;  // share of a tile that the largest view spans
 constexpr Vec3f kBackground{0.0030f, 0.0034f, 0.0048f};
 constexpr Vec3f kNeutralAlbedo{0.58f, 0.56f, 0.535f};
 // The height above the surface at which secondary rays start, in radii of the body. It exceeds the rounding
@@ -33,46 +33,21 @@ Tangents<float> tangents_about(const Vec3f& n) {
   return duff_tangents<SumRounding::kTwice>(n, std::copysign(1.0f, n.z));
 }
 
-// An orthographic camera in the unit ball of the scene.
-struct Camera {
-  Vec3f to_viewer, sun;         // unit vectors
-  Vec3f sun_first, sun_second;  // across the sun's disk, as long as its apparent radius
-  Vec3d right, up, from;        // orthonormal
-  // The centre and the half sides of the body's box in the picture plane.
-  double center_x = 0, center_y = 0, half_width = 0, half_height = 0;
+// The sun of one view, in the scene's axes.
+struct Sun {
+  Vec3f direction;      // unit vector
+  Vec3f first, second;  // across the sun's disk, as long as its apparent radius
 };
 
-void light(Camera& camera, const PreviewOptions& options) {
+Sun make_sun(const PreviewCamera& camera, const PreviewOptions& options) {
   const Vec3d sun = normalized(options.sun);
-  camera.sun = to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from);
+  Sun made{to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from), {}, {}};
   const auto radius =
       static_cast<float>(portable::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
-  const Tangents<float> tangents = tangents_about(camera.sun);
-  camera.sun_first = radius * tangents.first;
-  camera.sun_second = radius * tangents.second;
-}
-
-Camera make_camera(const PreviewView& view, const PreviewOptions& options, const RayScene& scene,
-                   const TriangleMesh& mesh) {
-  Camera camera;
-  camera.from = normalized(view.from);
-  camera.right = normalized(cross(view.up, camera.from));
-  camera.up = cross(camera.from, camera.right);
-  if (!(squared_norm(camera.right) > 0.5)) {
-    throw InputError("preview: a view looks along its own up direction; choose another up");
-  }
-  Box box;
-  for (const Vec3d& vertex : mesh.vertices) {
-    const Vec3d p = scene.to_unit(vertex);
-    box.extend({dot(p, camera.right), dot(p, camera.up), 0.0});
-  }
-  camera.center_x = box.center().x;
-  camera.center_y = box.center().y;
-  camera.half_width = 0.5 * box.extent().x;
-  camera.half_height = 0.5 * box.extent().y;
-  camera.to_viewer = to_float(camera.from);
-  light(camera, options);
-  return camera;
+  const Tangents<float> tangents = tangents_about(made.direction);
+  made.first = radius * tangents.first;
+  made.second = radius * tangents.second;
+  return made;
 }
 
 // Uniform random numbers of one ray, as hashes of the pixel and the ray.
@@ -99,15 +74,10 @@ class Painter {
       : mesh_(mesh),
         options_(options),
         scene_(mesh),
-        normals_(mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh)),
-        columns_(static_cast<int>(std::ceil(std::sqrt(double(options.views.size()))))),
-        rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_) {
-    for (const PreviewView& view : options.views)
-      cameras_.push_back(make_camera(view, options, scene_, mesh));
-    for (const Camera& camera : cameras_) {
-      pixel_ = std::max({pixel_, 2 * camera.half_width / (kFilled * tile_width()),
-                         2 * camera.half_height / (kFilled * tile_height())});
-    }
+        rays_(mesh, options, scene_),
+        normals_(mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh)) {
+    for (std::size_t view = 0; view < options.views.size(); ++view)
+      suns_.push_back(make_sun(rays_.camera(view), options));
   }
 
   std::array<unsigned char, 3> pixel(int x, int y) const {
@@ -130,52 +100,32 @@ class Painter {
   }
 
  private:
-  double tile_width() const { return double(options_.width) / columns_; }
-  double tile_height() const { return double(options_.height) / rows_; }
-
   Vec3f radiance(double px, double py, RayRandom& random, bool& is_hit) const {
-    const int column = std::min(columns_ - 1, static_cast<int>(px / tile_width()));
-    const int row = std::min(rows_ - 1, static_cast<int>(py / tile_height()));
-    const auto view = static_cast<std::size_t>(row * columns_ + column);
-    if (view >= cameras_.size()) return kBackground;
-    const Camera& camera = cameras_[view];
-    const double u = (px - (column + 0.5) * tile_width()) * pixel_ + camera.center_x;
-    const double v = ((row + 0.5) * tile_height() - py) * pixel_ + camera.center_y;
-    const Vec3f origin = to_float(u * camera.right + v * camera.up + 2.0 * camera.from);
-    const RayHit hit = scene_.first_hit(origin, -camera.to_viewer);
+    const std::optional<std::size_t> view = rays_.view_at(px, py);
+    if (!view) return kBackground;
+    const Vec3f to_viewer = rays_.camera(*view).to_viewer;
+    const Vec3f origin = rays_.origin(*view, px, py);
+    const RayHit hit = scene_.first_hit(origin, -to_viewer);
     if (!hit.found) return kBackground;
     is_hit = true;
-    return shade(camera, origin - hit.distance * camera.to_viewer, hit, random);
+    return shade(to_viewer, suns_[*view], origin - hit.distance * to_viewer, hit, random);
   }
 
-  // Interpolates a value at the corners of the triangle that was hit.
-  template <typename T>
-  Vec3f interpolate(const std::vector<Vec3<T>>& corners, const RayHit& hit) const {
-    const Triangle& t = mesh_.triangles[hit.triangle];
-    const T u = hit.u, v = hit.v;
-    const Vec3<T> value = (T(1) - u - v) * corners[t[0]] + u * corners[t[1]] + v * corners[t[2]];
-    return {static_cast<float>(value.x), static_cast<float>(value.y), static_cast<float>(value.z)};
-  }
-
-  Vec3f shade(const Camera& camera, const Vec3f& point, const RayHit& hit, RayRandom& random) const {
-    const Vec3f& to_viewer = camera.to_viewer;
-    Vec3f face = hit.normal;
-    Vec3f normal = normalized(interpolate(normals_, hit));
-    if (squared_norm(normal) < 0.5f) normal = face;
-    // In open or inverted meshes a surface may be seen from behind. It is lit like the others.
-    if (dot(face, to_viewer) < 0.0f) face = -face;
-    if (dot(normal, face) < 0.0f) normal = -normal;
+  Vec3f shade(const Vec3f& to_viewer, const Sun& sun, const Vec3f& point, const RayHit& hit,
+              RayRandom& random) const {
+    const auto [face, normal] = seen_normals(mesh_, normals_, hit, to_viewer);
     const Vec3f start = point + kLift * face;
-    const Vec3f albedo =
-        options_.vertex_colors.empty() ? kNeutralAlbedo : interpolate(options_.vertex_colors, hit);
-    const float sun = sunlight(camera, start, normal, to_viewer, random);
-    return albedo * (sun + sky_light(start, normal, to_viewer, random));
+    const Vec3f albedo = options_.vertex_colors.empty()
+                             ? kNeutralAlbedo
+                             : interpolate_corners(mesh_, options_.vertex_colors, hit);
+    const float light = sunlight(sun, start, normal, to_viewer, random);
+    return albedo * (light + sky_light(start, normal, to_viewer, random));
   }
 
-  float sunlight(const Camera& camera, const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer,
+  float sunlight(const Sun& sun, const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer,
                  RayRandom& random) const {
     const auto [dx, dy] = disk_point(random);
-    const Vec3f towards = normalized(camera.sun + dx * camera.sun_first + dy * camera.sun_second);
+    const Vec3f towards = normalized(sun.direction + dx * sun.first + dy * sun.second);
     const float incidence = dot(normal, towards);
     if (incidence <= 0.0f || scene_.occluded(start, towards)) return 0.0f;
     const float emission = std::max(dot(normal, to_viewer), 1e-3f);
@@ -198,29 +148,10 @@ class Painter {
   const TriangleMesh& mesh_;
   const PreviewOptions& options_;
   RayScene scene_;
+  PreviewRays rays_;
   std::vector<Vec3d> normals_;  // (#V)
-  int columns_, rows_;
-  std::vector<Camera> cameras_;  // one a view
-  double pixel_ = 1e-9;          // side of a pixel in the unit ball
+  std::vector<Sun> suns_;       // one a view
 };
-
-void check(const PreviewOptions& options, const TriangleMesh& mesh) {
-  const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
-  if (!within(options.width, 16, 16384) || !within(options.height, 16, 16384)) {
-    throw InputError("preview: the picture's sides must be 16 .. 16384 pixels");
-  }
-  if (!within(options.oversampling, 1, 16)) throw InputError("preview: oversampling must be 1 .. 16");
-  if (!within(static_cast<double>(options.views.size()), 1, 64)) {
-    throw InputError("preview: give 1 .. 64 views");
-  }
-  if (!within(options.sun_radius_degrees, 0, 45) || !within(options.fill_light, 0, 10)) {
-    throw InputError("preview: the sun's radius must be 0 .. 45 degrees and the fill light 0 .. 10");
-  }
-  if (!(squared_norm(options.sun) > 0.0)) throw InputError("preview: the sun needs a direction");
-  if (!options.vertex_colors.empty() && options.vertex_colors.size() != mesh.vertices.size()) {
-    throw InputError("preview: give one colour a vertex, or none");
-  }
-}
 
 }  // namespace
 
@@ -236,7 +167,7 @@ std::vector<PreviewView> standard_views() {
 }
 
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
-  check(options, mesh);
+  check_preview_options(options, mesh);
   const Painter painter(mesh, options);
   RgbImage image{options.width, options.height, {}};
   image.pixels.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));

@@ -29,6 +29,10 @@ class RayScene {
 
   // Maps a position of the mesh into the unit ball.
   Vec3d to_unit(const Vec3d& p) const { return scene_.to_scene(p); }
+  // Maps a position of the unit ball back to the mesh.
+  Vec3d from_unit(const Vec3d& p) const { return scene_.from_scene(p); }
+  // Lengths of the unit ball per mesh length.
+  double scale() const { return scene_.scale(); }
 
  private:
   TriangleScene scene_;

@@ -165,6 +165,9 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
   refused({"--members", "12", "-o", mesh, "--manifest", manifest}, "--members: must be A:B");
   refused({"--members", "0:2", "-o", name("body.ply"), "--manifest", manifest},
           "--output: every member writes");
+  refused({"--members", "0:2", "-o", mesh, "--manifest", manifest, "--preview", name("{member}.png"),
+           "--preview-maps", name("a.npz")},
+          "--preview-maps: every member writes");
   refused({"--members", "0:2", "-o", mesh}, "--manifest: is required");
   refused({"--members", "0:2", "-o", mesh, "--manifest", name("0000012.ply")}, "--manifest: ");
 }

@@ -28,6 +28,36 @@ TEST_F(SynthPicture, PicturesCanBeTakenFromElsewhere) {
                  "--sun");
 }
 
+TEST_F(SynthPicture, MapsAreOfAPicture) {
+  const std::string recipe = folder_.write("r.json", kTwoSpheres), out = (folder_ / "x.ply").string();
+  const std::string picture = (folder_ / "p.png").string(), maps = (folder_ / "p.npz").string();
+  expect_refusal(folder_, kSynth, {recipe, "-o", out, "--preview-maps", maps},
+                 "--preview-maps: is about a picture; add --preview FILE.png");
+  expect_refusal(folder_, kSynth,
+                 {recipe, "-o", out, "--preview", picture, "--preview-maps", (folder_ / "p.exr").string()},
+                 "p.exr: is no .npz file");
+  expect_refusal(
+      folder_, kSynth,
+      {recipe, "-o", out, "--preview", picture, "--preview-maps", (folder_ / "none" / "p.npz").string()},
+      "none");
+  expect_refusal(folder_, kSynth, {recipe, "-o", out, "--preview", picture, "--preview-maps", recipe},
+                 "is the input itself");
+}
+
+TEST_F(SynthPicture, ErosionLeavesMapsWithoutLayers) {
+  const std::string recipe = folder_.write("e.json", R"({"format_version": 1, "length_unit": "km",
+  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}, "erosion": {"talus_angle": 30, "density": 2000, "rotation_period": 0}})");
+  const std::string maps = (folder_ / "p.npz").string();
+  const testing::Outcome outcome =
+      run_program(kSynth, {recipe, "-o", (folder_ / "x.ply").string(), "--resolution", "24", "--preview",
+                           (folder_ / "p.png").string(), "--preview-maps", maps});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("neither layer nor instance"), std::string::npos) << outcome.errors;
+  const std::string bytes = text_of(maps);
+  EXPECT_NE(bytes.find("depth.npy"), std::string::npos);
+  EXPECT_EQ(bytes.find("instance.npy"), std::string::npos);
+}
+
 TEST_F(SynthPicture, ColouredLayersMakeAPicture) {
   const std::string recipe = folder_.write(
       "c.json",

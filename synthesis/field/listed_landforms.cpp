@@ -1,0 +1,35 @@
+#include "synthesis/field/listed_landforms.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace astrolith {
+namespace {
+
+bool reaches(const Vec3d& center, double radius, const std::optional<PatchCube>& cube) {
+  if (!cube) return true;
+  const Vec3d d = center - cube->center;
+  const auto beyond = [&](double x) { return std::max(std::abs(x) - 0.5 * cube->side, 0.0); };
+  return norm(Vec3d{beyond(d.x), beyond(d.y), beyond(d.z)}) <= radius;
+}
+
+}  // namespace
+
+std::vector<ListedLandform> listed_landforms(const ImplicitField& field,
+                                             const std::optional<PatchCube>& patch) {
+  std::vector<ListedLandform> listed;
+  for (const LayerCraters& layer : field.craters()) {
+    for (const PlacedCrater& c : layer.craters) {
+      if (reaches(c.position, 0.5 * c.diameter, patch)) listed.push_back({layer.layer, &c, nullptr});
+    }
+  }
+  for (const LayerBoulders& layer : field.boulders()) {
+    for (const PlacedBoulder& b : layer.boulders) {
+      if (reaches(b.center, 0.5 * std::max({b.axes.x, b.axes.y, b.axes.z}), patch))
+        listed.push_back({layer.layer, nullptr, &b});
+    }
+  }
+  return listed;
+}
+
+}  // namespace astrolith
