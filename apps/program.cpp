@@ -26,10 +26,13 @@ namespace astrolith {
 namespace {
 
 std::atomic<int> g_interrupts{0};
+std::atomic<int> g_signal{0};  // that came first
 // True while the cursor stands at the end of an unfinished progress bar.
 std::atomic<bool> g_bar_open{false};
 
 void on_interrupt(int signal_number) {
+  int none = 0;
+  g_signal.compare_exchange_strong(none, signal_number);
   if (g_interrupts.fetch_add(1) > 0) {
     remove_temporary_files();
     std::signal(signal_number, SIG_DFL);
@@ -103,9 +106,9 @@ std::string unknown_option(const CLI::App& app) {
 }
 
 // The options that name a file to write, and those, beside the positional ones, that name a file to read.
-const std::vector<std::string> kOutputs{"output",       "summary",      "spectrum",
-                                        "preview",      "preview-maps", "feature-list",
-                                        "write-recipe", "height-map",   "manifest"};
+const std::vector<std::string> kOutputs{"output",     "summary",      "out",          "spectrum",
+                                        "preview",    "preview-maps", "feature-list", "write-recipe",
+                                        "height-map", "manifest"};
 const std::vector<std::string> kInputs{"base", "target", "points"};
 
 // Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".
@@ -133,6 +136,14 @@ std::vector<const CLI::Option*> given(const CLI::App& app) {
     for (const CLI::Option* option : given(*subcommand)) options.push_back(option);
   }
   return options;
+}
+
+// Throws InputError for an output without a name.
+void require_names(const CLI::App& app) {
+  for (const CLI::Option* option : given(app)) {
+    if (is_named(*option, kOutputs) && option->results().front().empty())
+      throw InputError(option->get_lnames().front() + ": is given without a name; give one, or leave it out");
+  }
 }
 
 // Throws InputError when an output is an input, or another output.
@@ -210,11 +221,12 @@ double Program::seconds() const {
 }
 
 void Program::timed(const std::function<void()>& work) {
+  require_names(*parser_);
   require_distinct_files(*parser_);
   // A summary that cannot be written should not be found out after an hour's work.
   if (!summary_file.empty()) {
     require_extension(summary_file, {".json"});
-    require_writable(summary_file);
+    if (!makes_folders || !makes_folders()) require_writable(summary_file);
   }
   start_ = std::chrono::steady_clock::now();
   work();
@@ -249,6 +261,8 @@ Progress Program::progress(std::string stage) const {
 }
 
 bool Program::interrupted() { return g_interrupts.load() > 0; }
+
+const char* Program::stopped_by() { return g_signal.load() == SIGTERM ? "SIGTERM" : "Ctrl-C"; }
 
 void Program::say(const std::string& line) const {
   if (!quiet) print_line(line);

@@ -43,6 +43,8 @@ class Program {
   Progress progress(std::string stage) const;
   // True once Ctrl-C has been pressed.
   static bool interrupted();
+  // What pressed it: "Ctrl-C", or "SIGTERM" where that signal came first, which counts as Ctrl-C.
+  static const char* stopped_by();
 
   // Prints one line to stderr, unless --quiet was given.
   void say(const std::string& line) const;
@@ -73,6 +75,9 @@ class Program {
   int threads = 0;  // 0 = all
   bool quiet = false;
   std::string summary_file;
+  // Whether the work makes missing folders of its outputs. It then makes that of the summary too, and checks
+  // that the summary can be written. May be empty.
+  std::function<bool()> makes_folders;
 
  private:
   void timed(const std::function<void()>& work);

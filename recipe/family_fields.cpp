@@ -40,13 +40,15 @@ void check_range(const DrawnField& drawn, const Place& place) {
     place.field("low").fail(fmt::format("must be above 0 for \"log_uniform\", is {:g}", low));
   }
   if (drawn.distribution == Distribution::kInteger && !(low == std::floor(low) && high == std::floor(high))) {
-    place.field("low").fail("and high must be whole numbers for \"integer\"");
+    place.fail("low and high must be whole numbers for \"integer\"");
   }
   // Else nearly every draw would be thrown away.
   if (drawn.distribution != Distribution::kNormal) return;
   const double mean = *drawn.mean, deviation = *drawn.deviation;
   if (low > mean + 2.0 * deviation || high < mean - 2.0 * deviation || high - low < 0.1 * deviation) {
-    place.field("low").fail("and high must hold a tenth of a deviation within two of them about the mean");
+    place.fail(
+        "low to high must be at least a tenth of the deviation wide, and reach within two deviations of the "
+        "mean; widen it");
   }
 }
 

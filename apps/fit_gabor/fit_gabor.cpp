@@ -312,7 +312,8 @@ void work(Program& program, const Options& o) {
   program.summary["model"] = "gabor";
   program.summary.update(photo_figures(photo));
   if (Program::interrupted()) {
-    program.say("stopped by Ctrl-C: the recipe holds the best so far; no synthesis, no report");
+    program.say(std::string("stopped by ") + Program::stopped_by() +
+                ": the recipe holds the best so far; no synthesis, no report");
     return;
   }
   const std::vector<std::vector<float>> syntheses =

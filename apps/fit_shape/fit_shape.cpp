@@ -111,9 +111,9 @@ void say_wrong_unit(const Program& program, const FitArguments& arguments, const
 void keep_best_so_far(Program& program, const FitArguments& arguments, const FitCheckpoint& checkpoint,
                       const TargetBody& target, const ShapeFitResult& fit, const Recipe& recipe) {
   write_recipe(recipe, arguments.output);
-  std::string line =
-      fmt::format("stopped by Ctrl-C: {} holds the best so far, {}{}, not measured", arguments.output,
-                  counted(fit.body.num_metaballs(), "metaball"), recipe.layers.empty() ? "" : " and details");
+  std::string line = fmt::format(
+      "stopped by {}: {} holds the best so far, {}{}, not measured", Program::stopped_by(), arguments.output,
+      counted(fit.body.num_metaballs(), "metaball"), recipe.layers.empty() ? "" : " and details");
   if (!arguments.checkpoint.empty()) {
     line += checkpoint.has_base() ? "; the same command goes on from " + arguments.checkpoint
                                   : "; no checkpoint yet, since the metaballs were not finished";

@@ -12,7 +12,8 @@ void write_packing(Program& program, const FitArguments& arguments, const Target
       target,
       {arguments.fit.spheres, arguments.unit, arguments.density, name, program.tool(), arguments.output},
       program.progress("pack"));
-  if (packing.interrupted) program.say("stopped by Ctrl-C: these are the spheres so far");
+  if (packing.interrupted)
+    program.say(std::string("stopped by ") + Program::stopped_by() + ": these are the spheres so far");
   program.summary["spheres"] = packing.spheres.size();
   program.summary["filling_rate"] = packing.filling_rate;
   program.say(arguments.output + ": " + packing_words(packing));

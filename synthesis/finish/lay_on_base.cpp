@@ -1,5 +1,7 @@
 #include "synthesis/finish/lay_on_base.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "numerics/errors.h"
@@ -37,7 +39,11 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
                    const std::string& base_name) {
   if (!base.body) throw InputError(base_name + ": body: absent; give a recipe with a body as the base");
   if (details.family) {
-    throw InputError(details_name + ": family: has other places on a base; state it in the merged recipe");
+    throw InputError(
+        fmt::format("{}: family: names places and lengths of this recipe alone; take it out, merge both by "
+                    "--write-recipe, "
+                    "and state it there, where these layers begin at layers[{}]",
+                    details_name, base.layers.size()));
   }
   const double ratio = unit_ratio(details, details_name, base, base_name);
   Recipe result = base;

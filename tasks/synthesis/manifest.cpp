@@ -33,8 +33,11 @@ bool is_file(const json& file) {
 
 Manifest::Manifest(fs::path file) : file_(std::move(file)) {
   std::error_code error;
-  if (fs::exists(file_, error) && !(fs::is_regular_file(file_, error) && fs::file_size(file_, error) == 0))
-    read();
+  if (fs::exists(file_, error) && !fs::is_regular_file(file_, error)) {
+    throw InputError("manifest: " + file_.string() +
+                     " is a folder, a device or a pipe; give the name of a file");
+  }
+  if (fs::exists(file_, error) && fs::file_size(file_, error) > 0) read();
 }
 
 void Manifest::read() {

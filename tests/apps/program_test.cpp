@@ -172,6 +172,17 @@ TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
   std::filesystem::remove(file);
 }
 
+TEST(ProgramDeathTest, ASignalIsCalledByItsName) {
+  for (const auto& [number, name] : {std::pair{SIGINT, "Ctrl-C"}, {SIGTERM, "SIGTERM"}}) {
+    const auto work = [&, signal_number = number](Program&) {
+      std::raise(signal_number);
+      std::fprintf(stderr, "stopped by %s\n", Program::stopped_by());
+    };
+    EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(3),
+                std::string("stopped by ") + name);
+  }
+}
+
 TEST(ProgramDeathTest, ASecondCtrlCEndsAtOnce) {
   const auto work = [](Program&) {
     std::raise(SIGINT);

@@ -73,11 +73,11 @@ TEST(Family, RefusesWhatNoMemberCouldBe) {
   EXPECT_EQ(refusal_of_field(field + R"("distribution": "log_uniform", "low": 0, "high": 2)"),
             "f.json: family.fields[0].low: must be above 0 for \"log_uniform\", is 0");
   EXPECT_EQ(refusal_of_field(field + R"("distribution": "integer", "low": 0.5, "high": 2)"),
-            "f.json: family.fields[0].low: and high must be whole numbers for \"integer\"");
+            "f.json: family.fields[0]: low and high must be whole numbers for \"integer\"");
   EXPECT_EQ(
       refusal_of_field(field + R"("distribution": "normal", "mean": 0, "deviation": 1, "low": 5, "high": 9)"),
-      "f.json: family.fields[0].low: and high must hold a tenth of a deviation within two of them about the "
-      "mean");
+      "f.json: family.fields[0]: low to high must be at least a tenth of the deviation wide, and reach "
+      "within two deviations of the mean; widen it");
   EXPECT_EQ(
       refusal_of_field(R"("field": "layers[0].octaves", "low": 1, "high": 2.5)"),
       "f.json: family.fields[0].distribution: must be \"integer\", or a choice among whole numbers, since "
