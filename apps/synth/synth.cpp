@@ -8,6 +8,7 @@
 #include "apps/program.h"
 #include "apps/synth/synth_members.h"
 #include "apps/synth/synth_mesh.h"
+#include "apps/synth/synth_predict_members.h"
 #include "apps/synth/synth_texture.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
@@ -77,7 +78,7 @@ void declare_options(Program& program, Options& options) {
         "--preview-maps", "--view", "--sun", "--gravity", "--height-map", "--uv"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
-  for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--predict", "--height-map"}) {
+  for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {
     program.app.option("--members").excludes(program.app.option(of_one));
   }
   program.app.option("--seed")
@@ -165,8 +166,9 @@ void synthesize(Program& program, const Options& options) {
   }
   const fs::path& body_file = options.base.empty() ? options.recipe : options.base;
   if (!options.members.range.empty()) {
-    return make_members(program, options.members, options.mesh, {options.output, options.written_recipe},
-                        recipe, body_file);
+    const auto job = options.mesh.size.only_predict ? predict_members : make_members;
+    return job(program, options.members, options.mesh, {options.output, options.written_recipe}, recipe,
+               body_file);
   }
   const Recipe made = options.vary > 0.0 ? varied(program, options, recipe) : recipe;
   if (!options.written_recipe.empty()) write_loaded_recipe(made, options.written_recipe);
@@ -182,5 +184,8 @@ int main(int argc, char** argv) {
       "synth", "Turns a recipe into a closed 2-manifold mesh, or its Gabor layers into a texture.");
   astrolith::Options options;
   astrolith::declare_options(program, options);
-  return program.run(argc, argv, [&] { astrolith::synthesize(program, options); });
+  return program.run(argc, argv, [&] {
+    if (!options.members.folder.empty()) options.output = options.members.folder / "{member}.ply";
+    astrolith::synthesize(program, options);
+  });
 }

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "apps/counted.h"
+#include "apps/synth/synth_aside.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
-#include "synthesis/finish/family_member.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/manifest.h"
 
@@ -28,10 +28,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kNumberMark = "{member}";
 constexpr std::uint64_t kMostMembers = std::uint64_t{1} << 53;  // as JSON keeps whole numbers
 
-struct Range {
-  std::uint64_t begin = 0, end = 0;
-};
-
 std::uint64_t member_number(std::string_view text) {
   std::uint64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -41,11 +37,11 @@ std::uint64_t member_number(std::string_view text) {
   return number;
 }
 
-Range parse_range(const std::string& text) {
+MemberRange parse_range(const std::string& text) {
   const std::size_t colon = std::min(text.find(':'), text.size());
   if (colon == text.size()) throw InputError("members: must be A:B, members A to B - 1, as in 0:1000");
   const std::string_view view = text;
-  const Range range{member_number(view.substr(0, colon)), member_number(view.substr(colon + 1))};
+  const MemberRange range{member_number(view.substr(0, colon)), member_number(view.substr(colon + 1))};
   if (range.begin >= range.end) {
     throw InputError(fmt::format("members: {}:{} holds no member; the second number must be the greater one",
                                  range.begin, range.end));
@@ -80,6 +76,7 @@ bool is_numbered(const fs::path& pattern, const fs::path& name) {
 }
 
 void require_no_output(const fs::path& manifest, const std::vector<fs::path>& patterns) {
+  if (manifest.empty()) return;
   for (const fs::path& pattern : patterns) {
     if (pattern.empty() ||
         !is_numbered(fs::absolute(pattern).lexically_normal(), fs::absolute(manifest).lexically_normal()))
@@ -105,26 +102,6 @@ std::string hash_of_family(const Program& program, const Recipe& recipe) {
   }
   return hash.hex();
 }
-
-// While it lives, the program says nothing and writes another summary.
-class Aside {
- public:
-  explicit Aside(Program& program)
-      : program_(program),
-        quiet_(std::exchange(program.quiet, true)),
-        summary_(std::exchange(program.summary, {})) {}
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
-  ~Aside() {
-    program_.quiet = quiet_;
-    program_.summary = std::move(summary_);
-  }
-
- private:
-  Program& program_;
-  bool quiet_;
-  Json summary_;
-};
 
 class MemberMaker {
  public:
@@ -183,22 +160,15 @@ class MemberMaker {
     request.preview.file = numbered(mesh_.preview.file, number);
     request.preview.maps = numbered(mesh_.preview.maps, number);
     request.landforms = numbered(mesh_.landforms, number);
-    if (recipe_.family && !mesh_.preview.file.empty()) add_light_and_view(member, request.preview, line);
+    if (recipe_.family && !mesh_.preview.file.empty()) {
+      set_light_and_view(*recipe_.family, member, request.preview);
+      if (recipe_.family->any_view) line["view"] = {member.view.x, member.view.y, member.view.z};
+      if (recipe_.family->any_sun) line["sun"] = {member.sun.x, member.sun.y, member.sun.z};
+    }
     const Aside aside(program_);
     make_mesh(program_, request, member.recipe, file_, numbered(files_.mesh, number));
     for (const char* figure : {"vertices", "triangles", "closed", "manifold", "genus", "components"}) {
       if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];
-    }
-  }
-
-  void add_light_and_view(const FamilyMember& member, PreviewRequest& preview, Json& line) const {
-    if (recipe_.family->any_view) {
-      preview.views = {{member.view.x, member.view.y, member.view.z}};
-      line["view"] = {member.view.x, member.view.y, member.view.z};
-    }
-    if (recipe_.family->any_sun) {
-      preview.sun = {member.sun.x, member.sun.y, member.sun.z};
-      line["sun"] = {member.sun.x, member.sun.y, member.sun.z};
     }
   }
 
@@ -226,7 +196,7 @@ bool make_or_report(Program& program, const MemberMaker& maker, std::uint64_t nu
   }
 }
 
-Tally make_range(Program& program, const MemberMaker& maker, const Range& range) {
+Tally make_range(Program& program, const MemberMaker& maker, const MemberRange& range) {
   const Progress progress = program.progress("members");
   Tally tally;
   for (std::uint64_t number = range.begin; number < range.end; ++number) {
@@ -256,9 +226,24 @@ void prepare_outputs(const Program& program, const MemberMaker& maker, const Mes
   check_mesh_outputs(program, request, numbered(files.mesh, first));
 }
 
+void prepare_summary(const Program& program) {
+  const fs::path file = program.summary_file;
+  if (file.empty()) return;
+  if (file.has_parent_path()) make_output_folder(file.parent_path());
+  require_writable(file);
+}
+
 }  // namespace
 
+MemberRange range_of(const MembersRequest& request) { return parse_range(request.range); }
+
+void set_light_and_view(const Family& family, const FamilyMember& member, PreviewRequest& preview) {
+  if (family.any_view) preview.views = {{member.view.x, member.view.y, member.view.z}};
+  if (family.any_sun) preview.sun = {member.sun.x, member.sun.y, member.sun.z};
+}
+
 void declare_members_options(Program& program, MembersRequest& request) {
+  program.makes_folders = [&request] { return !request.range.empty(); };
   Option members =
       program.app
           .add_option("--members", request.range,
@@ -266,6 +251,10 @@ void declare_members_options(Program& program, MembersRequest& request) {
                       "{member} in their names stands for its number. Member 4711 is the same body on every "
                       "machine")
           .placeholder("A:B");
+  program.app.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
+      .needs(members)
+      .excludes(program.app.option("--output"))
+      .placeholder("DIR");
   program.app
       .add_option("--manifest", request.manifest,
                   "with --members: a file that gets a line of JSON for each finished member. Members that it "
@@ -276,7 +265,7 @@ void declare_members_options(Program& program, MembersRequest& request) {
 
 void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files) {
   parse_range(request.range);
-  if (request.manifest.empty())
+  if (request.manifest.empty() && !mesh.size.only_predict)
     throw InputError("manifest: is required with --members; add --manifest bodies.jsonl");
   require_mark(files.mesh, "--output");
   require_mark(files.recipe, "--write-recipe");
@@ -289,7 +278,8 @@ void check_members(const MembersRequest& request, const MeshRequest& mesh, const
 
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
                   const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
-  const Range range = parse_range(request.range);
+  const MemberRange range = parse_range(request.range);
+  if (!files.mesh.empty()) check_mesh_request(mesh, recipe, file);
   if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
   const MemberMaker maker(program, request, mesh, files, recipe, file);
   if (maker.continues_another_set()) {
@@ -299,6 +289,7 @@ void make_members(Program& program, const MembersRequest& request, const MeshReq
         "files, or remove it to make all members anew");
   }
   prepare_outputs(program, maker, mesh, files, range.begin);
+  prepare_summary(program);
   if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
     program.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again",
                             request.manifest.string(),

@@ -57,6 +57,10 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
 
 }  // namespace
 
+void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const fs::path& file) {
+  check_request(request, parse_region(request.tile, request.patch), recipe, file);
+}
+
 void check_mesh_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
   if (!output.empty()) {
     check_mesh_extension(output);

@@ -31,6 +31,9 @@ struct MeshRequest {
 
 void declare_mesh_options(Program& program, MeshRequest& request);
 
+// Throws InputError for options that contradict each other or the recipe, which was read from `file`.
+void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file);
+
 // Throws InputError for an output of the request that cannot be written. An output without a name is left
 // out.
 void check_mesh_outputs(const Program& program, const MeshRequest& request,

@@ -112,7 +112,8 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
       .default_text("");
   program.app.add_flag(
       "--predict", request.only_predict,
-      "only say how many triangles, bytes and seconds the mesh would take; nothing is written but "
+      "only say how many triangles, bytes and seconds the mesh, or with --members all files, would take; "
+      "nothing is written but "
       "the summary. Beside the start of the program this takes about 3 % of the predicted seconds, or some "
       "20 milliseconds if these are more");
 }

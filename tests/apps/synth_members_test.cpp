@@ -1,4 +1,6 @@
 // synth --members, run as a user runs it.
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 
 #include "recipe/sha256.h"
@@ -121,6 +123,70 @@ TEST_F(SynthMembers, MembersMayHaveFoldersOfTheirOwn) {
   EXPECT_TRUE(std::filesystem::exists(name("0000001/body.ply")));
 }
 
+// Small members are made to be predicted, of larger ones the mesh is predicted.
+TEST_F(SynthMembers, ASetIsPredictedFromAFewMembers) {
+  for (const auto& [range, resolution] :
+       {std::pair{std::string("0:50"), std::string("24")}, {"10:13", "140"}}) {
+    const std::vector<std::string> options{"--resolution",   resolution,
+                                           "--feature-list", name(resolution + "/{member}.csv"),
+                                           "--write-recipe", name(resolution + "/{member}.json")};
+    std::vector<std::string> predicting{recipe_,     "--members", range,
+                                        "--predict", "--summary", name("p.json")};
+    predicting.insert(predicting.end(), options.begin(), options.end());
+    const auto before = folder_.files();
+    predicting.insert(predicting.end(), {"-o", name(resolution + "/{member}.ply")});
+    const Outcome outcome = run_program(kSynth, predicting);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    const json predicted = json::parse(text_of(name("p.json")))["predicted"];
+    std::filesystem::remove(name("p.json"));
+    EXPECT_EQ(folder_.files(), before);  // nothing but the summary was written
+
+    std::vector<std::string> making{recipe_,          "--members",  range,          "--out",
+                                    name(resolution), "--manifest", name("m.jsonl")};
+    making.insert(making.end(), options.begin(), options.end());
+    EXPECT_EQ(run_program(kSynth, making).status, 0);
+    double bytes = 0.0, triangles = 0.0;
+    std::ifstream manifest(name("m.jsonl"));
+    for (std::string line; std::getline(manifest, line);) {
+      const json entry = json::parse(line);
+      for (const json& file : entry["files"]) bytes += file["bytes"].get<double>();
+      triangles += entry["triangles"].get<double>();
+    }
+    std::filesystem::remove(name("m.jsonl"));
+    EXPECT_NEAR(predicted["file_bytes"].get<double>(), bytes, 0.1 * bytes);
+    EXPECT_NEAR(predicted["triangles"].get<double>(), triangles, 0.1 * triangles);
+    EXPECT_GT(predicted["seconds"], 0.0);
+    EXPECT_GT(predicted["peak_bytes"], 1e6);
+  }
+}
+
+TEST_F(SynthMembers, PredictionNeedsNoNamesAndLooksAtFirstAndLast) {
+  const Outcome outcome = run_program(kSynth, {recipe_, "--members", "3:9007199254740992", "--predict",
+                                               "--resolution", "20", "--summary", name("p.json")});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  const json predicted = json::parse(text_of(name("p.json")))["predicted"];
+  EXPECT_EQ(predicted["members"], 9007199254740989);
+  EXPECT_EQ(predicted["sampled_members"].size(), 8u);
+  EXPECT_EQ(predicted["sampled_members"].front(), 3);
+  EXPECT_EQ(predicted["sampled_members"].back(), 9007199254740991);
+  EXPECT_GT(predicted["file_bytes"], 0.0);
+}
+
+TEST_F(SynthMembers, TheFolderOfTheSummaryIsMadeToo) {
+  expect_made(make("0:1", {"--summary", name("sums/a.json")}), "1 made");
+  EXPECT_EQ(json::parse(text_of(name("sums/a.json")))["members"]["made"], 1);
+}
+
+TEST_F(SynthMembers, AFamilyIsNotLaidOnABase) {
+  const std::string layers = folder_.write("layers.json", R"({"format_version": 1, "length_unit": "m",
+  "layers": [{"type": "simplex", "amplitude": 1, "frequency": 0.01}],
+  "family": {"fields": [{"field": "layers[0].amplitude", "low": 1, "high": 10}]}})");
+  expect_refusal(folder_, kSynth,
+                 {layers, "--base", recipe_, "--members", "0:2", "-o", name("{member}.ply"), "--manifest",
+                  name("m.jsonl")},
+                 "merge both by --write-recipe, and state it there, where these layers begin at layers[1]");
+}
+
 TEST_F(SynthMembers, AFileOfSomebodyElseIsNoManifest) {
   const std::string photo = folder_.write("photo.jpg", std::string(3000, 'x') + "\n");
   const Outcome outcome =
@@ -169,6 +235,19 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
            "--preview-maps", name("a.npz")},
           "--preview-maps: every member writes");
   refused({"--members", "0:2", "-o", mesh}, "--manifest: is required");
+  refused({"--members", "0:2", "-o", mesh, "--manifest", ""}, "--manifest: is given without a name");
+  refused({"--members", "0:2", "--out", "", "--manifest", manifest}, "--out: is given without a name");
+  // Options that contradict each other are no failure of each member.
+  refused({"--members", "0:2", "-o", mesh, "--manifest", manifest, "--labels", "--gravity", "2000", "8"},
+          "--gravity: is of the whole mesh");
+  refused({"--members", "0:2", "-o", mesh, "--manifest", manifest, "--gravity", "-1", "8"},
+          "--gravity: the density must be above 0");
+  refused({"--members", "0:2", "--predict", "--labels", "--gravity", "2000", "8"},
+          "--gravity: is of the whole mesh");
+  const std::string pipe = name("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  refused({"--members", "0:2", "-o", mesh, "--manifest", pipe},
+          "pipe is a folder, a device or a pipe; give the name of a file");
   refused({"--members", "0:2", "-o", mesh, "--manifest", name("0000012.ply")}, "--manifest: ");
 }
 
