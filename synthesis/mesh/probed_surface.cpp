@@ -62,6 +62,7 @@ double even(int index, double ratio) {
 ProbedSurface::ProbedSurface(TriangleMesh mesh, const Box& within) : mesh_(std::move(mesh)) {
   double sum = 0.0;
   std::vector<Triangle> kept;
+  std::vector<Box> boxes;
   for (const Triangle& triangle : mesh_.triangles) {
     const Corners t = corners_of(mesh_, triangle);
     const double area = 0.5 * norm(t.doubled_area());
@@ -69,8 +70,11 @@ ProbedSurface::ProbedSurface(TriangleMesh mesh, const Box& within) : mesh_(std::
     sum += area;
     kept.push_back(triangle);
     areas_.push_back(sum);
+    Box& box = boxes.emplace_back();
+    for (const Vec3d& p : {t.a, t.b, t.c}) box.extend(p);
   }
   mesh_.triangles = std::move(kept);
+  tree_ = BoxTree(boxes);
 }
 
 ProbedSurface::Point ProbedSurface::point(int index) const {
@@ -113,11 +117,8 @@ double ProbedSurface::largest_share(double height) const {
 
 double ProbedSurface::area_within(const Box& box) const {
   double area = 0.0;
-  for (const Triangle& triangle : mesh_.triangles) {
-    const Corners t = corners_of(mesh_, triangle);
-    Box bounds;
-    for (const Vec3d& p : {t.a, t.b, t.c}) bounds.extend(p);
-    if (!boxes_touch(box, bounds)) continue;
+  for (const std::uint32_t number : tree_.touching(box)) {
+    const Corners t = corners_of(mesh_, mesh_.triangles[number]);
     Polygon part;
     for (const Vec3d& p : {t.a, t.b, t.c}) part.add(p);
     for (int axis = 0; axis < 3; ++axis) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/box_tree.h"
 
 namespace astrolith {
 
@@ -33,6 +34,7 @@ class ProbedSurface {
  private:
   TriangleMesh mesh_;
   std::vector<double> areas_;  // of the triangles up to this one
+  BoxTree tree_;               // of the triangles' boxes
 };
 
 }  // namespace astrolith

@@ -70,6 +70,12 @@ class RegionProbes {
     seconds_ = clock.seconds();
   }
 
+  // Takes the coarse surface of other probes of this region, made with as many cells as look_from would.
+  void look_at(ProbedSurface surface, int cells) {
+    cells_ = cells;
+    surface_ = std::move(surface);
+  }
+
   void add(int count, double with_neighbour, bool costs = true) {
     const double cell = grid_of(field_, region_, cells_).step;
     const bool gabor = field_.tables().gabor_lists.count > 0;
@@ -166,9 +172,17 @@ int resolution_for_triangles(const ImplicitField& field, const Recipe& recipe, c
   const Region whole = region.is_patch ? region : Region{};
   int resolution = kFirst;
   double found = 0.0;
+  ProbedSurface surface;  // the region has no tile, so that steps with as many cells share it
+  int cells = 0;
   for (int step = 0; step < kMostSteps; ++step) {
     RegionProbes probes(field, base, whole, resolution);
-    probes.look_from(kCells);
+    if (cells == std::min(kCells, resolution)) {
+      probes.look_at(surface, cells);
+    } else {
+      probes.look_from(kCells);
+      surface = probes.surface();
+      cells = probes.cells();
+    }
     if (!probes.surface().empty()) probes.add(gabor ? kProbesOfGabor : kProbes, 1.0, false);
     found = probes.surface().area() * probes.sums().triangles_per_area / std::max(probes.sums().probes, 1);
     if (!(found > 0.0)) {
