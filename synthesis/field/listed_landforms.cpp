@@ -6,7 +6,7 @@
 namespace astrolith {
 namespace {
 
-bool reaches(const Vec3d& center, double radius, const std::optional<PatchCube>& cube) {
+bool reaches_patch(const Vec3d& center, double radius, const std::optional<PatchCube>& cube) {
   if (!cube) return true;
   const Vec3d d = center - cube->center;
   const auto beyond = [&](double x) { return std::max(std::abs(x) - 0.5 * cube->side, 0.0); };
@@ -20,12 +20,12 @@ std::vector<ListedLandform> listed_landforms(const ImplicitField& field,
   std::vector<ListedLandform> listed;
   for (const LayerCraters& layer : field.craters()) {
     for (const PlacedCrater& c : layer.craters) {
-      if (reaches(c.position, 0.5 * c.diameter, patch)) listed.push_back({layer.layer, &c, nullptr});
+      if (reaches_patch(c.position, 0.5 * c.diameter, patch)) listed.push_back({layer.layer, &c, nullptr});
     }
   }
   for (const LayerBoulders& layer : field.boulders()) {
     for (const PlacedBoulder& b : layer.boulders) {
-      if (reaches(b.center, 0.5 * std::max({b.axes.x, b.axes.y, b.axes.z}), patch))
+      if (reaches_patch(b.center, 0.5 * std::max({b.axes.x, b.axes.y, b.axes.z}), patch))
         listed.push_back({layer.layer, nullptr, &b});
     }
   }
