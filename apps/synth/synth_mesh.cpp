@@ -15,6 +15,7 @@
 #include "apps/synth/synth_preview_maps.h"
 #include "apps/synth/synth_region.h"
 #include "apps/synth/synth_sinks.h"
+#include "apps/synth/synth_tile.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "numerics/errors.h"
@@ -82,7 +83,7 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
   program.summary["vertices"] = report.vertices;
   program.summary["triangles"] = report.triangles;
   program.summary["closed"] = report.closed();
-  program.summary["manifold"] = report.manifold();
+  program.summary["manifold"] = report.manifold() || report.triangles == 0;
   if (!region.is_cut()) program.summary["genus"] = report.genus;
   program.summary["components"] = report.components;
   program.summary["evaluations"] = statistics.evaluations;
@@ -90,6 +91,11 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
   program.summary["active_blocks"] = statistics.active_blocks;
   program.summary["total_blocks"] = statistics.total_blocks;
   if (region.is_patch) program.summary["origin"] = {region.center.x, region.center.y, region.center.z};
+}
+
+// A tile of a .ply may hold no triangle, so that the tiles of a body can be made one after the other.
+bool may_be_empty(const MeshRequest& request, const Region& region, const fs::path& output) {
+  return region.tile.count > 1 && output.extension() == ".ply" && request.preview.file.empty();
 }
 
 std::string describe_mesh(const ManifoldReport& report, const MeshRequest& request) {
@@ -199,11 +205,14 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   SinkList sinks;
   sinks.add(result.sink());
   sinks.add(extent);
-  const BodyMeshReport made =
-      make_body_mesh({recipe, field, file, region, resolution, request.least_component,
-                      chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu},
-                     sinks, [&](const std::string& stage) { return program.progress(stage); });
+  std::optional<TileRecord> tile;
+  if (!request.tile.empty()) sinks.add(tile.emplace(field, resolution, region.tile).sink());
+  const BodyMeshReport made = make_body_mesh(
+      {recipe, field, file, region, resolution, request.least_component,
+       chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, may_be_empty(request, region, output)},
+      sinks, [&](const std::string& stage) { return program.progress(stage); });
   const ManifoldReport& report = made.manifold;
+  if (tile) tile->finish(report.open_vertices);
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
   if (recipe.erosion) {
     erode_mesh(program, *recipe.erosion, result.collected());
@@ -230,6 +239,9 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     }
   }
   summarize_output(program, output);
+  if (tile) tile->add_to_summary(program, recipe, output);
+  if (report.triangles == 0)
+    return program.say(output.string() + ": no surface lies in tile " + request.tile);
   program.say(output.string() + ": " + describe_mesh(report, request) + ", " +
               size_words(extent.box.extent(), recipe.length_unit) + chosen.remark());
 }
@@ -243,7 +255,8 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
           .add_option(
               "--tile", request.tile,
               "only tile I of N, slabs along z that many machines can make: open where cut, with the same "
-              "vertices there as the next tile, so that all join without cracks")
+              "vertices there as the next tile, so that all join without cracks; --summary then has a "
+              "certificate for check_tiles")
           .placeholder("I/N");
   program.app
       .add_option(

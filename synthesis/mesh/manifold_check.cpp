@@ -11,7 +11,31 @@ namespace {
 
 enum class Link : std::uint8_t { kCycle, kOpen, kNonManifold };
 
-// Finds out whether the directed edges (from, to) opposite a vertex form one cycle. Sorts them by `from`.
+// The edge of a vertex's link that begins at vertex `from`; the end of the span where there is none. The
+// edges are sorted by `from`.
+template <typename Corner>
+auto edge_from(std::span<const Corner> corners, std::uint32_t from) {
+  const auto edge = std::lower_bound(corners.begin(), corners.end(), from,
+                                     [](const Corner& c, std::uint32_t f) { return c.from < f; });
+  return edge != corners.end() && edge->from == from ? edge : corners.end();
+}
+
+// Whether an open link is one path, as around a vertex of a border. Two paths touch in their vertex only.
+template <typename Corner>
+bool is_path(std::span<const Corner> corners) {
+  std::vector<std::uint32_t> ends;
+  for (const Corner& c : corners) ends.push_back(c.to);
+  std::sort(ends.begin(), ends.end());
+  auto edge = std::find_if(corners.begin(), corners.end(), [&](const Corner& c) {
+    return !std::binary_search(ends.begin(), ends.end(), c.from);
+  });
+  std::size_t steps = 0;
+  for (; edge != corners.end() && steps < corners.size(); ++steps) edge = edge_from(corners, edge->to);
+  return edge == corners.end() && steps == corners.size();
+}
+
+// Finds out whether the directed edges (from, to) opposite a vertex form one cycle or one path. Sorts them by
+// `from`.
 template <typename Corner>
 Link classify_link(std::span<Corner> corners) {
   if (corners.empty()) return Link::kNonManifold;
@@ -19,15 +43,12 @@ Link classify_link(std::span<Corner> corners) {
   for (std::size_t i = 1; i < corners.size(); ++i) {
     if (corners[i].from == corners[i - 1].from) return Link::kNonManifold;
   }
-  std::uint32_t at = corners[0].from;
-  for (std::size_t steps = 0; steps <= corners.size(); ++steps) {
-    if (steps > 0 && at == corners[0].from) {
-      return steps == corners.size() ? Link::kCycle : Link::kNonManifold;
-    }
-    const auto next = std::lower_bound(corners.begin(), corners.end(), at,
-                                       [](const Corner& c, std::uint32_t from) { return c.from < from; });
-    if (next == corners.end() || next->from != at) return Link::kOpen;
-    at = next->to;
+  const std::span<const Corner> sorted = corners;
+  auto edge = sorted.begin();
+  for (std::size_t steps = 1; steps <= sorted.size(); ++steps) {
+    edge = edge_from(sorted, edge->to);
+    if (edge == sorted.end()) return is_path(sorted) ? Link::kOpen : Link::kNonManifold;
+    if (edge == sorted.begin()) return steps == sorted.size() ? Link::kCycle : Link::kNonManifold;
   }
   return Link::kNonManifold;
 }

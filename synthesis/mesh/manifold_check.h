@@ -1,5 +1,6 @@
 // Verifies that a mesh is a closed oriented 2-manifold while the mesh is streamed: the triangles around every
-// vertex must form one directed cycle. Memory holds a window of two batches, however large the mesh is.
+// vertex must form one directed cycle, or one path where the mesh is open. Memory holds a window of two
+// batches, however large the mesh is.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ struct ManifoldReport {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
   std::int64_t open_vertices = 0;          // vertices on a boundary or where orientations disagree
-  std::int64_t non_manifold_vertices = 0;  // several cycles, an edge of three or more triangles, no triangle
+  std::int64_t non_manifold_vertices = 0;  // several cycles or paths, an edge of three triangles, no triangle
   std::int64_t late_triangles = 0;         // not verified: they name a vertex that had left the window
   std::int64_t components = 0;             // connected through shared vertices
   std::int64_t genus = -1;                 // sum over components; -1 unless closed and manifold

@@ -20,6 +20,7 @@ struct BodyMeshJob {
   int resolution;                // cells along the longest side of the body, or of the patch
   double least_component = 0.0;  // share of the largest piece's volume that a piece needs; 0: all stay
   MeshingDevice device = MeshingDevice::kCpu;
+  bool may_be_empty = false;  // a tile need not hold any of the surface
 };
 
 struct BodyMeshReport {
@@ -29,8 +30,9 @@ struct BodyMeshReport {
 };
 
 // Passes the mesh on to the sink. The mesh is made twice where small pieces are left out; the stages are then
-// "pieces" and "mesh", else "mesh" alone. Throws InputError for a region without surface, and WorkError for a
-// mesh that is not manifold, or open elsewhere than where it was cut; the sink has been filled by then.
+// "pieces" and "mesh", else "mesh" alone. Throws InputError for a region without surface, unless it may be
+// empty, and WorkError for a mesh that is not manifold, or open elsewhere than where it was cut; the sink has
+// been filled by then.
 BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const StageProgress& progress);
 
 // The field of a recipe's body in a region. Throws InputError for a body that no point of space reaches, and

@@ -75,6 +75,18 @@ TEST(ManifoldCheck, SeesEdgesOfFourTrianglesAndVerticesOfTwoFans) {
   EXPECT_EQ(check_at_once(5, tetrahedron(0, 1, 2, 3)).non_manifold_vertices, 1) << "an unused vertex";
 }
 
+// Two triangles, and a tetrahedron and a triangle, that touch in vertex 0 only.
+TEST(ManifoldCheck, SeesBorderVerticesOfTwoFans) {
+  const ManifoldReport triangles = check_at_once(5, {{0, 1, 2}, {0, 3, 4}});
+  EXPECT_EQ(triangles.non_manifold_vertices, 1);
+  EXPECT_EQ(triangles.open_vertices, 4);
+  for (const Triangle& t : {Triangle{0, 4, 5}, Triangle{4, 5, 0}}) {
+    std::vector<Triangle> mixed = tetrahedron(0, 1, 2, 3);
+    mixed.insert(mixed.begin(), t);
+    EXPECT_EQ(check_at_once(6, mixed).non_manifold_vertices, 1);
+  }
+}
+
 TEST(ManifoldCheck, RepeatedTrianglesAreNotManifold) {
   std::vector<Triangle> triangles = tetrahedron(0, 1, 2, 3);
   triangles.push_back(triangles[2]);
