@@ -19,19 +19,22 @@ MeshEstimate improved_by_probes(const MeshEstimate& estimate, const ProbedSurfac
   MeshEstimate better = estimate;
   better.spent_seconds += sums.spent_seconds;
   better.spent_evaluations += sums.spent_evaluations;
-  if (estimate.whole || sums.probes == 0 || !(sums.weights > 0.0) || !(estimate.blocks > 0.0)) return better;
+  if (estimate.whole || sums.probes == 0 || !(sums.weights > 0.0)) return better;
+  // A thin tile of a wide grid may have all its blocks between those that the sample narrowed.
+  const bool found = estimate.blocks > 0.0;
   const double side = kBlockCells * estimate.step;
   const double probes = double(sums.probes);
   better.triangles = surface.area() * sums.triangles_per_area / probes;
   better.vertices = 0.5 * better.triangles;
   const double along_normals = surface.area() * sums.blocks_along_normal / probes / (side * side);
-  better.blocks = combined(estimate.blocks, double(estimate.narrowed_squares), along_normals);
+  better.blocks =
+      found ? combined(estimate.blocks, double(estimate.narrowed_squares), along_normals) : along_normals;
   // Blocks of the sample and of the probes count alike.
-  const double sampled = estimate.sampled_blocks, meshed = double(sums.meshed_blocks);
-  const double of_sample = (estimate.seconds - estimate.finding_seconds) / estimate.blocks;
+  const double sampled = found ? estimate.sampled_blocks : 0.0, meshed = double(sums.meshed_blocks);
+  const double of_sample = found ? (estimate.seconds - estimate.finding_seconds) / estimate.blocks : 0.0;
   const double block_seconds =
       (sampled * of_sample + meshed * sums.seconds / sums.weights) / (sampled + meshed);
-  const double ratio = better.blocks / estimate.blocks;
+  const double ratio = found ? better.blocks / estimate.blocks : 1.0;
   better.finding_seconds = estimate.finding_seconds * ratio;
   better.seconds = better.finding_seconds + better.blocks * block_seconds;
   better.evaluations = better.blocks * sums.evaluations / sums.weights;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "numerics/errors.h"
@@ -89,8 +90,10 @@ class CertificateFields {
 };
 
 TileSide read_side(const CertificateFields& fields) {
-  const auto z = static_cast<float>(fields.number("z"));
-  if (!std::isfinite(z)) fields.fail("tile: has a side at no height");
+  const double height = fields.number("z");
+  if (std::fabs(height) > double{std::numeric_limits<float>::max()})
+    fields.fail("tile: has a side beyond all numbers of 32 bits");
+  const auto z = static_cast<float>(height);
   return {z, fields.count("vertices", 0, kMostElements), fields.count("loops", 0, kMostElements),
           fields.hash("sha256")};
 }

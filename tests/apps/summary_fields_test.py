@@ -9,6 +9,7 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -101,6 +102,10 @@ def runs(folder):
     yield ["synth", body, *mesh, *features, "--min-component", "0.1"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
     yield ["synth", body, *mesh, "--gravity", "2000", "5"]
+    for k in (1, 2):
+        yield ["synth", body, *mesh[:-1], "32", "--tile", f"{k}/2"]
+        shutil.copy(folder / "summary.json", folder / f"tile_{k}.json")
+    yield ["check_tiles", folder / "tile_1.json", folder / "tile_2.json"]
     yield ["synth", body, "--predict", "--resolution", "16"]
     yield ["synth", plain, *mesh, "--vary", "0.3", "--seed", "2"]
     yield ["synth", eroded, *mesh]

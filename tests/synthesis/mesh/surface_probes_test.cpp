@@ -75,6 +75,25 @@ TEST(SurfaceProbes, AFewPlacesTellTheTrianglesOfASmoothBody) {
   EXPECT_NEAR(ratio.blocks, 1.0, 0.25);
 }
 
+// The few squares of a wide grid that a small sample narrows may all miss a thin tile's surface.
+TEST(SurfaceProbes, ASampleThatMetNoBlockLeavesTheCountsToTheProbes) {
+  const ImplicitField field(testing::potato_recipe(20, 3));
+  constexpr int kCells = 256, kCoarse = 48;
+  const ProbedSurface surface(coarse_mesh_of(field, kCoarse), kEverywhere);
+  const SampleGrid grid = make_sample_grid(field.bounds(), kCells);
+  MeshEstimate sample;
+  sample.step = grid.step;
+  sample.finding_seconds = 0.5;
+  ProbeSums sums;
+  probe(field, {surface, grid.step, make_sample_grid(field.bounds(), kCoarse).step, 0.7, false}, 0, 24, sums);
+  const MeshEstimate better = improved_by_probes(sample, surface, sums);
+  MeshDiscard sink;
+  const MeshStatistics made = mesh_field(field, field.bounds(), kCells, sink);
+  EXPECT_NEAR(better.triangles / double(made.triangles), 1.0, 0.06);
+  EXPECT_NEAR(better.blocks / double(made.active_blocks), 1.0, 0.25);
+  EXPECT_GT(better.seconds, 0.5);
+}
+
 // Details that the coarse mesh cannot show add triangles.
 TEST(SurfaceProbes, FineDetailsAreSeenInTheWindows) {
   Recipe recipe = testing::potato_recipe(20, 3);
