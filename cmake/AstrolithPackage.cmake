@@ -1,6 +1,8 @@
 # cpack -G DEB makes a Debian package of the programs, their man pages and the recipe's schema. scripts/package.sh runs it.
 set(CPACK_PACKAGE_NAME astrolith)
-set(CPACK_PACKAGE_CONTACT "The Astrolith authors <astrolith@localhost>")
+# The authors as CITATION.cff names them. They give no address.
+file(STRINGS CITATION.cff authors REGEX "^  - name: ")
+string(REGEX REPLACE "^  - name: " "" CPACK_PACKAGE_CONTACT "${authors}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "procedural recipes for asteroids and rock")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION
   "Fits compact procedural recipes to shape models of asteroids and to photos of
