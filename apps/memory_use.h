@@ -8,6 +8,10 @@
 #include <fstream>
 #include <string>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 namespace astrolith {
 
 // The most memory that this process has held so far, bytes. The system's getrusage() would also count what
@@ -36,6 +40,18 @@ inline std::uint64_t mapped_bytes() {
   std::ifstream statm("/proc/self/statm");
   for (int field = 0; field < 6; ++field) statm >> pages;  // the sixth is data and stack
   return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+// Arrays of at least as many bytes go back to the system when they are freed, after return_freed_memory().
+inline constexpr int kReturnedBytes = 1 << 20;
+
+// From now on large arrays go back to the system when they are freed. Otherwise the C library keeps the more
+// of them the larger the arrays are, and the peak of a mesh is up to a third above what the mesh ever holds.
+inline void return_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, kReturnedBytes);
+  mallopt(M_TRIM_THRESHOLD, kReturnedBytes);
+#endif
 }
 
 // The memory that --max-memory allows, bytes. 0 gigabytes stands for three quarters of the machine's memory.

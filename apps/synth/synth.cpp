@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/synth/synth_members.h"
@@ -181,6 +182,7 @@ void synthesize(Program& program, const Options& options) {
 }  // namespace astrolith
 
 int main(int argc, char** argv) {
+  astrolith::return_freed_memory();
   astrolith::Program program(
       "synth", "Turns a recipe into a closed 2-manifold mesh, or its Gabor layers into a texture.");
   astrolith::Options options;

@@ -1,5 +1,7 @@
 #include "apps/synth/synth_cost.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -102,6 +104,15 @@ std::vector<MeshVertex> repeated(const TriangleMesh& mesh, std::size_t first, st
 
 // Seconds that all threads of this process have spent.
 double seconds_of_process() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// Memory of the blocks of three layers. A block that the surface does not cross leaves the numbers of its
+// vertices untouched, which are the last of its arrays: the system then gives it only the pages before them.
+double bytes_of_blocks(const MeshEstimate& mesh) {
+  using Block = LayerBlock<kBlockCells>;
+  constexpr double kPage = 4096.0, kWhole = sizeof(Block);
+  constexpr double kTouched = std::min(kWhole - sizeof(Block::vertices) + kPage, kWhole);
+  return mesh.blocks_of_three_layers * (mesh.crossed_share * kWhole + (1.0 - mesh.crossed_share) * kTouched);
+}
 
 Recipe ball() {
   Recipe recipe;
@@ -263,16 +274,28 @@ double meshing_bytes(const MeshEstimate& mesh) {
   constexpr double kCheckOfTriangle = 36.0, kCheckOfVertex = 32.0;
   const double of_layer = mesh.blocks_of_layer * mesh.triangles_per_block();
   const double of_three = mesh.blocks_of_three_layers * mesh.triangles_per_block();
-  return mesh.blocks_of_three_layers * sizeof(LayerBlock<kBlockCells>) +
-         2.0 * mesh.blocks_of_layer * (mesh.list_bytes + kNode) +
+  return bytes_of_blocks(mesh) + 2.0 * mesh.blocks_of_layer * (mesh.list_bytes + kNode) +
          of_layer * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)) +
          of_three * (kCheckOfTriangle + 0.5 * kCheckOfVertex);
 }
 
+double fresh_memory_seconds(const MeshEstimate& mesh) {
+  constexpr std::size_t kTried = 1 << 20, kPage = 4096;
+  if (!(mesh.blocks_of_layer * sizeof(LayerBlock<kBlockCells>) >= kReturnedBytes)) return 0.0;
+  void* const memory = mmap(nullptr, kTried, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return 0.0;
+  const ProcessorClock clock;
+  for (std::size_t i = 0; i < kTried; i += kPage) static_cast<volatile char*>(memory)[i] = 1;
+  const double seconds = clock.seconds();
+  munmap(memory, kTried);
+  const double bytes = bytes_of_blocks(mesh) * mesh.blocks / mesh.blocks_of_three_layers;
+  return seconds / double(kTried) * bytes;
+}
+
 double output_seconds_per_triangle() {
+  constexpr int kCells = 20;
   MeshCollector collector;
   const ImplicitField field(ball());
-  constexpr int kCells = 40;
   mesh_field(field, field.bounds(), kCells, collector);
   const TriangleMesh& mesh = collector.mesh;
   std::vector<MeshVertex> vertices;
@@ -280,17 +303,22 @@ double output_seconds_per_triangle() {
     vertices.push_back({to_float(mesh.vertices[i]), to_float(mesh.normals[i])});
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), &std::fclose);
+  // What the first hash takes is taken once, however large the mesh is.
+  Sha256 hash;
+  hash.update(vertices.data(), sizeof(MeshVertex));
   const ProcessorClock clock;
   ManifoldCheck check;
   check.add_vertices(vertices);
   check.add_triangles(mesh.triangles);
   check.finish();
-  Sha256 hash;
-  for (const Triangle& triangle : mesh.triangles) {
-    if (file) std::fwrite(&triangle, 1, sizeof triangle, file.get());
-    hash.update(&triangle, sizeof triangle);
+  if (file) {
+    std::fwrite(vertices.data(), sizeof(MeshVertex), vertices.size(), file.get());
+    for (const Triangle& triangle : mesh.triangles) std::fwrite(&triangle, 1, sizeof triangle, file.get());
+    std::rewind(file.get());
+    std::array<char, 1 << 14> bytes;
+    while (const std::size_t read = std::fread(bytes.data(), 1, bytes.size(), file.get()))
+      hash.update(bytes.data(), read);
   }
-  hash.update(vertices.data(), vertices.size() * sizeof(MeshVertex));
   return clock.seconds() / double(mesh.triangles.size());
 }
 

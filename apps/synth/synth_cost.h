@@ -43,6 +43,10 @@ double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const d
 // Memory of the mesher and of the check of its mesh, bytes, without its output and without caches.
 double meshing_bytes(const MeshEstimate& mesh);
 
+// Seconds of one processor in which the system gives the mesher the memory of its blocks. They come on top of
+// the seconds of the blocks, which samples find in memory that is used again and again.
+double fresh_memory_seconds(const MeshEstimate& mesh);
+
 // What an erosion adds to a mesh.
 struct ErosionCost {
   double parallel_seconds = 0.0;  // of one processor

@@ -41,7 +41,7 @@ double seconds_so_far(const Program& program) {
 // What a prediction may take. With --predict the figures are all that is asked for. Otherwise they guard the
 // memory of a mesh, which should hardly wait for them. The seconds that count even for the smallest mesh are
 // about those in which the program starts.
-constexpr EstimateBudget kForFigures{0.03, 0.01}, kForMemory{0.015, 0.01};
+constexpr EstimateBudget kForFigures{0.025, 0.004}, kForMemory{0.015, 0.01};
 
 Prediction predict(const Program& program, int resolution, const PlannedMesh& mesh,
                    const EstimateBudget& budget) {
@@ -67,8 +67,9 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   predicted.triangles = estimate.triangles;
   predicted.file_bytes = output.file * estimate.triangles;
   predicted.peak_bytes = std::max(peak_after, held + working);
-  const double parallel = times * (estimate.seconds + gabor_tiles.seconds) + erosion.parallel_seconds +
-                          labels.parallel_seconds + label_tile_seconds(labels, gabor_tiles) + gravity;
+  const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
+                          erosion.parallel_seconds + labels.parallel_seconds +
+                          label_tile_seconds(labels, gabor_tiles) + gravity;
   const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds +
                         labels.serial_seconds;
   predicted.seconds = seconds_before + parallel / threads_of(program) + serial;

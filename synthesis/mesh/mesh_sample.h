@@ -33,6 +33,7 @@ struct MeshEstimate {
   double spent_evaluations = 0.0;  // of the field, for the sample
   double caching_seconds = 0.0;  // of one processor, by which meshing the sample first took longer than again
   double list_bytes = 0.0;       // memory of the field narrowed to one block
+  double crossed_share = 1.0;    // share of the blocks that the surface crosses; the others it only might
   // The most blocks in one layer, and in three successive layers.
   double blocks_of_layer = 0.0, blocks_of_three_layers = 0.0;
   int narrowed_squares = 0;     // most squares of one size that the sample narrowed
@@ -174,13 +175,14 @@ class MeshSampler {
       costs[static_cast<std::size_t>(i)] =
           cost_of_block(grid_, node.z, node.node, estimate_.with_neighbour, size_.warm_up);
     });
-    double weights = 0.0;
+    double weights = 0.0, crossed = 0.0;
     estimate_.sampled_blocks = double(nodes.size());
     estimate_.seconds = estimate_.finding_seconds;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const BlockCost& cost = costs[i];
       const double weight = nodes[i].weight;
       weights += weight;
+      crossed += cost.counts.triangles > 0 ? weight : 0.0;
       estimate_.evaluations += weight * cost.evaluations;
       estimate_.vertices += weight * cost.counts.vertices;
       estimate_.triangles += weight * cost.counts.triangles;
@@ -190,7 +192,9 @@ class MeshSampler {
       estimate_.spent_evaluations += cost.spent_evaluations;
       estimate_.caching_seconds += cost.caching_seconds;
     }
-    if (weights > 0.0) estimate_.list_bytes /= weights;
+    if (!(weights > 0.0)) return;
+    estimate_.list_bytes /= weights;
+    estimate_.crossed_share = crossed / weights;
   }
 
   BlockGrid<B> grid_;

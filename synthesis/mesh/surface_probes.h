@@ -3,13 +3,16 @@
 // A coarse mesh tells where the surface is and how large. At points that lie evenly over it a window of one
 // block counts the triangles of the finer mesh, for the area of the coarse mesh in the same window. This
 // ratio varies little from place to place, while the triangles in blocks that the surface may cross range
-// from none to many. From each point blocks are followed along the normal to both sides, as long as the
-// surface may cross them: their number gives the volume of such blocks, and one of them is meshed for its
+// from none to many. From each point blocks are followed to both sides along the axis that is nearest to the
+// normal, as long as the surface may cross them. Their number is taken for the area of the coarse mesh in the
+// same column, so that blocks between two sheets of the surface count once. One of them is meshed for its
 // cost.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -23,9 +26,11 @@ namespace astrolith {
 struct ProbeSums {
   int probes = 0;
   double triangles_per_area = 0.0;
-  double blocks_along_normal = 0.0;
-  // These four are sums over the blocks that were meshed, each weighted by the blocks along its normal.
+  double blocks_of_square = 0.0;  // blocks for an area of the coarse mesh as large as a side of a block
+  // These are sums over the blocks that were meshed, each weighted by the blocks for which it stands.
   double weights = 0.0, seconds = 0.0, evaluations = 0.0, list_bytes = 0.0;
+  double triangles = 0.0, squared_triangles = 0.0;
+  double crossed = 0.0;  // blocks that the surface crosses
   int meshed_blocks = 0;
   double caching_seconds = 0.0, spent_seconds = 0.0;
   double spent_evaluations = 0.0;  // of the field, for all probes
@@ -121,36 +126,69 @@ class SurfaceProber {
     return double(number_rows(layer).triangles);
   }
 
-  void look_along(const Vec3d& center, const Vec3d& normal, int index, ProbeSums& sums) const {
-    constexpr int kFarthest = 16;
-    const double start = shift_of(index);
+  // A column of blocks through a point, along the axis that is nearest to the normal there. It ends on both
+  // sides before the first block that is not mixed.
+  struct Column {
     std::vector<Window> places;
     std::vector<BlockNode<Block>> mixed;
+    Box box;
+  };
+
+  Column column_through(const Vec3d& center, const Vec3d& axis, double shift) const {
+    constexpr int kFarthest = 16, kNear = 3;
+    const auto place_of = [&](int j) { return window(center + ((shift + double(j)) * side()) * axis); };
+    const Block near = field_.gather(joined(place_of(-kNear).box(), place_of(kNear).box()));
+    Column column;
     for (const int direction : {1, -1}) {
-      for (int j = direction > 0 ? 0 : 1; j < kFarthest; ++j) {
-        const Window place = window(center + ((start + double(direction * j)) * side()) * normal);
-        BlockNode<Block> node = node_of(place);
+      for (int j = direction > 0 ? 0 : -1; std::abs(j) < kFarthest; j += direction) {
+        const Window place = place_of(j);
+        const Box box = place.box();
+        column.box = joined(column.box, place.samples_box());
+        BlockNode<Block> node{0, 0, 1, std::abs(j) <= kNear ? near.restricted_to(box) : field_.gather(box)};
         // The first block may lie off the surface that those beyond it cross.
         if (node.field.content() != BlockContent::kMixed) {
-          if (j > 0) break;
+          if (j != 0) break;
           continue;
         }
-        places.push_back(place);
-        mixed.push_back(std::move(node));
+        column.places.push_back(place);
+        column.mixed.push_back(std::move(node));
       }
     }
-    sums.blocks_along_normal += double(mixed.size());
-    if (mixed.empty()) return;
+    return column;
+  }
+
+  void look_along(const Vec3d& center, const Vec3d& normal, int index, ProbeSums& sums) const {
+    const Column column = column_through(center, nearest_axis(normal), shift_of(index));
+    const std::vector<BlockNode<Block>>& mixed = column.mixed;
+    const double area = surface_.area_within(column.box);
+    if (mixed.empty() || !(area > 0.0)) return;
+    const double weight = double(mixed.size()) * side() * side() / area;
+    sums.blocks_of_square += weight;
     const std::size_t chosen = static_cast<std::size_t>(index) % mixed.size();
-    const BlockCost cost = cost_of_block(places[chosen].grid, 0, mixed[chosen], with_neighbour_, warm_up_);
-    const double weight = double(mixed.size());
+    const BlockCost cost =
+        cost_of_block(column.places[chosen].grid, 0, mixed[chosen], with_neighbour_, warm_up_);
     sums.weights += weight;
+    const double triangles = double(cost.counts.triangles);
+    sums.triangles += weight * triangles;
+    sums.squared_triangles += weight * triangles * triangles;
+    sums.crossed += cost.counts.triangles > 0 ? weight : 0.0;
     sums.seconds += weight * cost.seconds;
     sums.evaluations += weight * cost.evaluations;
     sums.list_bytes += weight * cost.list_bytes;
     sums.caching_seconds += cost.caching_seconds;
     sums.spent_evaluations += cost.spent_evaluations;
     ++sums.meshed_blocks;
+  }
+
+  static Box joined(Box box, const Box& other) {
+    box.extend(other.min);
+    box.extend(other.max);
+    return box;
+  }
+
+  static Vec3d nearest_axis(const Vec3d& normal) {
+    const double x = std::fabs(normal.x), y = std::fabs(normal.y), z = std::fabs(normal.z);
+    return x >= y && x >= z ? Vec3d{1, 0, 0} : y >= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   }
 
   // A number in [0, 1) that goes with no other of the probe.

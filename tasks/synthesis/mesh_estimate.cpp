@@ -113,11 +113,12 @@ MeshEstimate sample_region(const ImplicitField& field, const Region& region, int
                          : sample_field(field, field.bounds(), resolution, region.tile, size);
 }
 
-// Makes a coarse surface, as fine as the seconds allow. Returns the seconds that it took.
-double take_surface(RegionProbes& probes, int resolution, double allowed) {
+// Makes a coarse surface, as fine as the seconds allow, of which `spent` are gone. Returns the seconds that
+// it took, with these.
+double take_surface(RegionProbes& probes, int resolution, double allowed, double spent) {
   probes.look_from(kCoarsest);
-  double spent = probes.coarse_seconds();
-  const double finer = kCoarsest * std::sqrt((allowed - spent) / std::max(spent, 1e-5));
+  spent += probes.coarse_seconds();
+  const double finer = kCoarsest * std::sqrt((allowed - spent) / std::max(probes.coarse_seconds(), 1e-5));
   const int cells = std::min({int(std::min(finer, double(kFinest))), kFinest, resolution});
   if (!(finer > 0.0) || cells < kCoarsest * 5 / 4) return spent;
   probes.look_from(cells);
@@ -128,19 +129,21 @@ double take_surface(RegionProbes& probes, int resolution, double allowed) {
 
 MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
                              int resolution, const EstimateBudget& budget) {
-  constexpr double kOfSample = 0.4, kOfSurface = 0.25;  // parts of what the estimate may take
-  constexpr int kFirstProbes = 8, kFewestProbes = 4, kMostProbes = 1024;
+  constexpr double kOfSample = 0.25, kOfSurface = 0.4;  // parts of what the estimate may take
+  constexpr int kFirstProbes = 6, kFewestProbes = 4, kMostProbes = 1024;
   const bool gabor = field.tables().gabor_lists.count > 0;
   const MeshEstimate sample =
       estimate_within([&](const SampleSize& size) { return sample_region(field, region, resolution, size); },
-                      gabor, {4, kOfSample * budget.share, kOfSample * budget.free_seconds});
+                      gabor, {2, kOfSample * budget.share, kOfSample * budget.free_seconds});
   if (sample.whole) return sample;
   const auto allowed = [&](const MeshEstimate& estimate) {
     return std::max(budget.share * estimate.seconds, budget.free_seconds);
   };
+  const ProcessorClock clock_of_base;
   const ImplicitField base = base_of(field, recipe);
+  const double of_base = clock_of_base.seconds();
   RegionProbes probes(field, base, region, resolution);
-  const double of_surface = take_surface(probes, resolution, kOfSurface * allowed(sample));
+  const double of_surface = take_surface(probes, resolution, kOfSurface * allowed(sample), of_base);
   MeshEstimate estimate = sample;
   estimate.spent_seconds += of_surface;
   estimate.spent_evaluations += probes.coarse_evaluations();

@@ -130,6 +130,28 @@ const std::string kHills = R"({"format_version": 1, "length_unit": "m",
   "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]]},
   "layers": [{"type": "simplex", "amplitude": 0.08, "frequency": 2, "octaves": 6}]})";
 
+// A warp that folds the surface leaves many blocks that it might cross and does not, and sheets of surface
+// that a coarse mesh does not show.
+TEST_F(SynthPrediction, MemoryOfAFoldedSurfaceIsMetFromBothSides) {
+  if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer's memory is not predicted";
+  const std::string recipe = folder_.write("r.json", R"({"format_version": 1, "length_unit": "m",
+    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [1, 0, 0, 0.75]],
+             "warp": {"amplitude": 0.5, "frequency": 2, "octaves": 3}}})");
+  const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();
+  const auto figures = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{recipe,      "-o", output,      "--resolution", "240",
+                                       "--threads", "1",  "--summary", summary};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run_program(kSynth, arguments).status, 0);
+    return nlohmann::json::parse(text_of(summary));
+  };
+  const auto predicted = figures({"--predict"}).at("predicted"), made = figures({});
+  const double memory = predicted.at("peak_bytes").get<double>() / made.at("peak_bytes").get<double>();
+  EXPECT_LE(memory, 1.4);
+  EXPECT_GE(memory, 1.0 / 1.2);
+  EXPECT_GE(predicted.at("triangles").get<double>(), 0.4 * made.at("triangles").get<double>());
+}
+
 // Samples are counted, because seconds depend on what else the machine does.
 TEST_F(SynthPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
   const std::string output = (folder_ / "out.ply").string(), summary = (folder_ / "s.json").string();

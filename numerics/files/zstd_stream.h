@@ -1,0 +1,26 @@
+// Zstandard (RFC 8878) by libzstd, a piece at a time.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+
+// Whether bytes begin as a Zstandard frame does.
+bool is_zstd(std::string_view bytes);
+
+// Appends the compressed content of `plain`, from its first byte, to `packed`. The same content gives the
+// same bytes with the same version of libzstd. Throws WorkError where `plain` cannot be read or the disk is
+// full.
+void pack_zstd(std::FILE* plain, OutputFile& packed);
+
+// The content of a compressed file. Throws InputError, without a file's name, for bytes that are not
+// Zstandard or end too early, and for content above `most_bytes`, which is never held: a small file can
+// unpack to any size.
+std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes);
+
+}  // namespace astrolith
