@@ -205,7 +205,9 @@ TEST_F(SynthPrediction, LabelsAndGravityAreCounted) {
     more.push_back("--predict");
     return figures(more).at("predicted");
   };
-  const double plain = predicted({}).at("seconds").get<double>();
+  // Few samples tell the seconds, which scatter: the least of three predictions counts.
+  double plain = predicted({}).at("seconds").get<double>();
+  for (int again = 0; again < 2; ++again) plain = std::min(plain, predicted({}).at("seconds").get<double>());
   for (const std::vector<std::string>& of :
        {std::vector<std::string>{"--labels"}, {"--gravity", "2000", "5"}}) {
     const auto& with = predicted(of);
