@@ -12,7 +12,7 @@ struct Figure {
 };
 
 // Two estimates of one figure, each weighted by one over its variance.
-Figure combined(const Figure& a, const Figure& b) {
+Figure mean_of_figures(const Figure& a, const Figure& b) {
   if (!(a.value > 0.0)) return b;
   if (!(b.value > 0.0)) return a;
   const double of_a = 1.0 / a.variance, of_b = 1.0 / b.variance;
@@ -28,7 +28,7 @@ constexpr double kBias = 0.1;
 Figure number_of_blocks(const MeshEstimate& sample, const ProbedSurface& surface, const ProbeSums& sums) {
   constexpr double kOfSquare = 2.0, kOfProbe = 0.16;  // relative variances
   const double side = kBlockCells * sample.step, probes = double(sums.probes);
-  return combined(
+  return mean_of_figures(
       {sample.blocks, kOfSquare / std::max(double(sample.narrowed_squares), 1.0)},
       {surface.area() * sums.blocks_of_square / probes / (side * side), kOfProbe / probes + kBias * kBias});
 }
@@ -48,7 +48,7 @@ double number_of_triangles(const MeshEstimate& sample, const ProbedSurface& surf
   const double spread = sums.squared_triangles * sums.weights / (sums.triangles * sums.triangles) - 1.0;
   const Figure by_blocks{blocks.value * of_block,
                          blocks.variance + std::max(spread, kLeastSpread) / (sampled + meshed)};
-  return combined({by_area, kOfProbe / probes + kOfArea}, by_blocks).value;
+  return mean_of_figures({by_area, kOfProbe / probes + kOfArea}, by_blocks).value;
 }
 
 }  // namespace
