@@ -14,7 +14,7 @@ inline void require_extension(const std::filesystem::path& file,
                               std::initializer_list<const char*> extensions) {
   std::string wanted;
   for (const char* extension : extensions) {
-    if (file.extension() == extension) return;
+    if (file.string().ends_with(extension)) return;
     wanted += (wanted.empty() ? "" : " or ") + std::string(extension);
   }
   throw InputError(file.string() + ": is no " + wanted + " file; name it with that extension");

@@ -11,6 +11,7 @@ find_package(TIFF REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)               # command lines
 find_package(PkgConfig REQUIRED)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # .ply.zst
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)  # NPZ
 if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares

@@ -41,7 +41,8 @@ void declare_options(Program& program, Options& options) {
       .required();
   program.app
       .add_option("-o,--output", options.output,
-                  "the mesh: .ply (binary, streamed), .obj, .stl, .glb, .icq or .tab (PDS plates), in the "
+                  "the mesh: .ply (binary, streamed; .ply.zst is compressed), .obj, .stl, .glb, .icq or .tab "
+                  "(PDS plates), in the "
                   "recipe's length unit; with --texture .png or .tif; needed unless --predict or "
                   "--write-recipe is given")
       .placeholder("FILE");

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "apps/memory_use.h"
+#include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "gravity/polyhedron_gravity.h"
 #include "gravity/vertical_directions.h"
@@ -124,7 +125,7 @@ Recipe ball() {
 }  // namespace
 
 OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use, double triangles) {
-  const std::string extension = output.extension().string();
+  const std::string extension = is_ply_name(output) ? ".ply" : output.extension().string();
   // Half a vertex and half a normal as doubles, and a triangle; half of one array is copied as it grows.
   const double collected = 36.0 + 6.0;
   // The tables of an erosion are gone before a picture is drawn.

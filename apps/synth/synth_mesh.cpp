@@ -65,7 +65,8 @@ void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const 
 void check_mesh_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
   if (!output.empty()) {
     check_mesh_extension(output);
-    if (request.points || request.labels || request.gravity.wanted()) require_extension(output, {".ply"});
+    if (request.points || request.labels || request.gravity.wanted())
+      require_extension(output, {".ply", ".ply.zst"});
     if (request.texture_coordinates) require_extension(output, {".glb"});
     require_writable(output);
   }
@@ -95,7 +96,7 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
 
 // A tile of a .ply may hold no triangle, so that the tiles of a body can be made one after the other.
 bool may_be_empty(const MeshRequest& request, const Region& region, const fs::path& output) {
-  return region.tile.count > 1 && output.extension() == ".ply" && request.preview.file.empty();
+  return region.tile.count > 1 && is_ply_name(output) && request.preview.file.empty();
 }
 
 std::string describe_mesh(const ManifoldReport& report, const MeshRequest& request) {
@@ -114,9 +115,7 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
 }
 
 // Whether the format has a place for the colours of vertices.
-bool holds_colors(const fs::path& output) {
-  return output.extension() == ".ply" || output.extension() == ".glb";
-}
+bool holds_colors(const fs::path& output) { return is_ply_name(output) || output.extension() == ".glb"; }
 
 // Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
 // erosion changes the finished mesh. The other formats, erosion and the picture need the whole mesh in
@@ -137,7 +136,7 @@ class MeshOutput {
       labels_.emplace(recipe, file.string(), region.cube());
       info_.notes = labels_->legend();
     }
-    const bool streamed = output.extension() == ".ply" && !recipe.erosion && !request.gravity.wanted();
+    const bool streamed = is_ply_name(output) && !recipe.erosion && !request.gravity.wanted();
     if (!streamed || !request.preview.file.empty() || !request.height_map.empty()) sinks_.add(collector_);
     if (streamed) stream(request.points);
   }

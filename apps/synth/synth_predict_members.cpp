@@ -55,7 +55,9 @@ class PassingFolder {
   }
   // A file of this folder with the extension of `like`; no file where `like` is none.
   fs::path file(const char* stem, const fs::path& like) const {
-    return like.empty() ? fs::path() : path_ / (stem + like.extension().string());
+    const bool packed = like.extension() == ".zst";
+    const std::string extension = (packed ? like.stem() : like).extension().string() + (packed ? ".zst" : "");
+    return like.empty() ? fs::path() : path_ / (stem + extension);
   }
   double bytes() const {
     double sum = 0.0;

@@ -1,11 +1,13 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 
 #include "geometry/io/mesh_file_internal.h"
+#include "numerics/files/zstd_stream.h"
 
 namespace astrolith {
 
@@ -14,6 +16,21 @@ void MeshFile::fail(std::string_view place, std::string_view what, std::string_v
   if (!place.empty()) message.append(place).append(": ");
   throw InputError(message.append(what).append("; ").append(remedy));
 }
+
+namespace {
+
+// Replaces a compressed file by its content. Meshes become a few times smaller; a file that would become a
+// hundred times as large is none.
+void unpack(MeshFile& file) {
+  constexpr std::uint64_t kMostGrowth = 100;
+  try {
+    file.bytes = unpack_zstd(file.bytes, kMostGrowth * file.bytes.size());
+  } catch (const InputError& e) {
+    throw InputError(file.path.string() + ": " + e.what());
+  }
+}
+
+}  // namespace
 
 MeshFile load_mesh_file(const std::filesystem::path& path) {
   MeshFile file{path, {}};
@@ -32,6 +49,7 @@ MeshFile load_mesh_file(const std::filesystem::path& path) {
   file.bytes.resize(std::fread(file.bytes.data(), 1, file.bytes.size(), in.get()));
   if (std::ferror(in.get()) != 0) file.fail("", "reading failed", "copy it to another disk");
   if (file.bytes.empty()) file.fail("", "is empty", "give a mesh file");
+  if (is_zstd(file.bytes)) unpack(file);
   return file;
 }
 

@@ -145,7 +145,7 @@ std::string describe(const MeshFile& file, Format seen) {
 }  // namespace
 
 std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
+  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return extension;
 }

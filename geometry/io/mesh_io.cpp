@@ -85,6 +85,9 @@ using MeshWriter = void (*)(const TriangleMesh&, const std::filesystem::path&, c
 MeshWriter writer_for(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
   if (extension == ".ply") return write_ply;
+  if (file.extension() == ".zst") {
+    throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
+  }
   if (extension == ".obj") return write_obj;
   if (extension == ".stl") return write_stl;
   if (extension == ".glb") return write_glb;
@@ -115,6 +118,8 @@ TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   require_valid(content, mesh);
   return mesh;
 }
+
+bool is_ply_name(const std::filesystem::path& file) { return lower_extension(file) == ".ply"; }
 
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   const MeshWriter write = writer_for(file);

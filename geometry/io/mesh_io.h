@@ -45,14 +45,18 @@ struct MeshFileInfo {
   bool texture_coordinates = false;
 };
 
-// Writes .ply (binary little endian, float32), .obj (text, exact), .stl (binary, float32) or .glb (glTF 2.0,
-// float32; a node turns +z up into +y up and scales m, km, cm, mm to metres), .tab (PDS plate model, text,
-// exact) or .icq (Gaskell's quadrilaterals, as many as half the triangles; for bodies with one surface along
-// each direction from their centre of mass, others give InputError). Normals are written where the mesh and
-// the format have them, colours of vertices into .ply (sRGB bytes) and .glb (COLOR_0, linear light). Throws
-// InputError for another extension and for a folder that cannot be written. Throws WorkError for a mesh
-// without triangles, with indices out of range, or with coordinates that float32 cannot hold.
+// Writes .ply (binary little endian, float32; .ply.zst is compressed), .obj (text, exact), .stl (binary,
+// float32) or .glb (glTF 2.0, float32; a node turns +z up into +y up and scales m, km, cm, mm to metres),
+// .tab (PDS plate model, text, exact) or .icq (Gaskell's quadrilaterals, as many as half the triangles; for
+// bodies with one surface along each direction from their centre of mass, others give InputError). Normals
+// are written where the mesh and the format have them, colours of vertices into .ply (sRGB bytes) and .glb
+// (COLOR_0, linear light). Throws InputError for another extension and for a folder that cannot be written.
+// Throws WorkError for a mesh without triangles, with indices out of range, or with coordinates that float32
+// cannot hold.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+
+// Whether a mesh of this name is written as PLY: .ply, or .ply.zst, which is compressed by Zstandard.
+bool is_ply_name(const std::filesystem::path& file);
 
 // Throws the InputError that write_mesh would throw for the extension. Programs that compute long before they
 // write call it first.

@@ -9,6 +9,8 @@
 #include <random>
 #include <system_error>
 
+#include "numerics/files/zstd_stream.h"
+
 namespace astrolith {
 namespace {
 
@@ -132,7 +134,16 @@ int OutputFile::duplicate_descriptor() {
   return descriptor;
 }
 
+void OutputFile::compress() {
+  if (std::fflush(file_.get()) != 0) fail();
+  OutputFile packed(target_);
+  pack_zstd(file_.get(), packed);
+  file_.swap(packed.file_);
+  temporary_.swap(packed.temporary_);
+}
+
 void OutputFile::commit() {
+  if (target_.extension() == ".zst") compress();
   const int descriptor = duplicate_descriptor();
   bool done = std::fclose(file_.release()) == 0;
   done = done && name_it(descriptor);

@@ -54,6 +54,8 @@ FileHandle open_nameless_file(const std::filesystem::path& target);
 // exceptions. Where the file system knows no such files, the file has a temporary name beside its target from
 // the start. Where the target exists, the whole file has a temporary name for the moment between two system
 // calls, because Linux can replace a name only by another name.
+//
+// A target whose name ends in .zst is compressed by commit() (numerics/files/zstd_stream.h).
 class OutputFile {
  public:
   // kNameless becomes kNamed where the file system knows no nameless files.
@@ -77,6 +79,7 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail() const;
+  void compress();  // the file's content becomes its Zstandard form
   // These return false, with errno set, where they fail.
   bool name_it(int descriptor);
   bool replace_target(const std::string& nameless);

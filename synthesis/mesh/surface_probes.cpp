@@ -42,9 +42,8 @@ double number_of_triangles(const MeshEstimate& sample, const ProbedSurface& surf
   const double sampled = sample.blocks > 0.0 ? double(sample.sampled_blocks) : 0.0;
   const double by_area = surface.area() * sums.triangles_per_area / probes;
   if (!(sums.triangles > 0.0) || !(by_area > 0.0)) return by_area;
-  const double of_block = ((sampled > 0.0 ? sampled * sample.triangles_per_block() : 0.0) +
-                           meshed * sums.triangles / sums.weights) /
-                          (sampled + meshed);
+  const double of_block =
+      (sampled * sample.triangles_per_block() + meshed * sums.triangles / sums.weights) / (sampled + meshed);
   const double spread = sums.squared_triangles * sums.weights / (sums.triangles * sums.triangles) - 1.0;
   const Figure by_blocks{blocks.value * of_block,
                          blocks.variance + std::max(spread, kLeastSpread) / (sampled + meshed)};

@@ -4,6 +4,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_topology.h"
+#include "numerics/files/zstd_stream.h"
 #include "recipe/sha256.h"
 #include "tests/apps/synth_runner.h"
 
@@ -149,6 +150,7 @@ TEST_F(Synth, EveryFormatHoldsTheSameMesh) {
   }
   EXPECT_EQ(synthesise("out.glb", {}).substr(0, 4), "glTF");
   EXPECT_NE(synthesise("uv.glb", {"--uv"}).find("TEXCOORD_0"), std::string::npos);
+  EXPECT_EQ(unpack_zstd(synthesise("body.ply.zst", {}), 100'000'000), synthesise("body.ply", {}));
 }
 
 TEST_F(Synth, SameBytesForAnyThreadCount) {

@@ -4,6 +4,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
+#include "numerics/files/output_file.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scratch_folder.h"
 
@@ -137,6 +138,16 @@ TEST_F(MeshErrors, NameAndContentDisagree) {
   expect("a.obj", "<html>", "HTML");
   expect("a.tab", "PK\x03\x04", "a zip archive");
   expect("a.obj", "ply\nformat ascii 1.0\n", "rename it to .ply");
+}
+
+TEST_F(MeshErrors, CompressedFilesOfAnotherKind) {
+  expect("a.ply.zst", "\x28\xb5\x2f\xfd", "ends too early");
+  expect("b.ply.zst", "\x28\xb5\x2f\xfdrubbish", "is damaged");
+  OutputFile bomb(folder / "c.ply.zst");
+  bomb.write(std::string(1000000, 'x').data(), 1000000);
+  bomb.commit();
+  EXPECT_NE(complaint(folder / "c.ply.zst").find("unpacks to more than"), std::string::npos);
+  EXPECT_THROW(write_mesh(icosphere(1), folder / "d.obj.zst", {}), InputError);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST(ZstdStream, ContentComesBack) {
     const std::string small = packed(folder, text);
     EXPECT_TRUE(is_zstd(small));
     EXPECT_EQ(unpack_zstd(small, size), text) << size;
-    if (size > 1000) EXPECT_LT(small.size(), size * 8 / 10);
+    EXPECT_LT(small.size(), size * 8 / 10 + 100);
   }
 }
 
@@ -66,7 +66,8 @@ TEST(ZstdStream, WhatUnpacksToMoreThanAllowedIsRefused) {
 TEST(ZstdStream, DamagedBytesAreRefused) {
   const testing::ScratchFolder folder;
   const std::string whole = packed(folder, noisy(300000));
-  for (const std::size_t size : {std::size_t{0}, std::size_t{4}, std::size_t{9}, whole.size() / 2, whole.size() - 1}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{4}, std::size_t{9}, whole.size() / 2, whole.size() - 1}) {
     EXPECT_THROW(unpack_zstd(std::string_view(whole).substr(0, size), 1'000'000), InputError) << size;
   }
   std::string changed = whole;
