@@ -5,6 +5,7 @@
       --minutes 10            how many members fill a job of so many minutes
       --most-gigabytes 500    exit status 1 where the set would take more, before anything is made
       --most-hours 48         the same for hours of one processor
+  --keep meshes           what is kept of a member: meshes, packed (meshes compressed by Zstandard) or recipes
 
 Prints JSON: `seconds` of a processor and `bytes` of a member, `hours` of one processor and `gigabytes` of all, and
 `members_per_job`.
@@ -19,7 +20,8 @@ import sys
 import tempfile
 
 TRIED = 8  # members that are made
-OUTPUTS = {"--preview": ".png", "--feature-list": ".csv", "--write-recipe": ".json"}
+KEPT = {"meshes": "-o {}/{{member}}.ply", "packed": "-o {}/{{member}}.ply.zst", "recipes": "--write-recipe {}/{{member}}.astro"}
+OUTPUTS = {"--preview": ".png", "--feature-list": ".csv", "--write-recipe": ".json", "--preview-maps": ".npz"}
 
 
 def moved(options, folder):
@@ -36,10 +38,13 @@ def tried_members(given):
     with tempfile.TemporaryDirectory() as folder:
         manifest = pathlib.Path(folder, "tried.jsonl")
         command = [given.program, given.recipe, "--members", f"0:{min(TRIED, given.members)}", "--threads", "1",
-                   "--quiet", "-o", f"{folder}/{{member}}.ply", "--manifest", str(manifest),
+                   "--quiet", "--manifest", str(manifest), *KEPT[given.keep].format(folder).split(" "),
                    *moved(given.options, folder)]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        status = subprocess.run(command, check=False).returncode
+        try:
+            status = subprocess.run(command, check=False).returncode
+        except OSError as error:
+            sys.exit(f"estimate.py: {given.program}: cannot be run ({error.strerror}); give --program PATH, or put it into PATH")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         lines = manifest.read_text().splitlines() if manifest.exists() else []
         if not lines:
@@ -70,6 +75,7 @@ def main():
     parser.add_argument("--most-hours", type=float)
     parser.add_argument("--program", default="synth")
     parser.add_argument("--options", default="")
+    parser.add_argument("--keep", choices=sorted(KEPT), default="meshes")
     given = parser.parse_args()
     taken = estimate(given)
     print(json.dumps(taken))

@@ -5,7 +5,10 @@
 """
 import argparse
 
-from PIL import Image
+try:
+    from PIL import Image
+except ImportError:
+    raise SystemExit("sheet.py: Pillow is missing; apt install python3-pil, and run it with /usr/bin/python3") from None
 
 
 def main():
@@ -17,11 +20,12 @@ def main():
     given = parser.parse_args()
     with Image.open(given.pictures[0]) as first:
         size = (given.width, round(given.width * first.height / first.width))
-    rows = -(-len(given.pictures) // given.across)
-    sheet = Image.new("RGB", (given.across * size[0], rows * size[1]))
+    across = min(given.across, len(given.pictures))
+    rows = -(-len(given.pictures) // across)
+    sheet = Image.new("RGB", (across * size[0], rows * size[1]))
     for number, name in enumerate(given.pictures):
         with Image.open(name) as picture:
-            place = (number % given.across * size[0], number // given.across * size[1])
+            place = (number % across * size[0], number // across * size[1])
             sheet.paste(picture.convert("RGB").resize(size, Image.LANCZOS), place)
     sheet.save(given.output, quality=85)
 

@@ -1,5 +1,6 @@
 """Meshes, patches and datasets in the terms of other packages, and what their absence says."""
 
+import json
 import pickle
 import subprocess
 import sys
@@ -61,6 +62,34 @@ def test_bodies_are_the_same_whenever_they_are_made():
     assert not np.array_equal(bodies[3]["vertices"], bodies[4]["vertices"])
     with pytest.raises(IndexError):
         bodies[6]
+
+
+def test_a_finished_set_is_read_member_by_member(program, tmp_path):
+    family = {"fields": [{"field": "body.spheres[0].radius", "distribution": "uniform", "low": 1, "high": 2}]}
+    recipe = {"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}}
+    (tmp_path / "family.json").write_text(json.dumps({**recipe, "family": family}))
+    program("synth", "family.json", "--members", "0:3", "--resolution", "16", "-o", "set/{member}.ply.zst", "--preview",
+            "set/{member}.png", "--preview-maps", "set/{member}.npz", "--manifest", "set/m.jsonl")  # fmt: skip
+    made = bridges.FinishedSet(tmp_path / "set/m.jsonl", check=True)
+    assert [item["member"] for item in made] == [0, 1, 2]
+    for item in made:
+        radius = item["drawn"]["body.spheres[0].radius"]
+        assert np.linalg.norm(item["vertices"], axis=1).max() == pytest.approx(radius, rel=0.05)
+        assert item["vertices"].dtype == np.float32 and item["faces"].dtype == np.int64 and "normals" in item
+        assert item["maps"]["depth"].dtype == np.float32 and item["files"][".png"].is_file()
+    (tmp_path / "set/0000001.npz").write_bytes(b"damaged")
+    with pytest.raises(ValueError, match="0000001.npz: is not the file"):
+        made[1]
+    (tmp_path / "set/0000002.ply.zst").unlink()
+    with pytest.raises(ValueError, match="is missing"):
+        made[2]
+    with (tmp_path / "set/m.jsonl").open("a") as manifest:
+        manifest.write('{"member": 7, "se')  # a run that was cut off
+    assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 3
+    (tmp_path / "other.jsonl").write_text("{}\n")
+    for wrong in ("none.jsonl", "other.jsonl"):
+        with pytest.raises(ValueError, match=wrong):
+            bridges.FinishedSet(tmp_path / wrong)
 
 
 def test_points_of_bodies_lie_on_them_and_are_uniform():

@@ -7,6 +7,7 @@ Nothing of these packages is loaded before a function needs it. Each is an optio
 from __future__ import annotations
 
 from astrolith.bridges.datasets import Bodies, torch_dataset
+from astrolith.bridges.finished_set import FinishedSet
 from astrolith.bridges.geo import to_xarray, write_geotiff
 from astrolith.bridges.meshes import (
     from_open3d,
@@ -20,6 +21,7 @@ from astrolith.bridges.spice import Kernels, write_dsk, write_kernels
 
 __all__ = [
     "Bodies",
+    "FinishedSet",
     "Kernels",
     "from_open3d",
     "from_pyvista",

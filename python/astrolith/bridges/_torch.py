@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
 from astrolith.bridges._optional import required
 from astrolith.bridges.datasets import Bodies
+from astrolith.bridges.finished_set import FinishedSet
 
 torch = required("torch", "torch")
 _Dataset: Any = torch.utils.data.Dataset
@@ -16,7 +17,7 @@ _Dataset: Any = torch.utils.data.Dataset
 class TorchBodies(_Dataset):  # type: ignore[misc]
     """Bodies whose arrays are tensors."""
 
-    def __init__(self, bodies: Bodies, transform: Optional[Callable[[dict[str, Any]], Any]]) -> None:
+    def __init__(self, bodies: Union[Bodies, FinishedSet], transform: Optional[Callable[[dict[str, Any]], Any]]) -> None:
         self._bodies = bodies
         self._transform = transform
 

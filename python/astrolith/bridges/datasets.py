@@ -14,6 +14,7 @@ from astrolith._meshing import mesh
 from astrolith._recipe import RecipeLike
 from astrolith._variation import vary
 from astrolith.bridges._optional import required
+from astrolith.bridges.finished_set import FinishedSet
 
 
 class Bodies:
@@ -123,8 +124,8 @@ def _sampled(body: Mesh, count: int, seed: int) -> tuple[npt.NDArray[np.float32]
     return points.astype(np.float32), normals.astype(np.float32)
 
 
-def torch_dataset(bodies: Bodies, transform: Optional[Callable[[dict[str, Any]], Any]] = None) -> Any:
-    """Make a ``torch.utils.data.Dataset`` of bodies whose arrays are tensors.
+def torch_dataset(bodies: Union[Bodies, FinishedSet], transform: Optional[Callable[[dict[str, Any]], Any]] = None) -> Any:
+    """Make a ``torch.utils.data.Dataset`` of bodies, or of a finished set, whose arrays are tensors.
 
     A ``DataLoader`` with workers must start them with ``multiprocessing_context="spawn"``. With `points` the items of
     a batch have the same shape; meshes need a ``batch_size`` of None or a ``collate_fn``.

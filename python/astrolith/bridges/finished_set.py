@@ -1,0 +1,100 @@
+"""A set that ``synth --members`` has made, read member by member."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any, Iterator, Union
+
+import numpy as np
+
+from astrolith._mesh import read_mesh
+
+_MESHES = (".ply", ".ply.zst", ".obj", ".stl", ".tab", ".icq")
+
+
+class FinishedSet:
+    """The members of a manifest, in the order of their numbers.
+
+    Item k is a dictionary: ``member``, ``seed``, ``drawn`` (the numbers of the family by their paths), ``files`` (the
+    paths of the member's files by their endings); where there is a mesh, ``vertices`` (n, 3) float32, ``faces``
+    (m, 3) int64 and, where the file has them, ``normals`` (n, 3) float32; where there are maps of pictures, ``maps``
+    (their arrays by name). Files are read when an item is asked for. ``torch_dataset`` takes such a set.
+
+    Parameters
+    ----------
+    manifest
+        The ``.jsonl`` file. Its folder holds the members' files.
+    check
+        Compare every file with its SHA-256 when it is read.
+
+    Raises
+    ------
+    ValueError
+        The manifest is missing or damaged, or a file is not the one that the manifest states.
+    """
+
+    def __init__(self, manifest: Union[str, "os.PathLike[str]"], *, check: bool = False) -> None:
+        self._folder = Path(manifest).resolve().parent
+        self._check = check
+        members: dict[int, dict[str, Any]] = {}
+        try:
+            text = Path(manifest).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ValueError(f"{manifest}: cannot be read ({error})") from None
+        for number, line in enumerate(text.splitlines(keepends=True), 1):
+            if not line.endswith("\n"):
+                continue  # a run that was cut off; it makes this member again
+            try:
+                member = json.loads(line)
+                members[int(member["member"])] = {key: member[key] for key in ("member", "seed", "drawn", "files")}
+            except (ValueError, KeyError, TypeError):
+                raise ValueError(f"{manifest}: line {number}: is no member of a set; give a manifest of synth") from None
+        self._members = [members[key] for key in sorted(members)]
+
+    def __len__(self) -> int:
+        return len(self._members)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<astrolith.bridges.FinishedSet: {len(self)} members in {self._folder}>"
+
+    def __getitem__(self, index: int) -> dict[str, Any]:
+        stated = self._members[index]
+        item: dict[str, Any] = {key: stated[key] for key in ("member", "seed", "drawn")}
+        item["files"] = {_ending(entry["name"]): self._path(entry) for entry in stated["files"]}
+        for ending, path in item["files"].items():
+            if ending in _MESHES and "vertices" not in item:
+                mesh = read_mesh(path)
+                item.update(vertices=mesh.vertices.astype(np.float32), faces=mesh.faces.astype(np.int64))
+                if mesh.normals is not None:
+                    item["normals"] = mesh.normals.astype(np.float32)
+            elif ending == ".npz":
+                with np.load(path, allow_pickle=False) as maps:
+                    item["maps"] = dict(maps)
+        return item
+
+    def _path(self, entry: dict[str, Any]) -> Path:
+        path = self._folder / str(entry["name"])
+        if not path.is_file():
+            raise ValueError(f"{path}: is missing; run synth --members again")
+        if self._check and _sha256(path) != entry["sha256"]:
+            raise ValueError(f"{path}: is not the file that the manifest states; run synth --members again")
+        return path
+
+
+def _ending(name: str) -> str:
+    path = Path(name)
+    return Path(path.stem).suffix + path.suffix if path.suffix == ".zst" else path.suffix
+
+
+def _sha256(path: Path) -> str:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while piece := file.read(1 << 20):
+            digest.update(piece)
+    return digest.hexdigest()
