@@ -39,7 +39,7 @@ void set_cameras(const PreviewRays& rays, const RayScene& scene, std::size_t vie
 Vec3d PictureMaps::point(int x, int y) const {
   const std::size_t i =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-  const auto k = static_cast<std::size_t>(view[i]);
+  const auto k = static_cast<std::size_t>(static_cast<unsigned char>(view[i]));  // not -1
   return corner[k] + (x + 0.5) * pixel * right[k] - (y + 0.5) * pixel * up[k] - double{depth[i]} * from[k];
 }
 
