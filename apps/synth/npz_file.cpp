@@ -48,7 +48,7 @@ void add(zip_t* archive, const std::string& name, const std::string& bytes,
   Source source = make_source(bytes.data(), bytes.size(), file);
   const zip_int64_t index = zip_file_add(archive, (name + ".npy").c_str(), source.get(), ZIP_FL_ENC_UTF_8);
   if (index < 0) fail(file, zip_strerror(archive));
-  source.release();  // the archive owns it now
+  static_cast<void>(source.release());  // the archive owns it now
   const auto number = static_cast<zip_uint64_t>(index);
   if (zip_set_file_compression(archive, number, ZIP_CM_DEFLATE, kLevel) != 0 ||
       zip_file_set_dostime(archive, number, 0, kFirstDay, 0) != 0) {
@@ -108,7 +108,7 @@ void write_npz(std::span<const NpzArray> arrays, const std::filesystem::path& fi
   }
   for (std::size_t i = 0; i < contents.size(); ++i) add(archive.get(), arrays[i].name, contents[i], file);
   if (zip_close(archive.get()) != 0) fail(file, zip_strerror(archive.get()));
-  archive.release();
+  static_cast<void>(archive.release());
   copy(packed.get(), file);
 }
 
