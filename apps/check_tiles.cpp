@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,7 @@ std::vector<Tile> read_tiles(const std::vector<fs::path>& files) {
 
 // What keeps a mesh from being what the certificate says; empty where it is that.
 std::string difference_from(const TileCertificate& tile, const fs::path& mesh) {
+  if (mesh.extension() != ".ply") return "it is no .ply, and no other mesh is read here";
   if (sha256_of_file(mesh) != tile.file_sha256) return "its bytes have another SHA-256";
   const auto plane = [](const std::optional<TileSide>& side) {
     return side ? std::optional(side->z) : std::nullopt;

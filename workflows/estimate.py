@@ -20,7 +20,7 @@ import sys
 import tempfile
 
 TRIED = 8  # members that are made
-KEPT = {"meshes": "-o {}/{{member}}.ply", "packed": "-o {}/{{member}}.ply.zst", "recipes": "--write-recipe {}/{{member}}.astro"}
+KEPT = {"meshes": ("-o", ".ply"), "packed": ("-o", ".ply.zst"), "recipes": ("--write-recipe", ".astro")}
 OUTPUTS = {"--preview": ".png", "--feature-list": ".csv", "--write-recipe": ".json", "--preview-maps": ".npz"}
 
 
@@ -37,14 +37,16 @@ def tried_members(given):
     """The lines of the manifest of the first members, and the processor seconds that these took."""
     with tempfile.TemporaryDirectory() as folder:
         manifest = pathlib.Path(folder, "tried.jsonl")
+        option, ending = KEPT[given.keep]
         command = [given.program, given.recipe, "--members", f"0:{min(TRIED, given.members)}", "--threads", "1",
-                   "--quiet", "--manifest", str(manifest), *KEPT[given.keep].format(folder).split(" "),
+                   "--quiet", "--manifest", str(manifest), option, f"{folder}/{{member}}{ending}",
                    *moved(given.options, folder)]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         try:
             status = subprocess.run(command, check=False).returncode
         except OSError as error:
-            sys.exit(f"estimate.py: {given.program}: cannot be run ({error.strerror}); give --program PATH, or put it into PATH")
+            sys.exit(f"estimate.py: {given.program}: cannot be run ({error.strerror}); name it by --program, or put it "
+                     "into PATH")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         lines = manifest.read_text().splitlines() if manifest.exists() else []
         if not lines:

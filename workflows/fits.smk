@@ -18,7 +18,9 @@ FOLDER = str(config.get("folder", "fits"))
 PROGRAM = str(config.get("program", "fit_shape"))
 OPTIONS = str(config.get("options", ""))
 FORMATS = {".obj", ".ply", ".stl", ".off", ".tab", ".plt", ".icq", ".bmf"}
-MODELS = {file.stem: str(file) for file in sorted(pathlib.Path(config["models"]).iterdir()) if file.suffix in FORMATS}
+MODELS = {file.name.split(".")[0] if file.name.endswith(".ply.zst") else file.stem: str(file)
+          for file in sorted(pathlib.Path(config["models"]).iterdir())
+          if file.suffix in FORMATS or file.name.endswith(".ply.zst")}
 if not MODELS:
     raise WorkflowError(f"{config['models']}: holds no shape model ({' '.join(sorted(FORMATS))})")
 

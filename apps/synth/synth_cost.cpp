@@ -137,7 +137,9 @@ OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use, 
   const double values = use.labels ? 4.0 : use.gravity ? 16.0 : 0.0;
   if (extension == ".ply") return {25.0 + values, rendered > 0.0 ? collected + rendered : 0.0};
   if (extension == ".stl") return {50.0, collected + rendered};
-  if (extension == ".glb") return {24.0, collected + 24.0 + rendered};
+  // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
+  const double mapped = use.texture_coordinates ? 4.0 : 0.0;
+  if (extension == ".glb") return {24.0 + mapped, collected + 24.0 + rendered + 4.0 * mapped};
   return {75.0, collected + rendered};
 }
 

@@ -20,6 +20,7 @@ struct MeshUse {
   bool twice = false;  // small pieces are left out, for which the mesh is made twice
   bool gravity = false;
   bool labels = false;
+  bool texture_coordinates = false;
 };
 
 // What a format takes for each triangle and its half vertex, bytes.

@@ -88,8 +88,8 @@ void require_no_output(const fs::path& manifest, const std::vector<fs::path>& pa
 
 // The SHA-256 of what all members have in common: the recipe and the options that change files.
 std::string hash_of_family(const Program& program, const Recipe& recipe) {
-  constexpr std::array kNoEffect{"base",    "device",       "members",      "manifest",
-                                 "preview", "preview-maps", "feature-list", "max-memory"};
+  constexpr std::array kNoEffect{"base",         "device",       "members",    "manifest", "preview",
+                                 "preview-maps", "feature-list", "max-memory", "out"};
   Sha256 hash;
   Recipe undescribed = recipe;
   undescribed.description.clear();
@@ -226,13 +226,6 @@ void prepare_outputs(const Program& program, const MemberMaker& maker, const Mes
   check_mesh_outputs(program, request, numbered(files.mesh, first));
 }
 
-void prepare_summary(const Program& program) {
-  const fs::path file = program.summary_file;
-  if (file.empty()) return;
-  if (file.has_parent_path()) make_output_folder(file.parent_path());
-  require_writable(file);
-}
-
 }  // namespace
 
 MemberRange range_of(const MembersRequest& request) { return parse_range(request.range); }
@@ -265,6 +258,12 @@ void declare_members_options(Program& program, MembersRequest& request) {
 
 void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files) {
   parse_range(request.range);
+  const bool pictures = !mesh.preview.file.empty() || !mesh.preview.maps.empty() || !mesh.landforms.empty();
+  if (files.mesh.empty() && !files.recipe.empty() && pictures)
+    throw InputError(
+        "--write-recipe without -o keeps recipes alone; leave out --preview, --preview-maps and "
+        "--feature-list, or "
+        "add -o");
   if (request.manifest.empty() && !mesh.size.only_predict)
     throw InputError("manifest: is required with --members; add --manifest bodies.jsonl");
   require_mark(files.mesh, "--output");
@@ -274,6 +273,13 @@ void check_members(const MembersRequest& request, const MeshRequest& mesh, const
   require_mark(mesh.landforms, "--feature-list");
   require_no_output(request.manifest,
                     {files.mesh, files.recipe, mesh.preview.file, mesh.preview.maps, mesh.landforms});
+}
+
+void prepare_summary(const Program& program) {
+  const fs::path file = program.summary_file;
+  if (file.empty()) return;
+  if (file.has_parent_path()) make_output_folder(file.parent_path());
+  require_writable(file);
 }
 
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,

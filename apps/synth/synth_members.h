@@ -39,6 +39,9 @@ void check_members(const MembersRequest& request, const MeshRequest& mesh, const
 
 // Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
 // the others go on. `file` is the recipe's, for messages. Throws InputError where no member can be made.
+// Makes the folder of the summary, and throws InputError where the summary cannot be written.
+void prepare_summary(const Program& program);
+
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
                   const MemberFiles& files, const Recipe& recipe, const std::filesystem::path& file);
 

@@ -62,12 +62,17 @@ void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const 
   check_request(request, parse_region(request.tile, request.patch), recipe, file);
 }
 
+void check_mesh_name(const MeshRequest& request, const fs::path& output) {
+  check_mesh_extension(output);
+  if (request.points || request.labels || request.gravity.wanted()) {
+    require_extension(output, {".ply", ".ply.zst"});
+  }
+  if (request.texture_coordinates) require_extension(output, {".glb"});
+}
+
 void check_mesh_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
   if (!output.empty()) {
-    check_mesh_extension(output);
-    if (request.points || request.labels || request.gravity.wanted())
-      require_extension(output, {".ply", ".ply.zst"});
-    if (request.texture_coordinates) require_extension(output, {".glb"});
+    check_mesh_name(request, output);
     require_writable(output);
   }
   check_preview(program, request.preview);
@@ -205,7 +210,8 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   sinks.add(result.sink());
   sinks.add(extent);
   std::optional<TileRecord> tile;
-  if (!request.tile.empty()) sinks.add(tile.emplace(field, resolution, region.tile).sink());
+  if (!request.tile.empty() && !request.points)
+    sinks.add(tile.emplace(field, resolution, region.tile).sink());
   const BodyMeshReport made = make_body_mesh(
       {recipe, field, file, region, resolution, request.least_component,
        chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, may_be_empty(request, region, output)},
@@ -311,8 +317,12 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   const Region region = parse_region(request.tile, request.patch);
   check_request(request, region, recipe, file);
   const ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));
-  const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(), recipe.erosion.has_value(),
-                    request.least_component > 0.0, request.gravity.wanted(), request.labels};
+  const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(),
+                    recipe.erosion.has_value(),
+                    request.least_component > 0.0,
+                    request.gravity.wanted(),
+                    request.labels,
+                    request.texture_coordinates};
   const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
   report_layers_left_out(program, field, recipe, file, region.is_patch);

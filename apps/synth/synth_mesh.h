@@ -34,6 +34,9 @@ void declare_mesh_options(Program& program, MeshRequest& request);
 // Throws InputError for options that contradict each other or the recipe, which was read from `file`.
 void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const std::filesystem::path& file);
 
+// Throws InputError for a name that no mesh of the request can have.
+void check_mesh_name(const MeshRequest& request, const std::filesystem::path& output);
+
 // Throws InputError for an output of the request that cannot be written. An output without a name is left
 // out.
 void check_mesh_outputs(const Program& program, const MeshRequest& request,

@@ -174,6 +174,8 @@ Takes taken_by_all(const std::vector<Takes>& sample, double members) {
 void predict_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
                      const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
   check_mesh_request(mesh, recipe, file);
+  if (!files.mesh.empty()) check_mesh_name(mesh, files.mesh);
+  prepare_summary(program);
   const MemberRange range = range_of(request);
   const double start = program.seconds();
   const MemberPrediction prediction(program, mesh, files, recipe, file);

@@ -111,12 +111,14 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
           "quarters of the machine's memory are refused")
       .check(above_zero())
       .default_text("");
-  program.app.add_flag(
-      "--predict", request.only_predict,
-      "only say how many triangles, bytes and seconds the mesh, or with --members all files, would take; "
-      "nothing is written but "
-      "the summary. Beside the start of the program this takes about 3 % of the predicted seconds, or some "
-      "20 milliseconds if these are more");
+  program.app.add_flag("--predict", request.only_predict,
+                       "only say how many triangles, bytes (of .ply.zst before it is compressed) and seconds "
+                       "the mesh would take; "
+                       "nothing is written but the summary. Beside the start of the program this takes about "
+                       "3 % of the predicted "
+                       "seconds, or some 10 milliseconds if these are more. With --members it is said of all "
+                       "files of the set: small "
+                       "members are made for that, up to eight, in a temporary folder");
 }
 
 int choose_resolution(Program& program, const MeshSizeRequest& request, const PlannedMesh& mesh) {

@@ -50,7 +50,7 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
 bool has_mesh_extension(const fs::path& file) {
   static constexpr std::array<std::string_view, 8> kExtensions{".obj", ".ply", ".stl", ".off",
                                                                ".tab", ".plt", ".icq", ".bmf"};
-  std::string extension = file.extension().string();
+  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }

@@ -20,7 +20,7 @@ void MeshFile::fail(std::string_view place, std::string_view what, std::string_v
 namespace {
 
 // Replaces a compressed file by its content. Meshes become a few times smaller; a file that would become a
-// hundred times as large is none.
+// hundred times as large is refused.
 void unpack(MeshFile& file) {
   constexpr std::uint64_t kMostGrowth = 100;
   try {

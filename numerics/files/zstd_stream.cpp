@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <new>
 #include <vector>
 
 #include "numerics/errors.h"
@@ -56,8 +57,8 @@ void pack_zstd(std::FILE* plain, OutputFile& packed) {
 
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes) {
   const auto unpacker = made(std::unique_ptr<ZSTD_DCtx, FreeUnpacker>(ZSTD_createDCtx()));
-  ZSTD_DCtx_setParameter(unpacker.get(), ZSTD_d_windowLogMax,
-                         27);  // at most 128 MB of window, as the zstd program
+  // 8 MB, the largest window that the zstd program writes without --ultra or --long.
+  ZSTD_DCtx_setParameter(unpacker.get(), ZSTD_d_windowLogMax, 23);
   std::string content;
   std::vector<char> out(kPiece);
   ZSTD_inBuffer input{packed.data(), packed.size(), 0};

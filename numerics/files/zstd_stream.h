@@ -19,8 +19,8 @@ bool is_zstd(std::string_view bytes);
 void pack_zstd(std::FILE* plain, OutputFile& packed);
 
 // The content of a compressed file. Throws InputError, without a file's name, for bytes that are not
-// Zstandard or end too early, and for content above `most_bytes`, which is never held: a small file can
-// unpack to any size.
+// Zstandard, end too early or need a window above 8 MB, and for content above `most_bytes`, which is never
+// held: a small file can unpack to any size.
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes);
 
 }  // namespace astrolith

@@ -136,7 +136,7 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
 
 
 def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
-    """Write .ply (binary, float32), .obj (text), .stl (binary), .glb, .icq or .tab, whole or not at all.
+    """Write .ply (binary, float32; .ply.zst compressed), .obj, .stl (binary), .glb, .icq or .tab, whole or not at all.
 
     A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply,
     colours into .ply and .glb.
@@ -163,7 +163,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     arrays = arrays_of(mesh, "mesh")
     made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces)
     labels = elevations = None
-    if made.labels is not None and made.elevations is not None and os.fspath(file).endswith(".ply"):
+    if made.labels is not None and made.elevations is not None and os.fspath(file).endswith((".ply", ".ply.zst")):
         if arrays.normals is None:
             raise ValueError("mesh.normals: are missing; labels are written with normals only")
         labels = _arrays.column(made.labels, "mesh.labels", np.int32, len(arrays.vertices))

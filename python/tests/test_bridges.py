@@ -4,6 +4,7 @@ import json
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 
 import astrolith
 import numpy as np
@@ -76,7 +77,7 @@ def test_a_finished_set_is_read_member_by_member(program, tmp_path):
         radius = item["drawn"]["body.spheres[0].radius"]
         assert np.linalg.norm(item["vertices"], axis=1).max() == pytest.approx(radius, rel=0.05)
         assert item["vertices"].dtype == np.float32 and item["faces"].dtype == np.int64 and "normals" in item
-        assert item["maps"]["depth"].dtype == np.float32 and item["files"][".png"].is_file()
+        assert item["maps"]["depth"].dtype == np.float32 and Path(item["files"][".png"]).is_file()
     (tmp_path / "set/0000001.npz").write_bytes(b"damaged")
     with pytest.raises(ValueError, match="0000001.npz: is not the file"):
         made[1]
@@ -84,7 +85,10 @@ def test_a_finished_set_is_read_member_by_member(program, tmp_path):
     with pytest.raises(ValueError, match="is missing"):
         made[2]
     with (tmp_path / "set/m.jsonl").open("a") as manifest:
-        manifest.write('{"member": 7, "se')  # a run that was cut off
+        manifest.write('{"member": 7, "se')  # a run that was cut off, and another that goes on
+    assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 3
+    with (tmp_path / "set/m.jsonl").open("a") as manifest:
+        manifest.write('\n{"member": 8, "seed": 1, "drawn": {}, "files": [5]}\n')
     assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 3
     (tmp_path / "other.jsonl").write_text("{}\n")
     for wrong in ("none.jsonl", "other.jsonl"):

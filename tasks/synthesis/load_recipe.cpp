@@ -62,7 +62,7 @@ void load_exemplar(ExemplarLayer& layer, const std::filesystem::path& folder, co
 
 // Throws InputError for a mesh or a photo, of which a fit makes a recipe.
 void require_no_input_of_fits(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  const std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
   const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
     return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   };

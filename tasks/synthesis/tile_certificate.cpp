@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t kMostSummaryBytes = 1 << 20;
+constexpr std::uintmax_t kMostSummaryBytes = 1 << 16;
+constexpr int kMostLevels = 32;  // of nested objects and arrays
 constexpr std::int64_t kMostTiles = 1 << 20;
 constexpr std::int64_t kMostElements = std::int64_t{1} << 34;  // triangles of 2^32 vertices, and a border
 constexpr std::size_t kLongestText = 4096;
@@ -111,13 +112,13 @@ void require_possible(const CertificateFields& fields, const TileCertificate& ti
     fields.fail("tile: has triangles whose edges do not add up");
 }
 
-TileCertificate read_fields(const CertificateFields& fields, std::string length_unit) {
+TileCertificate read_fields(const CertificateFields& fields) {
   TileCertificate tile;
   tile.count = static_cast<int>(fields.count("count", 1, kMostTiles));
   tile.number = static_cast<int>(fields.count("number", 1, tile.count));
   tile.recipe_sha256 = fields.hash("recipe_sha256");
   tile.resolution = static_cast<int>(fields.count("resolution", 1, kMaxResolution));
-  tile.length_unit = std::move(length_unit);
+  tile.length_unit = fields.text("length_unit");
   tile.file = fields.text("file");
   tile.file_sha256 = fields.hash("file_sha256");
   tile.figures.vertices = fields.count("vertices", 0, kMostElements);
@@ -132,11 +133,17 @@ TileCertificate read_fields(const CertificateFields& fields, std::string length_
 Json parse_summary(const fs::path& file) {
   require_plain_file(file);
   if (fs::file_size(file) > kMostSummaryBytes)
-    throw InputError(file.string() + ": is larger than 1 MB; give the --summary of synth --tile");
+    throw InputError(file.string() + ": is larger than 64 kB; give the --summary of synth --tile");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string() + ": cannot be read; check its permissions");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  Json summary = Json::parse(text, nullptr, false);
+  // Deep nesting would take the stack.
+  const auto refuse_depth = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kMostLevels)
+      throw InputError(file.string() + ": is nested too deeply; give the --summary of synth --tile");
+    return true;
+  };
+  Json summary = Json::parse(text, refuse_depth, false);
   if (!summary.is_object())
     throw InputError(file.string() + ": is no whole JSON object; make the tile again with --summary");
   return summary;
@@ -167,6 +174,7 @@ Json to_json(const TileCertificate& tile) {
                {"count", tile.count},
                {"recipe_sha256", tile.recipe_sha256},
                {"resolution", tile.resolution},
+               {"length_unit", tile.length_unit},
                {"file", tile.file},
                {"file_sha256", tile.file_sha256},
                {"vertices", figures.vertices},
@@ -183,8 +191,8 @@ TileCertificate read_tile_certificate(const fs::path& file) {
   const Json summary = parse_summary(file);
   const CertificateFields top(file, summary, "");
   const CertificateFields fields = top.object("tile");
-  TileCertificate tile = read_fields(fields, top.text("length_unit"));
-  if (fields.hash("checksum") != checksum_of(summary["tile"]))
+  TileCertificate tile = read_fields(fields);
+  if (fields.hash("checksum") != to_json(tile)["checksum"])
     throw InputError(file.string() + ": tile: was changed since synth wrote it; make the tile again");
   return tile;
 }

@@ -37,7 +37,7 @@ std::string hash_of_recipe(Recipe recipe);
 nlohmann::ordered_json to_json(const TileCertificate& certificate);
 
 // Reads the certificate from the field "tile" of a summary. Throws InputError for a file that is no summary
-// of a tile, that is larger than 1 MB, and for a certificate that was changed since synth wrote it.
+// of a tile, that is larger than 64 kB, and for a certificate that was changed since synth wrote it.
 TileCertificate read_tile_certificate(const std::filesystem::path& summary);
 
 }  // namespace astrolith

@@ -151,6 +151,12 @@ TEST_F(CheckTiles, TilesWithoutSurfaceCount) {
   EXPECT_NE(outcome.errors.find("Euler characteristic 4,"), std::string::npos) << outcome.errors;
 }
 
+// Points hold no faces, which could join.
+TEST_F(CheckTiles, PointsAreNotCertified) {
+  make_tile(2, {"--resolution", "96", "--points"});
+  EXPECT_FALSE(Json::parse(text_of(summary(2))).contains("tile"));
+}
+
 TEST_F(CheckTiles, MissingTilesAreNamedAndSeamsBetweenTheOthersCertified) {
   make_tiles();
   const std::string report = (folder_ / "report.json").string();
@@ -179,7 +185,10 @@ TEST_F(CheckTiles, SidesThatDifferDoNotFit) {
   expect_failure(check(summaries()), "tile_4.json: do not fit: their vertices lie at other places");
   expect_failure(check_with_meshes(), "tile_3.json certifies: its upper side has other edges");
   folder_.write("tile_3.json", good);
-  forge(3, [](Json& tile) { tile["lower"]["vertices"] = tile["lower"]["vertices"].get<int>() + 2; });
+  forge(3, [](Json& tile) {
+    tile["lower"]["vertices"] = tile["lower"]["vertices"].get<int>() + 2;
+    tile["euler_characteristic"] = tile["euler_characteristic"].get<int>() - 1;
+  });
   expect_failure(check(summaries()), "vertices on 1 loop meet");
   folder_.write("tile_3.json", good);
   forge(3, [](Json& tile) { tile["lower"]["z"] = tile["lower"]["z"].get<double>() - 0.125; });
@@ -262,9 +271,14 @@ TEST_F(CheckTiles, BadCertificatesAreRefused) {
   Json edited = Json::parse(good);
   edited["tile"]["triangles"] = edited["tile"]["triangles"].get<int>() + 2;
   refuse(edited.dump(), "tile: was changed since synth wrote it");
+  edited = Json::parse(good);
+  edited["tile"]["length_unit"] = "mm";
+  refuse(edited.dump(), "tile: was changed since synth wrote it");
   refuse(good.substr(0, good.size() / 2), "is no whole JSON object");
-  refuse(std::string(500000, '['), "is no whole JSON object");
-  refuse(std::string((1 << 20) + 1, ' '), "is larger than 1 MB");
+  refuse(std::string(30, '['), "is no whole JSON object");
+  refuse(std::string(60000, '['), "is nested too deeply");
+  refuse(std::string((1 << 16) + 1, ' '), "is larger than 64 kB");
+  refuse(std::string(500, '[') + std::string(500, ']'), "is nested too deeply");
   refuse("{}", "tile: is missing");
   refuse(R"({"tile": 3})", "tile: is no object");
   refuse(R"({"tile": {}})", "is missing");

@@ -237,6 +237,11 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
   refused({"--members", "0:2", "-o", mesh}, "--manifest: is required");
   refused({"--members", "0:2", "-o", mesh, "--manifest", ""}, "--manifest: is given without a name");
   refused({"--members", "0:2", "--out", "", "--manifest", manifest}, "--out: is given without a name");
+  refused({"--members", "0:2", "--write-recipe", name("{member}.astro"), "--preview", name("{member}.png"),
+           "--manifest", manifest},
+          "--write-recipe without -o keeps recipes alone");
+  refused({"--members", "0:2", "--predict", "-o", name("{member}.obj"), "--labels"}, ".ply");
+  refused({"--members", "0:2", "--predict", "-o", name("{member}.foo")}, "{member}.foo");
   // Options that contradict each other are no failure of each member.
   refused({"--members", "0:2", "-o", mesh, "--manifest", manifest, "--labels", "--gravity", "2000", "8"},
           "--gravity: is of the whole mesh");
@@ -244,6 +249,13 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
           "--gravity: the density must be above 0");
   refused({"--members", "0:2", "--predict", "--labels", "--gravity", "2000", "8"},
           "--gravity: is of the whole mesh");
+  EXPECT_EQ(
+      run_program(kSynth, {recipe_, "--members", "0:1", "--out", name("one"), "--manifest", manifest}).status,
+      0);
+  EXPECT_EQ(run_program(kSynth,
+                        {recipe_, "--members", "0:2", "-o", name("one/{member}.ply"), "--manifest", manifest})
+                .status,
+            0);  // both ways go on with one set
   const std::string pipe = name("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   refused({"--members", "0:2", "-o", mesh, "--manifest", pipe},

@@ -4,6 +4,7 @@
 
 #include "fuzzed_reader.h"
 #include "geometry/io/mesh_io.h"
+#include "numerics/files/zstd_stream.h"
 
 namespace {
 
@@ -23,6 +24,10 @@ void check_mesh(const astrolith::TriangleMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace astrolith;
   const fuzz::FileInMemory file(data, size);
-  fuzz::run_reader(size, {1 << 20, 200}, [&] { check_mesh(read_mesh_or_points(file.path())); });
+  // A compressed file is unpacked to at most 100 times its size, with a window of at most 8 MB.
+  const bool packed = is_zstd({reinterpret_cast<const char*>(data), size});
+  const fuzz::MemoryBound bound =
+      packed ? fuzz::MemoryBound{16 << 20, 20500} : fuzz::MemoryBound{1 << 20, 200};
+  fuzz::run_reader(size, bound, [&] { check_mesh(read_mesh_or_points(file.path())); });
   return 0;
 }

@@ -14,6 +14,12 @@ torch = required("torch", "torch")
 _Dataset: Any = torch.utils.data.Dataset
 
 
+def _tensors(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _tensors(part) for name, part in value.items()}
+    return torch.from_numpy(value) if isinstance(value, np.ndarray) else value
+
+
 class TorchBodies(_Dataset):  # type: ignore[misc]
     """Bodies whose arrays are tensors."""
 
@@ -25,8 +31,5 @@ class TorchBodies(_Dataset):  # type: ignore[misc]
         return len(self._bodies)
 
     def __getitem__(self, index: int) -> Any:
-        item = {
-            name: torch.from_numpy(value) if isinstance(value, np.ndarray) else value
-            for name, value in self._bodies[index].items()
-        }
+        item = _tensors(self._bodies[index])
         return item if self._transform is None else self._transform(item)

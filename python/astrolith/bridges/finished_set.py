@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 from pathlib import Path
-from typing import Any, Iterator, Union
+from typing import Any, Iterator, Optional, Union
 
 import numpy as np
 
@@ -44,14 +44,12 @@ class FinishedSet:
             text = Path(manifest).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ValueError(f"{manifest}: cannot be read ({error})") from None
-        for number, line in enumerate(text.splitlines(keepends=True), 1):
-            if not line.endswith("\n"):
-                continue  # a run that was cut off; it makes this member again
-            try:
-                member = json.loads(line)
-                members[int(member["member"])] = {key: member[key] for key in ("member", "seed", "drawn", "files")}
-            except (ValueError, KeyError, TypeError):
-                raise ValueError(f"{manifest}: line {number}: is no member of a set; give a manifest of synth") from None
+        for line in text.split("\n"):
+            member = _member(line)  # a run that was cut off leaves a piece of a line, and makes that member again
+            if member is not None:
+                members[member["member"]] = member
+        if text.strip() and not members:
+            raise ValueError(f"{manifest}: holds no member of a set; give a manifest of synth")
         self._members = [members[key] for key in sorted(members)]
 
     def __len__(self) -> int:
@@ -66,7 +64,7 @@ class FinishedSet:
     def __getitem__(self, index: int) -> dict[str, Any]:
         stated = self._members[index]
         item: dict[str, Any] = {key: stated[key] for key in ("member", "seed", "drawn")}
-        item["files"] = {_ending(entry["name"]): self._path(entry) for entry in stated["files"]}
+        item["files"] = {_ending(entry["name"]): str(self._path(entry)) for entry in stated["files"]}
         for ending, path in item["files"].items():
             if ending in _MESHES and "vertices" not in item:
                 mesh = read_mesh(path)
@@ -85,6 +83,20 @@ class FinishedSet:
         if self._check and _sha256(path) != entry["sha256"]:
             raise ValueError(f"{path}: is not the file that the manifest states; run synth --members again")
         return path
+
+
+def _member(line: str) -> Optional[dict[str, Any]]:
+    """The member of a line; None for a line that states none."""
+    try:
+        stated = json.loads(line)
+        member = {key: stated[key] for key in ("seed", "drawn", "files")}
+        member["member"] = int(stated["member"])
+        for entry in member["files"]:
+            if not all(isinstance(entry[key], str) for key in ("name", "sha256")):
+                return None
+    except (ValueError, KeyError, TypeError):
+        return None
+    return member
 
 
 def _ending(name: str) -> str:
