@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,18 @@ std::vector<Tile> read_tiles(const std::vector<fs::path>& files) {
   return tiles;
 }
 
+// Ends the reading of a mesh, which may be large.
+class StopByCtrlC : public MeshSink {
+ public:
+  void add_vertices(std::span<const MeshVertex>) override { heed(); }
+  void add_triangles(std::span<const Triangle>) override { heed(); }
+
+ private:
+  static void heed() {
+    if (Program::interrupted()) throw WorkError("meshes: stopped before all were read");
+  }
+};
+
 // What keeps a mesh from being what the certificate says; empty where it is that.
 std::string difference_from(const TileCertificate& tile, const fs::path& mesh) {
   if (mesh.extension() != ".ply") return "it is no .ply, and no other mesh is read here";
@@ -87,9 +100,11 @@ std::string difference_from(const TileCertificate& tile, const fs::path& mesh) {
   const TileFigures& stated = tile.figures;
   ManifoldCheck check;
   TileBorder border(plane(stated.lower), plane(stated.upper));
+  StopByCtrlC stop;
   SinkList sinks;
   sinks.add(check);
   sinks.add(border);
+  sinks.add(stop);
   PlyStreamReader(mesh).read(sinks);
   const ManifoldReport report = check.finish();
   const std::optional<TileFigures> found = border.figures();
