@@ -39,7 +39,7 @@ class BinarySource {
   }
   void skip(PlyType type) { bytes_.skip(size_of(type), "a property"); }
   void need_rows(const PlyElement& e) const {
-    bytes_.need_rows(e.count, e.least_row_bytes(), e.name + " rows");
+    bytes_.need_rows(e.count, e.least_row_bytes(), astrolith::quoted(e.name) + " rows");
   }
   void need_entries(std::uint64_t count, PlyType type) const {
     bytes_.need_rows(count, size_of(type), "list entries");
@@ -64,7 +64,9 @@ class TextSource {
     if (scan_.word_anywhere().empty()) scan_.fail_truncated("a property");
   }
   // A number takes a digit and a blank; the last blank of the file may be missing.
-  void need_rows(const PlyElement& e) const { need(e.count, 2 * e.properties.size(), e.name + " rows"); }
+  void need_rows(const PlyElement& e) const {
+    need(e.count, 2 * e.properties.size(), astrolith::quoted(e.name) + " rows");
+  }
   void need_entries(std::uint64_t count, PlyType) const { need(count, 2, "list entries"); }
   [[noreturn]] void fail(std::string_view what, std::string_view remedy) const { scan_.fail(what, remedy); }
 

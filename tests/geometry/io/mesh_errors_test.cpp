@@ -140,6 +140,16 @@ TEST_F(MeshErrors, NameAndContentDisagree) {
   expect("a.obj", "ply\nformat ascii 1.0\n", "rename it to .ply");
 }
 
+// The fuzzer found this: an element's name may hold any bytes, of any number.
+TEST_F(MeshErrors, NamesOfPlyElementsAreQuoted) {
+  const std::filesystem::path file =
+      folder.write("a.ply", "ply\nformat binary_little_endian 1.0\nelement a\x07" + std::string(500, 'b') +
+                                " 100\nproperty float x\nend_header\n");
+  const std::string message = complaint(file);
+  EXPECT_EQ(message.find('\x07'), std::string::npos);
+  EXPECT_LT(message.size(), file.string().size() + 200);
+}
+
 TEST_F(MeshErrors, CompressedFilesOfAnotherKind) {
   expect("a.ply.zst", "\x28\xb5\x2f\xfd", "ends too early");
   expect("b.ply.zst", "\x28\xb5\x2f\xfdrubbish", "is damaged");
