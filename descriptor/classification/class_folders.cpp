@@ -1,12 +1,10 @@
 #include "descriptor/classification/class_folders.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <map>
-#include <string_view>
 #include <system_error>
 
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -46,14 +44,6 @@ std::vector<fs::path> folders_in(const fs::path& folder) {
 }
 
 }  // namespace
-
-bool has_mesh_extension(const fs::path& file) {
-  static constexpr std::array<std::string_view, 8> kExtensions{".obj", ".ply", ".stl", ".off",
-                                                               ".tab", ".plt", ".icq", ".bmf"};
-  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
-}
 
 std::vector<fs::path> meshes_in(const fs::path& folder) {
   std::vector<fs::path> meshes = entries_of(folder);

@@ -15,9 +15,6 @@ struct LabelledFiles {
   std::vector<std::filesystem::path> skipped;  // files without the ending of a mesh, hidden ones left out
 };
 
-// True for the extensions of mesh formats (obj, ply, stl, off, tab, plt, icq, bmf), in either case.
-bool has_mesh_extension(const std::filesystem::path& file);
-
 // If a folder contains folders, each of these is a class with the name of the inner folder. A folder without
 // inner folders is one class. Hidden files are ignored, and files without the extension of a mesh are listed
 // as skipped. Folders of the same name are one class. Throws InputError for anything that is no folder, for

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 
+#include "geometry/io/mesh_io.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {
@@ -144,14 +145,8 @@ std::string describe(const MeshFile& file, Format seen) {
 
 }  // namespace
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
-}
-
 MeshReader reader_for(const MeshFile& file) {
-  const auto named = formats_of(lower_extension(file.path));
+  const auto named = formats_of(mesh_extension(file.path));
   const Format seen = sniff(file);
   if (seen == Format::other) {
     file.fail("byte 0", "the content is " + describe(file, seen),
@@ -165,7 +160,7 @@ MeshReader reader_for(const MeshFile& file) {
   const bool agree = named.empty() || std::find(named.begin(), named.end(), seen) != named.end();
   if (!agree) {
     file.fail("byte 0",
-              "the name ends in " + lower_extension(file.path) + " but the content looks like " +
+              "the name ends in " + mesh_extension(file.path) + " but the content looks like " +
                   describe(file, seen),
               std::string("rename it to ") + entry(seen).extension);
   }

@@ -1,15 +1,9 @@
 // Finds the format of a file by its name and by its content.
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "geometry/io/mesh_file_internal.h"
 
 namespace astrolith {
-
-// The extension in lower case: ".ply" for "Bennu.PLY".
-std::string lower_extension(const std::filesystem::path& file);
 
 using MeshReader = TriangleMesh (*)(const MeshFile&);
 

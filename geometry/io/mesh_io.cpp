@@ -1,9 +1,11 @@
 #include "geometry/io/mesh_io.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/mesh_format_internal.h"
@@ -83,7 +85,7 @@ void require_writable(const TriangleMesh& mesh, const std::filesystem::path& fil
 using MeshWriter = void (*)(const TriangleMesh&, const std::filesystem::path&, const MeshFileInfo&);
 
 MeshWriter writer_for(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
+  const std::string extension = mesh_extension(file);
   if (extension == ".ply") return write_ply;
   if (file.extension() == ".zst") {
     throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
@@ -119,7 +121,19 @@ TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   return mesh;
 }
 
-bool is_ply_name(const std::filesystem::path& file) { return lower_extension(file) == ".ply"; }
+std::string mesh_extension(const std::filesystem::path& file) {
+  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
+
+bool has_mesh_extension(const std::filesystem::path& file) {
+  static constexpr std::array<std::string_view, 8> kExtensions{".obj", ".ply", ".stl", ".off",
+                                                               ".tab", ".plt", ".icq", ".bmf"};
+  return std::find(kExtensions.begin(), kExtensions.end(), mesh_extension(file)) != kExtensions.end();
+}
+
+bool is_ply_name(const std::filesystem::path& file) { return mesh_extension(file) == ".ply"; }
 
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
   const MeshWriter write = writer_for(file);

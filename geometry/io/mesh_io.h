@@ -55,6 +55,13 @@ struct MeshFileInfo {
 // cannot hold.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
+// The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for "Bennu.PLY"
+// and for "bennu.ply.zst".
+std::string mesh_extension(const std::filesystem::path& file);
+
+// Whether the extension alone tells that read_mesh reads the file. False for .txt, which may be anything.
+bool has_mesh_extension(const std::filesystem::path& file);
+
 // Whether a mesh of this name is written as PLY: .ply, or .ply.zst, which is compressed by Zstandard.
 bool is_ply_name(const std::filesystem::path& file);
 

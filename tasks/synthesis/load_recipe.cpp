@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
 #include "recipe/recipe_json.h"
@@ -62,11 +63,11 @@ void load_exemplar(ExemplarLayer& layer, const std::filesystem::path& folder, co
 
 // Throws InputError for a mesh or a photo, of which a fit makes a recipe.
 void require_no_input_of_fits(const std::filesystem::path& file) {
-  const std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
+  const std::string extension = mesh_extension(file);
   const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
     return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   };
-  if (is_one_of({".ply", ".obj", ".stl", ".off", ".glb", ".tab", ".icq", ".bmf"})) {
+  if (has_mesh_extension(file) || extension == ".glb") {
     throw InputError(file.string() + ": is a mesh and no recipe; fit_shape makes a recipe of it");
   }
   if (is_one_of({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {
