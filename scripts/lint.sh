@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs clang-tidy (.clang-tidy) on the programs' and libraries' sources; any finding fails.
 #   lint.sh [BUILD_FOLDER] [SOURCE ...]    the folder is configured, and needs not be built; all sources by default
-# A folder of a unity build (presets asan and tsan) takes less than half of the time: the headers of a group of sources are
-# read once. A single SOURCE needs a folder of another preset.
+# A folder of a unity build (all presets but debug) takes less than half of the time: the headers of a group of sources are
+# read once. A single SOURCE needs the preset debug.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
