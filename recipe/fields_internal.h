@@ -37,6 +37,8 @@ void visit_fields(FieldVisitor& v, PhasorLayer& layer);
 void visit_fields(FieldVisitor& v, CraterLayer& layer);
 void visit_fields(FieldVisitor& v, CraterProfile& profile);
 void visit_fields(FieldVisitor& v, Crater& crater);
+void visit_fields(FieldVisitor& v, WeibullSizes& sizes);
+void visit_fields(FieldVisitor& v, Clusters& clusters);
 void visit_fields(FieldVisitor& v, CraterPopulation& population);
 void visit_fields(FieldVisitor& v, BoulderLayer& layer);
 void visit_fields(FieldVisitor& v, Boulder& boulder);

@@ -36,6 +36,15 @@ void check_diameters(const Population& population, const Place& place) {
       .fail(fmt::format("is {}, below least_diameter; raise it", population.greatest_diameter));
 }
 
+void check_cells(const Population& population, const Place& place) {
+  if (!population.by_cells) return;
+  const char* const other = population.count ? "count" : population.clusters ? "clusters" : nullptr;
+  if (other == nullptr) return;
+  place.field("by_cells")
+      .fail(fmt::format("a population drawn by cells has no {}; {}", other,
+                        population.count ? "give its density" : "leave one of both out"));
+}
+
 void visit_population(FieldVisitor& v, Population& population) {
   v.rule(check_number, population);
   v.field("count", population.count, range(0, kMaxDrawnLandforms));
@@ -44,6 +53,12 @@ void visit_population(FieldVisitor& v, Population& population) {
   v.required("greatest_diameter", population.greatest_diameter, kPositive);
   v.rule(check_diameters, population);
   v.field("exponent", population.exponent, range(0.01, 10.0));
+  v.field("weibull", population.weibull);
+  v.field("clusters", population.clusters);
+  v.field("locality", population.locality);
+  v.field("mask", population.mask);
+  v.field_if(population.by_cells, "by_cells", population.by_cells);
+  v.rule(check_cells, population);
 }
 
 void check_axes(const Boulder& boulder, const Place& place) {
@@ -81,11 +96,23 @@ void visit_fields(FieldVisitor& v, Crater& crater) {
   v.field("age", crater.age, kNotNegative);
 }
 
+void visit_fields(FieldVisitor& v, WeibullSizes& sizes) {
+  v.required("scale", sizes.scale, kPositive);
+  v.required("shape", sizes.shape, range(0.05, 10.0));
+}
+
+void visit_fields(FieldVisitor& v, Clusters& clusters) {
+  v.required("number", clusters.number, range(1, kMaxClusters));
+  v.required("radius", clusters.radius, kPositive);
+  v.field("share", clusters.share, kShare);
+}
+
 void visit_fields(FieldVisitor& v, CraterPopulation& population) {
   visit_population(v, population.drawn);
   v.field("greatest_age", population.greatest_age, kNotNegative);
   v.field("depth_spread", population.depth_spread, kShare);
   v.field("degradation", population.degradation, kShare);
+  v.field_if(population.depth_deviation != 0.0, "depth_deviation", population.depth_deviation, kShare);
 }
 
 void visit_fields(FieldVisitor& v, CraterLayer& layer) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "numerics/vec3.h"
+#include "recipe/noise_layers.h"
 
 namespace astrolith {
 
@@ -24,21 +25,55 @@ struct SurfacePlace {
   bool is_direction = false;
 };
 
-// Landforms drawn uniformly over the area of the bare body. The number above a diameter D falls as
+// Sizes by Weibull's law: the number above a diameter D falls as
+//   N(> D) ~ exp(-(D / scale)^shape)
+// Counts of boulders below some metres follow it where a power law fails (Pajola et al. 2024, Dimorphos).
+struct WeibullSizes {
+  double scale = 1.0;  // length units, > 0
+  double shape = 1.0;  // [0.05, 10]
+};
+
+// Landforms in clusters (a Thomas process): a cluster's landforms lie about its centre, normally distributed
+// along both tangents. The centres are uniform over the area of the bare body.
+struct Clusters {
+  int number = 10;      // of clusters on the body, 1 .. kMaxClusters
+  double radius = 1.0;  // standard deviation along each tangent, length units, > 0
+  double share = 1.0;   // of the landforms that lie in clusters, [0, 1]; the others lie anywhere
+};
+inline constexpr int kMaxClusters = 100'000;
+
+// Landforms drawn over the area of the bare body: uniformly, or with a weight in [0, 1] that varies over it.
+// The number above a diameter D falls as
 //   N(> D) ~ D^-exponent
-// between two limits. A population has either a count or a density.
+// or by Weibull's law, between two limits. A population has either a count or a density. A count is exact
+// whatever the weight. A density is the density where the weight is 1.
 struct Population {
   std::optional<int> count;        // exact number, 0 .. kMaxDrawnLandforms
   std::optional<double> density;   // mean of a Poisson number, per squared length unit, >= 0
   double least_diameter = 0.0;     // > 0
   double greatest_diameter = 0.0;  // >= least_diameter
   double exponent = 2.0;           // [0.01, 10]
+  std::optional<WeibullSizes> weibull = std::nullopt;  // in place of the power law
+  std::optional<Clusters> clusters = std::nullopt;     // absent: places are independent of each other
+  std::optional<Locality> locality = std::nullopt;     // a factor of the weight
+  std::optional<LayerMask> mask = std::nullopt;        // a factor of the weight, by an earlier layer's height
+  // Whether landforms are drawn cell by cell of space, so that a patch draws only those that reach it. The
+  // population then has a density and no clusters, and its sizes may reach far below what a whole body can
+  // hold.
+  bool by_cells = false;
 
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     least_diameter *= ratio;
     greatest_diameter *= ratio;
     if (density) *density /= ratio * ratio;
+    if (weibull) weibull->scale *= ratio;
+    if (clusters) clusters->radius *= ratio;
+    if (locality) locality->width *= ratio;
+    if (mask) {
+      mask->from *= ratio;
+      mask->to *= ratio;
+    }
   }
 };
 
@@ -74,6 +109,9 @@ struct CraterPopulation {
   double greatest_age = 1.0;  // ages are uniform in [0, greatest_age]; >= 0
   double depth_spread = 0.0;  // a uniform factor of depth and rim in 1 +- depth_spread; [0, 1]
   double degradation = 0.0;   // a factor of depth and rim, 1 - degradation * age / greatest_age; [0, 1]
+  // Standard deviation of a normal factor of depth and rim, whose mean is 1. The factor is cut at three
+  // deviations and at 0.1; [0, 1]
+  double depth_deviation = 0.0;
 };
 
 // Craters, added one by one from the oldest to the youngest. A crater changes the elevation E that earlier

@@ -53,6 +53,11 @@ void check_layer_use(const Recipe& recipe, std::size_t index, const Place& place
     if (use->locality) check_group(*use->locality, recipe.body, place.field("locality"));
     if (use->mask) check_masking_layer(*use->mask, before, place.field("mask"));
   }
+  if (const Population* drawn = population_of(layer)) {
+    const Place at = place.field("population");
+    if (drawn->locality) check_group(*drawn->locality, recipe.body, at.field("locality"));
+    if (drawn->mask) check_masking_layer(*drawn->mask, before, at.field("mask"));
+  }
   const bool on_surface =
       std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer);
   if (on_surface && std::any_of(before.begin(), before.end(), displaces)) {

@@ -43,6 +43,34 @@ inline LayerUse* use_of(Layer& layer) {
 }
 inline const LayerUse* use_of(const Layer& layer) { return use_of(const_cast<Layer&>(layer)); }
 
+// The population of a layer of craters or boulders, or null.
+inline Population* population_of(Layer& layer) {
+  if (auto* craters = std::get_if<CraterLayer>(&layer))
+    return craters->population ? &craters->population->drawn : nullptr;
+  auto* boulders = std::get_if<BoulderLayer>(&layer);
+  return boulders != nullptr && boulders->population ? &boulders->population->drawn : nullptr;
+}
+inline const Population* population_of(const Layer& layer) {
+  return population_of(const_cast<Layer&>(layer));
+}
+
+// The locality of a layer of noise, or that of the landforms that a layer draws; null without one.
+inline const Locality* locality_of(const Layer& layer) {
+  const LayerUse* use = use_of(layer);
+  const Population* drawn = population_of(layer);
+  if (use != nullptr && use->locality) return &*use->locality;
+  return drawn != nullptr && drawn->locality ? &*drawn->locality : nullptr;
+}
+
+// The mask of a layer of noise, or that of the landforms that a layer draws; null without one.
+inline LayerMask* mask_of(Layer& layer) {
+  LayerUse* use = use_of(layer);
+  Population* drawn = population_of(layer);
+  if (use != nullptr && use->mask) return &*use->mask;
+  return drawn != nullptr && drawn->mask ? &*drawn->mask : nullptr;
+}
+inline const LayerMask* mask_of(const Layer& layer) { return mask_of(const_cast<Layer&>(layer)); }
+
 // The place of the last layer of this name in the list, or -1.
 int find_layer(std::span<const Layer> layers, const std::string& name);
 

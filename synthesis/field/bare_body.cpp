@@ -15,7 +15,8 @@ BareBody bare_body(const Recipe& recipe) {
             MeshCollector collector;
             mesh_field(field, field.bounds(), cells, collector);
             return std::move(collector.mesh);
-          }};
+          },
+          field.tables().body.lipschitz_bound};
 }
 
 }  // namespace astrolith

@@ -63,6 +63,10 @@ struct BatchLists {
 // Evaluates a layer at the points of a batch and joins it with the elevation so far (layer_join.h).
 void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
 
+// Evaluates the heights of a layer at the points of a batch, whether it joins them or not. Expects a layer
+// that is no layer of craters.
+void evaluate_layer(const FieldModel& model, const FieldLayer& layer, Batch& b);
+
 // Blends the colours of a layer that paints over color[i] at the points of a batch. Expects the heights that
 // the layer's mask needs to be kept in the batch.
 void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,

@@ -166,6 +166,25 @@ void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<con
   }
 }
 
+float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& p) {
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  const PointArrays at{&x, &y, &z};
+  Batch b;
+  const PointArrays metaballs_at = begin_batch(model, {model.metaballs.lists(), {}}, 1, at, nullptr, b);
+  std::array<int, kBatch> origin;
+  keep_near_surface(
+      1, 0.0f, [](int) { return true; }, at, metaballs_at, nullptr, b, origin);
+  b.elevation[0] = 0.0f;
+  b.kept.resize(model.num_kept_heights);
+  for (std::size_t i = 0; i < number; ++i) {
+    const LayerJoin& join = model.layers[i].join;
+    // Heights do not depend on the elevation of earlier layers, but on their warps.
+    if (join.keeps >= 0 || join.how.kind == Combine::kWarp) apply_layer(model, model.layers[i], b);
+  }
+  evaluate_layer(model, model.layers[number], b);
+  return b.height[0];
+}
+
 float value_at(const FieldModel& model, const Vec3d& p) {
   const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
   float f = 0.0f;

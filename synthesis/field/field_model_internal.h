@@ -60,6 +60,10 @@ void add_layers(const Recipe& recipe, const std::string& name, FieldModel& model
 // F at a point.
 float value_at(const FieldModel& model, const Vec3d& p);
 
+// The height of the model's layer number `number`, a layer of noise, at a point: as a mask reads it. The
+// model may still lack the layers after it.
+float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& p);
+
 // The noise of a layer in the frame of the field's patch, if it has one there, else in the body's frame.
 const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer);
 

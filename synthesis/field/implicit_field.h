@@ -41,11 +41,13 @@ struct PatchCube {
   double side = 0.0;
 };
 
-// A part of a layer that is too fine for the coordinates that the field is evaluated in.
+// A part of a layer that is too fine for the coordinates that the field is evaluated in, or the landforms of
+// a layer that are too many for a whole body.
 struct LayerLeftOut {
   int layer = 0;                // the layer's place in the recipe; -1: the body's warp
   double variance_share = 0.0;  // share in the variance that the whole layer would have, (0, 1]
-  double finest = 0.0;          // shortest wave or narrowest cell of the layer, length units
+  double finest = 0.0;          // shortest wave, narrowest cell or least landform of the layer, length units
+  double landforms = 0.0;       // of a population drawn by cells: how many the whole body would have more
 };
 
 // The spots that reach a box, one pointer for each layer; null where nothing was drawn. The vector is empty

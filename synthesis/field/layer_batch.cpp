@@ -217,9 +217,13 @@ void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
     return;
   }
   if (layer.join.idle()) return;
+  evaluate_layer(model, layer, b);
+  join_heights(model, layer.join, b);
+}
+
+void evaluate_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
   const bool in_patch = stands_in_patch(layer, b);
   (in_patch ? noise_of(model, layer) : layer.noise).visit(LayerHeights{model, layer, b, in_patch});
-  join_heights(model, layer.join, b);
 }
 
 }  // namespace astrolith

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "recipe/height_field.h"
 #include "synthesis/field/bare_body.h"
 #include "synthesis/field/field_model_internal.h"
+#include "synthesis/landforms/population_cells.h"
 
 namespace astrolith {
 namespace {
@@ -67,6 +69,8 @@ class LayerStack {
     sum_changes();
     model_.update();
     add_boulders(progress);
+    std::stable_sort(model_.left_out.begin(), model_.left_out.end(),
+                     [](const LayerLeftOut& a, const LayerLeftOut& b) { return a.layer < b.layer; });
   }
 
  private:
@@ -105,7 +109,7 @@ class LayerStack {
   }
   void add(const CraterLayer& layer) {
     std::vector<PlacedCrater> craters =
-        place_craters(layer, bare(), recipe_.seed, number_of(layer), place_of(index_));
+        place_craters(layer, bare(), recipe_.seed, number_of(layer), place_of(index_), crater_places(layer));
     std::vector<Vec3d> centers;
     for (const PlacedCrater& crater : craters) centers.push_back(crater.position);
     sum_changes();
@@ -128,14 +132,17 @@ class LayerStack {
   void add(const BoulderLayer&) {}
 
   void add_boulders(const Progress& progress) {
+    model_.update();
     const Terrain terrain{[this](const Vec3d& p) { return static_cast<double>(value_at(model_, p)); },
                           model_.height_bound};
     std::vector<FieldBoulder> all;
     for (int i = 0; i < static_cast<int>(recipe_.layers.size()); ++i) {
       const auto* layer = std::get_if<BoulderLayer>(&recipe_.layers[static_cast<std::size_t>(i)]);
       if (layer == nullptr) continue;
-      std::vector<PlacedBoulder> placed = place_boulders(*layer, bare(), terrain, recipe_.seed,
-                                                         layer_number(layer->seed, i), place_of(i), progress);
+      index_ = i;
+      std::vector<PlacedBoulder> placed =
+          place_boulders(*layer, bare(), terrain, recipe_.seed, layer_number(layer->seed, i), place_of(i),
+                         progress, boulder_places(*layer, progress));
       const std::vector<FieldBoulder> boulders = field_boulders(*layer, placed);
       all.insert(all.end(), boulders.begin(), boulders.end());
       model_.placed_boulders.push_back({i, std::move(placed)});
@@ -144,6 +151,107 @@ class LayerStack {
     for (const FieldBoulder& boulder : all) boxes.push_back(boulder.box);
     model_.boulder_tree = BoxTree(boxes);
     model_.boulders = std::move(all);
+  }
+
+  // Where the drawn craters of a layer may lie. The base of a crater depends on older ones that cover its
+  // centre, so that craters matter somewhat beyond what they cover.
+  DrawingPlaces crater_places(const CraterLayer& layer) {
+    constexpr double kBasesOfBases = 4.0;
+    if (!layer.population) return {};
+    const Population& drawn = layer.population->drawn;
+    DrawingPlaces places{weight_of(drawn), {}, 0.5, 0.0, {}};
+    if (!drawn.by_cells) return places;
+    report_sizes_left_out(drawn);
+    if (!model_.patch) return places;
+    const double extent = std::max(layer.simple.extent, layer.complex_from ? layer.complex.extent : 0.0);
+    places.reach = kBasesOfBases * 0.5 * extent;
+    places.margin = height_reach() + widest_boulder();
+    places.region = patch_box();
+    return places;
+  }
+  DrawingPlaces boulder_places(const BoulderLayer& layer, const Progress& progress) {
+    if (!layer.population) return {};
+    const Population& drawn = layer.population->drawn;
+    DrawingPlaces places{weight_of(drawn), {}, boulder_reach(layer), model_.height_bound, progress};
+    if (!drawn.by_cells) return places;
+    report_sizes_left_out(drawn);
+    if (model_.patch) places.region = patch_box();
+    return places;
+  }
+
+  // The patch, with a margin for the differences that give normals.
+  Box patch_box() const {
+    const Vec3d& center = model_.patch->center;
+    return widened(Box{center, center}, 0.51 * model_.patch->side);
+  }
+  // How far a boulder that is drawn by cells reaches at most, length units.
+  double widest_boulder() const {
+    double widest = 0.0;
+    for (const Layer& layer : recipe_.layers) {
+      const auto* boulders = std::get_if<BoulderLayer>(&layer);
+      const Population* drawn = population_of(layer);
+      if (boulders == nullptr || drawn == nullptr || !drawn->by_cells) continue;
+      widest = std::max(widest, boulder_reach(*boulders) * drawn->greatest_diameter);
+    }
+    return widest;
+  }
+  // A bound of all elevations, those of later layers too; length units. It is found without the populations
+  // that are drawn by cells, whose craters rise by a bound of their own.
+  double height_reach() {
+    if (height_reach_) return *height_reach_;
+    Recipe others = recipe_;
+    double rise = 0.0;
+    for (Layer& layer : others.layers) {
+      if (auto* craters = std::get_if<CraterLayer>(&layer)) {
+        if (!craters->population || !craters->population->drawn.by_cells) continue;
+        rise += crater_rise(*craters);
+        craters->population.reset();
+      } else if (auto* boulders = std::get_if<BoulderLayer>(&layer)) {
+        *boulders = {};
+      }
+    }
+    FieldModel model;
+    model.patch = model_.patch;
+    model.body = make_body(*others.body, others.seed, model.arrays);
+    model.update();
+    model.metaballs = all_metaballs(model.body, model.tables.arrays);
+    add_layers(others, name_, model);
+    height_reach_ = model.height_bound + rise;
+    return *height_reach_;
+  }
+
+  // The weight of the places of a population; empty where it is 1 everywhere. It reads the model as it is
+  // when it is called.
+  PlaceWeight weight_of(const Population& drawn) {
+    if (!drawn.locality && !drawn.mask) return {};
+    sum_changes();
+    model_.update();
+    const std::string place = place_of(index_) + ".population";
+    const auto arrays = std::make_shared<ArrayStore>();
+    std::optional<LocalWeight> local;
+    if (drawn.locality) local = make_local_weight(*drawn.locality, *recipe_.body, place, *arrays);
+    LayerJoin join;
+    std::size_t masking = 0;
+    if (drawn.mask) {
+      const auto number = numbers_.find(masking_layer(*drawn.mask, index_));
+      if (number == numbers_.end()) fail_without_height(*drawn.mask, place);
+      masking = number->second;
+      set_range(*drawn.mask, join);
+    }
+    return [this, arrays, local, join, masking, masked = drawn.mask.has_value()](const Vec3d& p) {
+      float weight = 1.0f;
+      if (masked) {
+        weight *= smooth_step(layer_height_at(model_, masking, p), join.mask_from, join.mask_inverse_range);
+      }
+      if (local) weight *= weight_at(*local, arrays->view(), to_float(p));
+      return weight;
+    };
+  }
+
+  void report_sizes_left_out(const Population& drawn) {
+    const SizesByCells sizes = sizes_by_cells(drawn, bare(), !model_.patch);
+    if (sizes.number_left_out == 0.0) return;
+    model_.left_out.push_back({index_, sizes.share_left_out, drawn.least_diameter, sizes.number_left_out});
   }
 
   // Throws InputError where the elevations could reach the height limit.
@@ -308,8 +416,6 @@ class LayerStack {
       std::visit([&](const auto& layer) { add_patch_noise(layer, l, patch, warp); },
                  recipe_.layers[static_cast<std::size_t>(l.index)]);
     }
-    std::stable_sort(model_.left_out.begin(), model_.left_out.end(),
-                     [](const LayerLeftOut& a, const LayerLeftOut& b) { return a.layer < b.layer; });
   }
   template <class AnyLayer>
   void add_patch_noise(const AnyLayer& layer, const PatchLayer& l, const PatchCube& patch, double warp) {
@@ -376,6 +482,7 @@ class LayerStack {
       join.change_bound = is_change ? join.height_bound : before + model_.height_bound;
     }
     if (join.how.kind == Combine::kWarp) displace_later(join.how.direction, join.height_bound);
+    if (!only_paints) numbers_[index_] = model_.layers.size();
     model_.layers.push_back({LayerNoise(noise), join, first_list});
   }
 
@@ -401,11 +508,15 @@ class LayerStack {
   }
   void set_mask(const LayerMask& mask, LayerJoin& join) const {
     const auto slot = slots_.find(masking_layer(mask, index_));
-    if (slot == slots_.end()) {
-      throw InputError(place_of(index_) + ".mask.layer: \"" + mask.layer +
-                       "\" has no height; give that layer one, or name another");
-    }
+    if (slot == slots_.end()) fail_without_height(mask, place_of(index_));
     join.mask = slot->second;
+    set_range(mask, join);
+  }
+  [[noreturn]] static void fail_without_height(const LayerMask& mask, const std::string& place) {
+    throw InputError(place + ".mask.layer: \"" + mask.layer +
+                     "\" has no height; give that layer one, or name another");
+  }
+  static void set_range(const LayerMask& mask, LayerJoin& join) {
     join.mask_from = static_cast<float>(mask.from);
     join.mask_to = static_cast<float>(mask.to);
     join.mask_inverse_range = 1.0f / (join.mask_to - join.mask_from);
@@ -432,6 +543,8 @@ class LayerStack {
   Box supports_, domain_;
   Vec3d displaced_;           // bound of the displacement of later layers along each axis, length units
   std::map<int, int> slots_;  // slot of the kept heights of each masking layer
+  std::map<int, std::size_t> numbers_;  // number in the model of each layer of noise, by its place
+  std::optional<double> height_reach_;  // set by height_reach()
   std::vector<PatchLayer> patch_layers_;
   double spot_draws_ = 0.0, gabor_draws_ = 0.0;  // by draws_at_a_point()
   std::map<int, ExemplarNoise> exemplars_;       // without anchors, by the layer's place in the recipe

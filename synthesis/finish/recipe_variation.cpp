@@ -110,15 +110,16 @@ const std::string& name_of(const Layer& layer) {
 // holds the factor of each layer's heights.
 void follow_heights(const std::vector<double>& growth, std::vector<Layer>& layers) {
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    LayerUse* use = use_of(layers[i]);
-    if (use == nullptr) continue;
-    use->combination.width = round_to_seven_digits(use->combination.width * growth[i]);
-    if (!use->mask) continue;
+    if (LayerUse* use = use_of(layers[i])) {
+      use->combination.width = round_to_seven_digits(use->combination.width * growth[i]);
+    }
+    LayerMask* mask = mask_of(layers[i]);
+    if (mask == nullptr) continue;
     std::size_t asked = i;
-    while (asked > 0 && name_of(layers[asked - 1]) != use->mask->layer) --asked;
+    while (asked > 0 && name_of(layers[asked - 1]) != mask->layer) --asked;
     if (asked == 0) continue;
-    use->mask->from = round_to_seven_digits(use->mask->from * growth[asked - 1]);
-    use->mask->to = round_to_seven_digits(use->mask->to * growth[asked - 1]);
+    mask->from = round_to_seven_digits(mask->from * growth[asked - 1]);
+    mask->to = round_to_seven_digits(mask->to * growth[asked - 1]);
   }
 }
 

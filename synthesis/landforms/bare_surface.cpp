@@ -104,15 +104,31 @@ Vec3d BareSurface::on_mesh(const Vec3d& random) const {
          (root * random.z) * mesh_.vertices[t[2]];
 }
 
+Vec3d BareSurface::place(const Vec3d& random) const {
+  const Vec3d start = on_mesh(random), end = projected(start);
+  return norm(end - start) < longest_side() / kMeshCells ? end : start;
+}
+
 std::vector<Vec3d> BareSurface::scatter(std::span<const Vec3d> random) const {
   make_mesh();
   std::vector<Vec3d> points(areas_.empty() ? 0 : random.size());
   parallel_for(0, static_cast<std::int64_t>(points.size()), [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
-    const Vec3d start = on_mesh(random[k]), end = nearer(nearer(start));
-    points[k] = norm(end - start) < longest_side() / kMeshCells ? end : start;
+    points[k] = place(random[k]);
   });
   return points;
+}
+
+std::optional<Vec3d> BareSurface::place_beside(const Vec3d& p, double east, double north) const {
+  const Vec3d up = normal(p);
+  const Vec3d along = std::fabs(up.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
+  const Vec3d to_east = normalized(cross(along, up)), to_north = cross(up, to_east);
+  const Vec3d start = p + east * to_east + north * to_north;
+  Vec3d end = start;
+  for (int step = 0; step < 4; ++step) end = nearer(end);
+  const double moved = norm(end - start), strayed = std::sqrt(east * east + north * north);
+  const bool found = std::fabs(body_.value(end)) < 1e-4 * longest_side() && moved <= strayed;
+  return found ? std::optional(end) : std::nullopt;
 }
 
 }  // namespace astrolith

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct BareBody {
   std::function<double(const Vec3d&)> value;    // about the signed distance, length units, positive inside
   std::function<Vec3d(const Vec3d&)> gradient;  // gradient of value, pointing inwards
   std::function<TriangleMesh(int cells)> meshed_at;  // closed mesh with `cells` cells along the longest side
+  double lipschitz_bound = 1.0;                      // bound of |gradient of value|
 
   bool inside(const Vec3d& p) const { return value(p) > 0.0; }
 };
@@ -42,6 +44,18 @@ class BareSurface {
   // Points of the surface, uniform over its area: one for each element of `random`, whose coordinates lie in
   // [0, 1). Empty for a body without a surface.
   std::vector<Vec3d> scatter(std::span<const Vec3d> random) const;
+  // One such point. Expects area() to have been called, and to be above 0. It may be called from many
+  // threads.
+  Vec3d place(const Vec3d& random) const;
+  // The point of the surface that lies about (east, north) from a point of it in the tangent plane, in length
+  // units; none where the surface is not near there.
+  std::optional<Vec3d> place_beside(const Vec3d& p, double east, double north) const;
+  // The signed distance to first order, length units, positive inside; and a bound of its slope.
+  double value(const Vec3d& p) const { return body_.value(p); }
+  double lipschitz_bound() const { return body_.lipschitz_bound; }
+  const Box& bounds() const { return body_.bounds; }
+  // The surface's point near p, by two steps of Newton's method.
+  Vec3d projected(const Vec3d& p) const { return nearer(nearer(p)); }
 
  private:
   void make_mesh() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
@@ -10,7 +11,6 @@
 #include "numerics/interval.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_angles.h"
-#include "synthesis/landforms/population.h"
 
 namespace astrolith {
 namespace {
@@ -53,6 +53,7 @@ void turn(const Vec3d& upright, PlacedBoulder& boulder) {
 struct Placement {
   Vec3d bare;  // on the bare surface
   PlacedBoulder boulder;
+  std::optional<std::uint32_t> noise_seed = std::nullopt;  // absent: from the place in the list
 };
 
 void find_listed(const BoulderLayer& layer, const BareSurface& surface, const std::string& where,
@@ -67,10 +68,10 @@ void find_listed(const BoulderLayer& layer, const BareSurface& surface, const st
 }
 
 void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t seed, int layer_index,
-          const std::string& where, std::vector<Placement>& out) {
+          const std::string& where, const DrawingPlaces& places, std::vector<Placement>& out) {
   const BoulderPopulation& population = *layer.population;
   expect_boulder_fits(population.drawn.greatest_diameter, surface, where + ".greatest_diameter");
-  for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
+  for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where, places)) {
     CounterRandom& random = drawn.random;
     const auto spread = [&](double ratio) {
       const double factor = 1.0 + population.ratio_spread * random.uniform(-1.0, 1.0);
@@ -84,6 +85,8 @@ void draw(const BoulderLayer& layer, const BareSurface& surface, std::uint64_t s
     boulder.tilt = population.greatest_tilt * random.uniform(-1.0, 1.0);
     boulder.burial = random.uniform(population.least_burial, population.greatest_burial);
     out.push_back({drawn.position, boulder});
+    // The place in the list of a boulder that is drawn by cells depends on the region.
+    if (population.drawn.by_cells) out.back().noise_seed = static_cast<std::uint32_t>(random.next());
   }
 }
 
@@ -163,13 +166,20 @@ ASTROLITH_SIMD_CLONES void join_boulder_loop(const BoulderKernel& kernel, int n,
 
 }  // namespace
 
+// The centre lies within 0.75 diameters of the ground, with the roughness that the extents include. From
+// there the boulder reaches half a diameter, with its noise and its joint more.
+double boulder_reach(const BoulderLayer& layer) {
+  return 0.75 + 0.5 * (1.0 + layer.smoothing + layer.roughness);
+}
+
 std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareSurface& surface,
                                           const Terrain& terrain, std::uint64_t seed, int layer_index,
-                                          const std::string& where, const Progress& progress) {
+                                          const std::string& where, const Progress& progress,
+                                          const DrawingPlaces& places) {
   if (surface.empty()) return {};
   std::vector<Placement> placements;
   find_listed(layer, surface, where, placements);
-  if (layer.population) draw(layer, surface, seed, layer_index, where + ".population", placements);
+  if (layer.population) draw(layer, surface, seed, layer_index, where + ".population", places, placements);
   const std::vector<Vec3d> verticals = find_verticals(layer, surface, where, placements);
   const std::uint32_t layer_seed = hash_seed(seed, static_cast<std::uint32_t>(layer_index));
   const auto count = static_cast<std::int64_t>(placements.size());
@@ -182,7 +192,7 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
       const Vec3d normal = surface.normal(p.bare);
       const Vec3d vertical = verticals.empty() ? normal : verticals[static_cast<std::size_t>(i)];
       const Vec3d upright = dot(vertical, normal) > kLeastUpward ? vertical : normal;
-      p.boulder.noise_seed = hash_append(layer_seed, static_cast<std::uint32_t>(i));
+      p.boulder.noise_seed = p.noise_seed.value_or(hash_append(layer_seed, static_cast<std::uint32_t>(i)));
       settle(layer, on_terrain(p.bare, normal, terrain), upright, p.boulder);
     });
   }

@@ -12,6 +12,7 @@
 #include "recipe/recipe.h"
 #include "synthesis/landforms/bare_surface.h"
 #include "synthesis/landforms/boulder_shape.h"
+#include "synthesis/landforms/population.h"
 
 namespace astrolith {
 
@@ -37,10 +38,14 @@ struct Terrain {
 
 // The layer's listed boulders, then its drawn ones. Throws InputError, naming `where` in the recipe, for a
 // boulder that has no place on the body or is longer than it, and WorkError where progress asks to stop. The
-// result is empty for a body without a surface.
+// result is empty for a body without a surface. `places` says where drawn boulders may lie.
 std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareSurface& surface,
                                           const Terrain& terrain, std::uint64_t seed, int layer_index,
-                                          const std::string& where, const Progress& progress = {});
+                                          const std::string& where, const Progress& progress = {},
+                                          const DrawingPlaces& places = {});
+
+// How far from its place a drawn boulder may change the surface, in its diameters.
+double boulder_reach(const BoulderLayer& layer);
 
 // A boulder as it joins a field, and the box that it reaches. Outside the box it changes nothing.
 struct FieldBoulder {

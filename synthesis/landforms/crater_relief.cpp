@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "numerics/errors.h"
 #include "synthesis/landforms/crater_bounds.h"
@@ -43,20 +44,42 @@ void place_listed(const CraterLayer& layer, const BareSurface& surface, const st
   }
 }
 
+// The normal factor of a drawn crater's depth.
+double deviating_factor(const CraterPopulation& population, CounterRandom& random) {
+  if (population.depth_deviation == 0.0) return 1.0;
+  return std::max(0.1, 1.0 + population.depth_deviation * std::clamp(random.normal(), -3.0, 3.0));
+}
+
 void place_drawn(const CraterLayer& layer, const BareSurface& surface, std::uint64_t seed, int layer_index,
-                 const std::string& where, std::vector<PlacedCrater>& out) {
+                 const std::string& where, const DrawingPlaces& places, std::vector<PlacedCrater>& out) {
   const CraterPopulation& population = *layer.population;
   expect_crater_fits(population.drawn.greatest_diameter, surface, where + ".greatest_");
-  for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where)) {
+  for (DrawnLandform& drawn : draw_population(population.drawn, surface, seed, layer_index, where, places)) {
     const double age_share = drawn.random.uniform();
     PlacedCrater crater = sized_crater(layer, drawn.diameter, population.greatest_age * age_share);
     crater.position = drawn.position;
     const double factor = (1.0 + population.depth_spread * drawn.random.uniform(-1.0, 1.0)) *
-                          (1.0 - population.degradation * age_share);
+                          (1.0 - population.degradation * age_share) *
+                          deviating_factor(population, drawn.random);
     crater.depth *= factor;
     crater.rim_height *= factor;
     out.push_back(crater);
   }
+}
+
+// How many craters cover a place on average, of a population that is drawn by cells. A list of those in a
+// region does not tell.
+double coverage_by_cells(const CraterLayer& layer) {
+  if (!layer.population || !layer.population->drawn.by_cells) return 0.0;
+  constexpr int kSamples = 256;
+  const Population& drawn = layer.population->drawn;
+  const double extent = std::max(layer.simple.extent, layer.complex_from ? layer.complex.extent : 0.0);
+  double area = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double across = extent * diameter_at(drawn, (i + 0.5) / kSamples);
+    area += 0.25 * std::numbers::pi * across * across / kSamples;
+  }
+  return *drawn.density * area;
 }
 
 // Throws InputError if the craters would cover a ball as wide as the body more than kMostOverlaps times.
@@ -67,6 +90,7 @@ void expect_few_overlaps(const CraterLayer& layer, const std::vector<PlacedCrate
     const double across = profile_of(layer, crater.complex).extent * crater.diameter / surface.longest_side();
     covered += 0.25 * across * across;
   }
+  covered = std::max(covered, coverage_by_cells(layer));
   if (covered <= kMostOverlaps) return;
   throw InputError(where + ": its craters would cover every place " + std::to_string(covered) +
                    " times, above " + std::to_string(static_cast<int>(kMostOverlaps)) +
@@ -146,15 +170,40 @@ void find_bases(std::span<const PlacedCrater> placed, std::span<const float> ele
 }  // namespace
 
 std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurface& surface,
-                                        std::uint64_t seed, int layer_index, const std::string& where) {
+                                        std::uint64_t seed, int layer_index, const std::string& where,
+                                        const DrawingPlaces& places) {
   std::vector<PlacedCrater> craters;
   if (surface.empty()) return craters;
   place_listed(layer, surface, where, craters);
-  if (layer.population) place_drawn(layer, surface, seed, layer_index, where + ".population", craters);
+  if (layer.population) {
+    place_drawn(layer, surface, seed, layer_index, where + ".population", places, craters);
+  }
   expect_few_overlaps(layer, craters, surface, where);
   std::stable_sort(craters.begin(), craters.end(),
                    [](const PlacedCrater& a, const PlacedCrater& b) { return a.age > b.age; });
   return craters;
+}
+
+double crater_rise(const CraterLayer& layer) {
+  double greatest = 0.0;
+  const auto include = [&](double diameter, double factor) {
+    for (const bool complex : {false, true}) {
+      if (complex && !layer.complex_from) continue;
+      const CraterProfile& profile = profile_of(layer, complex);
+      const double relief = std::max(profile.depth, profile.rim_height) * factor + profile.peak_height;
+      greatest = std::max(greatest, diameter * relief);
+    }
+  };
+  for (const Crater& crater : layer.craters) {
+    include(crater.diameter, 1.0);
+    greatest = std::max(greatest, std::max(crater.depth.value_or(0.0), crater.rim_height.value_or(0.0)) +
+                                      layer.complex.peak_height * crater.diameter);
+  }
+  if (layer.population) {
+    const CraterPopulation& drawn = *layer.population;
+    include(drawn.drawn.greatest_diameter, (1.0 + drawn.depth_spread) * (1.0 + 3.0 * drawn.depth_deviation));
+  }
+  return kClip * greatest;
 }
 
 BoxTree crater_tree(std::span<const CraterKernel> craters) {
@@ -175,7 +224,10 @@ CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const Placed
     greatest = std::max({greatest, crater.depth, crater.rim_height + peak});
   }
   find_bases(oldest_first, elevations, craters);
-  return {arrays.add(craters), bound_before + kClip * greatest, 0};
+  // Of craters drawn by cells the largest one that happens to be there depends on the region.
+  const bool by_cells = layer.population && layer.population->drawn.by_cells;
+  const double rise = by_cells ? crater_rise(layer) : kClip * greatest;
+  return {arrays.add(craters), bound_before + rise, 0};
 }
 
 void apply_craters(const CraterRelief& relief, const ArrayView& arrays, const BoxTree& tree, int n,

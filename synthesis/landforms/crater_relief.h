@@ -34,9 +34,15 @@ struct LayerCraters {
 
 // The layer's listed craters and its drawn ones, from the oldest to the youngest. Throws InputError, naming
 // `where` in the recipe, for a crater that has no place on the body or is wider than it, and for craters that
-// would cover every place more than 2000 times. The result is empty for a body without a surface.
+// would cover every place more than 2000 times. The result is empty for a body without a surface. `places`
+// says where drawn craters may lie.
 std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurface& surface,
-                                        std::uint64_t seed, int layer_index, const std::string& where);
+                                        std::uint64_t seed, int layer_index, const std::string& where,
+                                        const DrawingPlaces& places = {});
+
+// A bound of |elevation| after the layer's craters, over that before, if no crater is larger than its
+// greatest listed or drawn diameter; length units.
+double crater_rise(const CraterLayer& layer);
 
 // The craters of a layer, oldest first, with the constants that their evaluation needs.
 struct CraterRelief {

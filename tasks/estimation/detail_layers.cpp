@@ -32,9 +32,8 @@ std::string place_of(std::string_view option, const std::string& file, std::size
 
 // A fit knows no groups of metaballs, so that no layer of its recipe can be bound to one.
 void check_no_group(const Layer& layer, const std::string& place) {
-  const LayerUse* use = use_of(layer);
-  if (use == nullptr || !use->locality) return;
-  throw InputError(place +
+  if (locality_of(layer) == nullptr) return;
+  throw InputError(place + (use_of(layer) == nullptr ? ".population" : "") +
                    ".locality.group: a fitted body has no groups; take `locality` out of the layer, or lay "
                    "it on the recipe with synth --base once that has the group");
 }

@@ -106,6 +106,8 @@ std::map<std::string, Fields> described() {
           {"craters", fields_of(Layer{CraterLayer{}})},
           {"crater_profile", fields_of(CraterProfile{})},
           {"crater", fields_of(Crater{})},
+          {"weibull_sizes", fields_of(WeibullSizes{})},
+          {"clusters", fields_of(Clusters{})},
           {"crater_population", fields_of(CraterPopulation{})},
           {"boulders", fields_of(Layer{BoulderLayer{}})},
           {"boulder", fields_of(Boulder{})},
