@@ -7,6 +7,7 @@
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
+#include "apps/synth/synth_finish.h"
 #include "apps/synth/synth_members.h"
 #include "apps/synth/synth_mesh.h"
 #include "apps/synth/synth_predict_members.h"
@@ -32,6 +33,7 @@ struct Options {
   TextureRequest texture;
   MeshRequest mesh;
   MembersRequest members;
+  FinishOptions finish;
   double vary = 0.0;  // 0 = the recipe itself
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
@@ -52,6 +54,7 @@ void declare_options(Program& program, Options& options) {
                   "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
                   "convert, and the unit \"body\" is the longest side of that body")
       .placeholder("BODY.json");
+  declare_finish_options(program, options.finish);
   Option vary =
       program.app
           .add_option(
@@ -75,10 +78,10 @@ void declare_options(Program& program, Options& options) {
   declare_texture_options(program, options.texture);
   declare_members_options(program, options.members);
   for (const char* of_mesh :
-       {"--resolution",   "--triangles", "--max-memory", "--tile",          "--patch",
-        "--feature-list", "--vary",      "--target",     "--min-component", "--predict",
-        "--device",       "--points",    "--labels",     "--preview",       "--preview-maps",
-        "--view",         "--sun",       "--gravity",    "--height-map",    "--uv"}) {
+       {"--resolution", "--triangles", "--max-memory",    "--tile",    "--patch",  "--feature-list",
+        "--vary",       "--target",    "--min-component", "--predict", "--device", "--points",
+        "--labels",     "--preview",   "--preview-maps",  "--view",    "--sun",    "--gravity",
+        "--height-map", "--uv",        "--finish"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {
@@ -140,6 +143,7 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
 
 // Refuses outputs that cannot be written before any work.
 void check_outputs(const Program& program, const Options& options) {
+  check_finish(options.finish);
   if (!options.members.range.empty()) {
     check_members(options.members, options.mesh, {options.output, options.written_recipe});
   }
@@ -170,10 +174,12 @@ void synthesize(Program& program, const Options& options) {
   const fs::path& body_file = options.base.empty() ? options.recipe : options.base;
   if (!options.members.range.empty()) {
     const auto job = options.mesh.size.only_predict ? predict_members : make_members;
-    return job(program, options.members, options.mesh, {options.output, options.written_recipe}, recipe,
-               body_file);
+    return job(program, options.members, options.mesh, {options.output, options.written_recipe},
+               finished(program, options.finish, recipe, body_file.string()), body_file);
   }
-  const Recipe made = options.vary > 0.0 ? varied(program, options, recipe) : recipe;
+  const Recipe made =
+      finished(program, options.finish, options.vary > 0.0 ? varied(program, options, recipe) : recipe,
+               body_file.string());
   if (!options.written_recipe.empty()) write_loaded_recipe(made, options.written_recipe);
   if (options.output.empty() && !options.mesh.size.only_predict) return;
   make_mesh(program, options.mesh, made, body_file, options.output);

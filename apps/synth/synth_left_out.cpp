@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,8 @@ std::string name_of(const Layer& layer) {
 
 // The layer in words, such as: layers[2] "grains" (gabor, 63 % of its variance).
 std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
-  const std::string share = fmt::format("{:.3g} % of its variance", 100.0 * left.variance_share);
+  std::string share = fmt::format("{:.3g} % of its variance", 100.0 * left.variance_share);
+  if (left.landforms > 0.0) share = fmt::format("{:.3g} of its landforms, {}", left.landforms, share);
   if (left.layer < 0) return "body.warp (" + share + ")";
   const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
   const std::string name = name_of(layer);
@@ -22,7 +24,11 @@ std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
                      type_word(layer), share);
 }
 
-std::string reason_in(const ImplicitField& field, bool is_patch) {
+std::string reason_of(const LayerLeftOut& left, const ImplicitField& field, bool is_patch) {
+  if (left.landforms > 0.0) {
+    return is_patch ? "smaller than 32 spacings of float coordinates"
+                    : "more than the 2e5 landforms that a whole body gets";
+  }
   if (!is_patch) return "finer than float coordinates of a body of this size resolve";
   return field.has_local_form() ? "finer than the coordinates of this patch resolve"
                                 : "finer than coordinates of a body made by operations resolve";
@@ -32,10 +38,10 @@ std::string reason_in(const ImplicitField& field, bool is_patch) {
 
 void report_layers_left_out(Program& program, const ImplicitField& field, const Recipe& recipe,
                             const std::filesystem::path& file, bool is_patch) {
-  const std::string reason = reason_in(field, is_patch);
   auto list = nlohmann::ordered_json::array();
-  std::string words;
+  std::map<std::string, std::string> words;  // by reason
   for (const LayerLeftOut& left : field.left_out()) {
+    const std::string reason = reason_of(left, field, is_patch);
     nlohmann::ordered_json entry;
     if (left.layer < 0) {
       entry = {{"layer", nullptr}, {"name", ""}, {"type", "body warp"}};
@@ -46,11 +52,13 @@ void report_layers_left_out(Program& program, const ImplicitField& field, const 
     entry["reason"] = reason;
     entry["finest_length"] = left.finest;
     entry["variance_share"] = left.variance_share;
+    if (left.landforms > 0.0) entry["landforms"] = left.landforms;
     list.push_back(std::move(entry));
-    words += (words.empty() ? "" : ", ") + in_words(left, recipe);
+    std::string& named = words[reason];
+    named += (named.empty() ? "" : ", ") + in_words(left, recipe);
   }
-  if (!words.empty()) {
-    program.say(fmt::format("{}: left out, since {}: {}{}", file.string(), reason, words,
+  for (const auto& [reason, named] : words) {
+    program.say(fmt::format("{}: left out, since {}: {}{}", file.string(), reason, named,
                             is_patch || !field.has_local_form() ? "" : "; a --patch shows it"));
   }
   program.summary["layers_left_out"] = std::move(list);

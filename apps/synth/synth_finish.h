@@ -1,0 +1,30 @@
+// The landforms of a known body below a recipe's finest size, for synth.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/program.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+struct FinishOptions {
+  std::string body;   // of --finish; empty or "none": nothing is added
+  double from = 0.0;  // length units; 0: the recipe's finest size
+  double to = 0.0;    // length units
+
+  bool wanted() const { return !body.empty() && body != "none"; }
+};
+
+void declare_finish_options(Program& program, FinishOptions& options);
+
+// Throws InputError for options that do not belong together.
+void check_finish(const FinishOptions& options);
+
+// The recipe with the landforms that were asked for. Says on stderr and in the summary what of them is
+// measured and what is drawn. `file` names the recipe.
+Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe,
+                const std::string& file);
+
+}  // namespace astrolith

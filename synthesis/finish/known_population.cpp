@@ -1,0 +1,252 @@
+#include "synthesis/finish/known_population.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "numerics/errors.h"
+#include "numerics/portable_double.h"
+#include "recipe/recipe_json.h"
+#include "synthesis/field/bare_body.h"
+#include "synthesis/landforms/population_cells.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kAnySize = std::numeric_limits<double>::infinity();
+
+// 373 boulders of 5 m and more lie on 0.393 km^2.
+constexpr KnownLandforms kItokawa[] = {
+    {.least = 0.0,
+     .greatest = kAnySize,
+     .reference = 5.0,
+     .number_of_reference = 949.0,
+     .exponent = 3.05,
+     .measured_from = 5.0,
+     .source = "373 of 5 m on 0.393 km^2, Michikami et al. 2008; Michikami and Hagermann 2021"}};
+
+// Dimorphos has 3.5 times the density of boulders of 5 m and more. 108 craters of 10 m and more and about
+// 1560 of 2.5 m and more lie on a sphere of 244 m. Below 2 to 3 m they become fewer.
+constexpr KnownLandforms kBennu[] = {{.craters = true,
+                                      .least = 2.5,
+                                      .greatest = 10.0,
+                                      .reference = 10.0,
+                                      .number_of_reference = 144.0,
+                                      .exponent = 1.93,
+                                      .depth = 0.13,
+                                      .depth_deviation = 0.31,
+                                      .measured_from = 2.5,
+                                      .source = "Daly et al. 2020, 2022; Bierhaus et al. 2022"},
+                                     {.craters = true,
+                                      .least = 10.0,
+                                      .greatest = kAnySize,
+                                      .reference = 10.0,
+                                      .number_of_reference = 144.0,
+                                      .exponent = 1.93,
+                                      .depth = 0.10,
+                                      .depth_deviation = 0.3,
+                                      .measured_from = 10.0,
+                                      .source = "108 on a sphere of 244 m, Daly et al. 2020"},
+                                     {.least = 0.0,
+                                      .greatest = kAnySize,
+                                      .reference = 5.0,
+                                      .number_of_reference = 1383.0,
+                                      .exponent = 2.9,
+                                      .measured_from = 5.0,
+                                      .source = "Pajola et al. 2024, over Itokawa's; Tricarico 2021"}};
+
+// 6760 boulders of 15 m and more lie on 1124 km^2. About 40 craters of 20 m and more lie on a square
+// kilometre, and about 4 of 100 m (R = 0.08). Below 10 m they are extremely rare.
+constexpr KnownLandforms kEros[] = {
+    {.craters = true,
+     .least = 10.0,
+     .greatest = 100.0,
+     .reference = 20.0,
+     .number_of_reference = 40.0,
+     .exponent = 1.43,
+     .depth = 0.13,
+     .depth_deviation = 0.3,
+     .measured_from = 20.0,
+     .source = "NEAR counts; Berthoud et al. 2001, Chapman 2002; the depth is assumed"},
+    {.least = 0.0,
+     .greatest = kAnySize,
+     .reference = 15.0,
+     .number_of_reference = 6.01,
+     .exponent = 3.25,
+     .measured_from = 5.0,
+     .source = "6760 of 15 m on 1124 km^2, Thomas et al. 2001; Michikami and Hagermann 2021"}};
+
+constexpr KnownLandforms kRyugu[] = {{.least = 0.0,
+                                      .greatest = kAnySize,
+                                      .reference = 5.0,
+                                      .number_of_reference = 1630.0,
+                                      .exponent = 2.65,
+                                      .measured_from = 5.0,
+                                      .source = "4400 of 5 m on 2.7 km^2, Michikami et al. 2019"}};
+
+// Of 5 m and more 5.1 times Itokawa's density, of 1 m and more 2.3 times Bennu's. Weibull's law below 5 m has
+// these two numbers, and the slope of the power law at 5 m. That slope, 3.4, is assumed.
+constexpr KnownLandforms kDimorphos[] = {
+    {.least = 5.0,
+     .greatest = kAnySize,
+     .reference = 5.0,
+     .number_of_reference = 4840.0,
+     .exponent = 3.4,
+     .measured_from = 5.0,
+     .source = "Pajola et al. 2024, over Itokawa's; the exponent is assumed"},
+    {.least = 0.0,
+     .greatest = 5.0,
+     .reference = 5.0,
+     .number_of_reference = 4840.0,
+     .weibull = WeibullSizes{0.004170687, 0.3293115},
+     .measured_from = 1.0,
+     .source = "Weibull's law through the densities of 5 m and 1 m, Pajola et al. 2024"}};
+
+constexpr std::string_view kFewCraters = "small craters are few, and no density of them was at hand";
+constexpr KnownBody kBodies[] = {{"itokawa", kItokawa, kFewCraters},
+                                 {"bennu", kBennu, ""},
+                                 {"eros", kEros, ""},
+                                 {"ryugu", kRyugu, kFewCraters},
+                                 {"dimorphos", kDimorphos, kFewCraters}};
+
+// Random numbers of the layers that are added: the same whatever layers the recipe has.
+constexpr int kFirstSeed = 716'000;
+
+const KnownBody& body_named(const std::string& name) {
+  for (const KnownBody& body : kBodies) {
+    if (body.name == name) return body;
+  }
+  throw InputError("finish: \"" + name + "\" is no known body; name one of " + known_body_names());
+}
+
+double meters_per_unit(const Recipe& recipe, const std::string& name) {
+  if (recipe.length_unit == "m") return 1.0;
+  if (recipe.length_unit == "km") return 1e3;
+  throw InputError(name + ": length_unit: \"" + recipe.length_unit +
+                   "\" has no physical scale, which known bodies need; state lengths in m or km");
+}
+
+Population population_of_sizes(const KnownLandforms& known, double least, double greatest, double meters) {
+  Population population;
+  const double number = known_number(known, meters * least) - known_number(known, meters * greatest);
+  population.density = round_to_seven_digits(number * 1e-6 * meters * meters);
+  population.least_diameter = round_to_seven_digits(least);
+  population.greatest_diameter = round_to_seven_digits(greatest);
+  population.exponent = known.weibull ? population.exponent : known.exponent;
+  if (known.weibull) population.weibull = WeibullSizes{known.weibull->scale / meters, known.weibull->shape};
+  return population;
+}
+
+Layer layer_of(const KnownLandforms& known, const Population& population, int seed) {
+  if (!known.craters) {
+    BoulderLayer layer;
+    layer.name = "finish boulders";
+    layer.seed = seed;
+    layer.smoothing = layer.roughness = 0.1;
+    layer.population.emplace().drawn = population;
+    return layer;
+  }
+  CraterLayer layer;
+  layer.name = "finish craters";
+  layer.seed = seed;
+  layer.simple.depth = known.depth;
+  layer.simple.smoothing = 0.2;
+  layer.population.emplace().drawn = population;
+  layer.population->depth_deviation = known.depth_deviation;
+  return layer;
+}
+
+// Adds the layers of known landforms to a finish. Landforms too large to be drawn by cells get a layer that
+// draws them on the whole body.
+class Finishing {
+ public:
+  Finishing(Finish& finish, double meters, double longest_side)
+      : finish_(finish), meters_(meters), most_by_cells_(round_down(kGreatestByCells * longest_side)) {}
+
+  void add(const KnownLandforms& known) {
+    const double least = std::max(finish_.to, known.least / meters_),
+                 greatest = std::min(finish_.from, known.greatest / meters_);
+    add(known, std::max(least, most_by_cells_), greatest, false);
+    add(known, least, std::min(greatest, most_by_cells_), true);
+  }
+
+ private:
+  // A number that rounding to seven digits leaves below the limit.
+  static double round_down(double most) { return round_to_seven_digits(0.999 * most); }
+
+  void add(const KnownLandforms& known, double least, double greatest, bool by_cells) {
+    if (!(least < 0.999 * greatest)) return;
+    Population population = population_of_sizes(known, least, greatest, meters_);
+    population.by_cells = by_cells;
+    const int place = static_cast<int>(finish_.recipe.layers.size());
+    finish_.recipe.layers.push_back(
+        layer_of(known, population, kFirstSeed + static_cast<int>(finish_.layers.size())));
+    finish_.layers.push_back({place, known, population.least_diameter, population.greatest_diameter,
+                              *population.density, known.measured_from / meters_});
+  }
+
+  Finish& finish_;
+  double meters_;
+  double most_by_cells_;
+};
+
+}  // namespace
+
+std::span<const KnownBody> known_bodies() { return kBodies; }
+
+std::string known_body_names() {
+  std::string names;
+  for (const KnownBody& body : kBodies) names += (names.empty() ? "" : ", ") + std::string(body.name);
+  return names;
+}
+
+double known_number(const KnownLandforms& known, double diameter) {
+  if (!known.weibull) {
+    return known.number_of_reference * portable::pow(diameter / known.reference, -known.exponent);
+  }
+  const auto exponent = [&](double d) {
+    return portable::pow(d / known.weibull->scale, known.weibull->shape);
+  };
+  return known.number_of_reference * portable::exp(exponent(known.reference) - exponent(diameter));
+}
+
+double finest_size(const Recipe& recipe) {
+  double landform = kAnySize, metaball = kAnySize;
+  for (const Layer& layer : recipe.layers) {
+    if (const Population* drawn = population_of(layer)) landform = std::min(landform, drawn->least_diameter);
+    if (const auto* craters = std::get_if<CraterLayer>(&layer)) {
+      for (const Crater& crater : craters->craters) landform = std::min(landform, crater.diameter);
+    } else if (const auto* boulders = std::get_if<BoulderLayer>(&layer)) {
+      for (const Boulder& boulder : boulders->boulders) landform = std::min(landform, boulder.axes.x);
+    }
+  }
+  if (landform < kAnySize) return landform;
+  for (const Sphere& sphere : recipe.body->spheres) metaball = std::min(metaball, 2.0 * sphere.radius);
+  return metaball;
+}
+
+Finish finish_recipe(const Recipe& recipe, const std::string& name, const FinishRequest& request) {
+  const KnownBody& body = body_named(request.body);
+  if (!recipe.body)
+    throw InputError(name + ": body: absent; lay its layers on a body before they are finished");
+  const double meters = meters_per_unit(recipe, name);
+  Finish finish{
+      recipe, request.from ? *request.from : finest_size(recipe), request.to, {}, body.without_craters};
+  if (!(finish.to > 0.0 && finish.to < finish.from)) {
+    throw InputError(
+        fmt::format("{}: finish: sizes go from {:.4g}{} down to {:.4g}, which is not below; lower the end or "
+                    "raise the start",
+                    name, finish.from, request.from ? "" : ", the finest of the recipe,", finish.to));
+  }
+  const Vec3d extent = bare_body(recipe).bounds.extent();
+  Finishing finishing(finish, meters, std::max({extent.x, extent.y, extent.z}));
+  for (const KnownLandforms& known : body.landforms) finishing.add(known);
+  if (finish.layers.empty()) {
+    throw InputError(fmt::format("{}: finish: {} has no landforms between these sizes, {:.4g} and {:.4g}",
+                                 name, request.body, finish.to, finish.from));
+  }
+  return finish;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,81 @@
+// Continues the craters and boulders of a recipe below its finest size, as published counts of a known body
+// say.
+//
+//   Finish finish = finish_recipe(read_recipe("itokawa.json"), "itokawa.json", {"itokawa", 4.0, 0.05});
+//
+// The layers that are added draw their landforms by cells (recipe/landforms.h), so that a patch of metres
+// has what the body has down to centimetres.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+// Landforms of one kind on a known body, between two sizes. The number of at least D on a square kilometre is
+//   N(D) = number_of_reference (D / reference)^-exponent,   or
+//   N(D) = number_of_reference exp((reference / scale)^shape - (D / scale)^shape)   with `weibull`.
+struct KnownLandforms {
+  bool craters = false;  // or boulders
+  double least = 0.0;    // metres; smaller ones of the kind are too rare to be drawn, or follow another law
+  double greatest = 0.0;
+  double reference = 1.0;            // metres
+  double number_of_reference = 0.0;  // of that size and more, per square kilometre
+  double exponent = 0.0;
+  std::optional<WeibullSizes> weibull = std::nullopt;  // metres
+  double depth = 0.0, depth_deviation = 0.0;           // craters: over diameter, and over the mean depth
+  double measured_from = 0.0;                          // metres: the law is drawn below, not measured
+  std::string_view source;
+};
+
+struct KnownBody {
+  std::string_view name;
+  std::span<const KnownLandforms> landforms;
+  std::string_view without_craters;  // why no craters are drawn; empty where some are
+};
+
+// The known bodies, by name.
+std::span<const KnownBody> known_bodies();
+// The names, as a list for messages: itokawa, bennu, ...
+std::string known_body_names();
+
+// The number of landforms of at least `diameter` (metres) on a square kilometre.
+double known_number(const KnownLandforms& landforms, double diameter);
+
+struct FinishRequest {
+  std::string body;            // a name of known_bodies()
+  std::optional<double> from;  // sizes from here, length units; absent: finest_size() of the recipe
+  double to = 0.0;             // down to here, length units
+};
+
+// A layer that was added; lengths in the recipe's unit.
+struct FinishLayer {
+  int layer = 0;  // its place in the recipe
+  KnownLandforms known;
+  double least = 0.0, greatest = 0.0;
+  double density = 0.0;        // of these sizes, per squared length unit
+  double measured_from = 0.0;  // smaller ones are drawn by the same law without being measured
+};
+
+struct Finish {
+  Recipe recipe;
+  double from = 0.0, to = 0.0;
+  std::vector<FinishLayer> layers;
+  std::string_view without_craters;  // of KnownBody
+};
+
+// The finest size that a recipe describes: the diameter of the smallest crater or boulder that it lists or
+// draws, or, where it has none, of the smallest additive metaball. In length units.
+double finest_size(const Recipe& recipe);
+
+// The recipe with the landforms of a known body after its layers, craters first. Throws InputError, naming
+// `name`, for a body that is not known, a recipe without a body, a unit other than m and km, and for sizes
+// that leave nothing to draw.
+Finish finish_recipe(const Recipe& recipe, const std::string& name, const FinishRequest& request);
+
+}  // namespace astrolith
