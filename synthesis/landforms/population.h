@@ -27,10 +27,10 @@ using PlaceWeight = std::function<float(const Vec3d&)>;
 struct DrawingPlaces {
   PlaceWeight weight;
   // For a population that is drawn by cells: the box that the landforms matter to. Absent: the whole body.
-  std::optional<Box> region;
-  double reach = 0.5;   // how far from its place a landform matters, in its diameters
-  double margin = 0.0;  // and beyond that, length units
-  Progress progress;    // asked some times a second
+  std::optional<Box> region = std::nullopt;
+  double reach = 0.5;      // how far from its place a landform matters, in its diameters
+  double margin = 0.0;     // and beyond that, length units
+  Progress progress = {};  // asked some times a second
 };
 
 // The diameter at quantile u in [0, 1) of the population's law N(> D) ~ D^-exponent between its limits.

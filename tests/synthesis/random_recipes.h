@@ -153,6 +153,19 @@ inline void use_somehow(LayerUse& use, int number, bool first_has_height, Counte
   if (first_has_height && random.below(2) == 0) use.mask = LayerMask{.layer = "0", .from = -0.01, .to = 0.01};
 }
 
+// Gives some populations a weight that varies over the body, clusters, or sizes by Weibull's law.
+inline void place_somehow(Recipe& recipe, CounterRandom random) {
+  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
+    Population* drawn = population_of(recipe.layers[i]);
+    if (drawn == nullptr) continue;
+    const bool masked = i > 0 && use_of(recipe.layers[0]) != nullptr;
+    if (masked && random.below(2) == 0) drawn->mask = LayerMask{.layer = "0", .from = -0.005, .to = 0.005};
+    if (random.below(3) == 0) drawn->locality = Locality{.group = "some", .width = 0.1};
+    if (random.below(3) == 0) drawn->clusters = Clusters{.number = 2, .radius = 0.05, .share = 0.7};
+    if (random.below(3) == 0) drawn->weibull = WeibullSizes{.scale = 0.05, .shape = 1.5};
+  }
+}
+
 // A body of any kernel, with or without a warp, under up to four layers, some of them local.
 inline Recipe random_recipe(std::uint64_t seed) {
   CounterRandom random(seed);
@@ -175,6 +188,7 @@ inline Recipe random_recipe(std::uint64_t seed) {
         layer);
     recipe.layers.push_back(layer);
   }
+  place_somehow(recipe, CounterRandom(seed, 2));
   return recipe;
 }
 
