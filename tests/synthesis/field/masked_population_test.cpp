@@ -11,6 +11,8 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/field/layer_join.h"
 #include "synthesis/landforms/bare_surface.h"
+#include "synthesis/landforms/boulder_field.h"
+#include "synthesis/landforms/crater_relief.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "tests/synthesis/bodies.h"
 

@@ -5,6 +5,7 @@
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/landforms/boulder_field.h"
 #include "synthesis/landforms/population.h"
 #include "tests/synthesis/bodies.h"
 
