@@ -137,6 +137,28 @@ class Recipe(Record):
             records(_synthesis.lay_on_base(_dumped(self, details_name), details_name, json_of(base, base_name)[0], base_name))
         )
 
+    def finished(self, body: str, to: float, start: float | None = None) -> "Recipe":
+        """Return the recipe with the craters and boulders of a known body below its finest size.
+
+        As ``synth --finish``: published counts of the body say how many there are. They are drawn by cells, so that a
+        patch has them down to `to`.
+
+        Parameters
+        ----------
+        body
+            ``"itokawa"``, ``"bennu"``, ``"eros"``, ``"ryugu"`` or ``"dimorphos"``.
+        to
+            Least diameter, in the recipe's unit.
+        start
+            Greatest diameter; the finest size of the recipe if None.
+
+        Raises
+        ------
+        ValueError
+            The body is not known, the recipe has no body or no physical unit, or no size is left.
+        """
+        return Recipe(records(_synthesis.finish_recipe(_dumped(self, "recipe"), "recipe", body, to, start)))
+
 
 RecipeLike = Union[Recipe, Mapping[str, Any], str, "os.PathLike[str]"]
 

@@ -24,6 +24,7 @@
 #include "python/bindings/mesh_bindings.h"
 #include "python/bindings/recipe_text.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/finish/known_population.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "synthesis/picture/preview.h"
 #include "tasks/synthesis/comparison.h"
@@ -61,6 +62,13 @@ void bind_recipes(nb::module_& module) {
                                           parse_recipe(base, base_name), base_name));
       },
       nb::arg("details"), nb::arg("details_name"), nb::arg("base"), nb::arg("base_name"), unlocked);
+  module.def(
+      "finish_recipe",
+      [](const std::string& json, const std::string& name, const std::string& body, double to,
+         std::optional<double> from) {
+        return recipe_to_json(finish_recipe(parse_recipe(json, name), name, {body, from, to}).recipe);
+      },
+      nb::arg("json"), nb::arg("name"), nb::arg("body"), nb::arg("to"), nb::arg("start").none(), unlocked);
 }
 
 DescriptionOptions description_options(const std::string& features, int bins, std::int64_t points,

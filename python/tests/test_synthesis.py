@@ -174,3 +174,17 @@ def test_the_synthesis_module_links_nothing_of_the_fits():
     linked = subprocess.run(["ldd", _synthesis.__file__], capture_output=True, text=True, check=True).stdout
     assert "tbb" in linked
     assert not [name for name in ("fftw", "ceres", "opencv", "nlopt", "cholmod") if name in linked]
+
+
+def test_a_finished_recipe_has_the_landforms_of_a_known_body(ball):
+    asteroid = ball.copy()
+    asteroid.body.spheres = [[0.0, 0.0, 0.0, 180.0]]
+    finished = asteroid.finished("itokawa", 0.2, start=4)
+    drawn = finished.layers[-1].population
+    assert (drawn.least_diameter, drawn.greatest_diameter, drawn.by_cells) == (0.2, 4, True)
+    assert drawn.density == pytest.approx(373 / 0.393e6 * ((5 / 0.2) ** 3.05 - (5 / 4) ** 3.05), rel=1e-3)
+    patch = astrolith.mesh(finished, resolution=48, patch=(0, 0, 180, 8))
+    assert patch.figures.manifold and len(patch.faces) > 48 * 48
+    assert astrolith.Recipe.from_json(finished.to_json()) == finished
+    with pytest.raises(ValueError, match="no known body; name one of itokawa"):
+        asteroid.finished("vesta", 0.2)
