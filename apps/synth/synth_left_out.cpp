@@ -26,7 +26,7 @@ std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
 
 std::string reason_of(const LayerLeftOut& left, const ImplicitField& field, bool is_patch) {
   if (left.landforms > 0.0) {
-    return is_patch ? "smaller than 32 spacings of float coordinates"
+    return is_patch ? "smaller than 8 spacings of float coordinates"
                     : "more than the 2e5 landforms that a whole body gets";
   }
   if (!is_patch) return "finer than float coordinates of a body of this size resolve";

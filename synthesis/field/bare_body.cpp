@@ -1,6 +1,7 @@
 #include "synthesis/field/bare_body.h"
 
 #include "synthesis/field/field_mesh.h"
+#include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
 
 namespace astrolith {

@@ -146,7 +146,14 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   std::copy_n(b.distance.data(), n, value);
   const std::vector<std::uint32_t> boulders = boulders_around(model, n, at);
   if (!model.layers.empty()) add_elevations(model, lists, boulders, at, metaballs_at, local, band, b, value);
-  for (const std::uint32_t k : boulders) join_boulder(model.boulders[k].kernel, n, at.x, at.y, at.z, value);
+  for (const std::uint32_t k : boulders) {
+    if (local != nullptr && k < model.patch_boulders.size() && model.patch_boulders[k]) {
+      const PointArrays& p = local->local;
+      join_boulder(*model.patch_boulders[k], n, p.x, p.y, p.z, value);
+    } else {
+      join_boulder(model.boulders[k].kernel, n, at.x, at.y, at.z, value);
+    }
+  }
 }
 
 void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,

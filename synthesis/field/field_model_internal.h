@@ -13,6 +13,12 @@
 
 namespace astrolith {
 
+// The craters of a layer in the frame of a patch, for a layer that is drawn by cells.
+struct PatchCraters {
+  CraterRelief relief;
+  BoxTree tree;
+};
+
 struct FieldModel {
   // The storage of the tables (field_tables.h).
   ArrayStore arrays;
@@ -41,6 +47,10 @@ struct FieldModel {
   std::vector<LayerNoise> patch_noises;
   std::vector<std::vector<GaborTileCache>> patch_caches;  // by noise and band
   std::optional<CoordinateWarp> patch_warp;
+  // Landforms that are drawn by cells are small, so that their places need the digits of local coordinates.
+  // Other landforms of a patch are evaluated in the body's frame.
+  std::vector<std::optional<PatchCraters>> patch_craters;    // by the number of the list of craters
+  std::vector<std::optional<BoulderKernel>> patch_boulders;  // by the number of the boulder
 
   std::vector<LayerLeftOut> left_out;
 

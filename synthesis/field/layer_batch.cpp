@@ -172,6 +172,13 @@ bool stands_in_patch(const FieldLayer& layer, const Batch& b) {
   return b.origin != nullptr && layer.in_patch >= 0;
 }
 
+// The craters of a layer in the frame of the field's patch; null where they are evaluated in the body's.
+const PatchCraters* craters_in_patch(const FieldModel& model, const CraterRelief& relief, const Batch& b) {
+  if (b.origin == nullptr || relief.list >= model.patch_craters.size()) return nullptr;
+  const std::optional<PatchCraters>& local = model.patch_craters[relief.list];
+  return local ? &*local : nullptr;
+}
+
 // Writes what a layer paints at the points of a batch.
 void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
                      Vec3f* color) {
@@ -211,6 +218,12 @@ void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPa
 
 void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
   if (const CraterRelief* relief = layer.noise.get_if<CraterRelief>()) {
+    if (const PatchCraters* local = craters_in_patch(model, *relief, b)) {
+      project_locally(model, b);
+      apply_craters(local->relief, model.tables.arrays, local->tree, b.n, b.lpx.data(), b.lpy.data(),
+                    b.lpz.data(), b.elevation.data());
+      return;
+    }
     project(model, b);
     apply_craters(*relief, model.tables.arrays, model.crater_trees[relief->list], b.n, b.px.data(),
                   b.py.data(), b.pz.data(), b.elevation.data());

@@ -115,9 +115,11 @@ class LayerStack {
     sum_changes();
     model_.update();
     const std::vector<float> elevations = elevations_at(model_, centers);
+    centers = unwarped(std::move(centers));
     CraterRelief relief =
-        make_crater_relief(layer, craters, unwarped(centers), elevations, model_.height_bound, model_.arrays);
+        make_crater_relief(layer, craters, centers, elevations, model_.height_bound, model_.arrays);
     relief.list = static_cast<std::uint32_t>(model_.crater_layers.size());
+    add_patch_craters(layer, relief, centers);
     model_.crater_layers.push_back(number_of_next_layer());
     model_.crater_trees.push_back(crater_tree(model_.arrays.view().span(relief.craters)));
     model_.height_bound = relief.elevation_bound;
@@ -126,6 +128,27 @@ class LayerStack {
     join.change_bound = std::numeric_limits<double>::infinity();  // craters replace the elevation
     model_.layers.push_back({LayerNoise(relief), join});
     model_.placed_craters.push_back({index_, std::move(craters)});
+  }
+
+  // Adds the craters in the frame of the patch, if the layer draws them by cells. Their bases and all but
+  // their centres are those in the body's frame.
+  void add_patch_craters(const CraterLayer& layer, const CraterRelief& relief,
+                         std::span<const Vec3d> centers) {
+    const bool local =
+        layer.population && layer.population->drawn.by_cells && model_.patch && model_.body.plain();
+    model_.patch_craters.emplace_back();
+    if (!local) return;
+    const std::span<const CraterKernel> in_body = model_.arrays.view().span(relief.craters);
+    std::vector<CraterKernel> craters(in_body.begin(), in_body.end());
+    for (std::size_t i = 0; i < craters.size(); ++i) {
+      const Vec3f center = to_float(centers[i] - model_.patch->center);
+      craters[i].x = center.x;
+      craters[i].y = center.y;
+      craters[i].z = center.z;
+    }
+    CraterRelief moved = relief;
+    moved.craters = model_.arrays.add(craters);
+    model_.patch_craters.back() = PatchCraters{moved, crater_tree(craters)};
   }
 
   // Boulders are added by add_boulders(), when all layers have made the surface that they lie on.
@@ -145,12 +168,23 @@ class LayerStack {
                          progress, boulder_places(*layer, progress));
       const std::vector<FieldBoulder> boulders = field_boulders(*layer, placed);
       all.insert(all.end(), boulders.begin(), boulders.end());
+      add_patch_boulders(*layer, placed);
       model_.placed_boulders.push_back({i, std::move(placed)});
     }
     std::vector<Box> boxes;
     for (const FieldBoulder& boulder : all) boxes.push_back(boulder.box);
     model_.boulder_tree = BoxTree(boxes);
     model_.boulders = std::move(all);
+  }
+
+  // Adds the boulders in the frame of the patch, if the layer draws them by cells.
+  void add_patch_boulders(const BoulderLayer& layer, std::vector<PlacedBoulder> boulders) {
+    const bool local = layer.population && layer.population->drawn.by_cells && model_.patch;
+    if (!local) return model_.patch_boulders.resize(model_.patch_boulders.size() + boulders.size());
+    for (PlacedBoulder& boulder : boulders) boulder.center -= model_.patch->center;
+    for (const FieldBoulder& boulder : field_boulders(layer, boulders)) {
+      model_.patch_boulders.emplace_back(boulder.kernel);
+    }
   }
 
   // Where the drawn craters of a layer may lie. The base of a crater depends on older ones that cover its

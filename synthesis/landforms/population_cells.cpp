@@ -202,17 +202,17 @@ SizesByCells sizes_by_cells(const Population& population, const BareSurface& sur
   double number = 0.0, variance = 0.0, left_out = 0.0;
   for (const SizeClass& size : classes_of(population, surface)) {
     const double lower = std::max(population.least_diameter, 0.5 * size.upper);
-    const double more = size.density * (whole_body ? surface.area() : 0.0),
-                 part = variance_of(population, size);
+    const double of_size = *population.density * (size.high_share - std::max(size.low_share, 0.0)),
+                 on_body = of_size * surface.area(), part = variance_of(population, size);
     variance += part;
-    const bool drawn = sizes.classes == size.number && lower >= finest && number + more <= kMostByCellsOnBody;
-    if (drawn) {
-      number += more;
+    const bool few = !whole_body || number + on_body <= kMostByCellsOnBody;
+    if (sizes.classes == size.number && lower >= finest && few) {
+      number += on_body;
       sizes.classes = size.number + 1;
       sizes.least = lower;
     } else {
       left_out += part;
-      sizes.number_left_out += size.density * surface.area();
+      sizes.number_left_out += on_body;
     }
   }
   sizes.share_left_out = variance > 0.0 ? left_out / variance : 0.0;

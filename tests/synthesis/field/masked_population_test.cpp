@@ -128,17 +128,17 @@ TEST(MaskedPopulation, LayersWithoutAHeightMaskNothing) {
   }
 }
 
-// A body of 2 km with craters and boulders down to decimetres, ruled by a mask.
+// A body of 500 m with craters of metres and boulders of half a metre and more, ruled by a mask.
 Recipe fine_ground() {
-  Recipe recipe = testing::sphere_recipe(1000.0);
+  Recipe recipe = testing::sphere_recipe(250.0);
   FractalLayer where = named_noise("where", Combine::kAdd);
   where.amplitude = 2.0;
   where.frequency = 0.01;
   CraterLayer craters;
   CraterPopulation& pits = craters.population.emplace();
-  pits.drawn.density = 0.01;
+  pits.drawn.density = 0.002;
   pits.drawn.least_diameter = 2.0;
-  pits.drawn.greatest_diameter = 30.0;
+  pits.drawn.greatest_diameter = 15.0;
   pits.drawn.exponent = 1.9;
   pits.drawn.by_cells = true;
   pits.depth_deviation = 0.3;
@@ -146,15 +146,16 @@ Recipe fine_ground() {
   boulders.roughness = boulders.smoothing = 0.1;
   boulders.population.emplace().drawn = pits.drawn;
   Population& stones = boulders.population->drawn;
-  stones.density = 0.3;
+  stones.density = 0.6;
+  stones.exponent = 3.0;
   stones.least_diameter = 0.5;
-  stones.greatest_diameter = 10.0;
+  stones.greatest_diameter = 8.0;
   stones.mask = LayerMask{"where", -0.5, 0.5};
   recipe.layers = {where, craters, boulders};
   return recipe;
 }
 
-PatchCube cube_about(const Vec3d& direction, double side) { return {1000.0 * normalized(direction), side}; }
+PatchCube cube_about(const Vec3d& direction, double side) { return {250.0 * normalized(direction), side}; }
 
 // F at points near the surface, as a patch evaluates it in the body's frame.
 std::vector<float> values_in(const ImplicitField& field, const std::vector<Vec3d>& points) {
@@ -173,7 +174,7 @@ std::vector<float> values_in(const ImplicitField& field, const std::vector<Vec3d
 // Two patches that overlap have the same landforms where both lie, bit by bit.
 TEST(PopulationByCellsOnAField, OverlappingPatchesAgree) {
   const Recipe recipe = fine_ground();
-  const PatchCube a = cube_about({0.3, -0.5, 0.8}, 40.0);
+  const PatchCube a = cube_about({0.3, -0.5, 0.8}, 60.0);
   const PatchCube b{a.center + Vec3d{9.0, 6.0, -1.0}, 30.0};
   const ImplicitField of_a(recipe, "r", a), of_b(recipe, "r", b);
   ASSERT_GT(of_a.boulders().front().boulders.size(), 100u);
@@ -182,8 +183,8 @@ TEST(PopulationByCellsOnAField, OverlappingPatchesAgree) {
   CounterRandom random(3);
   std::vector<Vec3d> points;
   while (points.size() < 4000) {
-    const Vec3d p = b.center + Vec3d{random.uniform(-6, 6), random.uniform(-9, 9), random.uniform(-14, 14)};
-    points.push_back((1000.0 + random.uniform(-3, 5)) / norm(p) * p);
+    const Vec3d p = b.center + Vec3d{random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-5, 5)};
+    points.push_back((250.0 + random.uniform(-2, 3)) / norm(p) * p);
   }
   const std::vector<float> in_a = values_in(of_a, points), in_b = values_in(of_b, points);
   for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(in_a[i], in_b[i]) << i;

@@ -76,8 +76,8 @@ TEST(KnownPopulation, LayersHaveTheDensityOfTheirSizes) {
 
 // Sizes meet without a gap: each layer begins where the one before it ends.
 TEST(KnownPopulation, SizesMeet) {
-  const Finish finish = finish_recipe(ball(80.0, "m"), "r", {"dimorphos", 8.0, 0.05});
-  ASSERT_EQ(finish.layers.size(), 3u);  // above 1/32 of the body, above 5 m by the power law, Weibull's law
+  const Finish finish = finish_recipe(ball(70.0, "m"), "r", {"dimorphos", 8.0, 0.05});
+  ASSERT_EQ(finish.layers.size(), 3u);  // above 5 m, below that but above 1/32 of the body, by cells
   EXPECT_DOUBLE_EQ(finish.layers[0].greatest, 8.0);
   EXPECT_DOUBLE_EQ(finish.layers.back().least, 0.05);
 }

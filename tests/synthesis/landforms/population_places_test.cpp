@@ -300,7 +300,7 @@ TEST(PopulationByCells, WholeBodiesLeaveOutTheFinest) {
   EXPECT_EQ(sizes_by_cells(population, surface, false).number_left_out, 0.0);
   Population finer = population;
   finer.least_diameter = 1e-7;
-  EXPECT_GT(sizes_by_cells(finer, surface, false).least, 0x1p-18);
+  EXPECT_GT(sizes_by_cells(finer, surface, false).least, 0x1p-20);
 }
 
 TEST(PopulationByCells, LargeLandformsAreRefused) {
