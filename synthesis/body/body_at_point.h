@@ -77,4 +77,14 @@ ASTROLITH_HD inline Vec3f projected_point(const BodyAtPoint& body, float gradien
   return {along(p.x, g.x), along(p.y, g.y), along(p.z, g.z)};
 }
 
+// A projection of the point, lifted along the outward normal by an elevation.
+ASTROLITH_HD inline Vec3f lifted_point(const BodyAtPoint& body, float gradient_floor, const Vec3f& projected,
+                                       float elevation) {
+  const Vec3f& g = body.gradient;
+  const float length = gradient_length(g.x, g.y, g.z, gradient_floor);
+  return {lifted_coordinate(projected.x, g.x, length, elevation),
+          lifted_coordinate(projected.y, g.y, length, elevation),
+          lifted_coordinate(projected.z, g.z, length, elevation)};
+}
+
 }  // namespace astrolith

@@ -20,4 +20,9 @@ ASTROLITH_KERNEL float projected_coordinate(float p, float gradient, float lengt
   return math::fma(-step, gradient / length, p);
 }
 
+// One coordinate of a projection, lifted along the outward normal by an elevation.
+ASTROLITH_KERNEL float lifted_coordinate(float projected, float gradient, float length, float elevation) {
+  return math::fma(-elevation, gradient / length, projected);
+}
+
 }  // namespace astrolith

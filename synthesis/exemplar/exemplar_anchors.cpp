@@ -9,7 +9,7 @@
 #include "numerics/parallel_for.h"
 #include "numerics/portable_angles.h"
 #include "synthesis/body/local_metaballs.h"
-#include "synthesis/gabor/gabor_cells.h"
+#include "synthesis/exemplar/exemplar_ground.h"
 
 namespace astrolith {
 namespace {
@@ -112,6 +112,7 @@ class BodyRow {
   void find_gradients(const GaborGround& ground, float longest, const Vec3f& middle) {
     evaluate_row(ground, row_);
     const AnchorRow at_anchors = row_;
+    distance_ = at_anchors.distance;
     move_to_surface(longest, row_);
     evaluate_row(ground, row_);
     for (std::size_t i = 0; i < row_.size(); ++i) {
@@ -122,12 +123,29 @@ class BodyRow {
     }
   }
   Vec3f gradient(std::size_t i) const { return {row_.gx[i], row_.gy[i], row_.gz[i]}; }
+
+  // The tangent frame of an anchor. `longest` is that of find_gradients().
+  TangentFrame frame(const ExemplarGround& ground, float longest, std::size_t i) const {
+    const TangentFrame bare = tangent_frame(gradient(i));
+    if (!ground.below || !serves_surface(ground, longest, i)) return bare;
+    const Vec3f foot{row_.x[i], row_.y[i], row_.z[i]};
+    return turned_frame(bare, inward_of_layered(ground.below, foot, gradient(i), kSlopeRadius * longest));
+  }
   std::size_t size() const { return row_.size(); }
 
  private:
+  // Half the spacing of anchors in edges of cubic cells.
+  static constexpr float kSlopeRadius = 0.39685026f;
+
+  // Whether points of the layered surface may have the anchor. They lie within an edge of it. The distance is
+  // one to first order, so that half an edge more is allowed.
+  bool serves_surface(const ExemplarGround& ground, float longest, std::size_t i) const {
+    return math::abs(distance_[i]) <= 1.5f * longest + static_cast<float>(ground.height_bound);
+  }
   void set_gradient(std::size_t i, const Vec3f& g) { row_.gx[i] = g.x, row_.gy[i] = g.y, row_.gz[i] = g.z; }
 
   AnchorRow row_;
+  std::vector<float> distance_;  // of the anchors from the bare surface, to first order, length units
 };
 
 std::uint32_t anchor_hash(std::uint32_t seed, std::int64_t x, std::int64_t y, std::int64_t z,
@@ -138,6 +156,11 @@ std::uint32_t anchor_hash(std::uint32_t seed, std::int64_t x, std::int64_t y, st
 }  // namespace
 
 double exemplar_edge(double anchor_spacing) { return anchor_spacing * 1.25992104989487316477; }
+
+double exemplar_edge(const ExemplarLayer& layer) {
+  const int side = std::min(layer.pixels->width, layer.pixels->height);
+  return exemplar_edge(layer.anchor_spacing) * side * layer.pixel_size;
+}
 
 ExemplarCells exemplar_cells(const NoiseFrame& frame, const Vec3d& edge) {
   ExemplarCells cells;
@@ -171,8 +194,9 @@ ExemplarCells exemplar_cells(const NoiseFrame& frame, const Vec3d& edge) {
 }
 
 std::vector<ExemplarAnchor> anchors_on_body(const ExemplarLayer& layer, const ExemplarCells& cells,
-                                            std::uint32_t seed, const GaborGround& ground) {
+                                            std::uint32_t seed, const ExemplarGround& on) {
   const ExemplarLattice& l = cells.lattice;
+  const GaborGround& ground = on.body;
   std::vector<ExemplarAnchor> anchors(static_cast<std::size_t>(cells.anchors));
   const Box& supports = ground.body.supports;
   const Vec3d origin = ground.origin != nullptr ? *ground.origin : Vec3d{};
@@ -186,7 +210,7 @@ std::vector<ExemplarAnchor> anchors_on_body(const ExemplarLayer& layer, const Ex
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::int64_t cx = cells.origin[0] + l.low[0] + static_cast<std::int64_t>(i / 2);
       const std::uint32_t hash = anchor_hash(seed, cx, cells.origin[1] + cy, cells.origin[2] + cz, i & 1);
-      anchors[first + i] = make_anchor(layer, tangent_frame(row.gradient(i)), l.cells_per_length, hash);
+      anchors[first + i] = make_anchor(layer, row.frame(on, longest, i), l.cells_per_length, hash);
     }
   });
   return anchors;

@@ -19,7 +19,7 @@
 
 namespace astrolith {
 
-struct GaborGround;  // synthesis/gabor/gabor_cells.h
+struct ExemplarGround;  // synthesis/exemplar/exemplar_ground.h
 
 // The coordinates of a point in the image, in pixels, are (u, v) . (y - anchor) + offset.
 struct ExemplarAnchor {
@@ -124,6 +124,8 @@ ASTROLITH_KERNEL ExemplarAnchor anchor_at_corner(const ExemplarLattice& l, const
 
 // The edge of a cubic cell for a spacing of anchors: two anchors lie in each cell.
 double exemplar_edge(double anchor_spacing);
+// The edge for a layer with pixels, length units.
+double exemplar_edge(const ExemplarLayer& layer);
 
 // The cells of a lattice that hold the anchors of all points of a frame.
 struct ExemplarCells {
@@ -137,9 +139,10 @@ ExemplarCells exemplar_cells(const NoiseFrame& frame, const Vec3d& edge);
 
 // The frames and offsets of the anchors on a body. An anchor has the tangent frame of the bare surface near
 // it: u points east about +z, v south. Far from every metaball the frame is that of a sphere about the middle
-// of the body. `seed` is hash_seed() of the layer.
+// of the body. Where layers below make elevations, the frame is turned by the least angle to the slope of
+// the layered surface, smoothed over half the spacing of anchors. `seed` is hash_seed() of the layer.
 std::vector<ExemplarAnchor> anchors_on_body(const ExemplarLayer& layer, const ExemplarCells& cells,
-                                            std::uint32_t seed, const GaborGround& ground);
+                                            std::uint32_t seed, const ExemplarGround& ground);
 
 // The frames and offsets of the anchors about a plane: u points along x, v along y. The cells repeat after
 // `period` cells along x and y; 0: never.

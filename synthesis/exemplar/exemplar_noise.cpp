@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "numerics/hash_random.h"
-#include "synthesis/gabor/gabor_cells.h"
+#include "synthesis/exemplar/exemplar_ground.h"
 #include "synthesis/noise/points_in_domain.h"
 
 namespace astrolith {
@@ -173,14 +173,14 @@ ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place
 }
 
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
-                              int layer_index, const NoiseFrame& frame, const GaborGround& ground,
+                              int layer_index, const NoiseFrame& frame, const ExemplarGround& ground,
                               ArrayStore& arrays) {
   ExemplarNoise noise = made;
   noise.low = to_float(frame.domain.min);
   noise.high = to_float(frame.domain.max);
+  noise.lifted = static_cast<bool>(ground.below);
   noise.lattice.anchors = {};
-  const int side = std::min(layer.pixels->width, layer.pixels->height);
-  const double edge = exemplar_edge(layer.anchor_spacing) * side * layer.pixel_size;
+  const double edge = exemplar_edge(layer);
   noise.detail.left_out = 1.0;
   if (!(frame.farthest() / layer.pixel_size <= kLargestCell)) return noise;
   const ExemplarCells cells = exemplar_cells(frame, {edge, edge, edge});

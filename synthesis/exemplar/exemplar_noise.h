@@ -18,6 +18,7 @@ struct ExemplarNoise {
   ExemplarTexture texture;
   ExemplarLattice lattice;    // without anchors where the layer is left out
   std::int32_t exponent = 3;  // of the blending weights
+  bool lifted = false;        // whether points are lifted to the surface that the layers below make
   double height_bound = 0.0;  // bound of |n(p)|, length units
   NoiseDetail detail;
 };
@@ -27,9 +28,9 @@ ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place
 
 // The noise `made` by make_exemplar() with the anchors of a frame, whose domain holds the surface. Where the
 // frame has more than kMostExemplarAnchors anchors, or float coordinates cannot tell its pixels apart, the
-// whole layer is left out. `ground.arrays` may be a view of `arrays`.
+// whole layer is left out. `ground.body.arrays` may be a view of `arrays`.
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
-                              int layer_index, const NoiseFrame& frame, const GaborGround& ground,
+                              int layer_index, const NoiseFrame& frame, const ExemplarGround& ground,
                               ArrayStore& arrays);
 
 // The weights of the four anchors in z: w^exponent over the root of the sum of the squares.
@@ -56,7 +57,7 @@ ASTROLITH_KERNEL float anchor_value(const ExemplarTexture& t, const std::uint32_
   return exemplar_value(t, words, u, v);
 }
 
-// The height at a point of the bare surface, length units.
+// The height at a point of the bare surface, or of the one that the layers below make; length units.
 ASTROLITH_HD inline float height_at(const ExemplarNoise& n, const ArrayView& arrays, const Vec3f& at) {
   if (n.lattice.anchors.count == 0) return 0.0f;
   const Vec3f p = moved_into(at, n.low, n.high);
@@ -72,8 +73,8 @@ ASTROLITH_HD inline float height_at(const ExemplarNoise& n, const ArrayView& arr
   return exemplar_height(arrays[n.texture.heights], z);
 }
 
-// Writes height[i] = n(p_i) at points of the bare surface, length units. The loops are vectorised and give
-// the same bits as height_at.
+// Writes height[i] = n(p_i) at these points, length units. The loops are vectorised and give the same bits as
+// height_at.
 void evaluate_heights(const ExemplarNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
 // Writes these heights for anchors that lie outside the arrays of the texture.

@@ -65,7 +65,10 @@ struct LayerAtPoint {
                    projected_point(f, body)));
   }
   ASTROLITH_HD void operator()(const ExemplarNoise& noise) const {
-    join(height_at(noise, f.arrays, projected_point(f, body)));
+    const Vec3f foot = projected_point(f, body);
+    join(height_at(
+        noise, f.arrays,
+        noise.lifted ? lifted_point(body, f.leaf(0).metaballs.gradient_floor, foot, state.elevation) : foot));
   }
   ASTROLITH_HD void operator()(const SpotNoise& noise) const {
     join(height_at(noise, f.arrays, lists.spots, lists.first_spot + layer.first_list, displaced()));

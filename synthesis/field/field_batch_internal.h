@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,7 @@ struct LocalPoints {
 struct Accuracy {
   float band = kExactEverywhere;
   bool tetrahedra = false;
+  std::size_t layers = std::numeric_limits<std::size_t>::max();  // at most so many layers are added
 };
 
 // The metaballs and the spots that reach the points of a block. Spots of a layer that are null are drawn for

@@ -87,7 +87,7 @@ std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const
 // Adds to value[i] the elevation that the layers make, close to the surface and wherever boulders reach.
 void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<const std::uint32_t> boulders,
                     const PointArrays& at, const PointArrays& metaballs_at, const LocalPoints* local,
-                    float band, Batch& b, float* value) {
+                    float band, std::size_t layers, Batch& b, float* value) {
   std::array<int, kBatch> origin;
   const auto boulders_reach = [&](int i) {
     return std::any_of(boulders.begin(), boulders.end(), [&](std::uint32_t k) {
@@ -99,7 +99,7 @@ void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<
   if (b.n == 0) return;
   std::fill_n(b.elevation.data(), b.n, 0.0f);
   b.kept.resize(model.num_kept_heights);
-  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(layers, model.layers.size()); ++i) {
     const FieldLayer& layer = model.layers[i];
     keep_undecided(layer.join.remaining_change + band, boulders_reach, b, origin, value);
     if (b.n == 0) return;
@@ -145,7 +145,9 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   const float band = accuracy.band * model.tables.steepest;
   std::copy_n(b.distance.data(), n, value);
   const std::vector<std::uint32_t> boulders = boulders_around(model, n, at);
-  if (!model.layers.empty()) add_elevations(model, lists, boulders, at, metaballs_at, local, band, b, value);
+  if (!model.layers.empty()) {
+    add_elevations(model, lists, boulders, at, metaballs_at, local, band, accuracy.layers, b, value);
+  }
   for (const std::uint32_t k : boulders) {
     if (local != nullptr && k < model.patch_boulders.size() && model.patch_boulders[k]) {
       const PointArrays& p = local->local;

@@ -51,6 +51,34 @@ void project_locally(const FieldModel& model, Batch& b) {
   project(model, b, {b.lmx.data(), b.lmy.data(), b.lmz.data()}, b.lpx.data(), b.lpy.data(), b.lpz.data());
 }
 
+ASTROLITH_SIMD_CLONES void lift(int n, const float* __restrict projected, const float* __restrict gradient,
+                                const float* __restrict divisor, const float* __restrict elevation,
+                                float* __restrict lifted) {
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    lifted[i] = lifted_coordinate(projected[i], gradient[i], divisor[i], elevation[i]);
+  }
+}
+
+// Where an exemplar is evaluated for the points: their projections, in the patch's frame if `in_patch`,
+// lifted to the surface that the layers below make. Uses the arrays of displaced coordinates.
+PointArrays exemplar_points(const FieldModel& model, const ExemplarNoise& noise, bool in_patch, Batch& b) {
+  in_patch ? project_locally(model, b) : project(model, b);
+  const PointArrays feet = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
+                                    : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+  if (!noise.lifted) return feet;
+  std::array<float, kBatch> length;
+  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
+                   length.data());
+  const auto along = [&](const float* foot, const std::array<float, kBatch>& g, float* out) {
+    lift(b.n, foot, g.data(), length.data(), b.elevation.data(), out);
+  };
+  along(feet.x, b.gx, b.qx.data());
+  along(feet.y, b.gy, b.qy.data());
+  along(feet.z, b.gz, b.qz.data());
+  return {b.qx.data(), b.qy.data(), b.qz.data()};
+}
+
 // The points p, displaced by the layers so far that warp later layers.
 PointArrays displaced(Batch& b, const PointArrays& p) {
   if (!b.is_displaced) return p;
@@ -96,9 +124,7 @@ struct LayerHeights {
     }
   }
   void operator()(const ExemplarNoise& noise) const {
-    in_patch ? project_locally(model, b) : project(model, b);
-    const PointArrays p = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
-                                   : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+    const PointArrays p = exemplar_points(model, noise, in_patch, b);
     evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
   }
   void operator()(const CraterRelief&) const {}  // craters change elevations and have no heights
@@ -186,9 +212,7 @@ void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const Lay
   const bool in_patch = stands_in_patch(layer, b);
   ExemplarNoise noise = *(in_patch ? noise_of(model, layer) : layer.noise).get_if<ExemplarNoise>();
   if (noise.lattice.anchors.count == 0) return;
-  in_patch ? project_locally(model, b) : project(model, b);
-  const PointArrays p = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
-                                 : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+  const PointArrays p = exemplar_points(model, noise, in_patch, b);
   const ExemplarAnchor* anchors = model.tables.arrays[noise.lattice.anchors];
   for (const PaintChannel& channel : paint.channels) {
     noise.texture = channel.texture;

@@ -17,6 +17,7 @@
 #include "synthesis/field/bare_body.h"
 #include "synthesis/field/field_model_internal.h"
 #include "synthesis/landforms/population_cells.h"
+#include "synthesis/field/layers_below.h"
 
 namespace astrolith {
 namespace {
@@ -105,7 +106,7 @@ class LayerStack {
     if (!layer.has_height() && !layer.paints()) return;
     const ExemplarNoise made = make_exemplar(layer, place_of(index_), model_.arrays);
     exemplars_.emplace(index_, made);
-    push(layer, placed(layer, made, supports_, model_.arrays));
+    push(layer, placed(layer, made, number_of_next_layer(), supports_, model_.arrays));
   }
   void add(const CraterLayer& layer) {
     std::vector<PlacedCrater> craters =
@@ -358,16 +359,21 @@ class LayerStack {
     PhaseTileSet set;
   };
 
-  // An exemplar with the anchors of a frame, which are added to `arrays`.
-  ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& made, const NoiseFrame& frame,
-                       ArrayStore& arrays) const {
-    return placed_exemplar(made, layer, recipe_.seed, number_of(layer), frame, ground_of(frame), arrays);
+  // An exemplar with the anchors of a frame, which are added to `arrays`. It lies on the first `below` layers
+  // of the model.
+  ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& made, std::size_t below,
+                       const NoiseFrame& frame, ArrayStore& arrays) const {
+    model_.update();
+    return placed_exemplar(made, layer, recipe_.seed, number_of(layer), frame,
+                           {ground_of(frame), field_below(model_, below, frame), model_.height_bound},
+                           arrays);
   }
   // Tiles with the anchors of a frame, and the impulses of the narrow lobes.
   TiledGaborNoise placed(const TiledGaborLayer& layer, const NoiseFrame& frame, ArrayStore& arrays) const {
     std::vector<ExemplarNoise> tiles;
     for (const PhaseTileSet::Tile& tile : layer.set.tiles) {
-      tiles.push_back(placed_exemplar(tile.made, tile.layer, tile.seed, 0, frame, ground_of(frame), arrays));
+      tiles.push_back(
+          placed_exemplar(tile.made, tile.layer, tile.seed, 0, frame, {ground_of(frame)}, arrays));
     }
     return join_phase_tiles(layer, layer.set, tiles, gabor_impulses(layer.set.narrow, frame, arrays), arrays);
   }
@@ -383,11 +389,13 @@ class LayerStack {
     return ground;
   }
 
-  // The noise of a layer in a frame with an origin of its own.
+  // The noise of a layer in a frame with an origin of its own. The layer has or gets the number `number` in
+  // the model.
   template <class AnyLayer>
-  auto moved_noise(const AnyLayer& layer, const NoiseFrame& frame, ArrayStore& arrays) const {
+  auto moved_noise(const AnyLayer& layer, std::size_t number, const NoiseFrame& frame,
+                   ArrayStore& arrays) const {
     if constexpr (std::is_same_v<AnyLayer, ExemplarLayer>) {
-      return placed(layer, exemplars_.at(index_), frame, arrays);
+      return placed(layer, exemplars_.at(index_), number, frame, arrays);
     } else if constexpr (std::is_same_v<AnyLayer, TiledGaborLayer>) {
       return placed(layer, frame, arrays);
     } else if constexpr (std::is_same_v<AnyLayer, GaborLayer>) {
@@ -426,7 +434,8 @@ class LayerStack {
     patch_layers_.push_back({model_.layers.size(), index_, largest_coordinate(Box{displaced_, displaced_})});
     ArrayStore discarded;
     const NoiseFrame whole(Box{{}, {}}, model_.patch->center);
-    return std::max(noise.height_bound, moved_noise(layer, whole, discarded).height_bound);
+    return std::max(noise.height_bound,
+                    moved_noise(layer, model_.layers.size(), whole, discarded).height_bound);
   }
 
   void report_left_out(int index, const NoiseDetail& detail) {
@@ -456,9 +465,10 @@ class LayerStack {
     if constexpr (requires { layer.use; }) {
       const bool on_surface =
           std::is_base_of_v<GaborLayer, AnyLayer> || std::is_same_v<AnyLayer, ExemplarLayer>;
-      const double reach = 2.0 * patch.side + (on_surface ? warp + model_.height_bound : l.displaced);
+      const double reach = 2.0 * patch.side + (on_surface ? warp + model_.height_bound : l.displaced) +
+                           reach_of_exemplars_after(l.index);
       const NoiseFrame frame(widened(Box{{}, {}}, reach), patch.center);
-      const auto noise = moved_noise(layer, frame, model_.arrays);
+      const auto noise = moved_noise(layer, l.layer, frame, model_.arrays);
       report_left_out(l.index, noise.detail);
       model_.layers[l.layer].in_patch = static_cast<std::int32_t>(model_.patch_noises.size());
       model_.patch_noises.push_back(LayerNoise(noise));
@@ -468,6 +478,16 @@ class LayerStack {
       if constexpr (std::is_same_v<AnyLayer, TiledGaborLayer>)
         model_.patch_caches.back().resize(noise.narrow.bands.count);
     }
+  }
+  // How far beyond the points of a patch the exemplars above a layer look for their slopes: the farthest
+  // anchor of a point lies within an edge of it.
+  double reach_of_exemplars_after(int index) const {
+    double reach = 0.0;
+    for (const auto& [at, made] : exemplars_) {
+      const auto& layer = std::get<ExemplarLayer>(recipe_.layers[static_cast<std::size_t>(at)]);
+      if (at > index) reach = std::max(reach, 2.0 * exemplar_edge(layer));
+    }
+    return reach;
   }
   // The body's warp in the frame of the patch, with the octaves that it has in the body's frame.
   void make_patch_warp() {

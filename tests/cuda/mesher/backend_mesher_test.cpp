@@ -96,6 +96,14 @@ TEST(BackendMesher, MakesTheExemplarsOfTheCpu) {
   expect_same(on_twin(field, 40), on_cpu(field, 40));
 }
 
+TEST(BackendMesher, MakesAnExemplarOnLayersOfTheCpu) {
+  Recipe recipe = potato_recipe(10, 8);
+  recipe.layers = {fractal_layer(0.1, 4.0, 2), testing::exemplar_layer(0.01, 0.01)};
+  const ImplicitField field(recipe);
+  ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
+  expect_same(on_twin(field, 40), on_cpu(field, 40));
+}
+
 TEST(BackendMesher, MakesTheGaborTilesOfTheCpu) {
   Recipe recipe = potato_recipe(10, 8);
   GaborLayer layer = testing::gabor_layer(0.05, 0.01);

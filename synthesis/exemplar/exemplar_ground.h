@@ -1,0 +1,30 @@
+// The surface that an exemplar layer lies on: the body with the layers below the exemplar.
+#pragma once
+
+#include <functional>
+
+#include "synthesis/gabor/gabor_cells.h"
+
+namespace astrolith {
+
+// Writes F of the body with the layers below (implicit_field.h) at n points in the coordinates of the
+// exemplar's frame, length units. At a point of the bare surface, F is the elevation of these layers. Many
+// threads may call it at once.
+using FieldBelow = std::function<void(int n, const float* x, const float* y, const float* z, float* field)>;
+
+struct ExemplarGround {
+  const GaborGround& body;
+  FieldBelow below = {};      // empty where no layer below makes an elevation
+  double height_bound = 0.0;  // bound of the |elevation| of the layers below, length units
+};
+
+// A vector towards the inside, along the normal of the plane that fits the layered surface best around a
+// point near the bare surface. `inward` points towards the inside of the bare body there. The plane fits 16
+// elevations over two rings of `radius` and half of it in the bare tangent plane.
+Vec3f inward_of_layered(const FieldBelow& below, const Vec3f& foot, const Vec3f& inward, float radius);
+
+// A tangent frame of the bare surface, turned by the least angle after which its normal points against
+// `inward`. The normals must be less than half a turn apart.
+TangentFrame turned_frame(const TangentFrame& bare, const Vec3f& inward);
+
+}  // namespace astrolith
