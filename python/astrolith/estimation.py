@@ -259,6 +259,7 @@ def fit_texture(
     mm_per_px: Optional[float] = None,
     unit: Optional[str] = None,
     height_rms: Optional[float] = None,
+    evaluation: Optional[str] = None,
     spectrum_estimate: Optional[str] = None,
     solver: Optional[str] = None,
     penalty: Optional[float] = None,
@@ -294,6 +295,9 @@ def fit_texture(
         Size of a pixel on the ground in millimetres, and the recipe's unit then: "m" (default) or "km".
     height_rms
         Standard deviation of the height in the recipe's unit; default: the image's own contrast.
+    evaluation
+        How a Gabor layer's lobes become heights on a surface: "impulses" (default; exact) or "tiles" (wide lobes as
+        random-phase tiles, many times faster). ``figures.channels[].tiles_distance`` says what tiles cost.
     spectrum_estimate
         "smoothed" (default) or "periodogram".
     solver
@@ -336,7 +340,8 @@ def fit_texture(
         most_bytes = 1e9 * _arrays.number(max_memory, "max_memory", 1e-9, 1e9)
     given = _given(
         model=model, max_memory=max_memory, channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
-        height_rms=height_rms, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty, gap=gap, seed=seed,
+        height_rms=height_rms, evaluation=evaluation, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty,
+        gap=gap, seed=seed,
     )  # fmt: skip
     json, figures, power = _estimation.fit_texture(
         file or "image",
@@ -353,6 +358,7 @@ def fit_texture(
         0.0 if mm_per_px is None else _arrays.number(mm_per_px, "mm_per_px", 1e-12, 1e12),
         _arrays.choice(unit or "m", "unit", ("m", "km")),
         -1.0 if height_rms is None else _arrays.number(height_rms, "height_rms", 0.0, 1e12),
+        _arrays.choice(evaluation or "impulses", "evaluation", ("impulses", "tiles")) == "tiles",
         _arrays.choice(spectrum_estimate or "smoothed", "spectrum_estimate", ("smoothed", "periodogram")) != "smoothed",
         _arrays.choice(solver or "working-set", "solver", ("working-set", "fista")) == "fista",
         0.03 if penalty is None else _arrays.number(penalty, "penalty", 1e-4, 0.99),

@@ -171,7 +171,7 @@ using TextureResult = std::tuple<std::string, std::string, std::optional<NumpyAr
 TextureResult fit_texture(const std::string& name, const std::optional<Planes>& image,
                           const std::string& model, const std::string& output, const std::string& report,
                           double most_bytes, bool spectrum, bool colors, int detrend, bool by_division,
-                          int lobes, double mm_per_px, const std::string& unit, double height_rms,
+                          int lobes, double mm_per_px, const std::string& unit, double height_rms, bool tiles,
                           bool periodogram, bool fista, double penalty, double gap, const Options& given,
                           std::uint64_t seed, int threads, nb::object progress) {
   TextureArguments arguments{name, {}, model, output, report, most_bytes, spectrum, {}, {}, given};
@@ -187,7 +187,8 @@ TextureResult fit_texture(const std::string& name, const std::optional<Planes>& 
   options.seed = seed;
   if (image) arguments.planes = planes_of(*image);
   const std::string stem = image ? "" : std::filesystem::path(name).stem().string();
-  arguments.recipe = {stem, mm_per_px, unit, height_rms, seed};
+  arguments.recipe = {stem,       mm_per_px, unit,
+                      height_rms, seed,      tiles ? GaborEvaluation::kTiles : GaborEvaluation::kImpulses};
   FittedTexture made =
       run_job(std::move(progress), threads, [arguments](JobState& state) { return fit(arguments, state); });
   return {made.fitted.json, made.fitted.figures, array_of_spectra(std::move(made.spectra))};
@@ -199,7 +200,7 @@ void declare_texture_fit(nb::module_& module) {
   module.def("fit_texture", &fit_texture, nb::arg("name"), nb::arg("image").noconvert().none(),
              nb::arg("model"), nb::arg("output"), nb::arg("report"), nb::arg("most_bytes"),
              nb::arg("spectrum"), nb::arg("colors"), nb::arg("detrend"), nb::arg("by_division"),
-             nb::arg("lobes"), nb::arg("mm_per_px"), nb::arg("unit"), nb::arg("height_rms"),
+             nb::arg("lobes"), nb::arg("mm_per_px"), nb::arg("unit"), nb::arg("height_rms"), nb::arg("tiles"),
              nb::arg("periodogram"), nb::arg("fista"), nb::arg("penalty"), nb::arg("gap"), nb::arg("options"),
              nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
 }
