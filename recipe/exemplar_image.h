@@ -18,6 +18,6 @@ struct ExemplarImage {
 };
 
 // The sides of an exemplar, in pixels. Programs refuse images outside this range before they decode them.
-inline constexpr int kLeastExemplarSide = 16, kMostExemplarSide = 4096;
+inline constexpr int kLeastExemplarSide = 16, kMostExemplarSide = 8192;
 
 }  // namespace astrolith

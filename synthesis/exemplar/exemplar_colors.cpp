@@ -31,7 +31,7 @@ struct ColorMoments {
   Matrix3 covariance{};
 };
 
-// The sums are whole numbers: 2^24 pixels of squares below 2^32 fit into 64 bits.
+// The sums are whole numbers: 2^26 pixels of squares below 2^32 fit into 64 bits.
 ColorMoments color_moments(const std::vector<std::uint16_t>& rgb) {
   std::array<std::uint64_t, 3> sum{};
   std::array<std::array<std::uint64_t, 3>, 3> products{};

@@ -20,9 +20,9 @@ namespace {
 
 void check_photo(const GreyImage& photo, const std::string& name) {
   const auto [least, most] = std::minmax(photo.width, photo.height);
-  if (least < kLeastTextureSide || most > kMostExemplarSide) {
+  if (least < kLeastTextureSide || most > kMostTextureSide) {
     throw InputError(fmt::format("{}: is {} x {} pixels; cut out or scale it to sides of {} to {}", name,
-                                 photo.width, photo.height, kLeastTextureSide, kMostExemplarSide));
+                                 photo.width, photo.height, kLeastTextureSide, kMostTextureSide));
   }
   const auto [darkest, brightest] = std::minmax_element(photo.values.begin(), photo.values.end());
   if (!(*brightest - *darkest > 1e-6 * std::max(std::fabs(*darkest), std::fabs(*brightest)))) {

@@ -28,9 +28,9 @@ struct PreparedExemplar {
 };
 
 // Makes an exemplar of a photo by the variant whose textures are nearest to the photo. `name` is the photo's
-// name in messages. Throws InputError for sides outside kLeastTextureSide to kMostExemplarSide, and for a
+// name in messages. Throws InputError for sides outside kLeastTextureSide to kMostTextureSide, and for a
 // photo of one grey value. Throws WorkError when `progress` asks to stop.
-inline constexpr int kLeastTextureSide = 32;
+inline constexpr int kLeastTextureSide = 32, kMostTextureSide = 4096;
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
                                   const Progress& progress = {});
 
