@@ -129,7 +129,7 @@ class BodyRow {
     const TangentFrame bare = tangent_frame(gradient(i));
     if (!ground.below || !serves_surface(ground, longest, i)) return bare;
     const Vec3f foot{row_.x[i], row_.y[i], row_.z[i]};
-    return turned_frame(bare, inward_of_layered(ground.below, foot, gradient(i), kSlopeRadius * longest));
+    return turned_frame(bare, inward_of_layered(ground, foot, gradient(i), kSlopeRadius * longest));
   }
   std::size_t size() const { return row_.size(); }
 

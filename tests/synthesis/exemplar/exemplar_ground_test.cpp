@@ -19,7 +19,10 @@ TEST(LayeredGround, FindsTheSlopeOfAPlane) {
   const FieldBelow below = [&](int n, const float* x, const float* y, const float* z, float* field) {
     for (int i = 0; i < n; ++i) field[i] = slope.x * x[i] + slope.y * y[i] - z[i] + 5.0f;
   };
-  const Vec3f inward = inward_of_layered(below, {0.1f, 0.2f, 0.0f}, {0.0f, 0.0f, -2.0f}, 0.5f);
+  const BodyTables none{};
+  const GaborGround body{none, {}, {}};
+  const ExemplarGround ground{body, below, 10.0};
+  const Vec3f inward = inward_of_layered(ground, {0.1f, 0.2f, 0.0f}, {0.0f, 0.0f, -2.0f}, 0.5f);
   EXPECT_NEAR(inward.x, slope.x, 1e-5f);
   EXPECT_NEAR(inward.y, slope.y, 1e-5f);
   EXPECT_NEAR(inward.z, -1.0f, 1e-5f);
@@ -53,7 +56,7 @@ struct Dips {
   // The point of the layered ball over a direction, and the height of the stones there.
   Vec3d point(const Vec3d& direction) const {
     Vec3d p = normalized(direction);
-    for (int step = 0; step < 4; ++step) p = p + bare.value(p) * normalized(direction);
+    for (int step = 0; step < 30; ++step) p = p + bare.value(p) * normalized(direction);
     return p;
   }
   double height(const Vec3d& p) const { return stones.value(p) - bare.value(p); }
