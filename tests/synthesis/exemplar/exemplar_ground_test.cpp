@@ -43,26 +43,27 @@ TEST(LayeredGround, TurnsAFrameByTheLeastAngle) {
   EXPECT_NEAR(dot(same.u, bare.u), 1.0f, 1e-6f);
 }
 
-// A ball whose dips are as steep as 45 degrees and larger than the image, with and without stones.
+// A ball whose dips are as steep as 40 degrees and larger than the image, with and without stones.
 struct Dips {
   ImplicitField bare{recipe_of(false)}, stones{recipe_of(true)};
 
   static Recipe recipe_of(bool with_stones) {
     Recipe recipe = sphere_recipe(1.0);
-    recipe.layers = {fractal_layer(0.25, 2.0, 1)};
+    recipe.layers = {fractal_layer(0.06, 2.0, 1)};
     if (with_stones) recipe.layers.push_back(exemplar_layer(0.002, 0.002));
     return recipe;
   }
   // The point of the layered ball over a direction, and the height of the stones there.
   Vec3d point(const Vec3d& direction) const {
     Vec3d p = normalized(direction);
-    for (int step = 0; step < 30; ++step) p = p + bare.value(p) * normalized(direction);
+    for (int step = 0; step < 12; ++step) p = p + bare.value(p) * normalized(direction);
     return p;
   }
   double height(const Vec3d& p) const { return stones.value(p) - bare.value(p); }
 };
 
 // Mean squares of the differences of heights per arc length, down the slope and across it, where it is steep.
+// With frames of the bare surface the ratio is .66: stones are stretched down the slope.
 TEST(LayeredGround, DoesNotSquashStonesInSteepDips) {
   const Dips ball;
   CounterRandom random(23);
@@ -88,8 +89,8 @@ TEST(LayeredGround, DoesNotSquashStonesInSteepDips) {
     across += roughness(cross(n, downhill));
   }
   ASSERT_GT(steep, 500);
-  EXPECT_GT(down / across, 0.8);
-  EXPECT_LT(down / across, 1.25);
+  EXPECT_GT(down / across, 0.85);
+  EXPECT_LT(down / across, 1.15);
 }
 
 // The exemplar of a patch stands on the same ground as that of the whole body.
