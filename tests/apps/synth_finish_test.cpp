@@ -42,7 +42,7 @@ TEST_F(SynthFinish, APatchHasTheLandformsOfAKnownBody) {
                                                           "--patch",
                                                           "0",
                                                           "0",
-                                                          "151",
+                                                          "159",
                                                           "8",
                                                           "--resolution",
                                                           "64",
@@ -67,7 +67,7 @@ TEST_F(SynthFinish, APatchHasTheLandformsOfAKnownBody) {
 
 TEST_F(SynthFinish, TheWrittenRecipeMakesTheSamePatch) {
   const std::string recipe = folder_.write("a.json", kAsteroid), made = (folder_ / "made.json").string();
-  const std::vector<std::string> patch{"--patch", "0", "0", "151", "6", "--resolution", "32"};
+  const std::vector<std::string> patch{"--patch", "0", "0", "159", "6", "--resolution", "32"};
   std::vector<std::string> at_once{
       recipe,           "-o", (folder_ / "a.ply").string(), "--finish", "bennu", "--from", "4", "--to", "0.4",
       "--write-recipe", made};
