@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "synthesis/field/field_at_point.h"
+#include "synthesis/field/field_model_internal.h"
 #include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/exemplars.h"
@@ -49,7 +51,9 @@ struct Dips {
 
   static Recipe recipe_of(bool with_stones) {
     Recipe recipe = sphere_recipe(1.0);
-    recipe.layers = {fractal_layer(0.06, 2.0, 1)};
+    FractalLayer dips = fractal_layer(0.06, 2.0, 1);
+    dips.seed = 5;  // keeps its shape whatever stands below it
+    recipe.layers = {dips};
     if (with_stones) recipe.layers.push_back(exemplar_layer(0.002, 0.002));
     return recipe;
   }
@@ -91,6 +95,29 @@ TEST(LayeredGround, DoesNotSquashStonesInSteepDips) {
   ASSERT_GT(steep, 500);
   EXPECT_GT(down / across, 0.85);
   EXPECT_LT(down / across, 1.15);
+}
+
+// The function that a GPU runs for each point gives the bits of the vectorised loops.
+TEST(LayeredGround, HasTheBitsOfOnePointInABatch) {
+  const ImplicitField field(Dips::recipe_of(true));
+  const FieldView& tables = field.tables();
+  const ReachingMetaballs metaballs = all_metaballs(tables.body, tables.arrays);
+  const std::uint32_t no_landforms[] = {0, 0}, no_impulses[] = {0};
+  const BlockLists lists{metaballs.lists(), nullptr, no_impulses, nullptr,
+                         no_impulses,       nullptr, no_landforms};
+  CounterRandom random(31);
+  std::vector<float> x(700), y(700), z(700), value(700);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3f p = to_float(random.uniform(0.9, 1.1) *
+                             normalized(Vec3d{random.normal(), random.normal(), random.normal()}));
+    x[i] = p.x, y[i] = p.y, z[i] = p.z;
+  }
+  field.gather(Box{{-2, -2, -2}, {2, 2, 2}}).evaluate(x, y, z, value);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    ASSERT_EQ(math::bits_of(field_at(tables, lists, {x[i], y[i], z[i]}, kExactEverywhere)),
+              math::bits_of(value[i]))
+        << i;
+  }
 }
 
 // The exemplar of a patch stands on the same ground as that of the whole body.
