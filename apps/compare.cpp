@@ -1,14 +1,17 @@
-// compare: how alike two meshes are in shape, and how far apart their surfaces lie.
+// compare: how alike two meshes are in shape, how far apart their surfaces lie, and whether one surface
+// passes for the other.
 #include <cstdio>
 #include <string>
 
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
+#include "apps/surface_options.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "tasks/synthesis/comparison.h"
+#include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
 namespace {
@@ -17,7 +20,9 @@ struct Arguments {
   std::string a, b, output;
   ShapeOptions options;
   std::int64_t samples = 100000;
-  bool floor = false;
+  bool floor = false, realism = false;
+  std::string unit;
+  SurfaceOptions surface;
 };
 
 void add_options(Program& program, Arguments& arguments) {
@@ -33,6 +38,15 @@ void add_options(Program& program, Arguments& arguments) {
       .check(in_range(std::int64_t{100}, std::int64_t{10000000}));
   app.add_flag("--floor", arguments.floor,
                "also say how alike two samplings of A are, and of B: more cannot be expected");
+  const Option realism = app.add_flag(
+      "--realism", arguments.realism,
+      "also say whether the surface of B passes for that of A, by what both are like from place to place: "
+      "Kolmogorov-Smirnov distances, p by exchange of regions, and in words what B lacks");
+  app.add_option("--unit", arguments.unit, "unit of both files, for the lengths in these words")
+      .check(one_of({"m", "km"}))
+      .default_text("")
+      .needs(realism);
+  arguments.surface.add_to(app, realism);
 }
 
 void print(const nlohmann::ordered_json& result, const std::string& output) {
@@ -48,6 +62,19 @@ void print(const nlohmann::ordered_json& result, const std::string& output) {
   OutputFile file(output);
   file.write(text.data(), text.size());
   file.commit();
+}
+
+nlohmann::ordered_json judge(const Program& program, const Arguments& arguments, const TriangleMesh& a,
+                             const TriangleMesh& b) {
+  const SurfaceComparison made = judge_surfaces(
+      {arguments.a, a}, {arguments.b, b}, arguments.surface.with_seed(program.seed), arguments.floor,
+      arguments.unit, [&](const std::string& stage) { return program.progress(stage); });
+  for (const std::string& remark : made.a.remarks) program.say(arguments.a + ": " + remark);
+  for (const std::string& remark : made.b.remarks) program.say(arguments.b + ": " + remark);
+  for (const auto& words : made.figures["words"]) {
+    program.say(arguments.b + ": " + words.get<std::string>());
+  }
+  return made.figures;
 }
 
 void run(Program& program, const Arguments& arguments) {
@@ -67,6 +94,7 @@ void run(Program& program, const Arguments& arguments) {
                      [&](const std::string& stage) { return program.progress(stage); });
   for (const std::string& remark : comparison.remarks) program.say(remark);
   result.update(comparison.figures);
+  if (arguments.realism) result["realism"] = judge(program, arguments, a, b);
   print(result, arguments.output);
   program.summary = result;
 }
@@ -79,7 +107,8 @@ int main(int argc, char** argv) {
       "compare",
       "Says as JSON how alike two meshes are in shape (similarity 1: the same; position, "
       "attitude and size do not matter) and how far apart their surfaces lie as they "
-      "stand (mean, p99 and max distance as fractions of A's bounding-box diagonal).");
+      "stand (mean, p99 and max distance as fractions of A's bounding-box diagonal). "
+      "With --realism it also says whether the surface of B passes for that of A.");
   astrolith::Arguments arguments;
   astrolith::add_options(program, arguments);
   return program.run(argc, argv, [&] { astrolith::run(program, arguments); });

@@ -1,15 +1,19 @@
-// describe: a mesh, or points with normals, becomes the histogram of its shape.
+// describe: a mesh, or points with normals, becomes the histogram of its shape, or the statistics of its
+// surface.
+#include <filesystem>
 #include <string>
 
 #include "apps/device_option.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
+#include "apps/surface_options.h"
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "tasks/synthesis/describe_file.h"
+#include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
 namespace {
@@ -18,6 +22,8 @@ struct Arguments {
   std::string shape, output;
   ShapeOptions options;
   DeviceOption device;
+  bool surface = false;
+  SurfaceOptions surface_options;
 };
 
 void add_options(Program& program, Arguments& arguments) {
@@ -26,12 +32,20 @@ void add_options(Program& program, Arguments& arguments) {
                  "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; or ply of points with normals")
       .required()
       .placeholder("MESH");
-  app.add_option("-o,--output", arguments.output,
-                 "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]")
+  app.add_option(
+         "-o,--output", arguments.output,
+         "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]; with --surface "
+         "the figures (.json) or the values at every place (.csv)")
       .required()
       .placeholder("H.npy");
   arguments.options.add_to(app);
   arguments.device.add_to(app);
+  const Option surface =
+      app.add_flag("--surface", arguments.surface,
+                   "in place of the histogram: how rough the surface is within 3, 6, 12 and 24 mean edges of "
+                   "places all over "
+                   "it, whether bumps or pits stand out, how steep it is, and how far its regions differ");
+  arguments.surface_options.add_to(app, surface);
 }
 
 void summarize(Program& program, const ShapeDescription& shape, const std::string& features) {
@@ -44,7 +58,30 @@ void summarize(Program& program, const ShapeDescription& shape, const std::strin
   program.summary["undefined_curvatures"] = shape.undefined_curvatures;
 }
 
+void write_surface(const SurfaceStatistics& surface, const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".csv") return write_surface_table(surface, file);
+  const std::string text = surface_json(surface).dump(2) + "\n";
+  OutputFile output(file);
+  output.write(text.data(), text.size());
+  output.commit();
+}
+
+void run_surface(Program& program, const Arguments& arguments) {
+  require_extension(arguments.output, {".json", ".csv"});
+  require_writable(arguments.output);
+  const TriangleMesh mesh = read_mesh(arguments.shape);
+  const SurfaceStatistics surface =
+      describe_surface({arguments.shape, mesh}, arguments.surface_options.with_seed(program.seed),
+                       program.progress("surface"));
+  for (const std::string& remark : surface.remarks) program.say(arguments.shape + ": " + remark);
+  write_surface(surface, arguments.output);
+  program.summary["surface"] = surface_json(surface);
+  program.say(arguments.output + ": " + std::to_string(surface.places.size()) + " places of " +
+              std::to_string(surface.points) + " points");
+}
+
 void run(Program& program, const Arguments& arguments) {
+  if (arguments.surface) return run_surface(program, arguments);
   require_extension(arguments.output, {".npy"});
   require_writable(arguments.output);
   const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
@@ -70,7 +107,8 @@ int main(int argc, char** argv) {
   astrolith::Program program(
       "describe",
       "Writes the histogram of features of pairs of surface points, a fingerprint of the "
-      "shape that does not change when the shape is moved, turned or scaled.");
+      "shape that does not change when the shape is moved, turned or scaled. With --surface it writes what "
+      "the surface is like from place to place.");
   astrolith::Arguments arguments;
   astrolith::add_options(program, arguments);
   return program.run(argc, argv, [&] { astrolith::run(program, arguments); });

@@ -1,0 +1,204 @@
+#include "descriptor/surface/realism.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "descriptor/surface/block_permutations.h"
+#include "numerics/errors.h"
+#include "numerics/reported_loop.h"
+
+namespace astrolith {
+namespace {
+
+// A value of the sorted sample below which a share of it lies.
+double quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+struct Summary {
+  double middle, spread;
+};
+
+Summary summary_of(const LocalStatistic& statistic) {
+  std::vector<double> sorted = statistic.values;
+  std::sort(sorted.begin(), sorted.end());
+  const double spread = quantile(sorted, 0.75) - quantile(sorted, 0.25);
+  if (statistic.quantity != SurfaceQuantity::skewness) return {median(sorted), spread};
+  double mean = 0.0;
+  for (const double v : sorted) mean += v / static_cast<double>(sorted.size());
+  return {mean, spread};
+}
+
+void check_alike(const SurfaceStatistics& a, const SurfaceStatistics& b) {
+  if (a.points != b.points) {
+    throw InputError("realism: the surfaces were sampled at " + std::to_string(a.points) + " and " +
+                     std::to_string(b.points) + " points; sample both at as many");
+  }
+}
+
+// A statistic that both surfaces have, and its distance for any labels of regions.
+struct StatisticTest {
+  StatisticComparison comparison;
+  std::function<double(const RegionLabels&)> distance;
+};
+
+StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const SurfaceStatistics& of_a,
+                      const SurfaceStatistics& of_b) {
+  StatisticTest test;
+  StatisticComparison& c = test.comparison;
+  c.quantity = a.quantity;
+  c.radius = c.reach = a.radius;
+  const double body_radius = std::min(of_a.body_radius, of_b.body_radius);
+  c.counts_in_p = regions_hold(a.radius, body_radius);
+  // A slope has no radius: it follows the body's shape, which one draw does not share with another.
+  c.counts_in_distance = a.quantity != SurfaceQuantity::slope && body_holds_discs(a.radius, body_radius);
+  const Summary sa = summary_of(a), sb = summary_of(b);
+  c.middle_a = sa.middle, c.middle_b = sb.middle, c.spread_a = sa.spread, c.spread_b = sb.spread;
+  test.distance = KolmogorovSmirnov({a.values, of_a.regions.of_place}, {b.values, of_b.regions.of_place});
+  return test;
+}
+
+StatisticTest test_of(const Regions& a, const Regions& b, std::size_t lag) {
+  StatisticTest test;
+  StatisticComparison& c = test.comparison;
+  c.correlation = true;
+  c.counts_in_p = true;
+  c.radius = kCovarianceLags[lag].low;
+  c.reach = kCovarianceLags[lag].high;
+  c.middle_a = a.correlation(lag);
+  c.middle_b = b.correlation(lag);
+  test.distance = CovarianceDifference(a, b, lag);
+  return test;
+}
+
+std::vector<StatisticTest> all_tests(const SurfaceStatistics& a, const SurfaceStatistics& b) {
+  check_alike(a, b);
+  std::vector<StatisticTest> tests;
+  for (const LocalStatistic& of_a : a.local) {
+    const LocalStatistic* of_b = b.find(of_a.quantity, of_a.radius);
+    if (of_b != nullptr) tests.push_back(test_of(of_a, *of_b, a, b));
+  }
+  for (std::size_t lag = 0; lag < kCovarianceLags.size(); ++lag) {
+    tests.push_back(test_of(a.regions, b.regions, lag));
+  }
+  for (StatisticTest& test : tests) test.comparison.distance = test.distance(own_regions());
+  return tests;
+}
+
+// (#permutations x #tests) the distances with exchanged regions.
+std::vector<double> exchanged_distances(const std::vector<StatisticTest>& tests,
+                                        const RealismOptions& options, const Progress& progress) {
+  const std::size_t count = tests.size();
+  std::vector<double> distances(static_cast<std::size_t>(options.permutations) * count);
+  reported_parallel_for({0, options.permutations, options.permutations}, progress, "permutations",
+                        [&](std::int64_t k) {
+                          const auto row = static_cast<std::size_t>(k);
+                          const RegionLabels labels = exchanged_regions(options.seed, row);
+                          for (std::size_t t = 0; t < count; ++t) {
+                            distances[row * count + t] = tests[t].distance(labels);
+                          }
+                        });
+  return distances;
+}
+
+// (1 + how many values are at least `own`) / (1 + their number). Rounding makes no difference.
+double share_as_large(double own, std::span<const double> values) {
+  const auto as_large =
+      std::count_if(values.begin(), values.end(), [&](double v) { return v >= own * (1.0 - 1e-12); });
+  return (1.0 + static_cast<double>(as_large)) / (1.0 + static_cast<double>(values.size()));
+}
+
+// The largest ratio of a distance to its 95 % quantile, of the surfaces themselves and of each permutation.
+struct LargestRatios {
+  double own = 0.0;
+  std::vector<double> exchanged;
+};
+
+void add_ratios(double own, const std::vector<double>& exchanged, LargestRatios& largest) {
+  std::vector<double> sorted = exchanged;
+  std::sort(sorted.begin(), sorted.end());
+  const double usual = quantile(sorted, 0.95);
+  if (!(usual > 0.0)) return;
+  largest.own = std::max(largest.own, own / usual);
+  for (std::size_t k = 0; k < exchanged.size(); ++k) {
+    largest.exchanged[k] = std::max(largest.exchanged[k], exchanged[k] / usual);
+  }
+}
+
+bool passing(const RealismVerdict& verdict) {
+  return verdict.p >= kPassingP && verdict.largest_distance <= kPassingDistance;
+}
+
+}  // namespace
+
+std::vector<StatisticComparison> statistic_distances(const SurfaceStatistics& a, const SurfaceStatistics& b) {
+  std::vector<StatisticComparison> statistics;
+  for (const StatisticTest& test : all_tests(a, b)) statistics.push_back(test.comparison);
+  return statistics;
+}
+
+double largest_distance(std::span<const StatisticComparison> statistics) {
+  double largest = 0.0;
+  for (const StatisticComparison& c : statistics) {
+    if (c.counts_in_distance) largest = std::max(largest, c.distance);
+  }
+  return largest;
+}
+
+RealismVerdict judge_realism(const SurfaceStatistics& a, const SurfaceStatistics& b,
+                             const RealismOptions& options, const Progress& progress) {
+  if (options.permutations < 19 || options.permutations > 99999) {
+    throw InputError("realism: permutations: " + std::to_string(options.permutations) +
+                     " is outside 19 to 99999");
+  }
+  const std::vector<StatisticTest> tests = all_tests(a, b);
+  const std::vector<double> distances = exchanged_distances(tests, options, progress);
+  const auto permutations = static_cast<std::size_t>(options.permutations);
+  RealismVerdict verdict;
+  LargestRatios ratios{0.0, std::vector<double>(permutations, 0.0)};
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    StatisticComparison c = tests[t].comparison;
+    std::vector<double> exchanged;
+    for (std::size_t k = 0; k < permutations; ++k) exchanged.push_back(distances[k * tests.size() + t]);
+    c.p = share_as_large(c.distance, exchanged);
+    if (c.counts_in_p) add_ratios(c.distance, exchanged, ratios);
+    verdict.statistics.push_back(c);
+  }
+  verdict.p = share_as_large(ratios.own, ratios.exchanged);
+  verdict.largest_distance = largest_distance(verdict.statistics);
+  verdict.passes = passing(verdict);
+  verdict.edge = a.edge;
+  verdict.variance_ratio = a.regions.between > 0.0 ? b.regions.between / a.regions.between : 0.0;
+  return verdict;
+}
+
+RealismVerdict median_verdict(std::span<const RealismVerdict> verdicts) {
+  RealismVerdict result = verdicts.front();
+  const auto median_of = [&](const auto& figure) {
+    std::vector<double> values;
+    for (const RealismVerdict& verdict : verdicts) values.push_back(figure(verdict));
+    return median(values);
+  };
+  for (std::size_t s = 0; s < result.statistics.size(); ++s) {
+    for (double StatisticComparison::*figure :
+         {&StatisticComparison::distance, &StatisticComparison::p, &StatisticComparison::middle_b,
+          &StatisticComparison::spread_b}) {
+      result.statistics[s].*figure =
+          median_of([&](const RealismVerdict& verdict) { return verdict.statistics[s].*figure; });
+    }
+  }
+  result.p = median_of([](const RealismVerdict& v) { return v.p; });
+  result.largest_distance = median_of([](const RealismVerdict& v) { return v.largest_distance; });
+  result.variance_ratio = median_of([](const RealismVerdict& v) { return v.variance_ratio; });
+  result.passes = passing(result);
+  return result;
+}
+
+}  // namespace astrolith

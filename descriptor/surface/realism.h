@@ -1,0 +1,79 @@
+// Whether one surface passes for another, by their local statistics.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "descriptor/surface/surface_statistics.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+inline constexpr double kPassingP = 0.05, kPassingDistance = 0.13;
+
+// The difference of two surfaces in one statistic.
+struct StatisticComparison {
+  SurfaceQuantity quantity = SurfaceQuantity::roughness;
+  // A correlation of roughness over distance in place of a distribution; `radius` is then the least distance
+  // and `reach` the largest.
+  bool correlation = false;
+  double radius = 0.0, reach = 0.0;  // edges
+  double distance = 0.0;             // Kolmogorov-Smirnov; of correlations their difference
+  double p = 1.0;                    // share of exchanged regions with a distance at least as large
+  // Whether the statistic counts in the verdict's p, and in its largest distance. Others are stated only.
+  bool counts_in_p = false, counts_in_distance = false;
+  // Medians and interquartile ranges of both distributions, for skewness the means; for a correlation its two
+  // values and 0.
+  double middle_a = 0.0, middle_b = 0.0, spread_a = 0.0, spread_b = 0.0;
+  bool differs() const {
+    return (counts_in_p && p < kPassingP) || (counts_in_distance && distance > kPassingDistance);
+  }
+};
+
+struct RealismVerdict {
+  bool passes = false;            // p >= kPassingP and largest_distance <= kPassingDistance
+  double p = 1.0;                 // of the whole
+  double largest_distance = 0.0;  // of the statistics that count in it
+  double variance_ratio = 0.0;    // of roughness between regions, b over a; 0 where a has none
+  double edge = 0.0;              // of the first surface, its unit
+  std::vector<StatisticComparison> statistics;
+};
+
+struct RealismOptions {
+  int permutations = 999;  // 19 to 99,999
+  std::uint64_t seed = 1;
+};
+
+// The distances alone, without a test: for a search, some milliseconds. `p` stays 1. Both surfaces have the
+// same points and radii, else InputError.
+std::vector<StatisticComparison> statistic_distances(const SurfaceStatistics& a, const SurfaceStatistics& b);
+
+// The largest distance among those that count.
+double largest_distance(std::span<const StatisticComparison> statistics);
+
+// Tests whether both surfaces could be two draws of one kind. Under that hypothesis regions can be exchanged
+// between them. p of a statistic is (1 + the number of permutations with at least its distance) / (1 +
+// permutations). The whole is tested by the largest ratio of a distance to its own 95 % quantile over the
+// permutations. A statistic counts in p where 40 regions hold its radius, and in the largest distance where
+// 100 discs of the radius find room on the body. A test by regions is lenient on bodies that vary much, which
+// is why a surface passes by p and by distance. Throws as statistic_distances() does, InputError for options
+// out of range, and WorkError when progress asks to stop.
+RealismVerdict judge_realism(const SurfaceStatistics& a, const SurfaceStatistics& b,
+                             const RealismOptions& options, const Progress& progress = {});
+
+// The medians of several verdicts on one first surface, as of several seeds of a noise. Not empty.
+RealismVerdict median_verdict(std::span<const RealismVerdict> verdicts);
+
+// How lengths are put into words: times `scale`, followed by the unit.
+struct LengthWords {
+  double scale = 1.0;
+  std::string unit = "units";
+};
+
+// What a reader should know: "passes", or what the second surface lacks beside the first: "too smooth between
+// 8 and 20 m", "no boulders".
+std::vector<std::string> realism_words(const RealismVerdict& verdict, const LengthWords& lengths);
+
+}  // namespace astrolith

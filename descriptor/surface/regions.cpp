@@ -1,0 +1,110 @@
+#include "descriptor/surface/regions.h"
+
+#include <limits>
+
+#include "geometry/surface/mesh_sampling.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+using LagSums = std::array<PairSum, kCovarianceLags.size()>;
+
+std::vector<double> deviations(std::span<const double> values) {
+  double mean = 0.0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  std::vector<double> from_mean(values.begin(), values.end());
+  for (double& v : from_mean) v -= mean;
+  return from_mean;
+}
+
+double mean_square(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+// The pairs that place i forms with all others, each with half its weight.
+LagSums pairs_of(std::size_t i, std::span<const Vec3d> places, std::span<const double> values, double edge) {
+  LagSums sums{};
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    const double squared = squared_norm(places[j] - places[i]) / (edge * edge);
+    for (std::size_t lag = 0; lag < sums.size(); ++lag) {
+      const auto [low, high] = kCovarianceLags[lag];
+      if (squared < low * low || squared >= high * high) continue;
+      sums[lag].products += 0.5 * values[i] * values[j];
+      sums[lag].pairs += 0.5;
+    }
+  }
+  return sums;
+}
+
+double variance_of_means(std::span<const std::uint8_t> of_place, std::span<const double> values) {
+  std::array<double, kRegions> sums{}, counts{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sums[of_place[i]] += values[i];
+    counts[of_place[i]] += 1.0;
+  }
+  std::vector<double> means;
+  for (std::size_t r = 0; r < kRegions; ++r) {
+    if (counts[r] > 0.0) means.push_back(sums[r] / counts[r]);
+  }
+  return mean_square(deviations(means));
+}
+
+}  // namespace
+
+double Regions::correlation(std::size_t lag) const {
+  PairSum all;
+  for (const auto& region : pairs) {
+    all.products += region[lag].products;
+    all.pairs += region[lag].pairs;
+  }
+  return all.pairs > 0.0 && variance > 0.0 ? all.products / all.pairs / variance : 0.0;
+}
+
+std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<const Vec3d> places,
+                                           std::uint64_t seed) {
+  const std::vector<Vec3d> centers = sample_poisson_disk(mesh, kRegions, seed).points;
+  std::vector<std::uint8_t> regions;
+  regions.reserve(places.size());
+  for (const Vec3d& place : places) {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::size_t region = 0;
+    for (std::size_t r = 0; r < centers.size(); ++r) {
+      const double squared = squared_norm(centers[r] - place);
+      if (squared >= nearest) continue;
+      nearest = squared;
+      region = r;
+    }
+    regions.push_back(static_cast<std::uint8_t>(region));
+  }
+  return regions;
+}
+
+Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d> places,
+                      std::span<const double> values, double edge) {
+  const std::vector<double> from_mean = deviations(values);
+  std::vector<LagSums> sums(places.size());
+  parallel_for(
+      0, static_cast<std::int64_t>(places.size()),
+      [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        sums[k] = pairs_of(k, places, from_mean, edge);
+      },
+      16);
+  Regions regions;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t lag = 0; lag < kCovarianceLags.size(); ++lag) {
+      PairSum& region = regions.pairs[of_place[i]][lag];
+      region.products += sums[i][lag].products;
+      region.pairs += sums[i][lag].pairs;
+    }
+  }
+  regions.variance = mean_square(from_mean);
+  regions.between = variance_of_means(of_place, from_mean);
+  regions.of_place = std::move(of_place);
+  return regions;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,46 @@
+// Regions of a surface: the blocks that a permutation test exchanges, and how far roughness differs between
+// them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/triangle_mesh.h"
+
+namespace astrolith {
+
+inline constexpr int kRegions = 40;
+
+// Ranges of distance between two places, in edges.
+struct LagRange {
+  double low, high;
+};
+inline constexpr std::array<LagRange, 3> kCovarianceLags{{{6, 10}, {10, 16}, {16, 28}}};
+
+// The sum of products of a value's deviations from its mean, over pairs of places, and the number of pairs.
+struct PairSum {
+  double products = 0.0, pairs = 0.0;
+};
+
+struct Regions {
+  std::vector<std::uint8_t> of_place;  // (#places) number of the region, below kRegions
+  double variance = 0.0;               // of the value over all places
+  double between = 0.0;                // variance of the regions' means
+  // The pairs at each lag. A pair counts half in the region of each of its places.
+  std::array<std::array<PairSum, kCovarianceLags.size()>, kRegions> pairs{};
+
+  // The covariance at a lag over the variance: 1 for places that are alike, 0 for independent ones.
+  double correlation(std::size_t lag) const;
+};
+
+// Parts the places among the kRegions points of a Poisson disk on the mesh, each to the nearest.
+std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<const Vec3d> places,
+                                           std::uint64_t seed);
+
+// The sums of a value over the regions.  values: (#places)
+Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d> places,
+                      std::span<const double> values, double edge);
+
+}  // namespace astrolith

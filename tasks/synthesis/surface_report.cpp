@@ -1,0 +1,168 @@
+#include "tasks/synthesis/surface_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<double, 5> kShares{0.05, 0.25, 0.5, 0.75, 0.95};
+
+Json distribution_json(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  Json quantiles = Json::array();
+  for (const double share : kShares) {
+    quantiles.push_back(
+        values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)]);
+  }
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double v : values) mean += v / n;
+  for (const double v : values) squares += (v - mean) * (v - mean) / n;
+  return {{"quantiles", quantiles}, {"mean", mean}, {"deviation", std::sqrt(squares)}};
+}
+
+// The radii of the local statistics, each with what was measured within it.
+Json radii_json(const SurfaceStatistics& surface) {
+  Json radii = Json::array();
+  for (const LocalStatistic& statistic : surface.local) {
+    if (statistic.quantity == SurfaceQuantity::slope) continue;
+    if (statistic.quantity == SurfaceQuantity::roughness) {
+      radii.push_back({{"edges", statistic.radius}, {"length", statistic.radius * surface.edge}});
+    }
+    radii.back()[name_of(statistic.quantity)] = distribution_json(statistic.values);
+  }
+  return radii;
+}
+
+Json regions_json(const SurfaceStatistics& surface) {
+  Json lags = Json::array();
+  for (std::size_t lag = 0; lag < kCovarianceLags.size(); ++lag) {
+    const auto [low, high] = kCovarianceLags[lag];
+    lags.push_back({{"from", low * surface.edge},
+                    {"to", high * surface.edge},
+                    {"correlation", surface.regions.correlation(lag)}});
+  }
+  return {{"count", kRegions},
+          {"variance", surface.regions.variance},
+          {"variance_between", surface.regions.between},
+          {"correlations", lags}};
+}
+
+Json lags_json(const SurfaceStatistics& surface) {
+  Json lags = Json::array();
+  for (const RoughnessAtLag& at : surface.lags) {
+    lags.push_back({{"lag", at.lag * surface.edge}, {"difference", at.difference}});
+  }
+  return lags;
+}
+
+Json statistic_json(const StatisticComparison& c, double edge) {
+  Json json{{"statistic", c.correlation ? "correlation" : name_of(c.quantity)}};
+  if (c.correlation) {
+    json["from"] = c.radius * edge;
+    json["to"] = c.reach * edge;
+  } else if (c.radius > 0.0) {
+    json["edges"] = c.radius;
+    json["radius"] = c.radius * edge;
+  }
+  json["distance"] = c.distance;
+  json["p"] = c.p;
+  json["counts_in_p"] = c.counts_in_p;
+  json["counts_in_distance"] = c.counts_in_distance;
+  json["a"] = c.middle_a;
+  json["b"] = c.middle_b;
+  return json;
+}
+
+std::string column_name(const LocalStatistic& statistic) {
+  const std::string name = name_of(statistic.quantity);
+  return statistic.radius > 0.0 ? fmt::format("{}_{:g}", name, statistic.radius) : name;
+}
+
+}  // namespace
+
+LengthWords words_for_lengths(const std::string& unit, double length) {
+  if (unit == "km" && length < 1.0) return {1000.0, "m"};
+  return {1.0, unit.empty() ? "units" : unit};
+}
+
+SurfaceStatistics describe_surface(const NamedMesh& shape, const SurfaceStatisticsOptions& options,
+                                   const Progress& progress) {
+  try {
+    return surface_statistics(shape.mesh, options, progress);
+  } catch (const InputError& e) {
+    throw InputError(shape.name + ": " + e.what());
+  }
+}
+
+nlohmann::ordered_json surface_json(const SurfaceStatistics& surface) {
+  Json json{{"points", surface.points},        {"edge", surface.edge},
+            {"places", surface.places.size()}, {"undefined_places", surface.undefined},
+            {"radii", radii_json(surface)},    {"roughness_at_lags", lags_json(surface)},
+            {"regions", regions_json(surface)}};
+  if (const LocalStatistic* slope = surface.find(SurfaceQuantity::slope, 0.0)) {
+    json["slopes"] = distribution_json(slope->values);
+  }
+  return json;
+}
+
+void write_surface_table(const SurfaceStatistics& surface, const std::filesystem::path& file) {
+  std::string text = "x,y,z,region";
+  for (const LocalStatistic& statistic : surface.local) text += "," + column_name(statistic);
+  text += "\n";
+  for (std::size_t i = 0; i < surface.places.size(); ++i) {
+    const Vec3d& p = surface.places[i];
+    text += fmt::format("{:.9g},{:.9g},{:.9g},{}", p.x, p.y, p.z, surface.regions.of_place[i]);
+    for (const LocalStatistic& statistic : surface.local) {
+      text += fmt::format(",{:.9g}", statistic.values[i]);
+    }
+    text += "\n";
+  }
+  OutputFile output(file);
+  output.write(text.data(), text.size());
+  output.commit();
+}
+
+nlohmann::ordered_json realism_json(const RealismVerdict& verdict, const LengthWords& lengths) {
+  Json statistics = Json::array();
+  for (const StatisticComparison& c : verdict.statistics) {
+    statistics.push_back(statistic_json(c, verdict.edge));
+  }
+  return {{"passes", verdict.passes},
+          {"words", realism_words(verdict, lengths)},
+          {"p", verdict.p},
+          {"largest_distance", verdict.largest_distance},
+          {"variance_ratio", verdict.variance_ratio},
+          {"edge", verdict.edge},
+          {"statistics", statistics}};
+}
+
+SurfaceComparison judge_surfaces(const NamedMesh& a, const NamedMesh& b, SurfaceStatisticsOptions options,
+                                 bool with_floor, const std::string& unit, const StageProgress& progress) {
+  if (options.points == 0) options.points = common_points(a.mesh, b.mesh);
+  const std::uint64_t seed = options.seed;
+  const auto sampled = [&](const NamedMesh& shape, std::uint64_t which) {
+    options.seed = seed + which * 0x9e3779b97f4a7c15u;
+    return describe_surface(shape, options, progress("surface"));
+  };
+  const RealismOptions test{.permutations = 999, .seed = seed};
+  SurfaceComparison comparison{{}, {}, sampled(a, 0), sampled(b, 1)};
+  comparison.verdict = judge_realism(comparison.a, comparison.b, test, progress("permutations"));
+  comparison.figures = realism_json(comparison.verdict, words_for_lengths(unit, 3.0 * comparison.a.edge));
+  if (with_floor) {
+    const RealismVerdict again = judge_realism(comparison.a, sampled(a, 2), test, progress("permutations"));
+    comparison.figures["floor"] = {{"p", again.p}, {"largest_distance", again.largest_distance}};
+  }
+  return comparison;
+}
+
+}  // namespace astrolith

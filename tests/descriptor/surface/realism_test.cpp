@@ -1,0 +1,138 @@
+#include "descriptor/surface/realism.h"
+
+#include <algorithm>
+
+#include "numerics/errors.h"
+#include "tests/descriptor/surface/rough_spheres.h"
+
+namespace astrolith {
+namespace {
+
+using testing::BumpHeights;
+using testing::rough_sphere;
+using testing::WaveHeights;
+
+constexpr double kSphereEdge = 0.0376;
+
+template <typename Heights>
+SurfaceStatistics measured(const Heights& height, std::uint64_t seed = 1) {
+  SurfaceStatisticsOptions options;
+  options.places = 1500;
+  options.seed = seed;
+  return surface_statistics(rough_sphere(height), options);
+}
+SurfaceStatistics waves(double amplitude, std::uint64_t noise_seed, std::uint64_t seed = 1) {
+  const WaveHeights height(6 * kSphereEdge, noise_seed);
+  return measured([&](const Vec3d& p) { return amplitude * height(p); }, seed);
+}
+
+bool says(const RealismVerdict& verdict, const std::string& beginning) {
+  const auto words = realism_words(verdict, {});
+  return std::any_of(words.begin(), words.end(), [&](const auto& w) { return w.starts_with(beginning); });
+}
+
+TEST(Realism, ABodySampledAgainPasses) {
+  const RealismVerdict verdict = judge_realism(waves(0.01, 1, 1), waves(0.01, 1, 2), {});
+  EXPECT_TRUE(verdict.passes) << verdict.p << " " << verdict.largest_distance;
+  EXPECT_GT(verdict.p, 0.5);
+  EXPECT_NEAR(verdict.variance_ratio, 1, 0.3);
+  EXPECT_EQ(realism_words(verdict, {}), std::vector<std::string>{"passes"});
+}
+
+TEST(Realism, AnotherDrawOfTheSameNoisePasses) {
+  const RealismVerdict verdict = judge_realism(waves(0.01, 1), waves(0.01, 2), {});
+  EXPECT_TRUE(verdict.passes) << verdict.p << " " << verdict.largest_distance;
+}
+
+TEST(Realism, ASmootherSurfaceIsToldInWords) {
+  const RealismVerdict verdict = judge_realism(waves(0.01, 1), waves(0.006, 2), {});
+  EXPECT_FALSE(verdict.passes);
+  EXPECT_LT(verdict.p, 0.01);
+  EXPECT_TRUE(says(verdict, "too smooth between 0.11 and ")) << realism_words(verdict, {})[0];
+  const RealismVerdict turned = judge_realism(waves(0.006, 1), waves(0.01, 2), {});
+  EXPECT_TRUE(says(turned, "too rough between 0.11 and "));
+}
+
+TEST(Realism, MissingBouldersAndCratersAreNamed) {
+  const BumpHeights bumps(200, 1.5 * kSphereEdge, 2);
+  const WaveHeights ground(6 * kSphereEdge, 3);
+  const auto with = [&](double height) {
+    return measured([&](const Vec3d& p) { return 0.004 * ground(p) + height * bumps(p); });
+  };
+  const SurfaceStatistics none = waves(0.008, 4), boulders = with(0.03), craters = with(-0.03);
+  EXPECT_TRUE(says(judge_realism(boulders, none, {}), "no boulders"));
+  EXPECT_TRUE(says(judge_realism(craters, none, {}), "no craters"));
+  EXPECT_TRUE(says(judge_realism(none, boulders, {}), "too many boulders"));
+  EXPECT_TRUE(says(judge_realism(none, craters, {}), "too many craters"));
+}
+
+TEST(Realism, MissingRegionsAreNamed) {
+  const WaveHeights height(5 * kSphereEdge, 3), other(5 * kSphereEdge, 4);
+  const auto halves = measured([&](const Vec3d& p) { return (p.z > 0 ? 0.012 : 0.004) * height(p); });
+  const auto even = measured([&](const Vec3d& p) { return 0.007 * other(p); });
+  const RealismVerdict verdict = judge_realism(halves, even, {});
+  EXPECT_FALSE(verdict.passes);
+  EXPECT_TRUE(says(verdict, "no rough and smooth regions"));
+  EXPECT_LT(verdict.variance_ratio, 0.3);
+}
+
+// Draws of one kind, whose values are normal and independent: p is then uniform.
+SurfaceStatistics drawn(std::uint64_t seed) {
+  CounterRandom random(seed, 0);
+  SurfaceStatistics s;
+  s.points = 20000;
+  s.body_radius = 40;
+  for (const SurfaceQuantity quantity : {SurfaceQuantity::roughness, SurfaceQuantity::skewness}) {
+    s.local.push_back({quantity, 3.0, {}});
+  }
+  std::vector<std::uint8_t> regions;
+  for (int i = 0; i < 400; ++i) {
+    s.places.push_back({40 * random.uniform(), 40 * random.uniform(), 0});
+    regions.push_back(static_cast<std::uint8_t>(random.below(kRegions)));
+    for (LocalStatistic& statistic : s.local) statistic.values.push_back(random.normal());
+  }
+  s.regions = regional_sums(regions, s.places, s.local[0].values, 1.0);
+  return s;
+}
+
+TEST(Realism, RejectsFiveInAHundredDrawsOfOneKind) {
+  constexpr int kTrials = 200;
+  int rejected = 0;
+  for (std::uint64_t t = 0; t < kTrials; ++t) {
+    const RealismVerdict verdict = judge_realism(drawn(2 * t), drawn(2 * t + 1), {.permutations = 199});
+    if (verdict.p <= 0.05) ++rejected;
+  }
+  EXPECT_GE(rejected, 2);
+  EXPECT_LE(rejected, 20);  // 10 expected, deviation 3.1
+}
+
+TEST(Realism, DistancesAloneAreThoseOfTheVerdict) {
+  const SurfaceStatistics a = waves(0.01, 1), b = waves(0.008, 2);
+  const RealismVerdict verdict = judge_realism(a, b, {});
+  const auto alone = statistic_distances(a, b);
+  ASSERT_EQ(alone.size(), verdict.statistics.size());
+  for (std::size_t k = 0; k < alone.size(); ++k) EXPECT_EQ(alone[k].distance, verdict.statistics[k].distance);
+  EXPECT_EQ(largest_distance(alone), verdict.largest_distance);
+}
+
+TEST(Realism, MediansOfSeveralVerdicts) {
+  RealismVerdict low, middle, high;
+  low.p = 0.01, middle.p = 0.2, high.p = 0.9;
+  low.largest_distance = 0.3, middle.largest_distance = 0.1, high.largest_distance = 0.05;
+  const RealismVerdict verdict = median_verdict(std::vector{high, low, middle});
+  EXPECT_EQ(verdict.p, 0.2);
+  EXPECT_EQ(verdict.largest_distance, 0.1);
+  EXPECT_TRUE(verdict.passes);
+}
+
+TEST(Realism, WhatCannotBeComparedIsRefused) {
+  const SurfaceStatistics a = drawn(1);
+  SurfaceStatistics b = drawn(2);
+  EXPECT_THROW(judge_realism(a, b, {.permutations = 18}), InputError);
+  EXPECT_THROW(judge_realism(a, b, {}, [](double, std::string_view) { return false; }), WorkError);
+  b.points = 19999;
+  EXPECT_THROW(statistic_distances(a, b), InputError);
+}
+
+}  // namespace
+}  // namespace astrolith
