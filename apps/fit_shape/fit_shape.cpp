@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "apps/counted.h"
@@ -23,6 +24,7 @@
 #include "recipe/sha256.h"
 #include "tasks/estimation/detail_layers.h"
 #include "tasks/estimation/fit_checkpoint.h"
+#include "tasks/estimation/fit_realism.h"
 #include "tasks/estimation/fit_time_limit.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -107,6 +109,23 @@ void say_wrong_unit(const Program& program, const FitArguments& arguments, const
   if (!remark.empty()) program.say("note: " + arguments.mesh + ": " + remark);
 }
 
+// Says and sums up whether the surface of the fit passes for the target's.
+std::optional<FitRealism> judge_surface(Program& program, const FitArguments& arguments,
+                                        const TargetBody& target, const Recipe& recipe, TimeLimit& limit) {
+  if (arguments.noise_seeds == 0 || Program::interrupted() || !limit.has_time_left()) return std::nullopt;
+  const Progress progress = [&limit, shown = program.progress("surface")](double fraction,
+                                                                          std::string_view words) {
+    return shown(fraction, words) && limit.has_time_left();
+  };
+  JudgedFit judged = judge_fit(target, recipe, arguments.noise_seeds, program.seed, progress);
+  if (!judged.remark.empty()) program.say("the surface is not judged: " + judged.remark);
+  if (!judged.realism) return std::nullopt;
+  const nlohmann::ordered_json figures = fit_realism_json(*judged.realism, target, arguments.unit);
+  for (const auto& words : figures["words"]) program.say("surface: " + words.get<std::string>());
+  program.summary["realism"] = figures;
+  return std::move(judged.realism);
+}
+
 // Writes what Ctrl-C left. Nobody waits for figures after it, which may take longer than the fit took.
 void keep_best_so_far(Program& program, const FitArguments& arguments, const FitCheckpoint& checkpoint,
                       const TargetBody& target, const ShapeFitResult& fit, const Recipe& recipe) {
@@ -179,9 +198,12 @@ void run(Program& program, FitArguments& arguments) {
   if (limit.reached()) program.say("stopped at the time limit: this is the best so far");
   if (arguments.fit.bytes == 0) note_achieved(fit, recipe);
   write_loaded_recipe(recipe, arguments.output);
+  const std::optional<FitRealism> realism = judge_surface(program, arguments, target, recipe, limit);
   if (!arguments.report.empty()) {
-    write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(),
-                     arguments.report);
+    std::optional<ReportedRealism> shown;
+    if (realism) shown.emplace(reported(*realism, target, arguments.unit));
+    write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(), arguments.report,
+                     shown ? &*shown : nullptr);
   }
   program.summary.update(fit_figures(fit));
   program.summary["stopped_early"] = limit.reached();

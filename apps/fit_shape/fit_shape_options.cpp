@@ -63,6 +63,12 @@ void declare_run_options(CommandLine& app, FitArguments& arguments) {
                  "ends with a line that says how long they need")
       .check(zero_or_more());
   app.add_option(
+         "--noise-seeds", arguments.noise_seeds,
+         "meshes of the result, each with another seed of its noise, that are compared with the target's "
+         "surface: whether it passes, and what it lacks, as compare --realism says it; medians over the "
+         "seeds, some five processor seconds each. 0: no verdict")
+      .check(in_range(0, 100));
+  app.add_option(
          "--checkpoint", arguments.checkpoint,
          "keep the progress of the fit in this file; where the file exists, go on from there. The result is "
          "the result of a run without a stop")
@@ -80,7 +86,7 @@ void declare_packing_options(CommandLine& app, FitArguments& arguments) {
       "a table, and stop");
   for (const char* option :
        {"--kernel", "--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only",
-        "--details", "--variations", "--tolerance", "--time-limit", "--checkpoint"}) {
+        "--details", "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
     packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,

@@ -15,6 +15,7 @@ struct FitArguments {
   std::string kernel = "gaussian";
   std::string unit = "km";
   double time_limit = 0.0;  // seconds; 0 = none
+  int noise_seeds = 3;      // of the verdict on the surface; 0 = no verdict
   bool packing_only = false;
   double density = 0.0;  // kg / m^3; 0 = no masses
   ShapeFitOptions fit;

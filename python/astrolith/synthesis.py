@@ -14,6 +14,7 @@ from astrolith._mesh import Mesh, read_mesh, write_mesh
 from astrolith._meshing import mesh
 from astrolith._picture import render
 from astrolith._recipe import Recipe
+from astrolith._surface import SurfaceDescription, describe_surface, realism
 from astrolith._texture import Texture, texture
 from astrolith._variation import Variation, vary
 
@@ -24,14 +25,17 @@ __all__ = [
     "HeightMap",
     "Mesh",
     "Recipe",
+    "SurfaceDescription",
     "Texture",
     "Variation",
     "compare",
     "describe",
+    "describe_surface",
     "gravity",
     "height_map",
     "mesh",
     "read_mesh",
+    "realism",
     "render",
     "texture",
     "vary",

@@ -30,6 +30,7 @@
 #include "tasks/synthesis/comparison.h"
 #include "tasks/synthesis/describe_file.h"
 #include "tasks/synthesis/plane_texture.h"
+#include "tasks/synthesis/surface_report.h"
 #include "tasks/synthesis/variation_reference.h"
 
 namespace astrolith::python {
@@ -105,6 +106,56 @@ nb::typed<nb::dict, nb::str, nb::any> describe(const std::string& name, const Ro
   result["undefined_curvatures"] = shape.undefined_curvatures;
   result["remarks"] = shape.remarks;
   return result;
+}
+
+SurfaceStatisticsOptions surface_options(std::int64_t points, std::int64_t places, double period,
+                                         double density, std::uint64_t seed) {
+  SurfaceStatisticsOptions options;
+  options.points = points;
+  options.places = places;
+  options.rotation_hours = period;
+  options.density = density;
+  options.seed = seed;
+  return options;
+}
+
+nb::typed<nb::dict, nb::str, nb::any> surface(const std::string& name, const Rows<double>& vertices,
+                                              const Rows<std::uint32_t>& faces, std::int64_t points,
+                                              std::int64_t places, double period, double density,
+                                              std::uint64_t seed, int threads, nb::object progress) {
+  const SurfaceStatisticsOptions options = surface_options(points, places, period, density, seed);
+  SurfaceStatistics made = run_job(
+      std::move(progress), threads, [name, options, mesh = mesh_of(vertices, faces, {})](JobState& state) {
+        return describe_surface({name, mesh}, options, state.progress("surface"));
+      });
+  nb::typed<nb::dict, nb::str, nb::any> result;
+  result["figures"] = surface_json(made).dump();
+  result["remarks"] = made.remarks;
+  const std::size_t count = made.places.size();
+  nb::dict values;
+  for (LocalStatistic& statistic : made.local) {
+    const std::string column = column_name(statistic);
+    values[nb::str(column.c_str())] = array_of<double>(std::move(statistic.values), {count});
+  }
+  result["values"] = values;
+  result["regions"] = array_of<std::uint8_t>(std::move(made.regions.of_place), {count});
+  result["places"] = array_of<double>(std::move(made.places), {count, 3});
+  return result;
+}
+
+std::string realism(const std::string& a_name, const Rows<double>& a_vertices,
+                    const Rows<std::uint32_t>& a_faces, const std::string& b_name,
+                    const Rows<double>& b_vertices, const Rows<std::uint32_t>& b_faces, std::int64_t points,
+                    std::int64_t places, double period, double density, bool floor, const std::string& unit,
+                    std::uint64_t seed, int threads, nb::object progress) {
+  const SurfaceStatisticsOptions options = surface_options(points, places, period, density, seed);
+  return run_job(
+      std::move(progress), threads,
+      [=, a = mesh_of(a_vertices, a_faces, {}), b = mesh_of(b_vertices, b_faces, {})](JobState& state) {
+        return judge_surfaces({a_name, a}, {b_name, b}, options, floor, unit,
+                              [&](const std::string& stage) { return state.progress(stage); })
+            .figures.dump();
+      });
 }
 
 std::string compare(const std::string& a_name, const Rows<double>& a_vertices,
@@ -192,6 +243,14 @@ void bind_shapes(nb::module_& module) {
   module.def("describe", &describe, nb::arg("name"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(), nb::arg("features"),
              nb::arg("bins"), nb::arg("points"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
+  module.def("surface", &surface, nb::arg("name"), nb::arg("vertices").noconvert(),
+             nb::arg("faces").noconvert(), nb::arg("points"), nb::arg("places"), nb::arg("period"),
+             nb::arg("density"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
+  module.def("realism", &realism, nb::arg("a_name"), nb::arg("a_vertices").noconvert(),
+             nb::arg("a_faces").noconvert(), nb::arg("b_name"), nb::arg("b_vertices").noconvert(),
+             nb::arg("b_faces").noconvert(), nb::arg("points"), nb::arg("places"), nb::arg("period"),
+             nb::arg("density"), nb::arg("floor"), nb::arg("unit"), nb::arg("seed"), nb::arg("threads"),
              nb::arg("progress").none());
   module.def("compare", &compare, nb::arg("a_name"), nb::arg("a_vertices").noconvert(),
              nb::arg("a_faces").noconvert(), nb::arg("b_name"), nb::arg("b_vertices").noconvert(),

@@ -51,6 +51,8 @@ class TimeLimit {
   double reserve() const { return std::min(4.0, 0.5 * seconds_); }
   // Whether a stage was stopped or left out.
   bool reached() const { return reached_; }
+  // Whether there is time for what the result can do without.
+  bool has_time_left() const { return seconds_ <= 0.0 || spent() < seconds_ - reserve(); }
   // Whether another stage may begin. If it may not, the limit is reached.
   bool allows_more() {
     reached_ = reached_ || (seconds_ > 0.0 && spent() > seconds_ - reserve());

@@ -83,12 +83,12 @@ Json statistic_json(const StatisticComparison& c, double edge) {
   return json;
 }
 
+}  // namespace
+
 std::string column_name(const LocalStatistic& statistic) {
   const std::string name = name_of(statistic.quantity);
   return statistic.radius > 0.0 ? fmt::format("{}_{:g}", name, statistic.radius) : name;
 }
-
-}  // namespace
 
 LengthWords words_for_lengths(const std::string& unit, double length) {
   if (unit == "km" && length < 1.0) return {1000.0, "m"};

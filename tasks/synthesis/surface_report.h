@@ -25,6 +25,9 @@ SurfaceStatistics describe_surface(const NamedMesh& shape, const SurfaceStatisti
 // Lengths are in the mesh's unit where their names say nothing else.
 nlohmann::ordered_json surface_json(const SurfaceStatistics& surface);
 
+// The name of a statistic in tables: "roughness_3", "skewness_12", "slope".
+std::string column_name(const LocalStatistic& statistic);
+
 // Writes one line for each place: x, y, z, its region and every local statistic.
 void write_surface_table(const SurfaceStatistics& surface, const std::filesystem::path& file);
 

@@ -10,6 +10,7 @@
 #include "estimation/shape/report/captioned_picture.h"
 #include "estimation/shape/report/convergence_plot.h"
 #include "estimation/shape/report/error_histogram.h"
+#include "estimation/shape/report/realism_figures.h"
 #include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/files/output_file.h"
@@ -138,10 +139,54 @@ PageTable body_table(const TargetBody& target, const ShapeFitResult& fit) {
            {"sharpness m a of the blend", "", number(fit.body.blend_exponent * fit.body.a, "%.4g")}}};
 }
 
+std::string statistic_words(const StatisticComparison& c, double edge, const LengthWords& lengths) {
+  if (c.correlation) {
+    return "correlation of roughness, " + number(c.radius * edge * lengths.scale, "%.3g") + " to " +
+           number(c.reach * edge * lengths.scale, "%.3g") + " " + lengths.unit + " apart";
+  }
+  const std::string name = name_of(c.quantity);
+  return c.radius > 0.0
+             ? name + " within " + number(c.radius * edge * lengths.scale, "%.3g") + " " + lengths.unit
+             : name;
+}
+
+PageTable realism_table(const ReportedRealism& realism) {
+  PageTable table{{"surface", "target", "fit", "distance", "p"}, {}};
+  for (const StatisticComparison& c : realism.verdict.statistics) {
+    table.rows.push_back({statistic_words(c, realism.verdict.edge, realism.lengths),
+                          number(c.middle_a, "%.3f"), number(c.middle_b, "%.3f"), number(c.distance, "%.3f"),
+                          number(c.p, "%.3f") + (c.counts_in_p ? "" : " (not counted)")});
+  }
+  return table;
+}
+
+PageTable verdict_table(const ReportedRealism& realism) {
+  PageTable table{{"whether the surface passes for the target's", ""}, {}};
+  for (const std::string& words : realism_words(realism.verdict, realism.lengths)) {
+    table.rows.push_back({words, ""});
+  }
+  table.rows.push_back({"p of the whole, at least 0.05 to pass", number(realism.verdict.p, "%.3f")});
+  table.rows.push_back(
+      {"largest distance, at most 0.13 to pass", number(realism.verdict.largest_distance, "%.3f")});
+  return table;
+}
+
+void add_realism(const TargetBody& target, const ReportedRealism& realism,
+                 const std::filesystem::path& folder, ReportPage& page) {
+  const std::string target_name = "target", fit_name = "fit";
+  const NamedSurface a{target_name, target.surface, realism.target}, b{fit_name, realism.mesh, realism.fit};
+  write_quantile_curves(a, b, folder / "quantile_curves.png");
+  write_roughness_maps(a, b, folder / "roughness_maps.png");
+  page.tables.push_back(verdict_table(realism));
+  page.tables.push_back(realism_table(realism));
+  page.pictures.push_back({"roughness_maps.png", "Roughness of target and fit from place to place."});
+  page.pictures.push_back({"quantile_curves.png", "Local statistics of both surfaces."});
+}
+
 }  // namespace
 
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
-                      const std::filesystem::path& folder) {
+                      const std::filesystem::path& folder, const ReportedRealism* realism) {
   make_output_folder(folder);
   write_target_and_fit(target, fit, folder / "target_and_fit.png");
   write_distance_map(target, fit, folder / "distance_map.png");
@@ -155,6 +200,7 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
                   {{"target_and_fit.png", "Target and fit, from four sides, under the same sun."},
                    {"distance_map.png", "Distance from the fit to the target, on the fit."},
                    {"error_histogram.png", "How the distances are spread over the fit."}}};
+  if (realism != nullptr) add_realism(target, *realism, folder, page);
   if (!fit.convergence.empty()) {
     write_convergence_plot(fit.convergence, folder / "convergence.png");
     page.pictures.push_back(

@@ -4,10 +4,20 @@
 #include <filesystem>
 #include <string>
 
+#include "descriptor/surface/realism.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/target/target_body.h"
 
 namespace astrolith {
+
+// The verdict on the surface of a fit, with what it was made from. Lengths are fractions of the diagonal.
+struct ReportedRealism {
+  const RealismVerdict& verdict;
+  const SurfaceStatistics& target;
+  const TriangleMesh& mesh;  // of the fit with its details, as the verdict took it
+  const SurfaceStatistics& fit;
+  LengthWords lengths;
+};
 
 // Writes these files into the folder, which is made if it is missing. Throws InputError where a file cannot
 // be written.
@@ -15,10 +25,12 @@ namespace astrolith {
 //   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
 //   error_histogram.png  signed distances of the fit from the target
 //   convergence.png      mean distance (logarithmic) against iterations of the refinement
+//   quantile_curves.png  with `realism`: local statistics of both surfaces
+//   roughness_maps.png   with `realism`: both bodies, coloured by their roughness
 //   index.html           a page that needs no other file: both bodies to turn, these pictures, and tables of
 //   the
 //                        numbers
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
-                      const std::filesystem::path& folder);
+                      const std::filesystem::path& folder, const ReportedRealism* realism = nullptr);
 
 }  // namespace astrolith

@@ -54,7 +54,6 @@ TEST(SurfaceStatistics, RoughnessOfAWaveIsItsAmplitude) {
     rms.push_back(12 * s.edge * std::exp(s.find(SurfaceQuantity::roughness, 12)->values[i]));
   }
   EXPECT_NEAR(mean_of(rms), amplitude * through / std::sqrt(2.0), 0.03 * amplitude);
-  // Over half a wave the difference of heights has the rms 2 a sin(pi / 2) / sqrt 2, averaged over
   // directions.
   EXPECT_EQ(s.find(SurfaceQuantity::slope, 0), nullptr);
   EXPECT_EQ(s.remarks.size(), 1u);

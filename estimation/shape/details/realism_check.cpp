@@ -1,0 +1,75 @@
+#include "estimation/shape/details/realism_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/reported_loop.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/implicit_field.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kMostTriangles = 120000;
+
+// The k-th seed of a recipe's noise; its own for k = 0.
+Recipe with_noise_seed(Recipe recipe, std::uint64_t k) {
+  recipe.seed += k * 0x9e3779b97f4a7c15u;
+  return recipe;
+}
+
+// A share of the whole work, for one of its parts.
+Progress part_of(const Progress& progress, double begin, double end) {
+  if (!progress) return {};
+  return [=](double fraction, std::string_view words) {
+    return progress(begin + (end - begin) * fraction, words);
+  };
+}
+
+}  // namespace
+
+TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
+                               const Progress& progress) {
+  constexpr int kFirst = 64, kLeast = 16, kMost = 1024;
+  const ImplicitField field(recipe);
+  const auto meshed = [&](int resolution) {
+    MeshCollector collector;
+    mesh_field(field, field.bounds(), resolution, collector, at_beginning(progress));
+    return std::move(collector.mesh);
+  };
+  const auto of_first = static_cast<double>(std::max<std::size_t>(meshed(kFirst).triangles.size(), 1));
+  TriangleMesh mesh = meshed(
+      std::clamp(static_cast<int>(std::lround(kFirst * std::sqrt(triangles / of_first))), kLeast, kMost));
+  for (Vec3d& p : mesh.vertices) p = (p - target.center) * (1.0 / target.diagonal);
+  return mesh;
+}
+
+FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int seeds, std::uint64_t seed,
+                         const Progress& progress) {
+  const int draws = recipe.layers.empty() ? 1 : seeds;
+  const double triangles = std::min(static_cast<double>(target.surface.triangles.size()), kMostTriangles);
+  SurfaceStatisticsOptions options;
+  options.seed = seed;
+  options.points = own_points(target.surface);
+  const auto part = [&](double step) {
+    const double steps = draws + 1.0;
+    return part_of(progress, step / steps, (step + 1.0) / steps);
+  };
+  FitRealism result;
+  result.target = surface_statistics(target.surface, options, part(0));
+  for (int k = 0; k < draws; ++k) {
+    const auto which = static_cast<std::uint64_t>(k);
+    TriangleMesh mesh = mesh_of_triangles(target, with_noise_seed(recipe, which), triangles, part(k + 1.0));
+    options.seed = seed + 3 * (which + 1);
+    SurfaceStatistics fit = surface_statistics(mesh, options, part(k + 1.0));
+    result.of_seeds.push_back(
+        judge_realism(result.target, fit, {.permutations = 999, .seed = seed}, part(k + 1.0)));
+    if (k > 0) continue;
+    result.mesh = std::move(mesh);
+    result.fit = std::move(fit);
+  }
+  result.verdict = median_verdict(result.of_seeds);
+  return result;
+}
+
+}  // namespace astrolith

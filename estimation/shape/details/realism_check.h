@@ -1,0 +1,33 @@
+// Whether the surface of a fitted recipe passes for the target's, over several seeds of its noise.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "descriptor/surface/realism.h"
+#include "estimation/shape/target/target_body.h"
+#include "numerics/progress.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+struct FitRealism {
+  RealismVerdict verdict;                // medians over the seeds, lengths as fractions of the diagonal
+  std::vector<RealismVerdict> of_seeds;  // the recipe's own seed first
+  TriangleMesh mesh;                     // of the recipe's own seed, in the target's frame
+  SurfaceStatistics target, fit;         // of the target, and of that mesh
+};
+
+// The mesh of a recipe in the target's frame, with about so many triangles.
+TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
+                               const Progress& progress = {});
+
+// Meshes the recipe (in the file's frame) with as many triangles as the target, at most 120,000, once for
+// each seed; a body without layers has one mesh. Both surfaces are sampled alike (descriptor/surface). Throws
+// InputError for a target that surface_statistics() refuses, and WorkError when progress asks to stop.
+FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int seeds, std::uint64_t seed,
+                         const Progress& progress);
+
+}  // namespace astrolith
