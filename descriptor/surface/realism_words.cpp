@@ -111,6 +111,8 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
       add_once(correlation_words(c), others);
     } else if (c.quantity == SurfaceQuantity::skewness) {
       add_once(skewness_words(c), others);
+    } else if (c.quantity == SurfaceQuantity::bend) {
+      add_once("flat facets of a coarser mesh", others);
     } else if (c.quantity == SurfaceQuantity::slope) {
       add_once(slope_words(c), others);
     } else if (const std::optional<std::string> words = band_words(c)) {

@@ -24,16 +24,18 @@ double mean_square(std::span<const double> values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-// The pairs that place i forms with all others, each with half its weight.
-LagSums pairs_of(std::size_t i, std::span<const Vec3d> places, std::span<const double> values, double edge) {
+// The pairs that place i forms with the later places of its region.
+LagSums pairs_of(std::size_t i, std::span<const std::uint8_t> regions, std::span<const Vec3d> places,
+                 std::span<const double> values, double edge) {
   LagSums sums{};
-  for (std::size_t j = 0; j < places.size(); ++j) {
+  for (std::size_t j = i + 1; j < places.size(); ++j) {
+    if (regions[j] != regions[i]) continue;
     const double squared = squared_norm(places[j] - places[i]) / (edge * edge);
     for (std::size_t lag = 0; lag < sums.size(); ++lag) {
       const auto [low, high] = kCovarianceLags[lag];
       if (squared < low * low || squared >= high * high) continue;
-      sums[lag].products += 0.5 * values[i] * values[j];
-      sums[lag].pairs += 0.5;
+      sums[lag].products += values[i] * values[j];
+      sums[lag].pairs += 1.0;
     }
   }
   return sums;
@@ -90,7 +92,7 @@ Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d>
       0, static_cast<std::int64_t>(places.size()),
       [&](std::int64_t i) {
         const auto k = static_cast<std::size_t>(i);
-        sums[k] = pairs_of(k, places, from_mean, edge);
+        sums[k] = pairs_of(k, of_place, places, from_mean, edge);
       },
       16);
   Regions regions;

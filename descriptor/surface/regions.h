@@ -28,7 +28,8 @@ struct Regions {
   std::vector<std::uint8_t> of_place;  // (#places) number of the region, below kRegions
   double variance = 0.0;               // of the value over all places
   double between = 0.0;                // variance of the regions' means
-  // The pairs at each lag. A pair counts half in the region of each of its places.
+  // The pairs at each lag whose places lie in one region. Pairs of two regions would be torn when regions are
+  // exchanged, which would make the test reject too often.
   std::array<std::array<PairSum, kCovarianceLags.size()>, kRegions> pairs{};
 
   // The covariance at a lag over the variance: 1 for places that are alike, 0 for independent ones.

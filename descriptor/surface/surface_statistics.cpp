@@ -266,6 +266,8 @@ const char* name_of(SurfaceQuantity quantity) {
       return "kurtosis";
     case SurfaceQuantity::normals:
       return "normals";
+    case SurfaceQuantity::bend:
+      return "bend";
     default:
       return "slope";
   }
@@ -310,10 +312,12 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
       measured_places(even, radii, lag_radius, std::min(options.places, result.points), progress);
 
   std::vector<Vec3d> normals;
+  LocalStatistic bends{SurfaceQuantity::bend, 0.0, {}};
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].defined) continue;
     result.places.push_back(even.points[i]);
     normals.push_back(even.normals[i]);
+    bends.values.push_back(kDegrees * even.bends[i]);
   }
   result.undefined = static_cast<std::int64_t>(places.size() - result.places.size());
   std::erase_if(places, [](const PlaceValues& place) { return !place.defined; });
@@ -325,6 +329,7 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
   result.local = columns(places, radii);
   result.regions = regional_sums(region_of_places(mesh, result.places, options.seed + 2), result.places,
                                  result.local.front().values, even.edge);
+  result.local.push_back(std::move(bends));
   add_slopes(mesh, normals, options, result);
   return result;
 }

@@ -22,7 +22,8 @@ enum class SurfaceQuantity {
   skewness,   // of the residual: boulders > 0, craters < 0
   kurtosis,   // of the residual, 0 for Gaussian heights
   normals,    // degrees, rms angle between the surface's normals and the quadric's
-  slope       // degrees between the normal and the vertical of gravity and rotation
+  bend,  // degrees, rms angle between the mesh's own facets within .75 edges: shows facets that are too large
+  slope  // degrees between the normal and the vertical of gravity and rotation
 };
 
 // The word for a quantity, as in JSON: "roughness", "skewness", ...
@@ -30,7 +31,7 @@ const char* name_of(SurfaceQuantity quantity);
 
 struct LocalStatistic {
   SurfaceQuantity quantity;
-  double radius = 0.0;         // edges; 0 for slopes
+  double radius = 0.0;         // edges; 0 for bends and slopes
   std::vector<double> values;  // (#places)
 };
 
@@ -58,7 +59,7 @@ struct SurfaceStatistics {
   double edge = 0.0;         // mean edge of the evened surface, the mesh's unit
   double body_radius = 0.0;  // edges; of the sphere of equal area
   std::vector<Vec3d> places;
-  std::vector<LocalStatistic> local;  // roughness, skewness, kurtosis, normals of each radius; then slopes
+  std::vector<LocalStatistic> local;  // roughness, skewness, kurtosis, normals of each radius; bend; slope
   std::vector<RoughnessAtLag> lags;
   Regions regions;             // of the places, with the covariance of roughness within the first radius
   std::int64_t undefined = 0;  // places left out, around which the points determine no quadric

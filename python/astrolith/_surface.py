@@ -26,7 +26,7 @@ class SurfaceDescription:
     values
         What was measured at the places, float64 (n,) each: "roughness_3" is the logarithm of the rms residual within 3
         mean edges over the radius; then "skewness_3", "kurtosis_3", "normals_3" (degrees), the same of 6, 12 and 24
-        edges, and "slope" (degrees).
+        edges, "bend" and "slope" (degrees).
     regions
         The region of each place, uint8 below 40.
     remarks

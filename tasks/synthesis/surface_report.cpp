@@ -34,7 +34,7 @@ Json distribution_json(std::vector<double> values) {
 Json radii_json(const SurfaceStatistics& surface) {
   Json radii = Json::array();
   for (const LocalStatistic& statistic : surface.local) {
-    if (statistic.quantity == SurfaceQuantity::slope) continue;
+    if (!(statistic.radius > 0.0)) continue;
     if (statistic.quantity == SurfaceQuantity::roughness) {
       radii.push_back({{"edges", statistic.radius}, {"length", statistic.radius * surface.edge}});
     }
@@ -109,6 +109,7 @@ nlohmann::ordered_json surface_json(const SurfaceStatistics& surface) {
             {"places", surface.places.size()}, {"undefined_places", surface.undefined},
             {"radii", radii_json(surface)},    {"roughness_at_lags", lags_json(surface)},
             {"regions", regions_json(surface)}};
+  json["bends"] = distribution_json(surface.find(SurfaceQuantity::bend, 0.0)->values);
   if (const LocalStatistic* slope = surface.find(SurfaceQuantity::slope, 0.0)) {
     json["slopes"] = distribution_json(slope->values);
   }

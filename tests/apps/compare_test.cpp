@@ -70,6 +70,16 @@ TEST_F(Compare, SameOutputForAnyThreadCount) {
   EXPECT_EQ(compare(ball_, long_, {"--threads", "1"}), compare(ball_, long_, {"--threads", "2"}));
 }
 
+TEST_F(Compare, JudgesWhetherASurfacePasses) {
+  const std::vector<std::string> realism{"--realism", "--places", "400", "--unit", "km", "--floor"};
+  const auto same = compare(ball_, bigger_, realism)["realism"];
+  EXPECT_TRUE(same["passes"].get<bool>()) << same.dump();
+  EXPECT_EQ(same["words"][0].get<std::string>(), "passes");
+  EXPECT_GT(same["floor"]["p"].get<double>(), 0.05);
+  EXPECT_FALSE(compare(ball_, bigger_).contains("realism"));
+  expect_refusal(folder_, kCompare, {ball_, bigger_, "--unit", "km"}, "--realism");
+}
+
 TEST_F(Compare, BadFilesAreRefused) {
   const std::string index = folder_.write("index.obj", testing::kTetrahedron + "f 1 2 5\n");
   expect_refusal(folder_, kCompare, {ball_, index}, "index.obj");

@@ -117,6 +117,30 @@ TEST_F(Describe, SummaryHoldsTheFigures) {
   EXPECT_TRUE(summary["seconds"].is_number());
 }
 
+TEST_F(Describe, MeasuresASurface) {
+  const std::string fine = folder_.write("fine.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 31, 64));
+  const std::string json = (folder_ / "s.json").string(), csv = (folder_ / "s.csv").string();
+  const auto surface = [&](const std::string& output, const std::string& threads) {
+    const Outcome outcome =
+        run_program(kDescribe, {fine, "--surface", "-o", output, "--places", "300", "--threads", threads});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_NE(outcome.errors.find("300 places of 1984 points"), std::string::npos) << outcome.errors;
+    return text_of(output);
+  };
+  const auto figures = nlohmann::json::parse(surface(json, "1"));
+  EXPECT_EQ(figures["places"].get<int>(), 300);
+  EXPECT_EQ(figures["radii"][0]["edges"].get<double>(), 3);
+  EXPECT_LT(figures["radii"][0]["roughness"]["mean"].get<double>(), -5);
+  EXPECT_GT(figures["slopes"]["mean"].get<double>(), 1);
+  const std::string table = surface(csv, "1");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 301);
+  EXPECT_TRUE(table.starts_with("x,y,z,region,roughness_3,skewness_3,kurtosis_3,normals_3,roughness_6,"));
+  EXPECT_EQ(surface(csv, "2"), table);
+  expect_refusal(folder_, kDescribe, {fine, "--surface", "-o", (folder_ / "s.npy").string()}, ".json");
+  expect_refusal(folder_, kDescribe, {egg_, "--surface", "-o", json}, "egg.obj: surface statistics");
+  expect_refusal(folder_, kDescribe, {fine, "--places", "300", "-o", json}, "--surface");
+}
+
 TEST_F(Describe, PointsWithNormalsWillDo) {
   const std::string cloud = folder_.write("cloud.ply", sphere_points(700));
   EXPECT_EQ(describe(cloud, {}).errors, closing_line_);

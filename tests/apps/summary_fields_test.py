@@ -44,9 +44,8 @@ def patterns(fields):
             yield path, re.compile(re.escape(whole).replace(r"\*", r"[^.\[]+") + "$")
 
 
-def write_ball(file, length=1.4):
+def write_ball(file, length=1.4, rings=8, around=12):
     """A ball of meridians and parallels, stretched along x: a closed mesh of 168 facets."""
-    rings, around = 8, 12
     points = [(0.0, 0.0, 1.0)]
     for i in range(1, rings):
         for k in range(around):
@@ -90,6 +89,9 @@ def runs(folder):
     ball, other = folder / "ball.obj", folder / "other.obj"
     write_ball(ball)
     write_ball(other, 1.5)
+    fine, finer = folder / "fine.obj", folder / "finer.obj"
+    write_ball(fine, 1.4, 30, 50)
+    write_ball(finer, 1.4, 40, 60)
     grey, color = folder / "grey.png", folder / "color.png"
     write_photo(grey, 1)
     write_photo(color, 3)
@@ -123,6 +125,9 @@ def runs(folder):
     yield [*fit, folder / "base.json", "--base-only"]
     yield [*fit, folder / "fit.json", "--population", "4", "--generations", "2", "--variations", "1"]
     yield [*fit, folder / "packing.csv", "--packing-only"]
+    yield ["fit_shape", fine, "--spheres", "6", "-o", folder / "judged.json", "--base-only"]
+    yield ["describe", fine, "--surface", "-o", folder / "surface.json"]
+    yield ["compare", fine, finer, "--floor", "--realism", "-o", folder / "realism.json"]
     yield ["describe", ball, "-o", folder / "description.npy"]
     yield ["compare", ball, other, "--floor", "-o", folder / "comparison.json"]
     yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3"]

@@ -24,9 +24,11 @@ struct FitRealism {
 TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
                                const Progress& progress = {});
 
-// Meshes the recipe (in the file's frame) with as many triangles as the target, at most 120,000, once for
-// each seed; a body without layers has one mesh. Both surfaces are sampled alike (descriptor/surface). Throws
-// InputError for a target that surface_statistics() refuses, and WorkError when progress asks to stop.
+// Meshes the recipe (in the file's frame) with twice the target's triangles, at most 240,000, once for each
+// seed; a body without layers has one mesh. Marching cubes need so many, since part of their triangles are
+// slivers: the target itself, meshed anew with as many triangles as it has, is a little too smooth. Both
+// surfaces are sampled alike (descriptor/surface). Throws InputError for a target that surface_statistics()
+// refuses, and WorkError when progress asks to stop.
 FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int seeds, std::uint64_t seed,
                          const Progress& progress);
 

@@ -41,6 +41,8 @@ std::string heading_of(const LocalStatistic& statistic) {
   switch (statistic.quantity) {
     case SurfaceQuantity::roughness:
       return fmt::format("log roughness, {:g} edges", statistic.radius);
+    case SurfaceQuantity::bend:
+      return "bend between facets, degrees";
     case SurfaceQuantity::slope:
       return "slope, degrees";
     case SurfaceQuantity::normals:

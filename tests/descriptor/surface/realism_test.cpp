@@ -76,6 +76,22 @@ TEST(Realism, MissingRegionsAreNamed) {
   EXPECT_LT(verdict.variance_ratio, 0.3);
 }
 
+// Each triangle cut into four flat ones: nothing is rougher or smoother, but the facets are too large.
+TEST(Realism, FlatFacetsOfACoarserMeshAreSeen) {
+  const WaveHeights height(8 * kSphereEdge, 1);
+  TriangleMesh coarse = testing::icosphere(4), fine = testing::icosphere(5);
+  for (TriangleMesh* mesh : {&coarse, &fine}) {
+    for (Vec3d& p : mesh->vertices) p *= 1 + 0.01 * height(p);
+  }
+  SurfaceStatisticsOptions options;
+  options.places = 1500;
+  options.points = 10240;
+  const RealismVerdict verdict = judge_realism(surface_statistics(fine, options),
+                                               surface_statistics(testing::subdivided(coarse), options), {});
+  EXPECT_FALSE(verdict.passes);
+  EXPECT_TRUE(says(verdict, "flat facets of a coarser mesh"));
+}
+
 // Draws of one kind, whose values are normal and independent: p is then uniform.
 SurfaceStatistics drawn(std::uint64_t seed) {
   CounterRandom random(seed, 0);

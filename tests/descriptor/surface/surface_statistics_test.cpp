@@ -46,7 +46,7 @@ TEST(SurfaceStatistics, RoughnessOfAWaveIsItsAmplitude) {
   options.radii = {12};
   const SurfaceStatistics s =
       surface_statistics(sheet(100, [&](double x, double) { return amplitude * std::cos(k * x); }), options);
-  const double x = k * 2.5 * s.edge, through = 384 * std::cyl_bessel_j(4, x) / (x * x * x * x);
+  const double x = k * 3.5 * s.edge, through = 384 * std::cyl_bessel_j(4, x) / (x * x * x * x);
   std::vector<double> rms;
   for (std::size_t i = 0; i < s.places.size(); ++i) {
     const Vec3d& p = s.places[i];
@@ -95,7 +95,7 @@ TEST(SurfaceStatistics, RegionsOfTwoRoughnessesAreFound) {
                  few_places()),
              even = surface_statistics(rough_sphere([&](const Vec3d&p) { return 0.006 * waves(p); }),
                                        few_places());
-  EXPECT_GT(halves.regions.correlation(1), 0.6);
+  EXPECT_GT(halves.regions.correlation(1), 0.45);
   EXPECT_LT(std::fabs(even.regions.correlation(1)), 0.15);
   EXPECT_GT(halves.regions.between, 0.3);  // half the logarithm of 4, squared: .48
   EXPECT_LT(even.regions.between, 0.05);
