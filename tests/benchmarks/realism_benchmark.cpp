@@ -74,11 +74,14 @@ void judge_body(const std::string& file, int seeds) {
   const std::string name = std::filesystem::path(file).stem().string();
   const double seconds = processor_seconds([&] { sampled(body, 0, 1); });
   fmt::print("| {} | measured in {:.2f} processor seconds | | | | | |\n", name, seconds);
-  const TriangleMesh other = remeshed(body), smooth = laplace_impostor(body),
-                     coarse = decimated_impostor(body), harmonics = harmonics_impostor(body);
+  const auto triangles = static_cast<double>(body.triangles.size());
+  const TriangleMesh other = remeshed(body, triangles), finer = remeshed(body, 2 * triangles),
+                     smooth = laplace_impostor(body), coarse = decimated_impostor(body),
+                     harmonics = harmonics_impostor(body);
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     judge(name, "itself, sampled anew", body, body, seed);
     judge(name, "itself, other triangles", body, other, seed);
+    judge(name, "itself, twice the triangles", body, finer, seed);
     judge(name, "fractal noise", body, noise_impostor(body, seed), seed);
     judge(name, "one Laplace step", body, smooth, seed);
     judge(name, "decimated and refined", body, coarse, seed);
