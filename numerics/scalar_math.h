@@ -90,6 +90,25 @@ ASTROLITH_HD inline float exp(float x) {
 }
 ASTROLITH_HD inline double exp(double x) { return portable::exp(x); }
 
+// e^x with the bits of exp(x) for x in [-87, 88], at a lower cost; any float for other x.
+ASTROLITH_HD inline float exp_within_range(float x) {
+  constexpr float kMagic = 12582912.0f;  // as in round_even(): the last bits of the sum are the integer
+  const float shifted = x * 1.44269504088896341f + kMagic;
+  const float n = shifted - kMagic;
+  const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, x));
+  float p = 1.0f / 5040.0f;
+  p = fma(p, r, 1.0f / 720.0f);
+  p = fma(p, r, 1.0f / 120.0f);
+  p = fma(p, r, 1.0f / 24.0f);
+  p = fma(p, r, 1.0f / 6.0f);
+  p = fma(p, r, 0.5f);
+  p = fma(p, r, 1.0f);
+  p = fma(p, r, 1.0f);
+  const auto power = static_cast<std::uint32_t>(bits_of(shifted)) + 127u;
+  return p * float_of(static_cast<std::int32_t>(power << 23));
+}
+ASTROLITH_HD inline double exp_within_range(double x) { return portable::exp(x); }
+
 // Natural logarithm within 2 ulp for normal positive x; about -87.3 for zero and subnormals.
 ASTROLITH_HD inline float log(float x) {
   const float normal = max(x, 1.17549435e-38f);

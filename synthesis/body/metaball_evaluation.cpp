@@ -7,22 +7,39 @@
 namespace astrolith {
 namespace {
 
-// Each kernel has its own loop: a choice inside the loop would keep it from vectorising.
+// Points whose sums stay in registers while all spheres are added.
+constexpr int kPointsInRegisters = 16;
+
+// Writes the sums over the spheres at n points. Each kernel has its own loop: a choice inside the loop would
+// keep it from vectorising.
 #define ASTROLITH_SPHERES_LOOP(name, accumulate)                                                            \
   ASTROLITH_SIMD_CLONES void name(                                                                          \
       const MetaballParameters<float>& body, const MetaballSphere<float>* spheres, std::size_t num_spheres, \
       int n, const float* __restrict x, const float* __restrict y, const float* __restrict z,               \
       float* __restrict kernel, float* __restrict wx, float* __restrict wy, float* __restrict wz) {         \
     const MetaballParameters<float> parameters = body;                                                      \
-    for (std::size_t j = 0; j < num_spheres; ++j) {                                                         \
-      const MetaballSphere<float> sphere = spheres[j];                                                      \
-      _Pragma("omp simd") for (int i = 0; i < n; ++i) {                                                     \
-        MetaballSums<float> sums{kernel[i], {wx[i], wy[i], wz[i]}};                                         \
-        accumulate(parameters, sphere, Vec3f{x[i], y[i], z[i]}, sums);                                      \
-        kernel[i] = sums.kernel;                                                                            \
-        wx[i] = sums.weighted.x;                                                                            \
-        wy[i] = sums.weighted.y;                                                                            \
-        wz[i] = sums.weighted.z;                                                                            \
+    for (int begin = 0; begin < n; begin += kPointsInRegisters) {                                           \
+      const int size = std::min(kPointsInRegisters, n - begin);                                             \
+      float px[kPointsInRegisters] = {}, py[kPointsInRegisters] = {}, pz[kPointsInRegisters] = {};          \
+      float sum[kPointsInRegisters] = {}, sx[kPointsInRegisters] = {}, sy[kPointsInRegisters] = {},         \
+            sz[kPointsInRegisters] = {};                                                                    \
+      for (int i = 0; i < size; ++i) px[i] = x[begin + i], py[i] = y[begin + i], pz[i] = z[begin + i];      \
+      for (std::size_t j = 0; j < num_spheres; ++j) {                                                       \
+        const MetaballSphere<float> sphere = spheres[j];                                                    \
+        _Pragma("omp simd") for (int i = 0; i < kPointsInRegisters; ++i) {                                  \
+          MetaballSums<float> sums{sum[i], {sx[i], sy[i], sz[i]}};                                          \
+          accumulate(parameters, sphere, Vec3f{px[i], py[i], pz[i]}, sums);                                 \
+          sum[i] = sums.kernel;                                                                             \
+          sx[i] = sums.weighted.x;                                                                          \
+          sy[i] = sums.weighted.y;                                                                          \
+          sz[i] = sums.weighted.z;                                                                          \
+        }                                                                                                   \
+      }                                                                                                     \
+      for (int i = 0; i < size; ++i) {                                                                      \
+        kernel[begin + i] = sum[i];                                                                         \
+        wx[begin + i] = sx[i];                                                                              \
+        wy[begin + i] = sy[i];                                                                              \
+        wz[begin + i] = sz[i];                                                                              \
       }                                                                                                     \
     }                                                                                                       \
   }
@@ -52,7 +69,7 @@ auto adder_of(Kernel kernel) {
 // spheres.
 constexpr int kPointsAtOnce = 256;
 struct SubtractedSums {
-  std::array<float, kPointsAtOnce> kernel{}, wx{}, wy{}, wz{};
+  std::array<float, kPointsAtOnce> kernel, wx, wy, wz;
 };
 
 // Replaces the sums of the spheres that add by the net sums.
@@ -103,7 +120,6 @@ void evaluate_metaballs(const MetaballsView& metaballs, int n, const float* x, c
   const std::vector<MetaballSphere<float>> subtractive = as_adding(metaballs.subtractive());
   const auto add = adder_of(body.compact_kernel.kernel);
   const auto finish = body.compact_kernel.kernel == Kernel::kGaussian ? finish_gaussians : finish_compact;
-  for (float* sum : {distance, gradient_x, gradient_y, gradient_z}) std::fill(sum, sum + n, 0.0f);
   for (int begin = 0; begin < n; begin += kPointsAtOnce) {
     const int size = std::min(kPointsAtOnce, n - begin);
     float *s = distance + begin, *gx = gradient_x + begin, *gy = gradient_y + begin, *gz = gradient_z + begin;

@@ -97,14 +97,13 @@ struct MetaballSums {
 template <typename T>
 ASTROLITH_KERNEL void accumulate_gaussian(const MetaballParameters<T>& body, const MetaballSphere<T>& sphere,
                                           const Vec3<T>& p, MetaballSums<T>& sums) {
-  using math::exp;
   const T dx = p.x - sphere.center.x;
   const T dy = p.y - sphere.center.y;
   const T dz = p.z - sphere.center.z;
   const T q = math::fma(dx, dx, math::fma(dy, dy, dz * dz)) * sphere.inverse_radius_squared;
-  const T inside_support = q < body.cutoff_squared ? T(1) : T(0);
   const T exponent = math::fma(-body.m_b, q, body.m_a);
-  const T value = inside_support * exp(exponent < T(kLargestExponent) ? exponent : T(kLargestExponent));
+  const T kernel = math::exp_within_range(exponent < T(kLargestExponent) ? exponent : T(kLargestExponent));
+  const T value = q < body.cutoff_squared ? kernel : T(0);
   const T weight = value * sphere.inverse_radius_squared;
   sums.kernel += value;
   sums.weighted.x = math::fma(weight, dx, sums.weighted.x);

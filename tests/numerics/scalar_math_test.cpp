@@ -19,6 +19,12 @@ TEST(ScalarMath, ExpAtItsEnds) {
   EXPECT_TRUE(std::isfinite(math::exp(1e30f)));
 }
 
+TEST(ScalarMath, ExpWithinItsRangeHasTheBitsOfExp) {
+  for (float x = -87.0f; x <= 88.0f; x += 0.000917f) {
+    ASSERT_EQ(math::bits_of(math::exp_within_range(x)), math::bits_of(math::exp(x))) << x;
+  }
+}
+
 TEST(ScalarMath, LogIsWithinTwoUlp) {
   EXPECT_EQ(math::log(1.0f), 0.0f);
   for (double x = 2e-38; x < 3e38; x *= 1.0037) {
