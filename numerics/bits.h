@@ -12,7 +12,11 @@ ASTROLITH_HD inline int count_bits(std::uint32_t bits) {
 #ifdef __CUDA_ARCH__
   return __popc(bits);
 #else
-  return std::popcount(bits);
+  // std::popcount is a call of a function in programs built for every x86-64.
+  bits -= bits >> 1 & 0x55555555u;
+  bits = (bits & 0x33333333u) + (bits >> 2 & 0x33333333u);
+  bits = (bits + (bits >> 4)) & 0x0f0f0f0fu;
+  return static_cast<int>(bits * 0x01010101u >> 24);
 #endif
 }
 

@@ -1,5 +1,6 @@
 #include "geometry/io/ply_stream_writer.h"
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -87,6 +88,13 @@ void PlyStreamWriter::write_with_extras(std::span<const MeshVertex> vertices) {
 }
 
 void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
+  constexpr std::size_t kAtOnce = 4096;
+  std::vector<char> block;
+  block.reserve(std::min(kAtOnce, triangles.size()) * kPlyTriangleBytes);
+  const auto write_block = [&] {
+    if (std::fwrite(block.data(), 1, block.size(), spill_.get()) != block.size()) fail_spill();
+    block.clear();
+  };
   for (const Triangle& triangle : triangles) {
     for (const std::uint32_t index : triangle) {
       if (index >= num_vertices_) {
@@ -95,9 +103,11 @@ void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
       }
     }
     const auto bytes = ply_triangle(triangle);
-    if (std::fwrite(bytes.data(), 1, bytes.size(), spill_.get()) != bytes.size()) fail_spill();
+    block.insert(block.end(), bytes.begin(), bytes.end());
+    if (block.size() == kAtOnce * kPlyTriangleBytes) write_block();
     ++num_triangles_;
   }
+  write_block();
 }
 
 void PlyStreamWriter::finish() {

@@ -34,11 +34,27 @@ bool is_path(std::span<const Corner> corners) {
   return edge == corners.end() && steps == corners.size();
 }
 
-// Finds out whether the directed edges (from, to) opposite a vertex form one cycle or one path. Sorts them by
-// `from`.
+// Whether the few edges of a link form one cycle, found without sorting them. Each step takes the first edge
+// that begins where the last one ended, so that a walk which is back after as many steps as there are edges
+// has taken each edge once.
+template <typename Corner>
+bool is_short_cycle(std::span<const Corner> corners) {
+  constexpr std::size_t kFew = 16;
+  if (corners.size() > kFew) return false;
+  std::size_t at = 0, steps = 0;
+  do {
+    const std::uint32_t to = corners[at].to;
+    for (at = 0; at < corners.size() && corners[at].from != to;) ++at;
+  } while (++steps < corners.size() && at != 0 && at < corners.size());
+  return at == 0 && steps == corners.size();
+}
+
+// Finds out whether the directed edges (from, to) opposite a vertex form one cycle or one path. May sort them
+// by `from`.
 template <typename Corner>
 Link classify_link(std::span<Corner> corners) {
   if (corners.empty()) return Link::kNonManifold;
+  if (is_short_cycle(std::span<const Corner>(corners))) return Link::kCycle;
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) { return a.from < b.from; });
   for (std::size_t i = 1; i < corners.size(); ++i) {
     if (corners[i].from == corners[i - 1].from) return Link::kNonManifold;
