@@ -1,6 +1,7 @@
-// Finds the blocks of some layers that the surface may cross, on a backend. They are the blocks that
-// mixed_blocks (synthesis/mesh/block_culling.h) finds. Each comes with lists of the elements of the field
-// that reach it.
+// Finds the blocks of some layers that the surface may cross, on a backend. They are found as mixed_blocks
+// (synthesis/mesh/block_culling.h) finds them, by the bounds of field_content(). The CPU has tighter bounds
+// for small boxes, and leaves out some blocks that the surface does not cross. Each block comes with lists of
+// the elements of the field that reach it.
 #pragma once
 
 #include <bit>

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,8 +12,9 @@
 
 namespace astrolith {
 
-// The most points evaluated together. A block of 9^3 samples fits, and a batch fits on the stack.
-inline constexpr int kBatch = 1024;
+// The most points evaluated together. A block of 9^3 samples fits, and a batch fits on the stack. Arrays of a
+// power of two would lie in the same places of the caches.
+inline constexpr int kBatch = 1008;
 
 // A batch of points and their state while layer after layer is added.
 struct Batch {
@@ -82,5 +84,15 @@ void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<con
 // local to an origin.
 void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
                     const Accuracy& accuracy, float* value, const LocalPoints* local = nullptr);
+
+// FieldBlock::find_signs() at n <= kBatch points of a block.
+void find_sure_signs(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                     float tolerance, std::int8_t* sign);
+
+// The numbers of the boulders that may change F at the points.
+std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const PointArrays& at);
+
+// Whether one of the boulders may change F at a point.
+bool is_reached(const FieldModel& model, std::span<const std::uint32_t> boulders, float x, float y, float z);
 
 }  // namespace astrolith

@@ -1,8 +1,10 @@
 // Bounds of a field over boxes, on the CPU.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "synthesis/body/level_expansion.h"
 #include "synthesis/field/field_content.h"
 #include "synthesis/field/field_model_internal.h"
 
@@ -94,6 +96,24 @@ void extend_bounds(const FieldModel& model, const LeafLists& metaballs, const Bo
   for (const Box& child : octants(box)) extend_bounds(model, reaching.lists(), child, depth - 1, bounds);
 }
 
+// The content of a box, without boulders, for a plain body without a warp. It is found from an expansion
+// about the centre of the box where that gives good bounds, as in all small boxes.
+std::optional<BlockContent> content_by_expansion(const FieldModel& model, const ModelLists& lists,
+                                                 const Box& box, Interval* kept) {
+  const FieldView& f = model.tables;
+  if (!f.body.plain() || f.leaf(0).warped) return {};
+  const MetaballsView metaballs{f.leaf(0).metaballs, lists.reaching.spheres};
+  const std::optional<LevelExpansion> expansion = expand_level(metaballs, box);
+  if (!expansion) return {};
+  const ExpansionBounds bounds = bound_expansion(*expansion, metaballs.parameters, box);
+  if (!bounds.tight) return {};
+  const BlockContent content = content_by_height_bound(bounds.interval, f.height_bound);
+  if (content != BlockContent::kMixed || f.num_layers == 0) return content;
+  const Box projected = projected_box(box, bounds.interval, f.height_bound, bounds.divisor_min);
+  return content_by_heights(bounds.interval, bound_elevations(f, lists, box, projected, kept),
+                            [&] { return bounds.divisor_min; });
+}
+
 }  // namespace
 
 const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer) {
@@ -102,7 +122,18 @@ const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer) {
 
 BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
                         const Box& box) {
-  return field_content(model.tables, ModelLists{model, metaballs, spots}, box, scratch_for(model, metaballs));
+  const ModelLists lists{model, metaballs, spots};
+  const BoundScratch scratch = scratch_for(model, metaballs);
+  const std::optional<BlockContent> content = content_by_expansion(model, lists, box, scratch.kept);
+  if (!content) return field_content(model.tables, lists, box, scratch);
+  return with_boulders(*content, lists, box);
+}
+
+Interval elevations_over(const FieldModel& model, const DrawnSpots& spots, const Box& box) {
+  const ReachingMetaballs no_metaballs;  // only the bounds of the body read them
+  const Box projected = farthest_projected_box(box, model.height_bound);
+  return bound_elevations(model.tables, ModelLists{model, no_metaballs, spots}, box, projected,
+                          scratch_for(model, no_metaballs).kept);
 }
 
 DrawnSpots spots_reaching(const FieldModel& model, const Box& box, const DrawnSpots& of_larger) {

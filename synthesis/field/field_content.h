@@ -107,14 +107,20 @@ ASTROLITH_HD BlockContent content_of_plain(const FieldView& f, const Lists& list
   return content_by_heights(bound, bound_elevations(f, lists, box, projected, scratch.kept), divisor);
 }
 
-// Whether F keeps one sign over the box. Boulders only add matter, so they can make a box mixed that lies
-// outside the rest of the body, and never one that lies inside.
+// The content of a box with boulders, from that without. Boulders only add matter, so they can make a box
+// mixed that lies outside the rest of the body, and never one that lies inside.
+template <class Lists>
+ASTROLITH_HD BlockContent with_boulders(BlockContent content, const Lists& lists, const Box& box) {
+  return content == BlockContent::kOutside && lists.boulder_reaches(box) ? BlockContent::kMixed : content;
+}
+
+// Whether F keeps one sign over the box.
 template <class Lists>
 ASTROLITH_HD BlockContent field_content(const FieldView& f, const Lists& lists, const Box& box,
                                         const BoundScratch& scratch) {
-  const BlockContent content =
-      f.body.plain() ? content_of_plain(f, lists, box, scratch) : content_of_combined(f, lists, box, scratch);
-  return content == BlockContent::kOutside && lists.boulder_reaches(box) ? BlockContent::kMixed : content;
+  return with_boulders(
+      f.body.plain() ? content_of_plain(f, lists, box, scratch) : content_of_combined(f, lists, box, scratch),
+      lists, box);
 }
 
 }  // namespace astrolith

@@ -76,24 +76,12 @@ void displace_locally(const FieldModel& model, int n, const LocalPoints& local, 
   displaced(p.z, at.z, metaballs_at.z, b.lmz.data());
 }
 
-// Numbers of the boulders that may change F at the points.
-std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const PointArrays& at) {
-  if (model.boulders.empty()) return {};
-  Box box;
-  for (int i = 0; i < n; ++i) box.extend({at.x[i], at.y[i], at.z[i]});
-  return model.boulder_tree.touching(box);
-}
-
 // Adds to value[i] the elevation that the layers make, close to the surface and wherever boulders reach.
 void add_elevations(const FieldModel& model, const BatchLists& lists, std::span<const std::uint32_t> boulders,
                     const PointArrays& at, const PointArrays& metaballs_at, const LocalPoints* local,
                     float band, std::size_t layers, Batch& b, float* value) {
   std::array<int, kBatch> origin;
-  const auto boulders_reach = [&](int i) {
-    return std::any_of(boulders.begin(), boulders.end(), [&](std::uint32_t k) {
-      return boulder_reaches(model.boulders[k], at.x[i], at.y[i], at.z[i]);
-    });
-  };
+  const auto boulders_reach = [&](int i) { return is_reached(model, boulders, at.x[i], at.y[i], at.z[i]); };
   b.n = keep_near_surface(b.n, model.tables.height_reach + band, boulders_reach, at, metaballs_at, local, b,
                           origin);
   if (b.n == 0) return;
@@ -135,6 +123,18 @@ PointArrays begin_batch(const FieldModel& model, const BatchLists& lists, int n,
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const PointArrays& at) {
+  if (model.boulders.empty()) return {};
+  Box box;
+  for (int i = 0; i < n; ++i) box.extend({at.x[i], at.y[i], at.z[i]});
+  return model.boulder_tree.touching(box);
+}
+
+bool is_reached(const FieldModel& model, std::span<const std::uint32_t> boulders, float x, float y, float z) {
+  return std::any_of(boulders.begin(), boulders.end(),
+                     [&](std::uint32_t k) { return boulder_reaches(model.boulders[k], x, y, z); });
+}
 
 void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
                     const Accuracy& accuracy, float* value, const LocalPoints* local) {

@@ -76,6 +76,14 @@ void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, st
   });
 }
 
+void FieldBlock::find_signs(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                            float tolerance, std::span<std::int8_t> sign) const {
+  for_each_batch(sign.size(), [&](std::size_t i, std::size_t n) {
+    find_sure_signs(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), {&x[i], &y[i], &z[i]},
+                    tolerance, &sign[i]);
+  });
+}
+
 void FieldBlock::evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                                std::span<float> value) const {
   const FieldView& f = model_->tables;

@@ -14,6 +14,7 @@
 // single point, a block of any size and any thread count give the same bits.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -68,6 +69,12 @@ class FieldBlock {
   // layers cannot bring F into +-band (length units), value[i] lacks them.
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                 std::span<float> value, float band = kExactEverywhere) const;
+
+  // sign[i] = 1 where evaluate() gives F > 0 at a point for sure, -1 where it gives F < 0, and 0 where
+  // neither is proven. This costs a small part of evaluate(). Where the bounds of s are wider than
+  // `tolerance` (length units), they are made again for smaller groups of points.
+  void find_signs(std::span<const float> x, std::span<const float> y, std::span<const float> z,
+                  float tolerance, std::span<std::int8_t> sign) const;
 
   // value[i] = F at the corners of small tetrahedra, four after four. Their differences give the slope of F.
   // Gabor noise is evaluated once for all four corners, to first order about the tetrahedron's centre.

@@ -44,11 +44,14 @@ BlockCost cost_of_meshing(const BlockGrid<B>& grid, int z, const BlockNode<Block
   LayerBlock<B>& block = layer.blocks.front();
   Owners<B> owners{};
   owners[0] = &block;
-  const auto samples = static_cast<double>(evaluate_samples(grid, z, node.field, owners, block));
+  const SampleCounts taken = evaluate_samples(grid, z, node.field, owners, block);
+  const auto samples = static_cast<double>(taken.samples),
+             of_samples = static_cast<double>(taken.evaluations);
   constexpr double kOwned = double(B) * B * B;
   const double own = std::min(samples, kOwned) + (1.0 - with_neighbour) * std::max(samples - kOwned, 0.0);
+  const double own_share = samples > 0.0 ? own / samples : 0.0;
   BlockCost cost;
-  cost.seconds = samples > 0.0 ? clock.seconds() * own / samples : 0.0;
+  cost.seconds = clock.seconds() * own_share;
   const ProcessorClock rest;
   take_signs(block);
   count_rows(grid.window_of(block.x, block.y, z), block);
@@ -56,8 +59,8 @@ BlockCost cost_of_meshing(const BlockGrid<B>& grid, int z, const BlockNode<Block
   std::vector<MeshVertex> vertices(cost.counts.vertices);
   const auto of_vertices =
       static_cast<double>(make_vertices(grid, z, node.field, 0, block, std::span(vertices)));
-  cost.evaluations = own + of_vertices;
-  cost.spent_evaluations = samples + of_vertices;
+  cost.evaluations = of_samples * own_share + of_vertices;
+  cost.spent_evaluations = of_samples + of_vertices;
   make_lone_polygons(grid, z, cost.counts, block);
   cost.seconds += rest.seconds();
   cost.spent_seconds = clock.seconds();

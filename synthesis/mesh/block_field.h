@@ -3,6 +3,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -37,6 +38,15 @@ template <class Block>
 concept HasTetrahedra = requires(const Block& block, std::span<const float> coordinates,
                                  std::span<float> values) {
   block.evaluate_tetrahedra(coordinates, coordinates, coordinates, values);
+};
+
+// A field that can prove the sign of F at points of the block's box at a small part of the cost of F: sign[i]
+// becomes 1 where evaluate() gives F > 0, -1 where it gives F < 0, and 0 where neither is proven. `tolerance`
+// is the distance from the surface below which a proof is not worth much work, in length units.
+template <class Block>
+concept HasSureSigns = requires(const Block& block, std::span<const float> coordinates, float tolerance,
+                                std::span<std::int8_t> sign) {
+  block.find_signs(coordinates, coordinates, coordinates, tolerance, sign);
 };
 
 template <class Field>

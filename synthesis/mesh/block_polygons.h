@@ -85,6 +85,11 @@ ASTROLITH_HD RowCounts count_row(const CellTriangles* table, const BlockWindow<B
 template <int B>
 std::int64_t count_rows(const BlockWindow<B>& window, LayerBlock<B>& block) {
   std::int64_t cut_vertices = 0;
+  if (!is_crossed(block)) {
+    block.vertex_rows.fill(0);
+    block.triangle_rows.fill(0);
+    return 0;
+  }
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {
       const RowCounts counts = count_row(marching_cubes_table().data(), window, block, y, z);
@@ -168,7 +173,7 @@ ASTROLITH_HD MeshVertex place_vertex(const BlockGrid<B>& grid, int layer_z, cons
 
 // The number of vertices that get their normals together: enough to keep the vector loops of a field busy,
 // few enough for the stack.
-inline constexpr std::size_t kVerticesPerBatch = 256;
+inline constexpr std::size_t kVerticesPerBatch = 252;
 
 // Vertices that wait for their normals before they go into the array of their layer.
 struct VertexBatch {
@@ -243,16 +248,45 @@ void for_each_meshed_edge(const LayerBlock<B>& block, const BlockWindow<B>& wind
   }
 }
 
+// Evaluates F at the ends of the block's crossed edges of which only the sign is known. Returns the number of
+// evaluations.
+template <int B, FieldBlockLike Block>
+std::int64_t evaluate_edge_ends(const BlockGrid<B>& grid, int layer_z, const Block& field,
+                                const BlockWindow<B>& window, LayerBlock<B>& block) {
+  PointBatch<LayerBlock<B>::kSamples> ends;
+  std::array<std::uint32_t, LayerBlock<B>::kSamples> samples;
+  const auto add = [&](int x, int y, int z) {
+    const std::size_t i = LayerBlock<B>::sample(x, y, z);
+    if (!has_only_sign(block.values[i])) return;
+    block.values[i] = 0.0f;  // until its value is known: no other edge adds it again
+    samples[ends.size()] = static_cast<std::uint32_t>(i);
+    ends.add(grid.samples.x(block.x * B + x), grid.samples.y(block.y * B + y),
+             grid.samples.z(layer_z * B + z));
+  };
+  for_each_meshed_edge(block, window, [&](int x, int y, int z, int axis) {
+    add(x, y, z);
+    add(x - (axis == 0), y - (axis == 1), z - (axis == 2));
+  });
+  ends.evaluate(field, static_cast<float>(kSampleBand * grid.samples.step));
+  for (std::size_t i = 0; i < ends.size(); ++i) block.values[samples[i]] = ends.value(i);
+  return static_cast<std::int64_t>(ends.size());
+}
+
 // Makes the vertices of a block, numbers them from layer_first + start of their row, and puts them into the
 // array of the layer. Returns the number of evaluations of the field.
 template <int B, FieldBlockLike Block>
 std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& field,
                            std::uint32_t layer_first, LayerBlock<B>& block,
                            std::span<MeshVertex> layer_vertices) {
+  if (!is_crossed(block)) return 0;
   // Probes lie a quarter of a step from the vertex: near enough for O(h^2), far enough apart for differences
   // of floats.
   const auto h = static_cast<float>(0.25 * grid.samples.step);
+  const BlockWindow<B> window = grid.window_of(block.x, block.y, layer_z);
   std::int64_t evaluations = 0;
+  if constexpr (HasSureSigns<Block>) {
+    evaluations += evaluate_edge_ends(grid, layer_z, field, window, block);
+  }
   VertexBatch batch;
   const auto finish = [&] {
     take_normals(field, h, batch);
@@ -261,7 +295,6 @@ std::int64_t make_vertices(const BlockGrid<B>& grid, int layer_z, const Block& f
     batch.size = 0;
   };
   std::array<std::uint32_t, B* B> next = block.vertex_rows;
-  const BlockWindow<B> window = grid.window_of(block.x, block.y, layer_z);
   for_each_meshed_edge(block, window, [&](int x, int y, int z, int axis) {
     const std::uint32_t slot = next[LayerBlock<B>::row(y, z)]++;
     block.vertices[3 * LayerBlock<B>::sample(x, y, z) + static_cast<unsigned>(axis)] = layer_first + slot;
@@ -297,12 +330,23 @@ ASTROLITH_HD bool fill_halo_vertices(const Owners<B>& owners, const BlockWindow<
   throw WorkError("mesher: an edge of the surface lies in a block that was left out");
 }
 
-// Fills the vertex numbers of all halo samples. Throws WorkError where an owner was left out.
+// Fills the vertex numbers on the edges that end at halo samples, by rows. Throws WorkError where an owner
+// was left out.
 template <int B>
 void fill_vertex_halo(const Owners<B>& owners, const BlockWindow<B>& window, LayerBlock<B>& block) {
-  for_each_halo_sample<B>([&](int x, int y, int z, unsigned) {
-    if (!fill_halo_vertices(owners, window, x, y, z, block)) fail_at_missing_block();
-  });
+  if (!is_crossed(block)) return;
+  for (int z = 0; z <= B; ++z) {
+    for (int y = 0; y <= B; ++y) {
+      const SignRow halo = y != 0 && z != 0 ? SignRow{1} : LayerBlock<B>::kWholeRow;
+      const SignRow row = block.signs[LayerBlock<B>::sign_row(y, z)];
+      SignRow crossed = row ^ row << 1;
+      if (y > 0) crossed |= row ^ block.signs[LayerBlock<B>::sign_row(y - 1, z)];
+      if (z > 0) crossed |= row ^ block.signs[LayerBlock<B>::sign_row(y, z - 1)];
+      for_each_bit(crossed & halo, [&](int x) {
+        if (!fill_halo_vertices(owners, window, x, y, z, block)) fail_at_missing_block();
+      });
+    }
+  }
 }
 
 // For each of a cell's edges, where its vertex number stands relative to the numbers of the cell's upper
@@ -341,6 +385,7 @@ ASTROLITH_HD void make_row_triangles(const CellTriangles* table,
 template <int B>
 void make_triangles(const LayerBlock<B>& block, const BlockWindow<B>& window,
                     std::span<Triangle> layer_triangles) {
+  if (!is_crossed(block)) return;
   static constexpr std::array<std::ptrdiff_t, 12> kOffsets = edge_offsets<B>();
   for (int z = 1; z <= B; ++z) {
     for (int y = 1; y <= B; ++y) {

@@ -1,10 +1,15 @@
-// Fills the samples of the blocks of a layer. Each block first evaluates the samples that it owns and those
+// Fills the samples of the blocks of a layer. Each block first samples the points that it owns and those
 // without an active owner. It then copies the other samples of its halo from their owners.
+//
+// A mesh needs the sign of F at every sample, but its value only at the ends of crossed edges. Where a field
+// can prove signs, F is evaluated at the other samples only, and later at the ends of crossed edges that have
+// no value yet (block_polygons.h). The mesh is the same as if F had been evaluated at all samples.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "synthesis/mesh/block_culling.h"
@@ -26,10 +31,24 @@ class PointBatch {
   void clear() { size_ = 0; }
   float value(std::size_t i) const { return value_[i]; }
 
+  // Adds point i of another batch.
+  template <std::size_t Other>
+  void add(const PointBatch<Other>& from, std::size_t i) {
+    add(from.x_[i], from.y_[i], from.z_[i]);
+  }
+
   template <FieldBlockLike Block>
   void evaluate(const Block& field, float band = kExactEverywhere) {
+    if (size_ == 0) return;
+    const std::size_t size = padded();
+    const auto points = [size](const auto& v) { return std::span(v).first(size); };
+    field.evaluate(points(x_), points(y_), points(z_), std::span(value_).first(size), band);
+  }
+  // Writes for each point what the field proves of its sign.
+  template <HasSureSigns Block>
+  void find_signs(const Block& field, float tolerance, std::span<std::int8_t> sign) const {
     const auto points = [this](const auto& v) { return std::span(v).first(size_); };
-    if (size_ > 0) field.evaluate(points(x_), points(y_), points(z_), std::span(value_).first(size_), band);
+    if (size_ > 0) field.find_signs(points(x_), points(y_), points(z_), tolerance, sign.first(size_));
   }
   // Evaluates points that are the corners of tetrahedra, four after four.
   template <FieldBlockLike Block>
@@ -43,13 +62,33 @@ class PointBatch {
   }
 
  private:
+  template <std::size_t Other>
+  friend class PointBatch;
+
+  // Repeats the last point, so that vector loops over the points have no remainder. Returns the size with the
+  // repetitions.
+  std::size_t padded() {
+    const std::size_t end = (size_ + kVectorPoints - 1) / kVectorPoints * kVectorPoints;
+    for (auto* c : {&x_, &y_, &z_}) std::fill(c->begin() + size_, c->begin() + end, (*c)[size_ - 1]);
+    return end;
+  }
+
+  static constexpr std::size_t kVectorPoints = 16;
+  static constexpr std::size_t kRoom = (Capacity + kVectorPoints - 1) / kVectorPoints * kVectorPoints;
   std::size_t size_ = 0;
-  std::array<float, Capacity> x_, y_, z_, value_;
+  std::array<float, kRoom> x_, y_, z_, value_;
 };
 
 // The value of samples beyond the grid, in blocks that stick out of it, and of samples that are not known
 // yet.
 inline constexpr float kOutsideGrid = -1.0f;
+
+// The value of a sample of which only the sign is known: infinite, with this sign.
+inline constexpr float kOnlySign = std::numeric_limits<float>::infinity();
+ASTROLITH_HD inline bool has_only_sign(float value) { return value == kOnlySign || value == -kOnlySign; }
+
+// Below this part of a step, a distance to the surface is not worth much work for the proof of a sign.
+inline constexpr double kSignTolerance = 0.25;
 
 // The accuracy band of samples, in steps of the grid. Along an edge a distance changes by about a step, so
 // that both ends of an edge that the surface crosses lie within the band. Where a field is steeper an end may
@@ -98,10 +137,40 @@ void check_border(const BlockGrid<B>& grid, int layer_z, const LayerBlock<B>& bl
   }
 }
 
-// Evaluates the samples whose owner is the block itself or no active block. Returns how many there were.
-// Throws WorkError when a sample on the border of a closed grid is inside the body.
+// The values of a batch of samples, or kOnlySign with their signs. Returns the number of evaluations of F.
+template <std::size_t Capacity, FieldBlockLike Block>
+std::int64_t take_samples(const Block& field, double step, PointBatch<Capacity>& samples,
+                          std::array<float, Capacity>& values) {
+  const auto band = static_cast<float>(kSampleBand * step);
+  if constexpr (HasSureSigns<Block>) {
+    std::array<std::int8_t, Capacity> signs;
+    samples.find_signs(field, static_cast<float>(kSignTolerance * step), signs);
+    PointBatch<Capacity> open;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (signs[i] == 0) open.add(samples, i);
+    }
+    open.evaluate(field, band);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      values[i] = signs[i] == 0 ? open.value(next++) : signs[i] > 0 ? kOnlySign : -kOnlySign;
+    }
+    return static_cast<std::int64_t>(open.size());
+  } else {
+    samples.evaluate(field, band);
+    for (std::size_t i = 0; i < samples.size(); ++i) values[i] = samples.value(i);
+    return static_cast<std::int64_t>(samples.size());
+  }
+}
+
+// How many samples a block has taken, and at how many of them F was evaluated.
+struct SampleCounts {
+  std::int64_t samples = 0, evaluations = 0;
+};
+
+// Takes the samples whose owner is the block itself or no active block. Throws WorkError when a sample on the
+// border of a closed grid is inside the body.
 template <int B, FieldBlockLike Block>
-std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block& field,
+SampleCounts evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block& field,
                               const Owners<B>& owners, LayerBlock<B>& block) {
   PointBatch<LayerBlock<B>::kSamples> batch;
   const auto for_each_row = [&](const auto& visit) {
@@ -113,27 +182,17 @@ std::int64_t evaluate_samples(const BlockGrid<B>& grid, int layer_z, const Block
     const float py = grid.samples.y(block.y * B + y), pz = grid.samples.z(layer_z * B + z);
     for (int x = row.first; x <= row.last; ++x) batch.add(grid.samples.x(block.x * B + x), py, pz);
   });
-  batch.evaluate(field, static_cast<float>(kSampleBand * grid.samples.step));
+  std::array<float, LayerBlock<B>::kSamples> values;
+  const std::int64_t evaluations = take_samples(field, grid.samples.step, batch, values);
   block.values.fill(kOutsideGrid);
   std::size_t next = 0;
   for_each_row([&](int y, int z, SampleRow row) {
     for (int x = row.first; x <= row.last; ++x) {
-      block.values[LayerBlock<B>::sample(x, y, z)] = batch.value(next++);
+      block.values[LayerBlock<B>::sample(x, y, z)] = values[next++];
     }
   });
   if (grid.closed && is_at_border(grid, layer_z, block)) check_border(grid, layer_z, block);
-  return static_cast<std::int64_t>(batch.size());
-}
-
-// Calls visit(x, y, z, owner) for every halo sample, which a lower neighbour owns.
-template <int B, typename Visit>
-void for_each_halo_sample(const Visit& visit) {
-  for (int z = 0; z <= B; ++z) {
-    for (int y = 0; y <= B; ++y) {
-      const bool inner_row = y != 0 && z != 0;
-      for (int x = 0; x <= (inner_row ? 0 : B); ++x) visit(x, y, z, owner_of(x, y, z));
-    }
-  }
+  return {static_cast<std::int64_t>(batch.size()), evaluations};
 }
 
 // The index at which the owner of a halo sample keeps it.
@@ -150,9 +209,19 @@ ASTROLITH_HD void fill_halo_sample(const Owners<B>& owners, int x, int y, int z,
   block.values[LayerBlock<B>::sample(x, y, z)] = owner->values[owned_sample<B>(x, y, z)];
 }
 
+// Fills all halo samples, by rows.
 template <int B>
 void fill_sample_halo(const Owners<B>& owners, LayerBlock<B>& block) {
-  for_each_halo_sample<B>([&](int x, int y, int z, unsigned) { fill_halo_sample(owners, x, y, z, block); });
+  for (int z = 0; z <= B; ++z) {
+    for (int y = 0; y <= B; ++y) {
+      fill_halo_sample(owners, 0, y, z, block);
+      if (y != 0 && z != 0) continue;
+      const LayerBlock<B>* owner = owners[owner_of(1, y, z)];
+      if (owner == nullptr) continue;
+      std::copy_n(owner->values.data() + owned_sample<B>(1, y, z), B,
+                  block.values.data() + LayerBlock<B>::sample(1, y, z));
+    }
+  }
 }
 
 // The signs of row sign_row(y, z).
@@ -167,6 +236,14 @@ ASTROLITH_HD SignRow signs_of_row(const LayerBlock<B>& block, std::size_t row) {
 template <int B>
 void take_signs(LayerBlock<B>& block) {
   for (std::size_t row = 0; row < block.signs.size(); ++row) block.signs[row] = signs_of_row(block, row);
+}
+
+// Whether the surface crosses an edge between two samples of the block. Expects the signs of all rows.
+template <int B>
+bool is_crossed(const LayerBlock<B>& block) {
+  SignRow any = 0, all = LayerBlock<B>::kWholeRow;
+  for (const SignRow row : block.signs) any |= row, all &= row;
+  return any != 0 && all != LayerBlock<B>::kWholeRow;
 }
 
 // True when the surface crosses a side of a block. Sides are numbered 2 axis + (0 low, 1 high). `last` holds

@@ -2,8 +2,9 @@
 //
 // Each layer of blocks is culled by bounds of the field, sampled, numbered and polygonised, in parallel over
 // blocks. The layer below is kept for the samples and vertices that the two layers share. Two layers
-// therefore bound the memory. Vertices and triangles come in rows of the whole grid: the bytes depend on the
-// field, the bounds and the resolution alone.
+// therefore bound the memory. The sink receives a layer while the next one is sampled, so that a sink that
+// works on one thread keeps no other thread waiting. Vertices and triangles come in rows of the whole grid:
+// the bytes depend on the field, the bounds and the resolution alone.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,11 @@ namespace astrolith {
 struct MeshStatistics {
   std::int64_t vertices = 0;
   std::int64_t triangles = 0;
-  std::int64_t evaluations = 0;    // evaluations of the field, at samples and for normals
-  std::int64_t active_blocks = 0;  // blocks that the surface may cross; the others are never sampled
+  // Evaluations of the field, at samples and for normals. Samples whose signs are proven otherwise do not
+  // count, so that a GPU, which proves none, states more.
+  std::int64_t evaluations = 0;
+  // Blocks that the surface may cross; the others are never sampled. A GPU has other bounds than the CPU.
+  std::int64_t active_blocks = 0;
   std::int64_t total_blocks = 0;
   std::int64_t cut_vertices = 0;  // vertices in the planes where a tile or a patch is cut open
   double step = 0.0;              // edge of a cell, length units
@@ -89,6 +93,7 @@ class LayeredMesher {
       }
     }
     check_open_sides<B>(grid_, end - 1, below, end > first + 1 ? &two_below : nullptr, nullptr);
+    pass_on();
     return statistics_;
   }
 
@@ -107,7 +112,15 @@ class LayeredMesher {
     const LayerCounts counts = number_rows(layer);
     emit_vertices(z, active, counts, layer);
     emit_triangles(z, counts, below, layer);
+    statistics_.vertices += counts.vertices;
+    statistics_.triangles += counts.triangles;
     return layer;
+  }
+
+  // Gives the vertices and triangles of the last layer to the sink.
+  void pass_on() {
+    sink_.add_vertices(vertices_);
+    sink_.add_triangles(triangles_);
   }
 
   // Calls body(i) for every block in parallel and adds up the counts it returns.
@@ -120,11 +133,17 @@ class LayeredMesher {
     return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
   }
 
+  // Samples a layer, while the sink receives the layer before it.
   void sample(int z, const Blocks& active, const BlockLayer<B>& below, BlockLayer<B>& layer) {
-    statistics_.evaluations += for_each_block(layer, [&](std::size_t i) {
-      LayerBlock<B>& block = layer.blocks[i];
-      return evaluate_samples(grid_, z, active[i].field, find_owners(layer, below, block), block);
+    std::vector<std::int64_t> evaluations(layer.blocks.size());
+    parallel_for(-1, static_cast<std::int64_t>(layer.blocks.size()), [&](std::int64_t i) {
+      if (i < 0) return pass_on();
+      const auto n = static_cast<std::size_t>(i);
+      LayerBlock<B>& block = layer.blocks[n];
+      evaluations[n] =
+          evaluate_samples(grid_, z, active[n].field, find_owners(layer, below, block), block).evaluations;
     });
+    for (const std::int64_t count : evaluations) statistics_.evaluations += count;
     statistics_.cut_vertices += for_each_block(layer, [&](std::size_t i) {
       LayerBlock<B>& block = layer.blocks[i];
       fill_sample_halo(find_owners(layer, below, block), block);
@@ -143,8 +162,6 @@ class LayeredMesher {
     statistics_.evaluations += for_each_block(layer, [&](std::size_t i) {
       return make_vertices(grid_, z, active[i].field, first, layer.blocks[i], std::span(vertices_));
     });
-    sink_.add_vertices(vertices_);
-    statistics_.vertices += counts.vertices;
   }
 
   void emit_triangles(int z, const LayerCounts& counts, const BlockLayer<B>& below, BlockLayer<B>& layer) {
@@ -156,8 +173,6 @@ class LayeredMesher {
       make_triangles(block, window, std::span(triangles_));
       return std::int64_t{0};
     });
-    sink_.add_triangles(triangles_);
-    statistics_.triangles += counts.triangles;
   }
 
   BlockGrid<B> grid_;

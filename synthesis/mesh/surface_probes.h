@@ -120,7 +120,8 @@ class SurfaceProber {
     LayerBlock<B>& block = layer.blocks.front();
     Owners<B> owners{};
     owners[0] = &block;
-    sums.spent_evaluations += static_cast<double>(evaluate_samples(place.grid, 0, node.field, owners, block));
+    sums.spent_evaluations +=
+        static_cast<double>(evaluate_samples(place.grid, 0, node.field, owners, block).evaluations);
     take_signs(block);
     count_rows(place.grid.window_of(0, 0, 0), block);
     return double(number_rows(layer).triangles);

@@ -54,8 +54,8 @@ void expect_same(const Made& twin, const Made& cpu) {
   EXPECT_TRUE(same_bytes(twin.mesh.triangles, cpu.mesh.triangles));
   EXPECT_EQ(twin.statistics.vertices, cpu.statistics.vertices);
   EXPECT_EQ(twin.statistics.triangles, cpu.statistics.triangles);
-  EXPECT_EQ(twin.statistics.evaluations, cpu.statistics.evaluations);
-  EXPECT_EQ(twin.statistics.active_blocks, cpu.statistics.active_blocks);
+  // A backend has other bounds than the CPU, and evaluates F at all samples. Its active blocks and
+  // evaluations are others, therefore.
   EXPECT_EQ(twin.statistics.total_blocks, cpu.statistics.total_blocks);
   EXPECT_EQ(twin.statistics.cut_vertices, cpu.statistics.cut_vertices);
 }

@@ -1,9 +1,11 @@
 // Compares the blocks that a backend finds, and the lists of the elements that reach them, with those of the
-// CPU.
+// CPU. The CPU has other bounds, so that few blocks that the surface does not cross are found by one alone.
 #include "cuda/mesher/gathered_lists.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <iterator>
 
 #include "cuda/host_backend.h"
 #include "synthesis/field/implicit_field.h"
@@ -20,16 +22,15 @@ MeshGrid grid_of(const ImplicitField& field, int resolution) {
   return {samples, window_of_tile<kBlockCells>(samples, {}), true};
 }
 
-// The mixed blocks of all layers, one layer after another; layers[i] becomes the layer of block i.
-std::vector<BlockNode<FieldBlock>> blocks_of_cpu(const ImplicitField& field, const MeshGrid& grid,
-                                                 std::vector<int>& layers) {
+// A block by its place: layer, y and x.
+using Place = std::array<int, 3>;
+
+// The mixed blocks of all layers, sorted.
+std::vector<Place> blocks_of_cpu(const ImplicitField& field, const MeshGrid& grid) {
   const FieldBlock whole = field.gather(grid.samples.box({0, 0, 0}, grid.samples.cells, grid.samples.step));
-  std::vector<BlockNode<FieldBlock>> all;
+  std::vector<Place> all;
   for (int z = 0; z < grid.blocks(2); ++z) {
-    for (auto& node : mixed_blocks(grid, whole, z)) {
-      all.push_back(std::move(node));
-      layers.push_back(z);
-    }
+    for (const auto& node : mixed_blocks(grid, whole, z)) all.push_back({z, node.y, node.x});
   }
   return all;
 }
@@ -53,8 +54,7 @@ void expect_same_lists(const BlockListStore& cpu, const BlockListArrays& twin) {
 void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& order) {
   const ImplicitField field(recipe);
   const MeshGrid grid = grid_of(field, resolution);
-  std::vector<int> layers;
-  const auto cpu = blocks_of_cpu(field, grid, layers);
+  const std::vector<Place> cpu = blocks_of_cpu(field, grid);
 
   HostBackend backend(std::size_t{1} << 34, order);
   const FieldOnBackend<HostBackend> on_backend(backend, field.tables());
@@ -63,16 +63,16 @@ void expect_same_blocks(const Recipe& recipe, int resolution, const HostOrder& o
   auto failure = zeros_on<std::uint32_t>(backend, 1);
   const CulledBlocks<HostBackend> twin = culler.cull(0, grid.blocks(2), failure);
   ASSERT_EQ(backend.read(failure, 0), 0u);
-  ASSERT_EQ(twin.on_host.size(), cpu.size());
-  for (std::size_t i = 0; i < cpu.size(); ++i) {
-    ASSERT_EQ(twin.on_host[i].x, cpu[i].x) << i;
-    ASSERT_EQ(twin.on_host[i].y, cpu[i].y) << i;
-    ASSERT_EQ(twin.on_host[i].z, layers[i]) << i;
-  }
+  std::vector<Place> found;
+  for (const auto& block : twin.on_host) found.push_back({block.z, block.y, block.x});
+  ASSERT_TRUE(std::is_sorted(found.begin(), found.end()));
+  std::vector<Place> both;
+  std::set_intersection(found.begin(), found.end(), cpu.begin(), cpu.end(), std::back_inserter(both));
+  EXPECT_GT(double(both.size()), 0.9 * double(std::max(found.size(), cpu.size())));
   const GatheredLists<HostBackend> gathered(backend, {on_backend.view(), grid, culler.lists(), twin.view()},
-                                            cpu.size());
+                                            found.size());
   BlockListStore lists(field.tables());
-  for (const auto& node : cpu) lists.add(field.tables(), node.field.box());
+  for (const auto& [z, y, x] : found) lists.add(field.tables(), grid.box(x, y, z, 1));
   expect_same_lists(lists, gathered.view());
 }
 
