@@ -103,6 +103,11 @@ std::vector<MeshVertex> repeated(const TriangleMesh& mesh, std::size_t first, st
   return vertices;
 }
 
+// How much more a triangle costs in a mesh of `ratio` times as many, if each doubling adds `more` to it.
+double growth(double ratio, double more) {
+  return 1.0 + more * double(std::bit_width(static_cast<std::uint64_t>(ratio)) - 1);
+}
+
 // Seconds that all threads of this process have spent.
 double seconds_of_process() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -173,29 +178,13 @@ double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const d
   return more;
 }
 
-double label_cache_bytes(const LabelCost& labels, std::span<const double> bytes, int threads) {
-  double more = 0.0;
-  for (std::size_t i = 0; i < labels.fields.size(); ++i)
-    more += labels.fields[i] * kept_bytes(bytes[i], threads);
-  return more;
-}
-
-double label_tile_seconds(const LabelCost& labels, const GaborCost& tiles) {
-  double all = 0.0, drawn = 0.0;
-  for (std::size_t i = 0; i < labels.fields.size(); ++i) {
-    all += tiles.bytes[i];
-    drawn += labels.fields[i] * tiles.bytes[i];
-  }
-  return all > 0.0 ? tiles.seconds * drawn / all : 0.0;
-}
-
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
   constexpr int kCoarser = 6, kFewestCells = 16;
   // Gravity is that of a lattice of this many cells; each triangle then adds a little.
   constexpr int kCellsOfGravity = 48;
   constexpr double kSecondsOfVertical = 8e-8;
-  // An edge that rests costs this much in a sweep.
-  constexpr double kSecondsOfEdge = 1.2e-9;
+  // Each doubling of the triangles adds this share: sweeps are a few more, and tables outgrow the caches.
+  constexpr double kMoreOfDoubledSlides = 0.08;
   const Erosion& erosion = *recipe.erosion;
   const int cells = std::min(std::max(mesh.resolution / kCoarser, kFewestCells), mesh.resolution);
   MeshCollector coarse;
@@ -206,10 +195,9 @@ ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const
   const double triangles = static_cast<double>(coarse.mesh.triangles.size());
   const double seconds_of_verticals = clock_of_verticals.seconds();
   const ProcessorClock clock;
-  const ErosionStatistics done = erode(coarse.mesh, up, erosion.talus_angle, erosion.iterations);
+  erode(coarse.mesh, up, erosion.talus_angle, erosion.iterations);
   const double ratio = std::max(mesh.triangles / triangles, 1.0);
-  const double most_sweeps = 1.5 * mesh.triangles * erosion.iterations * kSecondsOfEdge;
-  const double growing = clock.seconds() * (done.sweeps > 2 ? ratio * ratio : ratio);
+  const double sliding = clock.seconds() * ratio * growth(ratio, kMoreOfDoubledSlides);
   const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
   // Facets of the lattice, each with its share of the tree of multipoles: 900 to 1,450 bytes. The tree is
   // gone before the tables of the slides are made.
@@ -218,41 +206,36 @@ ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const
   const double bytes =
       std::max(kBytesOfFacet * of_lattice * of_lattice - kBytesOfSlides, 0.0) * mesh.triangles;
   const double verticals = seconds_of_verticals * finer * finer + kSecondsOfVertical * mesh.triangles;
-  return {verticals, std::min(growing, clock.seconds() * ratio + most_sweeps), bytes};
+  return {verticals, sliding, bytes};
 }
 
-LabelCost label_cost(const ImplicitField& field, const Recipe& recipe, const Region& region,
+double label_seconds(const ImplicitField& field, const Recipe& recipe, const Region& region,
                      const MeshEstimate& mesh) {
   constexpr int kCells = 24;
   constexpr double kShare = 0.01, kMostRuns = 12.0, kMostRunsWithImpulses = 2.0;
   const TriangleMesh coarse = coarse_region(field, recipe, region, std::min(kCells, mesh.resolution));
-  if (coarse.vertices.empty() || !(mesh.vertices > 0.0)) return {};
-  LabelCost cost;
-  const double held = static_cast<double>(resident_bytes()), start = seconds_of_process();
-  const SurfaceLabels labels(recipe, "recipe", region.cube());
-  cost.serial_seconds = seconds_of_process() - start;
-  cost.bytes = std::max(static_cast<double>(resident_bytes()) - held, 0.0);
-  cost.fields = labels.fields_with_impulses();
+  if (coarse.vertices.empty() || !(mesh.vertices > 0.0)) return 0.0;
+  const SurfaceLabels labels(recipe, field, region.cube());
+  const bool has_impulses = !field.gabor_caches().empty();
   // A run of the coarse mesh is as wide as a chunk of the mesh, which has more vertices in each row.
   const double finer = std::max(double(mesh.resolution) / kCells, 1.0);
   const auto run =
       static_cast<std::size_t>(std::clamp(double(kLabelsChunk) / finer, 1.0, double(coarse.vertices.size())));
   const int runs = static_cast<int>(std::clamp(kShare * mesh.vertices / kLabelsChunk, 1.0,
-                                               cost.fields.empty() ? kMostRuns : kMostRunsWithImpulses));
+                                               has_impulses ? kMostRunsWithImpulses : kMostRuns));
   std::vector<VertexLabel> made(kLabelsChunk);
   double seconds = 0.0;
   for (int i = 0; i < runs; ++i) {
     const auto first =
         static_cast<std::size_t>(double(coarse.vertices.size() - run) * (i + 0.5) / double(runs));
     const std::vector<MeshVertex> vertices = repeated(coarse, first, run, kLabelsChunk);
-    // The first time draws tiles of impulses, which are counted apart.
-    if (!cost.fields.empty()) labels.label(region.center, vertices, made);
+    // The first time draws tiles of impulses, which the mesh has drawn when its vertices are labelled.
+    if (has_impulses) labels.label(region.center, vertices, made);
     const ProcessorClock clock;
     labels.label(region.center, vertices, made);
     seconds += clock.seconds();
   }
-  cost.parallel_seconds = seconds * mesh.vertices / (double(runs) * double(kLabelsChunk));
-  return cost;
+  return seconds * mesh.vertices / (double(runs) * double(kLabelsChunk));
 }
 
 double gravity_seconds(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
@@ -267,8 +250,7 @@ double gravity_seconds(const ImplicitField& field, const Recipe& recipe, const M
   // Each doubling of the facets adds this share, as measured on three examples.
   constexpr double kMoreOfDoubling = 0.058;
   const double finer = std::max(mesh.vertices / double(coarse.vertices.size()), 1.0);
-  const double deeper = 1.0 + kMoreOfDoubling * double(std::bit_width(static_cast<std::uint64_t>(finer)) - 1);
-  return (seconds_of_process() - start) * finer * deeper;
+  return (seconds_of_process() - start) * finer * growth(finer, kMoreOfDoubling);
 }
 
 double meshing_bytes(const MeshEstimate& mesh) {

@@ -54,25 +54,13 @@ struct ErosionCost {
   double serial_seconds = 0.0;
   double bytes = 0.0;  // of the gravity that it slides against, beyond OutputCost::memory
 };
-// A mesh of a sixth of the cells is made and eroded. Sweeps take longer on finer meshes, so that the seconds
-// of an erosion that has far to go are rough.
+// A mesh of a sixth of the cells is made and eroded.
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh);
 
-// What the label and the elevation of each vertex add to a mesh.
-struct LabelCost {
-  double serial_seconds = 0.0;    // for the fields of all layers, which are made once
-  double parallel_seconds = 0.0;  // of one processor, without the tiles of Gabor impulses
-  double bytes = 0.0;             // of these fields, without their tiles
-  std::vector<int> fields;        // for each list of Gabor impulses, the number of these fields that have it
-};
-// Labels some vertices of a coarse mesh, in runs that are as wide as those of the mesh.
-LabelCost label_cost(const ImplicitField& field, const Recipe& recipe, const Region& region,
+// Seconds of one processor for the label and the elevation of each vertex. Labels some vertices of a coarse
+// mesh, in runs that are as wide as those of the mesh.
+double label_seconds(const ImplicitField& field, const Recipe& recipe, const Region& region,
                      const MeshEstimate& mesh);
-
-// The tiles of Gabor impulses that these fields draw, each field its own: their memory at the end, and the
-// seconds of one processor.
-double label_cache_bytes(const LabelCost& labels, std::span<const double> bytes, int threads);
-double label_tile_seconds(const LabelCost& labels, const GaborCost& tiles);
 
 // Seconds of one processor for the gravity at all vertices: that of a coarse mesh, scaled by the vertices and
 // by the depth of the tree.

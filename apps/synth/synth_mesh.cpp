@@ -138,7 +138,7 @@ class MeshOutput {
       colors_.emplace(recipe, file.string(), field);
     }
     if (request.labels) {
-      labels_.emplace(recipe, file.string(), region.cube());
+      labels_.emplace(recipe, field, region.cube());
       info_.notes = labels_->legend();
     }
     const bool streamed = is_ply_name(output) && !recipe.erosion && !request.gravity.wanted();

@@ -55,12 +55,10 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   // A peak that the sample made is one of blocks, which the mesh will have too.
   const double peak_after = static_cast<double>(peak_bytes());
   const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
-  const LabelCost labels =
-      mesh.use.labels ? label_cost(mesh.field, mesh.recipe, mesh.region, estimate) : LabelCost{};
+  const double labels = mesh.use.labels ? label_seconds(mesh.field, mesh.recipe, mesh.region, estimate) : 0.0;
   const double gravity = mesh.use.gravity ? gravity_seconds(mesh.field, mesh.recipe, estimate) : 0.0;
-  const double working = std::max(meshing_bytes(estimate), erosion.bytes) + labels.bytes +
+  const double working = std::max(meshing_bytes(estimate), erosion.bytes) +
                          more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(program)) +
-                         label_cache_bytes(labels, gabor_tiles.bytes, threads_of(program)) +
                          output.memory * estimate.triangles;
   const double times = mesh.use.twice ? 2.0 : 1.0;
   Prediction predicted;
@@ -68,10 +66,8 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   predicted.file_bytes = output.file * estimate.triangles;
   predicted.peak_bytes = std::max(peak_after, held + working);
   const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
-                          erosion.parallel_seconds + labels.parallel_seconds +
-                          label_tile_seconds(labels, gabor_tiles) + gravity;
-  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds +
-                        labels.serial_seconds;
+                          erosion.parallel_seconds + labels + gravity;
+  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
   predicted.seconds = seconds_before + parallel / threads_of(program) + serial;
   predicted.own_evaluations = estimate.spent_evaluations;
   predicted.own_seconds = clock.seconds();

@@ -12,7 +12,7 @@ constexpr double kMostCells = 32768.0;
 }  // namespace
 
 std::string obstacle_on_gpu(const FieldView& field, double block_side) {
-  if (field.num_kept_heights > kMostKeptHeights) return "masks by more than four layers";
+  if (field.num_kept_heights > kMostKeptHeights) return "masks by more than four layers at a time";
   double gabor_cells = 0.0, spot_cells = 0.0;
   for (const FieldLayer& layer : std::span(field.layers, field.num_layers)) {
     if (const auto* gabor = gabor_impulses_of(layer.noise)) {

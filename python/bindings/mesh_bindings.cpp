@@ -120,7 +120,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   std::optional<SurfaceLabels> labels;
   VertexLabeller labeller;
   if (arguments.labels) {
-    labels.emplace(recipe, arguments.name, region.cube());
+    labels.emplace(recipe, field, region.cube());
     labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
   }
   MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, {}, {}, {}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <cstdint>
 #include <span>
@@ -79,6 +80,10 @@ void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPa
 // FieldBlock::paint() at n <= kBatch points of a block. `local` is as below.
 void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
                  const PointArrays& at, Vec3f* color, const LocalPoints* local = nullptr);
+
+// FieldBlock::evaluate_stages() at n <= kBatch points of a block. `local` is as below.
+void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                     const std::function<void(const FieldStage&)>& visit, const LocalPoints* local = nullptr);
 
 // value[i] = F at n <= kBatch points of a block. `local`, unless null, holds the same points in coordinates
 // local to an origin.

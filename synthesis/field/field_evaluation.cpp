@@ -158,15 +158,53 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   }
 }
 
-void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
-                 const PointArrays& at, Vec3f* color, const LocalPoints* local) {
-  Batch b;
+namespace {
+
+// Evaluates the bare body at n points, and keeps all of them for layers.
+void begin_everywhere(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                      const LocalPoints* local, Batch& b) {
   const PointArrays metaballs_at = begin_batch(model, lists, n, at, local, b);
   std::array<int, kBatch> origin;
   const auto everywhere = [](int) { return true; };
   keep_near_surface(n, 0.0f, everywhere, at, metaballs_at, local, b, origin);
   std::fill_n(b.elevation.data(), n, 0.0f);
   b.kept.resize(model.num_kept_heights);
+}
+
+}  // namespace
+
+void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, const PointArrays& at,
+                     const std::function<void(const FieldStage&)>& visit, const LocalPoints* local) {
+  Batch b;
+  begin_everywhere(model, lists, n, at, local, b);
+  std::array<float, kBatch> value;
+  const auto show = [&](int layer, bool is_boulders) {
+    visit({layer, is_boulders, {value.data(), static_cast<std::size_t>(n)}});
+  };
+  std::copy_n(b.distance.data(), n, value.data());
+  show(-1, false);
+  for (std::size_t i = 0; i < model.layers.size(); ++i) {
+    b.spots = spots_of(lists.spots, i);
+    apply_layer(model, model.layers[i], b);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) value[k] = b.distance[k] + b.elevation[k];
+    show(model.recipe_layers[i], false);
+  }
+  const std::vector<std::uint32_t> boulders = boulders_around(model, n, at);
+  auto next = boulders.begin();
+  std::size_t end = 0;  // of the numbers of this layer's boulders
+  for (const LayerBoulders& layer : model.placed_boulders) {
+    end += layer.boulders.size();
+    for (; next != boulders.end() && *next < end; ++next) {
+      join_boulder(model.boulders[*next].kernel, n, at.x, at.y, at.z, value.data());
+    }
+    show(layer.layer, true);
+  }
+}
+
+void paint_batch(const FieldModel& model, const BatchLists& lists, std::span<const LayerPaint> paints, int n,
+                 const PointArrays& at, Vec3f* color, const LocalPoints* local) {
+  Batch b;
+  begin_everywhere(model, lists, n, at, local, b);
   auto paint = paints.begin();
   for (std::size_t i = 0; i < model.layers.size() && paint != paints.end(); ++i) {
     if (paint->layer == i) paint_layer(model, model.layers[i], *paint++, b, color);

@@ -54,7 +54,7 @@ struct FieldView {
   ArrayView arrays;
   const FieldLayer* layers;
   std::uint32_t num_layers;
-  std::uint32_t num_kept_heights;  // number of layers whose heights are kept for masks
+  std::uint32_t num_kept_heights;  // number of slots for heights that are kept for masks
   BodyTables body;
   ArrayRange<ImpulseList> spot_lists, gabor_lists;
   ArrayRange<std::uint32_t> crater_layers;  // number of the layer of each list of craters

@@ -120,6 +120,22 @@ void FieldBlock::evaluate_local(const Vec3d& origin, std::span<const float> x, s
   });
 }
 
+void FieldBlock::evaluate_stages(const Vec3d* origin, std::span<const float> x, std::span<const float> y,
+                                 std::span<const float> z,
+                                 const std::function<void(std::size_t, const FieldStage&)>& visit) const {
+  if (origin != nullptr) check_origin(*model_, *origin);
+  for_each_batch(x.size(), [&](std::size_t i, std::size_t batch) {
+    const int n = static_cast<int>(batch);
+    const PointArrays given{&x[i], &y[i], &z[i]};
+    const BatchLists lists{metaballs_.lists(), spots_};
+    const auto show = [&](const FieldStage& stage) { visit(i, stage); };
+    if (origin == nullptr) return astrolith::evaluate_stages(*model_, lists, n, given, show);
+    const LocalPoints local{*origin, given};
+    const BodyPoints at(local, batch);
+    astrolith::evaluate_stages(*model_, lists, n, at.arrays(), show, &local);
+  });
+}
+
 void FieldBlock::paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
                        std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const {
   if (origin != nullptr) check_origin(*model_, *origin);

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,6 +56,14 @@ struct LayerLeftOut {
 // for a field without layers of spots.
 using DrawnSpots = std::vector<std::shared_ptr<const SpotImpulses>>;
 
+// F with the body and the layers up to one of them, as its layers are added one after another: first the bare
+// body, then all layers but boulders in the order of the recipe, then the layers of boulders.
+struct FieldStage {
+  int layer;                     // the place in the recipe of the layer that was added; -1: the bare body
+  bool is_boulders;              // whether it is a layer of boulders
+  std::span<const float> value;  // F at some points
+};
+
 // A field narrowed to a box. The block must not outlive its field. All members may be called from many
 // threads.
 class FieldBlock {
@@ -93,6 +102,13 @@ class FieldBlock {
   // value[i] = F of the body without layers and boulders, at points within the box.
   void evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                      std::span<float> value) const;
+
+  // Calls visit(first, stage) for the stages of F at points first, first + 1, ... within the box: all stages
+  // of some points, then all stages of the next points. Layers without heights have no stage. With `origin`,
+  // points are relative to it as in evaluate_local(); it is null for points of the body's frame.
+  void evaluate_stages(const Vec3d* origin, std::span<const float> x, std::span<const float> y,
+                       std::span<const float> z,
+                       const std::function<void(std::size_t, const FieldStage&)>& visit) const;
 
   // Blends the colours of painting layers over color[i] in their order, at points within the box; full scale
   // is 1. With `origin`, points are relative to it as in evaluate_local(); it is null for points of the

@@ -16,8 +16,9 @@
 #include "recipe/height_field.h"
 #include "synthesis/field/bare_body.h"
 #include "synthesis/field/field_model_internal.h"
-#include "synthesis/landforms/population_cells.h"
 #include "synthesis/field/layers_below.h"
+#include "synthesis/field/mask_plan.h"
+#include "synthesis/landforms/population_cells.h"
 
 namespace astrolith {
 namespace {
@@ -44,6 +45,7 @@ class LayerStack {
       : recipe_(recipe),
         name_(name),
         model_(model),
+        masks_(plan_masks(recipe.layers)),
         height_limit_(height_limit(model)),
         supports_(model.body.supports),
         domain_(supports_) {
@@ -61,6 +63,7 @@ class LayerStack {
     }
     for (index_ = 0; index_ < static_cast<int>(recipe_.layers.size()); ++index_) {
       std::visit([this](const auto& layer) { add(layer); }, recipe_.layers[static_cast<std::size_t>(index_)]);
+      model_.recipe_layers.resize(model_.layers.size(), index_);
       const bool too_high = !(model_.height_bound < height_limit_);
       if (too_high != first_too_high_.has_value())
         first_too_high_ = too_high ? std::optional(index_) : std::nullopt;
@@ -268,7 +271,7 @@ class LayerStack {
     LayerJoin join;
     std::size_t masking = 0;
     if (drawn.mask) {
-      const auto number = numbers_.find(masking_layer(*drawn.mask, index_));
+      const auto number = numbers_.find(masks_.masking[static_cast<std::size_t>(index_)]);
       if (number == numbers_.end()) fail_without_height(*drawn.mask, place);
       masking = number->second;
       set_range(*drawn.mask, join);
@@ -311,10 +314,10 @@ class LayerStack {
 
   // Finds for each layer by how much it and all layers after it may change an elevation.
   void sum_changes() {
-    for (std::size_t first = 0; first < model_.layers.size(); ++first) {
-      double bound = 0.0;
-      for (std::size_t i = first; i < model_.layers.size(); ++i) bound += model_.layers[i].join.change_bound;
-      model_.layers[first].join.remaining_change = static_cast<float>(bound * (1.0 + 1e-5));
+    double bound = 0.0;
+    for (std::size_t i = model_.layers.size(); i-- > 0;) {
+      bound += model_.layers[i].join.change_bound;
+      model_.layers[i].join.remaining_change = static_cast<float>(bound * (1.0 + 1e-5));
     }
   }
 
@@ -527,8 +530,11 @@ class LayerStack {
       join.locality = make_local_weight(*use.locality, *recipe_.body, place_of(index_), model_.arrays);
     }
     if (use.mask) set_mask(*use.mask, join);
-    if (is_masking(index_) && !only_paints)
-      slots_[index_] = join.keeps = static_cast<int>(model_.num_kept_heights++);
+    const int last_use = masks_.last_use[static_cast<std::size_t>(index_)];
+    if (last_use >= 0 && !only_paints) {
+      slots_[index_] = join.keeps = mask_slots_.take(index_, last_use);
+      model_.num_kept_heights = static_cast<std::uint32_t>(mask_slots_.count());
+    }
     const double before = model_.height_bound;
     model_.height_bound = elevation_bound(join.how, before, join.height_bound);
     if (join.changes_elevation()) {
@@ -549,19 +555,8 @@ class LayerStack {
     domain_.max += d;
   }
 
-  // The number of the layer that the mask of layer number `index` names.
-  int masking_layer(const LayerMask& mask, int index) const {
-    return find_layer(std::span(recipe_.layers).first(static_cast<std::size_t>(index)), mask.layer);
-  }
-  bool is_masking(int index) const {
-    for (int i = index + 1; i < static_cast<int>(recipe_.layers.size()); ++i) {
-      const LayerUse* use = use_of(recipe_.layers[static_cast<std::size_t>(i)]);
-      if (use != nullptr && use->mask && masking_layer(*use->mask, i) == index) return true;
-    }
-    return false;
-  }
   void set_mask(const LayerMask& mask, LayerJoin& join) const {
-    const auto slot = slots_.find(masking_layer(mask, index_));
+    const auto slot = slots_.find(masks_.masking[static_cast<std::size_t>(index_)]);
     if (slot == slots_.end()) fail_without_height(mask, place_of(index_));
     join.mask = slot->second;
     set_range(mask, join);
@@ -590,6 +585,8 @@ class LayerStack {
   const Recipe& recipe_;
   const std::string& name_;  // name of the recipe, for errors
   FieldModel& model_;
+  MaskPlan masks_;
+  MaskSlots mask_slots_;
   double height_limit_;                // length units
   std::optional<int> first_too_high_;  // the layer since which elevations may reach the limit
   // No surface lies outside the supports of the body's kernels. `domain_` is where layers are evaluated: the

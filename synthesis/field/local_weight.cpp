@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "numerics/errors.h"
@@ -16,16 +17,60 @@ constexpr int kWeightChunk = 256;
 using Chunk = std::array<float, kWeightChunk>;
 
 // The spheres that may be nearest to some point of the box. Leaving out all other spheres changes no bit.
-void nearest_candidates(std::span<const WeightSphere> spheres, const Box& box,
+void nearest_candidates(const WeightSpheres& set, const ArrayView& arrays, const Box& box,
                         std::vector<WeightSphere>& out) {
+  const double rounding = 2.0 * distance_rounding(set, box);
+  const std::span<const WeightSphere> spheres = arrays.span(set.spheres);
   double least = std::numeric_limits<double>::infinity();
-  for (const WeightSphere& s : spheres) {
-    least = std::min(least, sphere_distances(s, box).high + distance_rounding(s, box));
-  }
+  thread_local std::vector<std::pair<double, std::uint32_t>> reached;  // least distances and numbers
+  reached.clear();
+  for_each_near_run(
+      arrays[set.runs], set.runs.count, box, [&] { return least; },
+      [&](const WeightRun& run) {
+        for (std::uint32_t i = run.first; i < run.end; ++i) {
+          const Interval d = sphere_distances(spheres[i], box);
+          least = std::min(least, d.high + rounding);
+          if (d.low <= least) reached.emplace_back(d.low, i);
+        }
+      });
   out.clear();
-  for (const WeightSphere& s : spheres) {
-    if (sphere_distances(s, box).low - distance_rounding(s, box) <= least) out.push_back(s);
+  for (const auto& [low, number] : reached) {
+    if (low <= least) out.push_back(spheres[number]);
   }
+}
+
+// Halves spheres along the longest side of the box of their centres, again and again, until runs of at most
+// `most` spheres are left.
+void split_into_runs(std::span<WeightSphere> spheres, std::uint32_t first, std::size_t most,
+                     std::vector<WeightRun>& runs) {
+  WeightRun run{{}, 0.0, first, first + static_cast<std::uint32_t>(spheres.size())};
+  for (const WeightSphere& s : spheres) {
+    run.centers.extend({double{s.center.x}, double{s.center.y}, double{s.center.z}});
+    run.largest_radius = std::max(run.largest_radius, double{s.radius});
+  }
+  if (spheres.size() <= most) return runs.push_back(run);
+  const Vec3d e = run.centers.extent();
+  float Vec3f::*const axis = e.x >= e.y && e.x >= e.z ? &Vec3f::x : (e.y >= e.z ? &Vec3f::y : &Vec3f::z);
+  std::stable_sort(spheres.begin(), spheres.end(), [axis](const WeightSphere& a, const WeightSphere& b) {
+    return a.center.*axis < b.center.*axis;
+  });
+  const std::size_t half = spheres.size() / 2;
+  split_into_runs(spheres.first(half), first, most, runs);
+  split_into_runs(spheres.subspan(half), first + static_cast<std::uint32_t>(half), most, runs);
+}
+
+WeightSpheres make_set(std::vector<WeightSphere> spheres, ArrayStore& arrays) {
+  WeightSpheres set;
+  for (const WeightSphere& s : spheres) {
+    const Vec3d center{double{s.center.x}, double{s.center.y}, double{s.center.z}};
+    set.farthest = std::max(set.farthest, norm(center) + double{s.radius});
+  }
+  std::vector<WeightRun> runs;
+  const auto most = static_cast<std::size_t>(std::ceil(std::sqrt(double(spheres.size()))));
+  if (!spheres.empty()) split_into_runs(spheres, 0, std::max<std::size_t>(most, 4), runs);
+  set.spheres = arrays.add(spheres);
+  set.runs = arrays.add(runs);
+  return set;
 }
 
 ASTROLITH_SIMD_CLONES void take_nearer(Vec3f center, float radius, int n, const float* __restrict x,
@@ -57,12 +102,13 @@ LocalWeight make_local_weight(const Locality& locality, const MetaballBody& body
     const Sphere& s = body.spheres[i];
     (in_group[i] ? members : others).push_back({to_float(s.center), static_cast<float>(s.radius)});
   }
-  return {arrays.add(members), arrays.add(others), static_cast<float>(1.0 / locality.width)};
+  const WeightSpheres group_set = make_set(std::move(members), arrays);
+  return {group_set, make_set(std::move(others), arrays), static_cast<float>(1.0 / locality.width)};
 }
 
 void multiply_by_weight(const LocalWeight& weight, const ArrayView& arrays, int n, const float* x,
                         const float* y, const float* z, float* height) {
-  if (weight.others.count == 0) return;
+  if (weight.others.spheres.count == 0) return;
   thread_local std::vector<WeightSphere> candidates;
   Chunk group, others;
   for (int begin = 0; begin < n; begin += kWeightChunk) {
@@ -73,7 +119,7 @@ void multiply_by_weight(const LocalWeight& weight, const ArrayView& arrays, int 
     for (const bool of_group : {true, false}) {
       Chunk& distance = of_group ? group : others;
       distance.fill(std::numeric_limits<float>::max());
-      nearest_candidates(arrays.span(of_group ? weight.group : weight.others), box, candidates);
+      nearest_candidates(of_group ? weight.group : weight.others, arrays, box, candidates);
       for (const WeightSphere& s : candidates) {
         take_nearer(s.center, s.radius, size, px, py, pz, distance.data());
       }

@@ -31,9 +31,24 @@ struct WeightSphere {
   float radius;
 };
 
+// Some of the spheres, which follow one another in their array and lie close together.
+struct WeightRun {
+  Box centers;  // holds the centres
+  double largest_radius;
+  std::uint32_t first, end;  // numbers of the spheres
+};
+
+// Spheres in runs of about as many spheres as there are runs. The search for the nearest sphere looks at all
+// runs and at the spheres of few, so that it grows with the square root of the number of spheres.
+struct WeightSpheres {
+  ArrayRange<WeightSphere> spheres;
+  ArrayRange<WeightRun> runs;
+  double farthest = 0.0;  // the largest sum of |centre| and radius
+};
+
 struct LocalWeight {
-  ArrayRange<WeightSphere> group, others;  // without others, the weight is 1 everywhere
-  float inverse_width = 0.0f;              // per length unit
+  WeightSpheres group, others;  // without others, the weight is 1 everywhere
+  float inverse_width = 0.0f;   // per length unit
 };
 
 // Throws InputError when the body has no such group; the message begins with `layer`.
@@ -42,15 +57,15 @@ LocalWeight make_local_weight(const Locality& locality, const MetaballBody& body
 
 // The weight at a point, in [0, 1].
 ASTROLITH_HD inline float weight_at(const LocalWeight& weight, const ArrayView& arrays, const Vec3f& p) {
-  const auto distance = [&](const ArrayRange<WeightSphere>& range) {
-    const WeightSphere* spheres = arrays[range];
+  const auto distance = [&](const WeightSpheres& set) {
+    const WeightSphere* spheres = arrays[set.spheres];
     float least = std::numeric_limits<float>::max();
-    for (std::uint32_t s = 0; s < range.count; ++s) {
+    for (std::uint32_t s = 0; s < set.spheres.count; ++s) {
       least = nearer_sphere(spheres[s].center, spheres[s].radius, p.x, p.y, p.z, least);
     }
     return least;
   };
-  if (weight.others.count == 0) return 1.0f;
+  if (weight.others.spheres.count == 0) return 1.0f;
   return local_weight(distance(weight.group), distance(weight.others), weight.inverse_width);
 }
 
@@ -72,44 +87,73 @@ ASTROLITH_HD inline Interval sphere_distances(const WeightSphere& s, const Box& 
           norm(Vec3d{farthest(c.x, a.x, b.x), farthest(c.y, a.y, b.y), farthest(c.z, a.z, b.z)}) - radius};
 }
 
-// A bound of the rounding error of such a distance in float, length units.
-ASTROLITH_HD inline double distance_rounding(const WeightSphere& s, const Box& box) {
-  const Vec3d c{double{s.center.x}, double{s.center.y}, double{s.center.z}};
-  return 2e-6 * (largest_coordinate(box) + norm(c) + double{s.radius});
+// A bound of the rounding error of the distances in float from points of the box to the spheres of a set,
+// length units.
+ASTROLITH_HD inline double distance_rounding(const WeightSpheres& set, const Box& box) {
+  return 2e-6 * (largest_coordinate(box) + set.farthest);
 }
 
-// Bounds of the distance to the nearest of some spheres, and the largest rounding error of a distance.
-// Without spheres the distance is infinite.
-struct NearestBound {
-  Interval distance{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  double rounding = 0.0;
-};
-ASTROLITH_HD inline NearestBound bound_nearest(const WeightSphere* spheres, std::uint32_t count,
-                                               const Box& box) {
-  NearestBound nearest;
+// A lower bound of the distance from the spheres of a run to the points of a box.
+ASTROLITH_HD inline double least_distance(const WeightRun& run, const Box& box) {
+  const Vec3d &a = box.min, &b = box.max, &low = run.centers.min, &high = run.centers.max;
+  const auto gap = [](double a0, double a1, double b0, double b1) {
+    return std::max(std::max(a0 - b1, b0 - a1), 0.0);
+  };
+  const Vec3d between{gap(a.x, b.x, low.x, high.x), gap(a.y, b.y, low.y, high.y),
+                      gap(a.z, b.z, low.z, high.z)};
+  return (1.0 - 1e-12) * norm(between) - run.largest_radius;
+}
+
+// Calls visit(run) for all runs of a set but those of which every sphere is farther than limit() from every
+// point of the box. The nearest run comes first, so that the visits can lower the limit. `limit` may shrink
+// from visit to visit.
+template <class Limit, class Visit>
+ASTROLITH_HD inline void for_each_near_run(const WeightRun* runs, std::uint32_t count, const Box& box,
+                                           Limit&& limit, Visit&& visit) {
+  std::uint32_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Interval d = sphere_distances(spheres[i], box);
-    nearest.distance = {std::min(nearest.distance.low, d.low), std::min(nearest.distance.high, d.high)};
-    nearest.rounding = std::max(nearest.rounding, distance_rounding(spheres[i], box));
+    const double distance = least_distance(runs[i], box);
+    if (distance < least) least = distance, nearest = i;
   }
+  if (count > 0) visit(runs[nearest]);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (i != nearest && least_distance(runs[i], box) <= limit()) visit(runs[i]);
+  }
+}
+
+// Bounds of the distance to the nearest of some spheres. Without spheres it is infinite.
+ASTROLITH_HD inline Interval bound_nearest(const WeightSpheres& set, const ArrayView& arrays,
+                                           const Box& box) {
+  Interval nearest{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  const WeightSphere* spheres = arrays[set.spheres];
+  for_each_near_run(
+      arrays[set.runs], set.runs.count, box, [&] { return nearest.high; },
+      [&](const WeightRun& run) {
+        for (std::uint32_t i = run.first; i < run.end; ++i) {
+          const Interval d = sphere_distances(spheres[i], box);
+          nearest = {std::min(nearest.low, d.low), std::min(nearest.high, d.high)};
+        }
+      });
   return nearest;
 }
 
 // Bounds of the weight at the float points of a box.
 ASTROLITH_HD inline Interval bound_weight(const LocalWeight& weight, const ArrayView& arrays,
                                           const Box& box) {
-  if (weight.others.count == 0) return {1.0, 1.0};
-  const NearestBound group = bound_nearest(arrays[weight.group], weight.group.count, box);
-  const NearestBound others = bound_nearest(arrays[weight.others], weight.others.count, box);
-  const double rounding = 2.0 * std::max(group.rounding, others.rounding),
+  if (weight.others.spheres.count == 0) return {1.0, 1.0};
+  const Interval group = bound_nearest(weight.group, arrays, box);
+  const Interval others = bound_nearest(weight.others, arrays, box);
+  const double rounding = 2.0 * std::max(distance_rounding(weight.group, box),
+                                         distance_rounding(weight.others, box)),
                width = double{weight.inverse_width};
   // The float arc tangent is within 2e-7 of the exact one.
   const auto at = [&](double difference) {
     const float ratio = static_cast<float>(clamped(difference * width, -1e30, 1e30));
     return double{local_weight(ratio, 0.0f, 1.0f)};
   };
-  return {std::max(0.0, at(group.distance.high - others.distance.low + rounding) - 1e-6),
-          std::min(1.0, at(group.distance.low - others.distance.high - rounding) + 1e-6)};
+  return {std::max(0.0, at(group.high - others.low + rounding) - 1e-6),
+          std::min(1.0, at(group.low - others.high - rounding) + 1e-6)};
 }
 
 }  // namespace astrolith

@@ -21,8 +21,8 @@ inline constexpr std::size_t kLabelsChunk = 256;  // vertices that are labelled 
 // by itself.
 class SurfaceLabels {
  public:
-  // Takes what ImplicitField takes, and throws what its constructor throws.
-  SurfaceLabels(const Recipe& recipe, const std::string& name, const std::optional<PatchCube>& patch = {});
+  // `field` is that of the recipe, made for `patch`, if there is one. The labels keep its model alive.
+  SurfaceLabels(const Recipe& recipe, const ImplicitField& field, const std::optional<PatchCube>& patch = {});
 
   // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. The origin is the
   // centre of the patch, if there is one. Elevations are
@@ -32,24 +32,15 @@ class SurfaceLabels {
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
              std::span<float> ground) const;
 
-  // For each list of Gabor impulses of the whole recipe, the number of fields of this object that have it.
-  std::vector<int> fields_with_impulses() const;
-
   // One line for each label, such as: label 2: craters "old ones".
   std::vector<std::string> legend() const { return legend_; }
 
  private:
-  // The field with this layer and all that come before it.
-  struct Stage {
-    int label;
-    bool is_boulders;
-    ImplicitField field;
-  };
   // `ground` may be empty.
   void label_some(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
                   std::span<float> ground) const;
 
-  std::vector<Stage> stages_;  // the bare body first
+  ImplicitField field_;
   std::vector<std::string> legend_;
   float rounding_ = 0.0f;  // bound of the rounding of F, length units
   bool in_patch_ = false;  // whether fields are evaluated in the frame of a patch

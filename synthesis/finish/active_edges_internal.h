@@ -5,28 +5,29 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace astrolith {
 
 class ActiveEdges {
  public:
-  // Each edge is given by its two vertices. All edges have a turn in the first sweep.
-  ActiveEdges(std::size_t num_vertices, std::span<const std::pair<std::uint32_t, std::uint32_t>> edges)
+  // ends(edge) gives the two vertices a and b of an edge. All edges have a turn in the first sweep.
+  template <typename Ends>
+  ActiveEdges(std::size_t num_vertices, std::size_t num_edges, const Ends& ends)
       : first_(num_vertices + 1, 0),
-        incident_(2 * edges.size()),
-        now_((edges.size() + 63) / 64, ~std::uint64_t{0}),
+        incident_(2 * num_edges),
+        now_((num_edges + 63) / 64, ~std::uint64_t{0}),
         next_(now_.size(), 0) {
-    if (edges.size() % 64 != 0) now_.back() = (std::uint64_t{1} << (edges.size() % 64)) - 1;
-    for (const auto& [a, b] : edges) ++first_[a + 1], ++first_[b + 1];
+    if (num_edges % 64 != 0) now_.back() = (std::uint64_t{1} << (num_edges % 64)) - 1;
+    for (std::size_t e = 0; e < num_edges; ++e) {
+      const auto [a, b] = ends(e);
+      ++first_[a + 1], ++first_[b + 1];
+    }
     for (std::size_t v = 0; v < num_vertices; ++v) first_[v + 1] += first_[v];
     std::vector<std::size_t> end(first_.begin(), first_.end() - 1);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      for (const std::uint32_t v : {edges[e].first, edges[e].second}) {
-        incident_[end[v]++] = static_cast<std::uint32_t>(e);
-      }
+    for (std::size_t e = 0; e < num_edges; ++e) {
+      const auto [a, b] = ends(e);
+      for (const std::uint32_t v : {a, b}) incident_[end[v]++] = static_cast<std::uint32_t>(e);
     }
   }
 

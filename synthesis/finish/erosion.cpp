@@ -5,41 +5,30 @@
 #include <numbers>
 #include <numeric>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
 #include "numerics/portable_angles.h"
-#include "synthesis/finish/active_edges_internal.h"
+#include "synthesis/finish/coarse_slides_internal.h"
+#include "synthesis/finish/ground_slides_internal.h"
 
 namespace astrolith {
 namespace {
 
 constexpr double kLeastUpward = 0.0872;  // cosine of 85 degrees: vertices of steeper faces are rock
-// Slides aim at a slope a little below the talus angle and begin a little above their aim, so that they end.
-constexpr double kAim = 1.0 - 2e-3;
-constexpr double kSettled = 1e-3;  // relative excess over the aim that starts no slide
-// Above 1: slides go beyond their aim and settle in fewer sweeps (successive over-relaxation).
-constexpr double kRelaxation = 1.6;
 // The smallest a_v, as a fraction of the mean. Next to a vertex of smaller area a slide would move almost
 // nothing.
 constexpr double kLeastArea = 0.1;
+// Passes of slides on clusters, each over slopes as the one before left them.
+constexpr int kMostCoarsePasses = 2;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-// An edge between two vertices that are not rock. With heights along the verticals its drop is drop + h_a -
-// h_b.
-struct Edge {
-  std::uint32_t a, b;
-  double drop;   // height of a above b before anything moved
-  double limit;  // magnitude of the drop at the slope that slides aim at
-};
-
 struct Vertices {
   std::vector<double> area;    // a_v; 0 for rock
-  std::vector<double> height;  // rise along the vertical since the edges were measured
+  std::vector<double> height;  // rise along the vertical since the areas were measured
   std::vector<char> changed;   // 1 where the vertex has ever moved
 };
 
@@ -89,82 +78,27 @@ void measure_areas(const TriangleMesh& mesh, std::span<const Vec3d> up, const st
   vertices.height.assign(rock.size(), 0.0);
 }
 
-// The drop and the horizontal length of an edge.
-struct Incline {
-  double drop, length;
-};
-Incline incline(const TriangleMesh& mesh, std::span<const Vec3d> up, std::uint32_t a, std::uint32_t b) {
-  const Vec3d d = mesh.vertices[a] - mesh.vertices[b];
-  const Vec3d vertical = normalized(up[a] + up[b]);
-  const double drop = dot(d, vertical);
-  return {drop, norm(d - drop * vertical)};
-}
-
-// Visits the edges between two vertices that are not rock. Each edge of a closed mesh runs once from its
-// lower vertex number to its higher one.
-template <typename Visit>
-void for_each_loose_edge(const TriangleMesh& mesh, const std::vector<char>& rock, const Visit& visit) {
+// The edges between two vertices that are not rock. Each edge of a closed mesh runs once from its lower
+// vertex number to its higher one.
+std::vector<GroundPair> loose_edges(const TriangleMesh& mesh, const std::vector<char>& rock) {
+  std::vector<GroundPair> pairs;
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      if (a < b && rock[a] == 0 && rock[b] == 0) visit(a, b);
+      if (a < b && rock[a] == 0 && rock[b] == 0) pairs.push_back({a, b});
     }
   }
-}
-
-std::vector<Edge> make_edges(const TriangleMesh& mesh, std::span<const Vec3d> up,
-                             const std::vector<char>& rock, double slope) {
-  std::vector<Edge> edges;
-  for_each_loose_edge(mesh, rock, [&](std::uint32_t a, std::uint32_t b) {
-    const Incline i = incline(mesh, up, a, b);
-    edges.push_back({a, b, i.drop, slope * i.length});
-  });
-  return edges;
+  return pairs;
 }
 
 // The steepest loose edge, in degrees.
-double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock) {
+double steepest(const TriangleMesh& mesh, std::span<const Vec3d> up, std::span<const GroundPair> pairs) {
   double slope = 0.0;
-  for_each_loose_edge(mesh, rock, [&](std::uint32_t a, std::uint32_t b) {
-    const Incline i = incline(mesh, up, a, b);
+  for (const GroundPair& pair : pairs) {
+    const Incline i = incline(mesh.vertices, up, pair);
     slope = std::max(slope, portable::atan2(std::fabs(i.drop), i.length));
-  });
+  }
   return slope * kDegrees;
-}
-
-ActiveEdges all_active(const std::vector<Edge>& edges, std::size_t num_vertices) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
-  ends.reserve(edges.size());
-  for (const Edge& edge : edges) ends.emplace_back(edge.a, edge.b);
-  return {num_vertices, ends};
-}
-
-// Lets material slide down one edge. Returns its volume, 0 where the edge is not too high.
-double slide(const Edge& edge, Vertices& vertices) {
-  const double drop = edge.drop + (vertices.height[edge.a] - vertices.height[edge.b]);
-  const double excess = std::fabs(drop) - edge.limit;
-  if (!(excess > kSettled * edge.limit)) return 0.0;
-  const double area_a = vertices.area[edge.a], area_b = vertices.area[edge.b];
-  const double volume = kRelaxation * excess / (1.0 / area_a + 1.0 / area_b);
-  const double down = drop > 0.0 ? volume : -volume;
-  vertices.height[edge.a] -= down / area_a;
-  vertices.height[edge.b] += down / area_b;
-  vertices.changed[edge.a] = vertices.changed[edge.b] = 1;
-  return volume;
-}
-
-// Gives every active edge one turn, forwards in odd sweeps and backwards in even ones, so that no direction
-// is preferred. Returns the volume that slid.
-double sweep_edges(const std::vector<Edge>& edges, int sweep, ActiveEdges& active, Vertices& vertices) {
-  double moved = 0.0;
-  active.sweep(sweep % 2 == 1, [&](std::size_t e) {
-    const double volume = slide(edges[e], vertices);
-    if (volume == 0.0) return;
-    active.wake(edges[e].a);
-    active.wake(edges[e].b);
-    moved += volume;
-  });
-  return moved;
 }
 
 // Verticals converge, and small areas count as larger ones. The volume therefore differs from what the areas
@@ -194,29 +128,81 @@ void renew_normals(TriangleMesh& mesh, const Vertices& vertices) {
   }
 }
 
-// Lets everything slide until a first sweep over newly measured edges moves nothing. Verticals converge
-// downwards, so that edges are measured anew after far slides.
-void slide_until_at_rest(TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock,
-                         double talus_degrees, int most_sweeps, const Progress& progress, Vertices& vertices,
-                         ErosionStatistics& statistics) {
-  const double slope = kAim * portable::tan(talus_degrees / kDegrees);
-  bool at_rest = false;
-  while (statistics.sweeps < most_sweeps && !at_rest) {
-    measure_areas(mesh, up, rock, vertices);
-    const std::vector<Edge> edges = make_edges(mesh, up, rock, slope);
-    ActiveEdges active = all_active(edges, up.size());
-    const int first = statistics.sweeps + 1;
-    for (double moved = 1.0; moved > 0.0 && statistics.sweeps < most_sweeps;) {
-      moved = sweep_edges(edges, ++statistics.sweeps, active, vertices);
-      statistics.volume_moved += moved;
-      at_rest = moved == 0.0 && statistics.sweeps == first;
-      if (!report(progress, double(statistics.sweeps) / most_sweeps, "erosion")) {
-        throw WorkError("erosion: stopped before the slopes had settled");
-      }
-    }
-    for (std::size_t v = 0; v < up.size(); ++v) mesh.vertices[v] += vertices.height[v] * up[v];
+// The slides of one mesh.
+class Slides {
+ public:
+  Slides(TriangleMesh& mesh, std::span<const Vec3d> up, const std::vector<char>& rock, double talus_degrees,
+         int most_sweeps, const Progress& progress)
+      : mesh_(mesh),
+        up_(up),
+        rock_(rock),
+        pairs_(loose_edges(mesh, rock)),
+        slope_(kSlideAim * portable::tan(talus_degrees / kDegrees)),
+        most_sweeps_(most_sweeps),
+        progress_(progress) {
+    vertices_.changed.assign(up.size(), 0);
   }
-}
+
+  std::span<const GroundPair> pairs() const { return pairs_; }
+  const Vertices& vertices() const { return vertices_; }
+  int sweeps() const { return sweeps_; }
+  double volume_moved() const { return volume_moved_; }
+
+  // Slides over far distances. Verticals converge downwards, so that slopes are measured anew after them.
+  void slide_far() {
+    for (int pass = 0; pass < kMostCoarsePasses; ++pass) {
+      measure_areas(mesh_, up_, rock_, vertices_);
+      vertices_.height = coarse_slides(ground(), slope_, most_sweeps_, [&](int) { heed(0); });
+      if (!apply_heights()) return;
+    }
+  }
+
+  // Lets everything slide until a first sweep over newly measured edges moves nothing.
+  void slide_until_at_rest() {
+    for (bool moves = true; moves && sweeps_ < most_sweeps_;) {
+      measure_areas(mesh_, up_, rock_, vertices_);
+      const std::vector<GroundEdge> edges = ground_edges(ground(), pairs_, slope_);
+      const GroundSlides done = slide_ground(
+          edges, vertices_.area, most_sweeps_ - sweeps_, [&](int sweeps) { heed(sweeps); }, vertices_.height);
+      sweeps_ += done.sweeps;
+      moves = done.any;
+      apply_heights();
+    }
+  }
+
+ private:
+  Ground ground() const { return {mesh_.vertices, up_, vertices_.area, pairs_}; }
+
+  void heed(int more_sweeps) const {
+    if (report(progress_, double(sweeps_ + more_sweeps) / most_sweeps_, "erosion")) return;
+    throw WorkError("erosion: stopped before the slopes had settled");
+  }
+
+  // Returns whether a vertex moved.
+  bool apply_heights() {
+    bool any = false;
+    for (std::size_t v = 0; v < up_.size(); ++v) {
+      const double height = vertices_.height[v];
+      if (height == 0.0) continue;
+      mesh_.vertices[v] += height * up_[v];
+      vertices_.changed[v] = 1;
+      volume_moved_ += vertices_.area[v] * std::max(-height, 0.0);
+      any = true;
+    }
+    return any;
+  }
+
+  TriangleMesh& mesh_;
+  std::span<const Vec3d> up_;
+  const std::vector<char>& rock_;
+  std::vector<GroundPair> pairs_;
+  double slope_;  // what slides aim at, a tangent
+  int most_sweeps_;
+  const Progress& progress_;
+  Vertices vertices_;
+  int sweeps_ = 0;
+  double volume_moved_ = 0.0;
+};
 
 }  // namespace
 
@@ -226,26 +212,30 @@ ErosionStatistics erode(TriangleMesh& mesh, std::span<const Vec3d> up, double ta
     throw InputError("erosion: the talus angle must lie above 0 and be at most 89 degrees");
   }
   const std::vector<char> rock = find_rock(mesh, up);
-  Vertices vertices{{}, {}, std::vector<char>(up.size(), 0)};
+  Slides slides(mesh, up, rock, talus_degrees, most_sweeps, progress);
   ErosionStatistics statistics;
   statistics.rock_vertices = std::count(rock.begin(), rock.end(), char{1});
-  statistics.steepest_before = statistics.steepest_after = steepest(mesh, up, rock);
+  statistics.steepest_before = statistics.steepest_after = steepest(mesh, up, slides.pairs());
   const double volume_before = volume(mesh);
+  if (statistics.steepest_before > talus_degrees) slides.slide_far();
   // The lift that restores the volume can make slopes steeper again, by degrees where the verticals of
   // neighbours differ much. The slopes of the mesh as it is left decide whether it has settled, and slide
   // once more where one is too steep.
-  bool slides = true;
-  while (statistics.sweeps < most_sweeps && slides && !statistics.settled) {
-    const double moved_before = statistics.volume_moved;
-    slide_until_at_rest(mesh, up, rock, talus_degrees, most_sweeps, progress, vertices, statistics);
+  bool moves = true;
+  while (slides.sweeps() < most_sweeps && moves && !statistics.settled) {
+    const double moved_before = slides.volume_moved();
+    slides.slide_until_at_rest();
     restore_volume(mesh, up, volume_before);
-    slides = statistics.volume_moved > moved_before;
-    statistics.steepest_after = steepest(mesh, up, rock);
+    moves = slides.volume_moved() > moved_before;
+    statistics.steepest_after = steepest(mesh, up, slides.pairs());
     statistics.settled = statistics.steepest_after <= talus_degrees;
   }
   report(progress, 1.0, "erosion");
-  statistics.moved_vertices = std::count(vertices.changed.begin(), vertices.changed.end(), char{1});
-  renew_normals(mesh, vertices);
+  statistics.sweeps = slides.sweeps();
+  statistics.volume_moved = slides.volume_moved();
+  const std::vector<char>& changed = slides.vertices().changed;
+  statistics.moved_vertices = std::count(changed.begin(), changed.end(), char{1});
+  renew_normals(mesh, slides.vertices());
   return statistics;
 }
 

@@ -10,6 +10,10 @@
 // angle. Edges take their turns in the order of the mesh until none is too high. The volume is then restored,
 // which may make edges too high once more; slides and restoring take turns until none is.
 //
+// Before that, ground slides far: between clusters of vertices, and clusters of those
+// (coarse_slides_internal.h). The time therefore grows with the number of triangles. Large slopes end below
+// the talus angle by up to 3 % of its tangent, alike in all directions.
+//
 // The surface stays a graph over the horizontal wherever it was one, and so it cannot run into itself.
 // Vertices under overhangs and on walls are rock and stay where they are: one of their faces leans over or
 // stands within 5 degrees of the vertical.
@@ -26,11 +30,11 @@ namespace astrolith {
 struct ErosionStatistics {
   std::int64_t moved_vertices = 0;
   std::int64_t rock_vertices = 0;  // vertices that could not move
-  int sweeps = 0;
-  bool settled = false;          // whether steepest_after is at most the talus angle
-  double steepest_before = 0.0;  // steepest edge between two vertices that are not rock, degrees
-  double steepest_after = 0.0;   // the same edge of the finished mesh
-  double volume_moved = 0.0;     // cubic length units
+  int sweeps = 0;                  // over the vertices; those over clusters are not counted
+  bool settled = false;            // whether steepest_after is at most the talus angle
+  double steepest_before = 0.0;    // steepest edge between two vertices that are not rock, degrees
+  double steepest_after = 0.0;     // the same edge of the finished mesh
+  double volume_moved = 0.0;       // by which the surface fell where ground left, cubic length units
 };
 
 // Erodes a closed mesh in place. `up` holds a unit vector for each vertex, or zero for rock. The volume stays

@@ -1,135 +1,238 @@
 #!/usr/bin/env python3
-"""All figures of docs/performance.md in one run: ours, a peer's beside it, and the ratio.
+"""The figures of docs/performance.md in one run: ratio, ours, the peer's, and the limit of the machine.
 
-    speed_table.py BUILD [--full] [--fastnoise2 SOURCES]
+    speed_table.py BUILD [--fastnoise2 SOURCES] [--only noise terrain ...] [--turns 5] [--full]
 
-BUILD is a build folder made with -DASTROLITH_BENCHMARKS=ON. Peers are left out, with a word, where their packages are not
-installed: pip install numpy vtk. FastNoise2 comes in no package: SOURCES is a folder that holds FastNoise2 and FastSIMD side
-by side. --full adds meshes of up to 30 million triangles (minutes).
+BUILD is a build folder made with -DASTROLITH_BENCHMARKS=ON. Ours and a peer run in turn, one thread each. A figure is the
+median over the turns, and a ratio the median of the ratios of the pairs. All seconds are those of the processor.
+
+Peers come from packages: pip install numpy vtk terraingenpy scikit-learn scipy. VTK may also be Debian's python3-vtk9. A
+peer that is not installed is left out, with a word. FastNoise2 is in no package: SOURCES is a folder that holds FastNoise2
+and FastSIMD side by side, where it is built the first time.
+
+A limit is counted: bytes that must be read or written, or vector operations that must be done, at the rate that
+machine_limits measures in the same run. --full adds meshes of 10 and 30 million triangles (minutes).
 """
 import argparse
 import json
 import os
 import pathlib
-import resource
 import subprocess
 import sys
 import tempfile
-import time
 from statistics import median
 
-HERE = pathlib.Path(__file__).parent
+import terrain_peers
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+# Vector operations for as many points as a vector has lanes, counted in the loops of the program (objdump).
+NOISE_OPERATIONS = {"simplex": 0, "perlin": 0, "fbm": 0, "worley_f1": 0}
+# A kernel at a point: distance, window, exponential and cosine, counted in the same way.
+GABOR_OPERATIONS, GABOR_IMPULSES = 0, 32
 
 
-def run(*command):
-    """Standard output, seconds on the clock and of the processor, and the most memory of any child so far."""
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    output = subprocess.run([str(c) for c in command], check=True, capture_output=True, text=True).stdout
-    wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return output, wall, cpu
+class Run:
+    """A command that has ended: its output, seconds of the processor, and most bytes of memory."""
+
+    def __init__(self, *command, check=True):
+        with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+            child = subprocess.Popen([str(c) for c in command], stdout=output, stderr=errors)
+            _, status, used = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+            output.seek(0), errors.seek(0)
+            self.output, self.errors = output.read().decode(), errors.read().decode()
+        self.failed = child.returncode != 0
+        self.seconds, self.bytes = used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
+        if self.failed and check:
+            sys.exit(f"{' '.join(map(str, command))}: {self.errors.strip()}")
+
+    def rows(self):
+        return [json.loads(line) for line in self.output.splitlines()]
 
 
-def json_lines(output):
-    return [json.loads(line) for line in output.splitlines()]
+def peer_rows(name, *command):
+    """The rows that a peer prints; None where it is not installed."""
+    run = Run(*command, check=False)
+    if not run.failed:
+        return run.rows()
+    words = run.errors.strip().splitlines()
+    print(f"  {name} left out: {words[-1] if words else 'it failed'}", flush=True)
+    return None
 
 
-def peer(script, *arguments):
-    try:
-        return json.loads(run(sys.executable, HERE / script, *arguments)[0])
-    except subprocess.CalledProcessError as error:
-        print(f"  {script} left out: {error.stderr.strip().splitlines()[-1]}")
-        return None
+def number(value):
+    return "–" if value is None else f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
-def noise(tools, sources, turns=5):
-    """Runs ours and FastNoise2 in turns; each figure is a median over the turns, the ratio that of a turn's pair."""
-    print(f"Noise, Mpoint/s/core on 256^3, medians of {turns} turns: rows, blocks of 9^3, FastNoise2, ratios")
-    ours, theirs = [], []
-    for _ in range(turns):
-        ours.append({row["noise"]: row for row in json_lines(run(tools / "noise_benchmark")[0])})
-        if sources:
-            theirs.append({row["noise"]: row["rows"]
-                           for row in json_lines(run(sys.executable, HERE / "noise_peers.py", sources)[0])})
-    for name in ours[0]:
-        rows, blocks = ([turn[name][kind] for turn in ours] for kind in ("rows", "blocks"))
-        line = f"  {name:10} {median(rows):7.1f} {median(blocks):7.1f}"
-        if sources:
-            peers = [turn[name] for turn in theirs]
-            ratios = [median([mine / peer for mine, peer in zip(of_kind, peers)]) for of_kind in (rows, blocks)]
-            line += f" {median(peers):7.1f} {ratios[0]:6.2f} {ratios[1]:6.2f}"
-        print(line)
+class Table:
+    def __init__(self, title, unit, peer):
+        print(f"\n{title}\n\n| {unit} | ratio | ours | {peer} | limit |\n|---|---|---|---|---|")
+
+    def row(self, name, ours, theirs, limit=None, higher_is_better=True):
+        """Medians of the turns of both; the ratio says how many times better ours is."""
+        ratio = None
+        if theirs and all(value is not None for value in theirs):
+            pairs = zip(ours, theirs) if higher_is_better else zip(theirs, ours)
+            ratio = median(a / b for a, b in pairs)
+        peer = median(theirs) if ratio is not None else None
+        print(f"| {name} | {'–' if ratio is None else f'{ratio:.2f}'} | {number(median(ours))} | {number(peer)} | "
+              f"{number(limit)} |", flush=True)
 
 
-def gabor(tools):
-    print("Gabor noise, 32 impulses, M/s/core by bandwidth: texture, Lagae, ratio; surface, Lagae, ratio")
-    for row in json_lines(run(tools / "gabor_noise_benchmark")[0]):
-        print("  " + " ".join(f"{value:8}" for value in row.values()))
+class Benchmark:
+    def __init__(self, build, fastnoise2, turns, folder):
+        self.build, self.tools, self.fastnoise2 = build, build / "tests/benchmarks", fastnoise2
+        self.turns, self.folder = turns, folder
+        self.limits = json.loads(Run(self.tools / "machine_limits").output)
+        print("Limits of one thread: {vector_operations:.3g} vector operations a second of {lanes} floats each, "
+              "{read_bytes:.3g} bytes a second read, {write_bytes:.3g} written".format(**self.limits))
 
+    def points_per_second(self, operations):
+        """Million points a second where a vector of points takes so many vector operations."""
+        return self.limits["vector_operations"] * self.limits["lanes"] / operations / 1e6 if operations else None
 
-def isosurface(tools, folder):
-    print("Precomputed 512^3 field, Mtriangle/s/core: ours, VTK flying edges without and with normals, ratios")
-    field = folder / "field.raw"
-    ours = json.loads(run(tools / "isosurface_benchmark", 512, field)[0])
-    theirs = peer("isosurface_peers.py", field)
-    if theirs:
-        mine = ours["mtriangles_per_s"]
-        plain, normals = (theirs[k]["mtriangles_per_s"] for k in ("flying_edges", "flying_edges_with_normals"))
-        print(f"  {mine} {plain} {normals} {mine / plain:.2f} {mine / normals:.2f}")
-        if cubes := theirs["marching_cubes"]:
-            print(f"  scikit-image's marching cubes: {cubes['mtriangles_per_s']}, ratio {mine / cubes['mtriangles_per_s']:.1f}")
+    def noise(self):
+        ours, theirs = [], []
+        for _ in range(self.turns):
+            ours.append({row["noise"]: row for row in Run(self.tools / "noise_benchmark").rows()})
+            if self.fastnoise2 and theirs is not None:
+                made = peer_rows("FastNoise2", sys.executable, HERE / "noise_peers.py", self.fastnoise2)
+                theirs = None if made is None else theirs + [{row["noise"]: row["rows"] for row in made}]
+        table = Table("Noise on 256^3 points, Mpoint/s", "noise, order of points", "FastNoise2 1.1.1")
+        for name in ours[0]:
+            peers = [turn[name] for turn in theirs] if theirs else None
+            for order in ("rows", "blocks"):
+                table.row(f"{name}, {order}", [turn[name][order] for turn in ours], peers,
+                          self.points_per_second(NOISE_OPERATIONS.get(name)))
 
+    def gabor(self):
+        turns = [Run(self.tools / "gabor_noise_benchmark").rows() for _ in range(self.turns)]
+        limit = self.points_per_second(GABOR_OPERATIONS * GABOR_IMPULSES)
+        table = Table("Gabor noise, one band, 32 impulses, M/s", "bandwidth", "Lagae 2009")
+        for i, row in enumerate(turns[0]):
+            for kind, rate in (("texture", "texture_mpixel_per_s"), ("surface", "surface_mpoint_per_s")):
+                table.row(f"{kind}, {row['bandwidth']}", [turn[i][rate] for turn in turns],
+                          [turn[i]["peer_" + kind] for turn in turns], limit)
 
-def together(tools, folder):
-    print("512^3, field and mesh together, seconds/core: sparse, dense field, flying edges, ratio")
-    field = folder / "field.raw"
-    run(tools / "asteroid_recipe", folder / "bare.json", "bare")
-    ours = json.loads(run(tools / "dense_field_benchmark", folder / "bare.json", 512, field)[0])
-    theirs = peer("isosurface_peers.py", field)
-    if theirs:
-        sparse, dense = ours["seconds_sparse"], ours["seconds_dense_field"]
-        edges = theirs["flying_edges_with_normals"]["seconds"]
-        print(f"  {sparse} {dense} {edges} {(dense + edges) / sparse:.2f}")
+    def isosurface(self):
+        field = self.folder / "field.raw"
+        ours, plain, normals = [], [], []
+        for _ in range(self.turns):
+            ours += [row["mtriangles_per_s"] for row in Run(self.tools / "isosurface_benchmark", 512, field).rows()]
+            made = peer_rows("VTK", sys.executable, HERE / "isosurface_peers.py", field) if plain is not None else None
+            plain = None if made is None else plain + [made[0]["flying_edges"]["mtriangles_per_s"]]
+            normals = None if made is None else normals + [made[0]["flying_edges_with_normals"]]
+        # Every sample must be read once.
+        seconds = 4 * 512**3 / self.limits["read_bytes"]
+        limit = normals[0]["triangles"] / seconds / 1e6 if normals else None
+        table = Table("Mesh of a precomputed field of 512^3 samples, Mtriangle/s", "the peer", "VTK flying edges")
+        table.row("without normals", ours, plain, limit)
+        table.row("with normals", ours, [row["mtriangles_per_s"] for row in normals] if normals else None, limit)
 
+    def together(self):
+        field, recipe = self.folder / "field.raw", self.folder / "bare.json"
+        Run(self.tools / "asteroid_recipe", recipe, "bare")
+        ours, theirs = [], []
+        for _ in range(self.turns):
+            row, = Run(self.tools / "dense_field_benchmark", recipe, 512, field).rows()
+            ours.append(row["seconds_sparse"])
+            made = peer_rows("VTK", sys.executable, HERE / "isosurface_peers.py", field) if theirs is not None else None
+            theirs = None if made is None else theirs + [row["seconds_dense_field"] +
+                                                         made[0]["flying_edges_with_normals"]["seconds"]]
+        table = Table("Field and mesh of a bare asteroid at 512^3, seconds", "the peer", "dense field and flying edges")
+        table.row("with normals", ours, theirs, higher_is_better=False)
 
-def pursuit(tools, folder, photo):
-    print("Gabor pursuit of a photo's 32 x 32 corner, seconds to within 1e-3 and 1e-5 of the least, over ours")
-    os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    run(tools / "basis_pursuit_benchmark", photo, "--side", 32, "--fista-seconds", 0, "--export", folder)
-    print(run(sys.executable, HERE / "pursuit_peers.py", folder)[0], end="")
+    def terrain(self, targets):
+        like_it = self.folder / "like_it.json"
+        like_it.write_text(json.dumps(terrain_peers.recipe_like_it()))
+        recipes = {"fitted Itokawa with details": ROOT / "synthesis/examples/itokawa_details.json", "a body like it": like_it}
+        table = Table("A finished body in a file, seconds (ours PLY, the peer's GLB)", "triangles, our body", "TerrainGen 0.2")
+        for triangles in targets:
+            seconds, peers, memory = {name: [] for name in recipes}, [], {}
+            for _ in range(self.turns):
+                for name, recipe in recipes.items():
+                    run, _ = self.mesh(recipe, triangles)
+                    seconds[name].append(run.seconds)
+                    memory[name] = run.bytes
+                if terrain_peers.installed():
+                    command, _ = terrain_peers.peer_command(triangles, self.folder)
+                    run = Run(*command)
+                    peers.append(run.seconds)
+                    memory["TerrainGen"] = run.bytes
+            for name in recipes:
+                # 25 bytes a triangle with its half vertex are written and read again for the check sum.
+                limit = 25 * triangles * (1 / self.limits["write_bytes"] + 1 / self.limits["read_bytes"])
+                table.row(f"{triangles / 1e6:g} M, {name}", seconds[name], peers, limit, higher_is_better=False)
+            print(f"| {triangles / 1e6:g} M, memory | "
+                  + ", ".join(f"{name} {used / 1e6:.0f} MB" for name, used in memory.items()) + " | | | |")
 
+    def erosion(self, targets):
+        settled = ROOT / "synthesis/examples/talus_slopes.json"
+        steps, bare = self.folder / "steps.json", self.folder / "fresh.json"
+        recipe = json.loads(settled.read_text())
+        recipe["erosion"]["iterations"] = 50
+        steps.write_text(json.dumps(recipe))
+        del recipe["erosion"]
+        bare.write_text(json.dumps(recipe))
+        table = Table("Erosion of talus_slopes over its mesh, seconds", "triangles", "no peer")
+        for triangles in targets:
+            fresh = median(self.mesh(bare, triangles)[0].seconds for _ in range(self.turns))
+            for name, file in (("50 steps", steps), ("until settled", settled)):
+                runs = [self.mesh(file, triangles) for _ in range(self.turns)]
+                table.row(f"{triangles / 1e6:g} M, {name}, {runs[0][1]['erosion']['sweeps']} sweeps",
+                          [run.seconds - fresh for run, _ in runs], None)
 
-def asteroid(build, folder, kind, targets):
-    recipe = folder / f"{kind}.json"
-    run(build / "tests/benchmarks/asteroid_recipe", recipe, *(["bare"] if kind == "bare" else []))
-    print(f"Asteroid, {kind}: triangles, seconds, processor seconds, us of it a triangle, MB at most")
-    for triangles in targets:
-        mesh, summary = folder / "mesh.ply", folder / "summary.json"
-        _, wall, cpu = run(build / "bin/synth", recipe, "-o", mesh, "--triangles", triangles, "--quiet",
-                           "--summary", summary)
-        made = json.loads(summary.read_text())
-        print(f"  {made['triangles']:9} {wall:7.1f} {cpu:7.1f} {1e6 * cpu / made['triangles']:6.1f} "
-              f"{made['peak_bytes'] / 1e6:6.0f}", flush=True)
-        os.remove(mesh)
+    def mesh(self, recipe, triangles):
+        output, summary = self.folder / "mesh.ply", self.folder / "summary.json"
+        run = Run(self.build / "bin/synth", recipe, "-o", output, "--triangles", triangles, "--quiet", "--threads", 1,
+                  "--summary", summary)
+        output.unlink()
+        return run, json.loads(summary.read_text())
+
+    def pursuit(self):
+        print("\nGabor pursuit of a photo's 32 x 32 corner, seconds to within 1e-3 and 1e-5 of the least, over ours\n")
+        os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+        Run(self.tools / "basis_pursuit_benchmark", ROOT / "data-cache/gravel.png", "--side", 32, "--fista-seconds", 0,
+            "--export", self.folder)
+        run = Run(sys.executable, HERE / "pursuit_peers.py", self.folder, check=False)
+        print(run.errors if run.failed else run.output, end="")
+
+    def asteroid(self, kind, targets):
+        recipe = self.folder / f"{kind}.json"
+        Run(self.tools / "asteroid_recipe", recipe, *(["bare"] if kind == "bare" else []))
+        print(f"\nAsteroid, {kind}\n\n| triangles | seconds | microseconds a triangle | MB |\n|---|---|---|---|")
+        for triangles in targets:
+            runs = [self.mesh(recipe, triangles) for _ in range(self.turns if triangles <= 1_000_000 else 1)]
+            seconds, made = median(run.seconds for run, _ in runs), runs[0][1]
+            print(f"| {made['triangles'] / 1e6:.2f} M | {seconds:.1f} | {1e6 * seconds / made['triangles']:.1f} | "
+                  f"{made['peak_bytes'] / 1e6:.0f} |", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--full", action="store_true")
     parser.add_argument("--fastnoise2", type=pathlib.Path, metavar="SOURCES")
+    parser.add_argument("--turns", type=int, default=5)
+    parser.add_argument("--full", action="store_true")
+    sections = ("noise", "gabor", "isosurface", "together", "terrain", "erosion", "pursuit", "asteroid")
+    parser.add_argument("--only", nargs="+", choices=sections, default=sections, metavar="SECTION",
+                        help="some of: " + ", ".join(sections))
     arguments = parser.parse_args()
-    tools = arguments.build / "tests/benchmarks"
+    targets = [1_000_000] + ([10_000_000] if arguments.full else [])
     with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        noise(tools, arguments.fastnoise2)
-        gabor(tools)
-        isosurface(tools, folder)
-        together(tools, folder)
-        pursuit(tools, folder, HERE.parent.parent / "data-cache/gravel.png")
-        asteroid(arguments.build, folder, "full", [1_000_000])
-        if arguments.full:
-            asteroid(arguments.build, folder, "bare", [300_000, 1_000_000, 3_000_000, 10_000_000, 30_000_000])
+        benchmark = Benchmark(arguments.build, arguments.fastnoise2, arguments.turns, pathlib.Path(name))
+        for section in arguments.only:
+            if section == "asteroid":
+                benchmark.asteroid("full", [1_000_000])
+                benchmark.asteroid("bare", [300_000, 1_000_000] + (
+                    [3_000_000, 10_000_000, 30_000_000] if arguments.full else []))
+            elif section == "erosion":
+                benchmark.erosion([100_000, 300_000, *targets])
+            elif section == "terrain":
+                benchmark.terrain(targets)
+            else:
+                getattr(benchmark, section)()
 
 
 if __name__ == "__main__":

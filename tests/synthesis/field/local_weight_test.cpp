@@ -97,6 +97,30 @@ TEST(LocalWeight, BitsDependOnThePointAlone) {
   }
 }
 
+// The search for the nearest of many spheres leaves out none that counts.
+TEST(LocalWeight, ManySpheresAreTheNearestOnes) {
+  const MetaballBody body = *halves(3000, 4).body;
+  const LoneWeight weight({"left", 0.01}, body);
+  CounterRandom random(7);
+  for (int k = 0; k < 30; ++k) {
+    const Vec3d corner{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
+    const double size = std::pow(10.0, random.uniform(-3.0, 0.0));
+    Points points;
+    for (int i = 0; i < 300; ++i) {
+      points.add(corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()});
+    }
+    const std::vector<float> together = weights(weight, points.x, points.y, points.z);
+    const Interval bound =
+        bound_weight(weight.tables, weight.arrays.view(), {corner, corner + Vec3d{size, size, size}});
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      const float at_point =
+          weight_at(weight.tables, weight.arrays.view(), {points.x[i], points.y[i], points.z[i]});
+      ASSERT_EQ(math::bits_of(at_point), math::bits_of(together[i]));
+      ASSERT_TRUE(together[i] >= bound.low && together[i] <= bound.high);
+    }
+  }
+}
+
 TEST(LocalWeight, BoundsHoldEveryValue) {
   CounterRandom random(6);
   int narrow = 0;

@@ -24,7 +24,7 @@ std::vector<MeshVertex> vertices_of(const Recipe& recipe) {
 std::vector<VertexLabel> labels_of(const Recipe& recipe, const std::vector<MeshVertex>& vertices,
                                    const Vec3d& origin = {}) {
   std::vector<VertexLabel> labels(vertices.size());
-  SurfaceLabels(recipe, "r").label(origin, vertices, labels);
+  SurfaceLabels(recipe, ImplicitField(recipe)).label(origin, vertices, labels);
   return labels;
 }
 
@@ -100,9 +100,60 @@ TEST(SurfaceLabels, CratersBouldersAndNoiseAreTold) {
   EXPECT_EQ(label_near({0, 0, -1.2f}), 1);
   EXPECT_EQ(label_near({0, 0, 0.9f}), 2);
   EXPECT_EQ(label_near({1, 0, 0}), 3);
-  EXPECT_EQ(SurfaceLabels(recipe, "r").legend(),
+  EXPECT_EQ(SurfaceLabels(recipe, ImplicitField(recipe)).legend(),
             (std::vector<std::string>{"label 0: the bare body", "label 1: boulders",
                                       "label 2: craters \"the pole's\"", "label 3: simplex"}));
+}
+
+// The label by its definition: from fields of the recipe with its layers up to each one. A place is kept by
+// boulders without a boulder, because the random numbers of other layers depend on their place.
+TEST(SurfaceLabels, AreThoseOfTheLayersOneAfterAnother) {
+  Recipe recipe = testing::potato_recipe(12, 2);
+  CraterLayer craters;
+  craters.craters.resize(1);
+  craters.craters[0].place = {{0, 0, 1}, true};
+  craters.craters[0].diameter = 0.2;
+  BoulderLayer boulders;
+  boulders.boulders.resize(1);
+  boulders.boulders[0].place = {{0, 0, -1}, true};
+  boulders.boulders[0].axes = {0.2, 0.15, 0.1};
+  FractalLayer hills = testing::fractal_layer(0.03, 3.0, 2), grit = testing::fractal_layer(0.005, 20.0, 2);
+  hills.name = "hills";
+  grit.use.mask = LayerMask{"hills", -0.01, 0.01};
+  recipe.layers = {boulders, hills, craters, grit};
+  const std::vector<MeshVertex> vertices = vertices_of(recipe);
+  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
+  std::vector<float> ground(vertices.size());
+  std::vector<VertexLabel> again(vertices.size());
+  SurfaceLabels(recipe, ImplicitField(recipe)).label({}, vertices, again, ground);
+  std::vector<ImplicitField> stages;
+  Recipe so_far = recipe;
+  so_far.layers.assign(recipe.layers.size(), BoulderLayer{});
+  stages.emplace_back(so_far);
+  const std::vector<std::size_t> order{1, 2, 3, 0};
+  for (const std::size_t i : order) {
+    so_far.layers[i] = recipe.layers[i];
+    stages.emplace_back(so_far);
+  }
+  std::set<int> seen;
+  for (std::size_t v = 0; v < vertices.size(); v += 7) {
+    const Vec3f& p = vertices[v].position;
+    std::vector<double> value;
+    for (const ImplicitField& stage : stages) value.push_back(stage.value({p.x, p.y, p.z}));
+    // Far from the bare surface, the surface layers of a field with lower heights lie at other points.
+    if (std::fabs(value.front()) > 0.02) continue;
+    int label = 0;
+    double largest = 4e-6 * largest_coordinate(stages.back().bounds());  // the rounding of the field
+    for (std::size_t k = 1; k < value.size(); ++k) {
+      const double change = std::fabs(value[k] - value[k - 1]);
+      if (change > largest) largest = change, label = static_cast<int>(order[k - 1]) + 1;
+    }
+    ASSERT_EQ(labels[v].label, label) << v;
+    ASSERT_EQ(labels[v].elevation, static_cast<float>(value.back()) - static_cast<float>(value.front()));
+    ASSERT_EQ(ground[v], static_cast<float>(value[3]));
+    seen.insert(label);
+  }
+  EXPECT_EQ(seen.size(), 4u);
 }
 
 TEST(SurfaceLabels, AnOriginIsAdded) {

@@ -117,6 +117,24 @@ TEST(Erosion, SettledIsSaidOfTheFinishedMesh) {
   }
 }
 
+// Ground slides far on clusters of vertices, so that sweeps hardly grow with the mesh. On vertices alone
+// these slopes take ten times as many sweeps at twice the resolution or more.
+TEST(Erosion, SweepsHardlyGrowWithTheMesh) {
+  const Eroded coarse = eroded(hilly_ball(), 48, 20.0), fine = eroded(hilly_ball(), 144, 20.0);
+  EXPECT_TRUE(coarse.statistics.settled && fine.statistics.settled);
+  EXPECT_LT(fine.statistics.sweeps, 3 * coarse.statistics.sweeps);
+}
+
+// What moves is a matter of the body, not of its mesh.
+TEST(Erosion, MovesAsMuchOnEveryMesh) {
+  const Eroded coarse = eroded(hilly_ball(), 64, 25.0), fine = eroded(hilly_ball(), 128, 25.0);
+  EXPECT_NEAR(coarse.statistics.volume_moved / fine.statistics.volume_moved, 1.0, 0.15);
+  const auto share = [](const Eroded& e) {
+    return double(e.statistics.moved_vertices) / double(e.after.vertices.size());
+  };
+  EXPECT_NEAR(share(coarse), share(fine), 0.1);
+}
+
 TEST(Erosion, GentleSlopesAndRockStay) {
   const Eroded gentle = eroded(testing::sphere_recipe(1.0), 32, 30.0);
   EXPECT_EQ(gentle.statistics.moved_vertices, 0);
