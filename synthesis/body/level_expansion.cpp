@@ -14,7 +14,7 @@ namespace {
 
 // The relative rounding of the float evaluation: of one kernel and its slope, with room to spare, and of each
 // addition.
-constexpr double kRounding = 1e-5, kRoundingOfSum = 6e-8;
+constexpr double kRoundingOfKernel = 1e-5, kRoundingOfSum = 6e-8;
 // Beyond this share of the sum, kernels that end in the box and the constant floor leave no useful bound.
 constexpr double kMostShare = 0.05;
 // The largest exponent by which a weight may grow within the box. The exponential of floats ends at 88.
@@ -195,7 +195,7 @@ std::optional<LevelExpansion> expand_level(const MetaballsView& metaballs, const
   const double level = (added.value - subtracted.value) * inverse_m - double{body.log_iso};
   const Vec3d gradient = inverse_m * (added.gradient - subtracted.gradient);
   const double kinds = subtracts ? 2.0 : 1.0;
-  const double of_sums = kRounding + kRoundingOfSum * double(metaballs.spheres.size());
+  const double of_sums = kRoundingOfKernel + kRoundingOfSum * double(metaballs.spheres.size());
   const double rounding = kinds * (5e-5 + of_sums + 2e-6 * std::fabs(double{body.m_a})) * inverse_m +
                           (1e-6 * farthest + of_sums * radius) * roughness + 1e-6 * std::fabs(level);
   // A kernel that ends in the box changes the gradient by at most its share times the difference of slopes.

@@ -74,7 +74,7 @@ ASTROLITH_SIMD_CLONES void find_range(int n, const float* c, float& least, float
   largest = high;
 }
 
-Box box_of(int n, const PointArrays& at) {
+Box box_around(int n, const PointArrays& at) {
   Vec3f low, high;
   find_range(n, at.x, low.x, high.x);
   find_range(n, at.y, low.y, high.y);
@@ -138,7 +138,8 @@ class SignFinder {
 
   // Bounds s at the points by one expansion. Returns false where there is none.
   bool bound(OpenPoints& open) const {
-    const std::optional<LevelExpansion> expansion = expand_level(metaballs_, box_of(open.n, open.arrays()));
+    const std::optional<LevelExpansion> expansion =
+        expand_level(metaballs_, box_around(open.n, open.arrays()));
     if (!expansion) return false;
     bound_distances(*expansion, metaballs_.parameters.gradient_floor, open.n, open.x.data(), open.y.data(),
                     open.z.data(), open.middle.data(), open.half.data());
@@ -148,7 +149,8 @@ class SignFinder {
   // Bounds the elevations at all points by those over their box.
   void bound_layers(OpenPoints& open) {
     Interval over;
-    if (!model_.layers.empty()) over = elevations_over(model_, lists_.spots, box_of(open.n, open.arrays()));
+    if (!model_.layers.empty())
+      over = elevations_over(model_, lists_.spots, box_around(open.n, open.arrays()));
     std::fill_n(open.elevation.data(), open.n, static_cast<float>(0.5 * (over.low + over.high)));
     rest_ = static_cast<float>((0.5 + 1e-6) * (over.high - over.low));
   }
@@ -211,7 +213,7 @@ class SignFinder {
     if (depth == 0 || open.n < kWorthExpansion) return;
     const float widest = *std::max_element(open.half.begin(), open.half.begin() + open.n);
     if (!(widest > tolerance_ + 0.5f * rest_)) return;
-    const Vec3f c = to_float(box_of(open.n, open.arrays()).center());
+    const Vec3f c = to_float(box_around(open.n, open.arrays()).center());
     std::array<std::uint8_t, kBatch> octant;
     std::array<int, 8> count{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(open.n); ++i) {

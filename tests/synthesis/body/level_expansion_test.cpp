@@ -21,7 +21,7 @@ FoundLevel level_at(const PreparedMetaballs& metaballs, const Vec3f& p) {
   return {double{s} * std::sqrt(slope * slope + double{metaballs.parameters.gradient_floor}), slope};
 }
 
-MetaballBody random_body(CounterRandom& random, int k) {
+MetaballBody drawn_body(CounterRandom& random, int k) {
   MetaballBody body = *testing::potato_recipe(1 + k % 90, random.next(), random.uniform(0.3, 8.0)).body;
   body.cutoff_radii = random.uniform(1.5, 9.0);
   if (k % 3 == 0) testing::add_dents(body, 1 + k % 20, random);
@@ -32,7 +32,7 @@ TEST(LevelExpansion, HoldsTheLevelAndTheSlopeAtFloatPoints) {
   CounterRandom random(31);
   int expanded = 0, tight = 0;
   for (int k = 0; k < 1500; ++k) {
-    const PreparedMetaballs all = prepare_metaballs(random_body(random, k));
+    const PreparedMetaballs all = prepare_metaballs(drawn_body(random, k));
     const double size = std::pow(10.0, random.uniform(-4.0, -0.7));
     const Vec3d corner{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(), size * random.uniform()}};
