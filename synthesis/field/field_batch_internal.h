@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <limits>
-#include <cstdint>
 #include <span>
 #include <vector>
 

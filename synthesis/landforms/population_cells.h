@@ -18,8 +18,8 @@ namespace astrolith {
 inline constexpr double kMostByCellsOnBody = 2e5;
 // The greatest diameter of a population that is drawn by cells, in longest sides of the bare body.
 inline constexpr double kGreatestByCells = 1.0 / 32.0;
-// The least diameter that is drawn by cells, in largest coordinates of the bare body: 8 spacings of float. The
-// ground that a landform lies on is found to about one.
+// The least diameter that is drawn by cells, in largest coordinates of the bare body: 8 spacings of float.
+// The ground that a landform lies on is found to about one.
 inline constexpr double kLeastByCells = 0x1p-20;
 
 // The sizes that are drawn of such a population.
