@@ -12,7 +12,7 @@ namespace astrolith {
 namespace {
 
 constexpr std::int64_t kSamplesPerPoint = 5;
-constexpr double kReach = 3.5, kBendReach = 0.75;  // edges
+constexpr double kReach = 3.5, kBendReach = 0.5;  // edges
 
 struct Smoothed {
   double height = 0.0;  // along the normal

@@ -12,7 +12,7 @@ namespace astrolith {
 struct EvenedSurface {
   std::vector<Vec3d> points;   // (n) the unit of the mesh
   std::vector<Vec3d> normals;  // (n) unit, outwards
-  // (n) rms angle in radians between the normals of the mesh's facets within .75 edges of each point and
+  // (n) rms angle in radians between the normals of the mesh's facets within .5 edges of each point and
   // their mean, before anything is smoothed: 0 within a flat facet.
   std::vector<double> bends;
   double area = 0.0;  // of the mesh

@@ -57,8 +57,11 @@ std::vector<double> flat_part(std::vector<double> bends, double limit) {
   return bends;
 }
 
-KolmogorovSmirnov distance_of(const LocalStatistic& a, const LocalStatistic& b, const Regions& regions_a,
-                              const Regions& regions_b) {
+// Other triangles of one surface leave up to so much more of it flat, which is no difference of the surfaces.
+constexpr double kFlatTolerance = 0.05;
+
+std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, const LocalStatistic& b,
+                                                       const Regions& regions_a, const Regions& regions_b) {
   if (a.quantity != SurfaceQuantity::bend) {
     return KolmogorovSmirnov({a.values, regions_a.of_place}, {b.values, regions_b.of_place});
   }
@@ -66,7 +69,8 @@ KolmogorovSmirnov distance_of(const LocalStatistic& a, const LocalStatistic& b, 
   std::sort(sorted.begin(), sorted.end());
   const double limit = quantile(sorted, kFlatShare);
   const std::vector<double> flat_a = flat_part(a.values, limit), flat_b = flat_part(b.values, limit);
-  return KolmogorovSmirnov({flat_a, regions_a.of_place}, {flat_b, regions_b.of_place});
+  const KolmogorovSmirnov distance({flat_a, regions_a.of_place}, {flat_b, regions_b.of_place});
+  return [distance](const RegionLabels& first) { return std::max(0.0, distance(first) - kFlatTolerance); };
 }
 
 StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const SurfaceStatistics& of_a,
@@ -144,8 +148,9 @@ struct LargestRatios {
 void add_ratios(double own, const std::vector<double>& exchanged, LargestRatios& largest) {
   std::vector<double> sorted = exchanged;
   std::sort(sorted.begin(), sorted.end());
-  const double usual = quantile(sorted, 0.95);
-  if (!(usual > 0.0)) return;
+  // A distance that no exchange reaches is large, and not undefined.
+  constexpr double kLeastUsual = 1e-3;
+  const double usual = std::max(quantile(sorted, 0.95), kLeastUsual);
   largest.own = std::max(largest.own, own / usual);
   for (std::size_t k = 0; k < exchanged.size(); ++k) {
     largest.exchanged[k] = std::max(largest.exchanged[k], exchanged[k] / usual);

@@ -22,7 +22,7 @@ enum class SurfaceQuantity {
   skewness,   // of the residual: boulders > 0, craters < 0
   kurtosis,   // of the residual, 0 for Gaussian heights
   normals,    // degrees, rms angle between the surface's normals and the quadric's
-  bend,  // degrees, rms angle between the mesh's own facets within .75 edges: shows facets that are too large
+  bend,  // degrees, rms angle between the mesh's own facets within .5 edges: shows facets that are too large
   slope  // degrees between the normal and the vertical of gravity and rotation
 };
 

@@ -76,22 +76,6 @@ TEST(Realism, MissingRegionsAreNamed) {
   EXPECT_LT(verdict.variance_ratio, 0.3);
 }
 
-// Each triangle cut into four flat ones: nothing is rougher or smoother, but the facets are too large.
-TEST(Realism, FlatFacetsOfACoarserMeshAreSeen) {
-  const WaveHeights height(8 * kSphereEdge, 1);
-  TriangleMesh coarse = testing::icosphere(4), fine = testing::icosphere(5);
-  for (TriangleMesh* mesh : {&coarse, &fine}) {
-    for (Vec3d& p : mesh->vertices) p *= 1 + 0.01 * height(p);
-  }
-  SurfaceStatisticsOptions options;
-  options.places = 1500;
-  options.points = 10240;
-  const RealismVerdict verdict = judge_realism(surface_statistics(fine, options),
-                                               surface_statistics(testing::subdivided(coarse), options), {});
-  EXPECT_FALSE(verdict.passes);
-  EXPECT_TRUE(says(verdict, "flat facets of a coarser mesh"));
-}
-
 // Draws of one kind, whose values are normal and independent: p is then uniform.
 SurfaceStatistics drawn(std::uint64_t seed) {
   CounterRandom random(seed, 0);
@@ -120,6 +104,27 @@ TEST(Realism, RejectsFiveInAHundredDrawsOfOneKind) {
   }
   EXPECT_GE(rejected, 2);
   EXPECT_LE(rejected, 20);  // 10 expected, deviation 3.1
+}
+
+// Bends between 1 and 10 degrees, but for a share of places in flat facets.
+SurfaceStatistics with_flat_share(std::uint64_t seed, double share) {
+  SurfaceStatistics s = drawn(seed);
+  CounterRandom random(seed, 1);
+  s.local.push_back({SurfaceQuantity::bend, 0.0, {}});
+  for (std::size_t i = 0; i < s.places.size(); ++i) {
+    s.local.back().values.push_back(random.uniform() < share ? 0.0 : random.uniform(1, 10));
+  }
+  return s;
+}
+
+TEST(Realism, FlatFacetsOfACoarserMeshAreSeen) {
+  const SurfaceStatistics body = with_flat_share(1, 0);
+  const RealismVerdict coarse = judge_realism(body, with_flat_share(3, 0.3), {}),
+                       remeshed = judge_realism(body, with_flat_share(3, 0.03), {});
+  EXPECT_LT(coarse.p, 0.05);
+  EXPECT_TRUE(says(coarse, "flat facets of a coarser mesh"));
+  EXPECT_EQ(remeshed.statistics[2].distance, 0);
+  EXPECT_FALSE(says(remeshed, "flat facets of a coarser mesh"));
 }
 
 TEST(Realism, DistancesAloneAreThoseOfTheVerdict) {
