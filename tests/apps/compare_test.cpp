@@ -71,7 +71,7 @@ TEST_F(Compare, SameOutputForAnyThreadCount) {
 }
 
 TEST_F(Compare, JudgesWhetherASurfacePasses) {
-  const std::vector<std::string> realism{"--realism", "--places", "400", "--unit", "km", "--floor"};
+  const std::vector<std::string> realism{"--realism", "--places", "1500", "--unit", "km", "--floor"};
   const auto same = compare(ball_, bigger_, realism)["realism"];
   EXPECT_TRUE(same["passes"].get<bool>()) << same.dump();
   EXPECT_EQ(same["words"][0].get<std::string>(), "passes");
