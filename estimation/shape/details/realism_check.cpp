@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kMostTriangles = 240000;
+constexpr double kMostMeshTriangles = 240000;
 
 // The k-th seed of a recipe's noise; its own for k = 0.
 Recipe with_noise_seed(Recipe recipe, std::uint64_t k) {
@@ -48,7 +48,7 @@ FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int see
                          const Progress& progress) {
   const int draws = recipe.layers.empty() ? 1 : seeds;
   const double triangles =
-      std::min(2.0 * static_cast<double>(target.surface.triangles.size()), kMostTriangles);
+      std::min(2.0 * static_cast<double>(target.surface.triangles.size()), kMostMeshTriangles);
   SurfaceStatisticsOptions options;
   options.seed = seed;
   options.points = own_points(target.surface);
