@@ -10,8 +10,8 @@ Peers come from packages: pip install numpy vtk terraingenpy scikit-learn scipy.
 peer that is not installed is left out, with a word. FastNoise2 is in no package: SOURCES is a folder that holds FastNoise2
 and FastSIMD side by side, where it is built the first time.
 
-A limit is counted: bytes that must be read or written, or vector operations that must be done, at the rate that
-machine_limits measures in the same run. --full adds meshes of 10 and 30 million triangles (minutes).
+A limit is counted: bytes that must be read or written, at the rate that machine_limits measures in the same run. Rows
+of noise have none yet: their operations are not counted. --full adds meshes of 10 and 30 million triangles (minutes).
 """
 import argparse
 import json
@@ -26,10 +26,6 @@ import terrain_peers
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-# Vector operations for as many points as a vector has lanes, counted in the loops of the program (objdump).
-NOISE_OPERATIONS = {"simplex": 0, "perlin": 0, "fbm": 0, "worley_f1": 0}
-# A kernel at a point: distance, window, exponential and cosine, counted in the same way.
-GABOR_OPERATIONS, GABOR_IMPULSES = 0, 32
 
 
 class Run:
@@ -88,10 +84,6 @@ class Benchmark:
         print("Limits of one thread: {vector_operations:.3g} vector operations a second of {lanes} floats each, "
               "{read_bytes:.3g} bytes a second read, {write_bytes:.3g} written".format(**self.limits))
 
-    def points_per_second(self, operations):
-        """Million points a second where a vector of points takes so many vector operations."""
-        return self.limits["vector_operations"] * self.limits["lanes"] / operations / 1e6 if operations else None
-
     def noise(self):
         ours, theirs = [], []
         for _ in range(self.turns):
@@ -103,17 +95,15 @@ class Benchmark:
         for name in ours[0]:
             peers = [turn[name] for turn in theirs] if theirs else None
             for order in ("rows", "blocks"):
-                table.row(f"{name}, {order}", [turn[name][order] for turn in ours], peers,
-                          self.points_per_second(NOISE_OPERATIONS.get(name)))
+                table.row(f"{name}, {order}", [turn[name][order] for turn in ours], peers)
 
     def gabor(self):
         turns = [Run(self.tools / "gabor_noise_benchmark").rows() for _ in range(self.turns)]
-        limit = self.points_per_second(GABOR_OPERATIONS * GABOR_IMPULSES)
         table = Table("Gabor noise, one band, 32 impulses, M/s", "bandwidth", "Lagae 2009")
         for i, row in enumerate(turns[0]):
             for kind, rate in (("texture", "texture_mpixel_per_s"), ("surface", "surface_mpoint_per_s")):
                 table.row(f"{kind}, {row['bandwidth']}", [turn[i][rate] for turn in turns],
-                          [turn[i]["peer_" + kind] for turn in turns], limit)
+                          [turn[i]["peer_" + kind] for turn in turns])
 
     def isosurface(self):
         field = self.folder / "field.raw"
