@@ -51,9 +51,9 @@ void project_locally(const FieldModel& model, Batch& b) {
   project(model, b, {b.lmx.data(), b.lmy.data(), b.lmz.data()}, b.lpx.data(), b.lpy.data(), b.lpz.data());
 }
 
-ASTROLITH_SIMD_CLONES void lift(int n, const float* __restrict projected, const float* __restrict gradient,
-                                const float* __restrict divisor, const float* __restrict elevation,
-                                float* __restrict lifted) {
+ASTROLITH_SIMD_CLONES void lift_coordinates(int n, const float* __restrict projected,
+                                            const float* __restrict gradient, const float* __restrict divisor,
+                                            const float* __restrict elevation, float* __restrict lifted) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
     lifted[i] = lifted_coordinate(projected[i], gradient[i], divisor[i], elevation[i]);
@@ -71,7 +71,7 @@ PointArrays exemplar_points(const FieldModel& model, const ExemplarNoise& noise,
   gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
                    length.data());
   const auto along = [&](const float* foot, const std::array<float, kBatch>& g, float* out) {
-    lift(b.n, foot, g.data(), length.data(), b.elevation.data(), out);
+    lift_coordinates(b.n, foot, g.data(), length.data(), b.elevation.data(), out);
   };
   along(feet.x, b.gx, b.qx.data());
   along(feet.y, b.gy, b.qy.data());

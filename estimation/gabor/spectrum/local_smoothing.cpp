@@ -11,8 +11,8 @@
 namespace astrolith {
 namespace {
 
-constexpr double kReach = 2.0;      // deviation of the averages, bins of 1 / sqrt(width * height)
-constexpr double kLeastGain = 3.0;  // of the criterion
+constexpr double kAveragingBins = 2.0;  // deviation of the averages, bins of 1 / sqrt(width * height)
+constexpr double kLeastGain = 3.0;      // of the criterion
 
 // Convolves grids of frequencies with a Gaussian.
 class GridBlur {
@@ -42,7 +42,7 @@ class LocalCriterion {
   explicit LocalCriterion(const PowerSpectrum& data)
       : data_(data), blur_(data.width, data.height), weight_(data.power.size(), 1.0) {
     weight_[0] = 0.0;
-    blur_.blur(weight_, kReach);
+    blur_.blur(weight_, kAveragingBins);
   }
 
   std::vector<double> operator()(const SplineChoice& spline) {
@@ -50,7 +50,7 @@ class LocalCriterion {
     for (std::size_t i = 1; i < mean.size(); ++i) {
       mean[i] = data_.averages * (spline.g[i] + data_.power[i] * std::exp(-spline.g[i]));
     }
-    blur_.blur(mean, kReach);
+    blur_.blur(mean, kAveragingBins);
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = mean[i] / weight_[i] + spline.parameters;
     return mean;
   }
@@ -89,7 +89,7 @@ std::vector<double> locally_chosen_splines(const PowerSpectrum& data,
                      [](double a, double b) { return std::min(a, b); });
   }
   // A bin and its mirror image hold the same data, so that half of the bins count.
-  constexpr double kBins = 0.5 * 4.0 * std::numbers::pi * kReach * kReach;
+  constexpr double kBins = 0.5 * 4.0 * std::numbers::pi * kAveragingBins * kAveragingBins;
   for (std::size_t i = 0; i < best.size(); ++i) {
     // Rounding must not part a bin from its mirror image.
     const std::size_t first = std::min(i, mirror_image(i, data));
@@ -99,7 +99,7 @@ std::vector<double> locally_chosen_splines(const PowerSpectrum& data,
       by_octave[i] = static_cast<double>(best[i]);
     }
   }
-  criterion.blur(by_octave, 0.5 * kReach);
+  criterion.blur(by_octave, 0.5 * kAveragingBins);
   const double last = static_cast<double>(splines.size() - 1);
   for (double& index : by_octave) index = std::clamp(index, 0.0, last);
   return by_octave;
