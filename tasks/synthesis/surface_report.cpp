@@ -66,21 +66,21 @@ Json lags_json(const SurfaceStatistics& surface) {
 }
 
 Json statistic_json(const StatisticComparison& c, double edge) {
-  Json json{{"statistic", c.correlation ? "correlation" : name_of(c.quantity)}};
+  Json entry{{"statistic", c.correlation ? "correlation" : name_of(c.quantity)}};
   if (c.correlation) {
-    json["from"] = c.radius * edge;
-    json["to"] = c.reach * edge;
+    entry["from"] = c.radius * edge;
+    entry["to"] = c.reach * edge;
   } else if (c.radius > 0.0) {
-    json["edges"] = c.radius;
-    json["radius"] = c.radius * edge;
+    entry["edges"] = c.radius;
+    entry["radius"] = c.radius * edge;
   }
-  json["distance"] = c.distance;
-  json["p"] = c.p;
-  json["counts_in_p"] = c.counts_in_p;
-  json["counts_in_distance"] = c.counts_in_distance;
-  json["a"] = c.middle_a;
-  json["b"] = c.middle_b;
-  return json;
+  entry["distance"] = c.distance;
+  entry["p"] = c.p;
+  entry["counts_in_p"] = c.counts_in_p;
+  entry["counts_in_distance"] = c.counts_in_distance;
+  entry["a"] = c.middle_a;
+  entry["b"] = c.middle_b;
+  return entry;
 }
 
 }  // namespace
@@ -105,20 +105,20 @@ SurfaceStatistics describe_surface(const NamedMesh& shape, const SurfaceStatisti
 }
 
 nlohmann::ordered_json surface_json(const SurfaceStatistics& surface) {
-  Json json{{"points", surface.points},        {"edge", surface.edge},
-            {"places", surface.places.size()}, {"undefined_places", surface.undefined},
-            {"radii", radii_json(surface)},    {"roughness_at_lags", lags_json(surface)},
-            {"regions", regions_json(surface)}};
-  json["bends"] = distribution_json(surface.find(SurfaceQuantity::bend, 0.0)->values);
+  Json entry{{"points", surface.points},        {"edge", surface.edge},
+             {"places", surface.places.size()}, {"undefined_places", surface.undefined},
+             {"radii", radii_json(surface)},    {"roughness_at_lags", lags_json(surface)},
+             {"regions", regions_json(surface)}};
+  entry["bends"] = distribution_json(surface.find(SurfaceQuantity::bend, 0.0)->values);
   if (const LocalStatistic* slope = surface.find(SurfaceQuantity::slope, 0.0)) {
-    json["slopes"] = distribution_json(slope->values);
+    entry["slopes"] = distribution_json(slope->values);
   }
-  return json;
+  return entry;
 }
 
 void write_surface_table(const SurfaceStatistics& surface, const std::filesystem::path& file) {
   std::string text = "x,y,z,region";
-  for (const LocalStatistic& statistic : surface.local) text += "," + column_name(statistic);
+  for (const LocalStatistic& statistic : surface.local) (text += ",") += column_name(statistic);
   text += "\n";
   for (std::size_t i = 0; i < surface.places.size(); ++i) {
     const Vec3d& p = surface.places[i];
