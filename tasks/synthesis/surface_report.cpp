@@ -152,7 +152,7 @@ SurfaceComparison judge_surfaces(const NamedMesh& a, const NamedMesh& b, Surface
   if (options.points == 0) options.points = common_points(a.mesh, b.mesh);
   const std::uint64_t seed = options.seed;
   const auto sampled = [&](const NamedMesh& shape, std::uint64_t which) {
-    options.seed = seed + which * 0x9e3779b97f4a7c15u;
+    options.seed = seed + which;
     return describe_surface(shape, options, progress("surface"));
   };
   const RealismOptions test{.permutations = 999, .seed = seed};

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kMostMeshTriangles = 240000;
 
-// The k-th seed of a recipe's noise; its own for k = 0.
+// Other noise for k > 0, which `synth --seed` makes again.
 Recipe with_noise_seed(Recipe recipe, std::uint64_t k) {
-  recipe.seed += k * 0x9e3779b97f4a7c15u;
+  recipe.seed += k;
   return recipe;
 }
 
