@@ -16,7 +16,7 @@
 #include "recipe/height_field.h"
 #include "synthesis/field/bare_body.h"
 #include "synthesis/field/field_model_internal.h"
-#include "synthesis/field/layers_below.h"
+#include "synthesis/field/layers_below_internal.h"
 #include "synthesis/field/mask_plan.h"
 #include "synthesis/landforms/population_cells.h"
 

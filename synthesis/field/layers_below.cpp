@@ -1,4 +1,4 @@
-#include "synthesis/field/layers_below.h"
+#include "synthesis/field/layers_below_internal.h"
 
 #include <algorithm>
 #include <array>

@@ -97,8 +97,8 @@ TEST_F(SynthExemplar, RefusesImagesThatAreNotWhatTheRecipeSays) {
   refuse(recipe_of("half.png"), "is damaged");
   write_image("small.png", 8, PNG_FORMAT_GRAY, 1);
   refuse(recipe_of("small.png"), "is 8 x 8 pixels");
-  write_image("large.png", 4097, PNG_FORMAT_GRAY, 1, true);
-  refuse(recipe_of("large.png"), "is 4097 x 4097 pixels");
+  write_image("large.png", 8193, PNG_FORMAT_GRAY, 1, true);
+  refuse(recipe_of("large.png"), "is 8193 x 8193 pixels");
   write_image("flat.png", 64, PNG_FORMAT_GRAY, 1, true);
   refuse(recipe_of("flat.png"), "has one grey value only");
 }
