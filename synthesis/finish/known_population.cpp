@@ -85,8 +85,9 @@ constexpr KnownLandforms kRyugu[] = {{.least = 0.0,
                                       .measured_from = 5.0,
                                       .source = "4400 of 5 m on 2.7 km^2, Michikami et al. 2019"}};
 
-// Of 5 m and more 5.1 times Itokawa's density, of 1 m and more 2.3 times Bennu's. Weibull's law below 5 m has
-// these two numbers, and the slope of the power law at 5 m. That slope, 3.4, is assumed.
+// On an equal area Dimorphos has 5.1 times Itokawa's boulders of 5 m and more, and 2.3 times Bennu's of 1 m
+// and more. Weibull's law below 5 m has these two numbers, and the slope of the power law at 5 m. That
+// slope, 3.4, is assumed.
 constexpr KnownLandforms kDimorphos[] = {
     {.least = 5.0,
      .greatest = kAnySize,

@@ -224,7 +224,7 @@ CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const Placed
     greatest = std::max({greatest, crater.depth, crater.rim_height + peak});
   }
   find_bases(oldest_first, elevations, craters);
-  // Of craters drawn by cells the largest one that happens to be there depends on the region.
+  // Which of the craters drawn by cells is the largest depends on the region; the bound must not.
   const bool by_cells = layer.population && layer.population->drawn.by_cells;
   const double rise = by_cells ? crater_rise(layer) : kClip * greatest;
   return {arrays.add(craters), bound_before + rise, 0};
