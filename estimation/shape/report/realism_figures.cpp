@@ -119,9 +119,10 @@ void write_quantile_curves(const NamedSurface& a, const NamedSurface& b, const s
   page.text(page.width() - 10.0, 20.0, "values over the share of places below them, %", 9.0,
             Figure::Align::kRight);
   for (std::size_t k = 0; k < both.size(); ++k) {
-    const auto column = static_cast<double>(k % kColumns), row = static_cast<double>(k / kColumns);
-    draw_quantiles(page, {kLeft + column * kAcross, kTop + row * kDown, kWidth, kHeight}, *both[k].first,
-                   *both[k].second);
+    const std::size_t column = k % kColumns, row = k / kColumns;
+    const double x = kLeft + static_cast<double>(column) * kAcross,
+                 y = kTop + static_cast<double>(row) * kDown;
+    draw_quantiles(page, {x, y, kWidth, kHeight}, *both[k].first, *both[k].second);
   }
   page.write_png(file, 144.0);
 }
