@@ -1,7 +1,6 @@
 #include "tests/benchmarks/impostors.h"
 
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "numerics/parallel_for.h"
 #include "tests/benchmarks/spherical_harmonics.h"
 #include "tests/benchmarks/volume/volume_mesher.h"
+#include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
@@ -34,22 +34,6 @@ TriangleMesh laplace_step(const TriangleMesh& mesh, double share) {
     if (counts[v] > 0) smooth.vertices[v] += share * ((1 / counts[v]) * sums[v] - mesh.vertices[v]);
   }
   return smooth;
-}
-
-TriangleMesh refined(const TriangleMesh& coarse) {
-  TriangleMesh fine{coarse.vertices, {}, {}};
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> midpoints;
-  const auto midpoint = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [it, added] =
-        midpoints.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(fine.vertices.size()));
-    if (added) fine.vertices.push_back(0.5 * (coarse.vertices[a] + coarse.vertices[b]));
-    return it->second;
-  };
-  for (const auto& [a, b, c] : coarse.triangles) {
-    const std::uint32_t ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
-    fine.triangles.insert(fine.triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
-  return fine;
 }
 
 // Sums of plane waves of one length and rms 1, at every vertex.
@@ -134,7 +118,7 @@ TriangleMesh noise_impostor(const TriangleMesh& body, std::uint64_t seed) {
 TriangleMesh laplace_impostor(const TriangleMesh& body) { return laplace_step(body, 1.0); }
 
 TriangleMesh decimated_impostor(const TriangleMesh& body) {
-  return refined(decimated(body, body.vertices.size() / 4));
+  return testing::subdivided(decimated(body, body.vertices.size() / 4));
 }
 
 TriangleMesh harmonics_impostor(const TriangleMesh& body) {
