@@ -193,10 +193,7 @@ void predict(Program& program, const Arguments& a) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (table.rows[i].empty()) continue;
     ++predicted;
-    std::fputs(prediction_line(meshes[i], classifier, table.rows[i]).c_str(), stdout);
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw WorkError("standard output: writing failed; is the disk full?");
+    print_result(prediction_line(meshes[i], classifier, table.rows[i]));
   }
   program.summary["shapes"] = predicted;
 }

@@ -1,6 +1,5 @@
 // compare: how alike two meshes are in shape, how far apart their surfaces lie, and whether one surface
 // passes for the other.
-#include <cstdio>
 #include <string>
 
 #include "apps/output_names.h"
@@ -8,7 +7,6 @@
 #include "apps/shape_options.h"
 #include "apps/surface_options.h"
 #include "geometry/io/mesh_io.h"
-#include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "tasks/synthesis/comparison.h"
 #include "tasks/synthesis/surface_report.h"
@@ -54,9 +52,7 @@ void print(const nlohmann::ordered_json& result, const std::string& output) {
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
   const std::string text = result.dump(2, ' ', false, replace) + "\n";
   if (output.empty()) {
-    if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-      throw WorkError("stdout: writing failed; is the disk full?");
-    }
+    print_result(text);
     return;
   }
   OutputFile file(output);

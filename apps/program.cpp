@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -164,6 +165,12 @@ void require_distinct_files(const CLI::App& app) {
 
 }  // namespace
 
+void print_result(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return;
+  throw WorkError(errno == EPIPE ? "stdout: nobody reads it any more"
+                                 : "stdout: writing failed; is the disk full?");
+}
+
 Program::Program(std::string name, std::string description)
     : parser_(std::make_unique<CLI::App>(std::move(description), name)),
       app(*parser_),
@@ -197,6 +204,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
   }
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGPIPE, SIG_IGN);  // a message that nobody reads, as before `| head`, ends no work
   std::signal(SIGXFSZ, SIG_IGN);  // a file larger than allowed is an error of writing like any other
   const ThreadLimit limit(threads);
   try {

@@ -23,6 +23,10 @@
 
 namespace astrolith {
 
+// Writes what a program was asked for to stdout, at once. Throws WorkError where it cannot be written, as
+// where nobody reads it any more.
+void print_result(const std::string& text);
+
 class Program {
   // Declared first, since `app` refers to it.
   std::unique_ptr<CLI::App> parser_;

@@ -1,5 +1,4 @@
 // gravity: potential, slope and elevation of a body of uniform density that turns.
-#include <cstdio>
 #include <string>
 #include <tuple>
 
@@ -110,10 +109,7 @@ GravityPlaces places_of(const Arguments& a, const TriangleMesh& mesh) {
 
 void print(const nlohmann::ordered_json& result) {
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  const std::string text = result.dump(2, ' ', false, replace) + "\n";
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    throw WorkError("stdout: writing failed; is the disk full?");
-  }
+  print_result(result.dump(2, ' ', false, replace) + "\n");
 }
 
 BodyGravityOptions options_of(const Program& program, const Arguments& a, const GravityBody& body) {

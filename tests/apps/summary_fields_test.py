@@ -63,9 +63,9 @@ def write_ball(file, length=1.4, rings=8, around=12):
     file.write_text("\n".join(lines) + "\n")
 
 
-def write_photo(file, channels):
-    """A PNG of 64 x 64 pixels of waves with a little noise."""
-    side, state, rows = 64, 1, b""
+def write_photo(file, channels, side=64):
+    """A PNG of `side` x `side` pixels of waves with a little noise."""
+    state, rows = 1, b""
     for y in range(side):
         rows += b"\0"
         for x in range(side):
