@@ -28,6 +28,7 @@ constexpr double kMostVariance = 0.95;
 
 struct Options {
   std::string image;
+  std::string image_sha256;  // before it was read
   std::string output;
   std::string report_folder;
   std::string spectrum_file;
@@ -185,7 +186,7 @@ PhotoRecipeOptions recipe_options(const Program& program, const Options& o) {
 void set_provenance(const Program& program, const Options& o, Recipe& recipe) {
   recipe.provenance.tool = program.tool();
   recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
-  recipe.provenance.input_sha256 = sha256_of_file(o.image);
+  recipe.provenance.input_sha256 = o.image_sha256;
   recipe.provenance.options = program.given_options();
 }
 
@@ -297,9 +298,10 @@ void check_model(const Options& o) {
   }
 }
 
-void work(Program& program, const Options& o) {
+void work(Program& program, Options& o) {
   check_model(o);
   require_outputs(o);
+  o.image_sha256 = sha256_of_file(o.image);
   std::optional<PreparedExemplar> exemplar;
   if (o.model != "gabor") exemplar = prepare(program, o);
   if (o.model == "exemplar") return write_exemplar(program, o, *exemplar);

@@ -42,7 +42,7 @@ Recipe recipe_of(const Program& program, const FitArguments& arguments, const Sh
   recipe.seed = program.seed;
   recipe.provenance.tool = program.tool();
   recipe.provenance.input_name = std::filesystem::path(arguments.mesh).filename().string();
-  recipe.provenance.input_sha256 = sha256_of_file(arguments.mesh);
+  recipe.provenance.input_sha256 = arguments.mesh_sha256;
   recipe.provenance.options = program.given_options();
   return recipe;
 }
@@ -173,7 +173,11 @@ void run(Program& program, FitArguments& arguments) {
   settle_fit_options(program, arguments);
   // Reading takes about as long as a quarter of the checks.
   constexpr double kReadShare = 0.2;
+  arguments.mesh_sha256 = sha256_of_file(arguments.mesh);
   TriangleMesh mesh = read_mesh(arguments.mesh);
+  if (sha256_of_file(arguments.mesh) != arguments.mesh_sha256) {
+    throw InputError(arguments.mesh + ": changed while it was read; run again when it is whole");
+  }
   report(heeding_ctrl_c(limit.preparation(0.0)), kReadShare, "read");
   const TargetBody target =
       prepare_target(std::move(mesh), arguments.mesh, heeding_ctrl_c(limit.preparation(kReadShare)));
@@ -181,8 +185,8 @@ void run(Program& program, FitArguments& arguments) {
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
 
-  FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes,
-                                                  sha256_of_file(arguments.mesh), program.given_options()});
+  FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes, arguments.mesh_sha256,
+                                                  program.given_options()});
   say_size(program, arguments, target);
   if (checkpoint.resumed()) program.say(arguments.checkpoint + ": going on from there");
   ShapeFitResult fit = fit_base(

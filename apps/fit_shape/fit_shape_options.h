@@ -11,6 +11,7 @@ namespace astrolith {
 
 struct FitArguments {
   std::string mesh, output, report, checkpoint;
+  std::string mesh_sha256;  // of the file as it was read
   std::string optimizer = "pso";
   std::string kernel = "gaussian";
   std::string unit = "km";

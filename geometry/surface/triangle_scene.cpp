@@ -20,7 +20,10 @@ void TriangleScene::Release::operator()(RTCSceneTy* scene) const { rtcReleaseSce
 
 TriangleScene::TriangleScene(const TriangleMesh& mesh, const Vec3d& center, double scale)
     : center_(center), scale_(scale), device_(rtcNewDevice(nullptr)) {
-  if (!device_) throw WorkError("the ray-tracing library Embree does not start on this machine");
+  if (!device_) {
+    // The library says nothing of memory where there is too little for its threads.
+    throw WorkError("the ray-tracing library Embree does not start; is there enough memory?");
+  }
   scene_.reset(rtcNewScene(device_.get()));
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   add_triangles(mesh);
