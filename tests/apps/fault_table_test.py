@@ -33,6 +33,8 @@ BODY = """{"format_version": 1, "length_unit": "km",
 FAMILY = BODY[:-1] + ',\n  "family": {"fields": [{"field": "layers[0].amplitude", "low": 0.01, "high": 0.1}]}}'
 PATIENCE = 300  # seconds after which a run counts as one that does not end
 OLD = b"what stood here before\n"
+STAR = """{"format_version": 1, "length_unit": "km", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]},
+  "layers": [{"type": "simplex", "amplitude": 0.02, "frequency": 1}]}"""
 MESH = ["body.json", "--resolution", "72", "-o"]
 FIT = ["fine.obj", "--spheres", "40", "--threads", "1"]
 
@@ -46,7 +48,7 @@ OUTPUTS = {
     "mesh.obj": Output("synth", MESH + ["out.obj"], ["out.obj"]),
     "mesh.stl": Output("synth", MESH + ["out.stl"], ["out.stl"]),
     "mesh.glb": Output("synth", MESH + ["out.glb", "--uv"], ["out.glb"]),
-    "mesh.icq": Output("synth", MESH + ["out.icq"], ["out.icq"]),
+    "mesh.icq": Output("synth", ["star.json", *MESH[1:], "out.icq"], ["out.icq"]),
     "mesh.tab": Output("synth", MESH + ["out.tab"], ["out.tab"]),
     "labels": Output("synth", MESH + ["out.ply", "--labels"], ["out.ply"]),
     "points": Output("synth", MESH + ["out.ply", "--points"], ["out.ply"]),
@@ -62,7 +64,7 @@ OUTPUTS = {
     "texture": Output("synth", ["rock.json", "--texture", "512x512", "-o", "out.png"], ["out.png"]),
     "material": Output(
         "synth", ["rock.json", "--texture", "256x256", "--texture-of", "material", "-o", "out.png"],
-        [f"out_{part}" for part in ("height.tif", "color.png", "normal.png", "ao.png")]),  # fmt: skip
+        [f"out_{part}" for part in ("height.tif", "color.png", "normal.png", "occlusion.png")]),  # fmt: skip
     "members": Output(
         "synth", ["family.json", "--members", "0:4", "--resolution", "32", "-o", "out{member}.ply"],
         [f"out{k}.ply" for k in range(4)]),  # fmt: skip
@@ -93,6 +95,7 @@ OUTPUTS = {
 
 def write_inputs(folder, programs):
     (folder / "body.json").write_text(BODY)
+    (folder / "star.json").write_text(STAR)
     (folder / "family.json").write_text(FAMILY)
     write_ball(folder / "ball.obj")
     write_ball(folder / "fine.obj", 1.4, 40, 60)

@@ -3,7 +3,7 @@
 
     foreign_meshes.py FOLDER [--all]
 
-Needs the Python package of the build on PYTHONPATH, numpy and trimesh. Compared are the corners of all triangles, in
+Needs the Python package of the build on PYTHONPATH, numpy, trimesh and pillow. Compared are the corners of all triangles, in
 order: their number, their box and the signed volume. Vertices themselves are no measure, since readers join and split
 them. Prints a table of the differences by cause, and with --all a line for each file. Exit status 1 if a difference has
 no cause, or if a reader does not end in a mesh or in one line.
@@ -68,10 +68,9 @@ def without_slivers(corners):
 
 def cause(file, ours, refusal, theirs, their_refusal):
     """What the two readings of a file have in common or not, in some words."""
-    if ours is None and theirs is None:
-        return "both refuse"
     if ours is None:
-        return "we refuse: " + " ".join(refusal.replace(str(file), "").replace(file.name, "").split())[:70]
+        words = " ".join(refusal.replace(str(file), "").split()).lstrip(": ")
+        return ("no triangle for either; we say: " if theirs is None or not len(theirs) else "refused: ") + words
     if theirs is None or not len(theirs):
         return "trimesh has no triangle of it"
     size = max(1e-300, float(numpy.abs(box(ours)).max()))
