@@ -144,7 +144,7 @@ class EvaluateAll : public ceres::EvaluationCallback {
   explicit EvaluateAll(ResidualBlocks& residuals) : residuals_(residuals) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
-    if (evaluate_jacobians || new_evaluation_point) residuals_.evaluate(evaluate_jacobians);
+    if (evaluate_jacobians || new_evaluation_point) residuals_.evaluate();
   }
 
  private:
@@ -228,7 +228,7 @@ Outcome refine_with_ceres(const Body& body, const CeresSettings& settings, int t
 double cost_of(const Body& body, const MetaballModel& model) {
   const RefinementParameters parameters(model);
   ResidualBlocks residuals(body.points, body.options, parameters);
-  residuals.evaluate(false);
+  residuals.evaluate();
   return residuals.cost();
 }
 

@@ -19,18 +19,19 @@ void grow_to_budget(const AdaptiveFitOptions& options, TrackedModel& fit) {
   if (!fit.done()) fit.refine_for(options.grown_iterations);
 }
 
-// Moves the least useful metaballs to where the error is largest. Fewer are moved after a round without
-// success.
+// Moves the least useful metaballs to where the error is largest. Fewer are moved after a round that gains
+// little, down to the last few.
 void relocate(const AdaptiveFitOptions& options, InsideWatch& watch, TrackedModel& fit) {
   int count = std::max(1, static_cast<int>(options.relocated * options.spheres));
-  for (int round = 0; round < options.relocations && count > 0 && !fit.done(); ++round) {
+  const int least = std::max(1, static_cast<int>(options.least_relocated * options.spheres));
+  for (int round = 0; round < options.relocations && count >= least && !fit.done(); ++round) {
     fit.return_to_best();
     const double before = fit.best_distance();
     remove_least_useful_spheres(fit.model(), fit.points().on_surface, count);
     fit.grow(options.spheres, 1, before);
     watch.add_dips(fit.model(), fit.points().inside);
     fit.refine_for(options.relocation_iterations);
-    if (fit.best_distance() >= before) count = 2 * count / 3;
+    if (fit.best_distance() > (1.0 - options.relocation_gain) * before) count = 2 * count / 3;
   }
   fit.return_to_best();
 }

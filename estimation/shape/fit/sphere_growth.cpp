@@ -1,7 +1,9 @@
 #include "estimation/shape/fit/sphere_growth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -40,12 +42,19 @@ std::vector<PatchError> patch_errors(const std::vector<Vec3d>& points, const std
                                      double radius) {
   std::vector<PatchError> errors(points.size());
   const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
+  const std::vector<ClusterGroup> groups = group_clusters(clusters, kClustersPerGroup);
   parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
     const PointCluster& own = clusters[static_cast<std::size_t>(c)];
+    const auto reaches = [&](const Vec3d& center, double other_radius) {
+      return norm(own.center - center) <= own.radius + other_radius + radius;
+    };
     std::vector<std::size_t> in_reach;
-    for (const PointCluster& other : clusters) {
-      if (norm(own.center - other.center) > own.radius + other.radius + radius) continue;
-      for (const std::int32_t i : other.points) in_reach.push_back(static_cast<std::size_t>(i));
+    for (const ClusterGroup& group : groups) {
+      if (!reaches(group.center, group.radius)) continue;
+      for (std::size_t k = group.begin; k < group.end; ++k) {
+        if (!reaches(clusters[k].center, clusters[k].radius)) continue;
+        for (const std::int32_t i : clusters[k].points) in_reach.push_back(static_cast<std::size_t>(i));
+      }
     }
     for (const std::int32_t i : own.points) {
       PatchError sum;
@@ -62,6 +71,42 @@ std::vector<PatchError> patch_errors(const std::vector<Vec3d>& points, const std
   return errors;
 }
 
+// Places of which no two lie closer together than a given distance.
+class SpacedPlaces {
+ public:
+  explicit SpacedPlaces(double spacing) : spacing_(spacing) {}
+
+  // Takes the place if no other is too close. Returns whether it was taken.
+  bool take(const Vec3d& p) {
+    const Cell cell = cell_of(p);
+    for (std::int64_t x = cell[0] - 1; x <= cell[0] + 1; ++x) {
+      for (std::int64_t y = cell[1] - 1; y <= cell[1] + 1; ++y) {
+        for (std::int64_t z = cell[2] - 1; z <= cell[2] + 1; ++z) {
+          const auto found = cells_.find({x, y, z});
+          if (found != cells_.end() && too_close(p, found->second)) return false;
+        }
+      }
+    }
+    cells_[cell].push_back(p);
+    return true;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+
+  Cell cell_of(const Vec3d& p) const {
+    const auto along = [&](double x) { return static_cast<std::int64_t>(std::floor(x / spacing_)); };
+    return {along(p.x), along(p.y), along(p.z)};
+  }
+  bool too_close(const Vec3d& p, const std::vector<Vec3d>& places) const {
+    return std::any_of(places.begin(), places.end(),
+                       [&](const Vec3d& q) { return squared_norm(p - q) < spacing_ * spacing_; });
+  }
+
+  double spacing_;
+  std::map<Cell, std::vector<Vec3d>> cells_;
+};
+
 // How far the surface at a point would move without a sphere.
 struct Movement {
   std::int32_t sphere;
@@ -70,27 +115,29 @@ struct Movement {
 
 // For every point the movements without each of the spheres in reach. Spheres with a negligible share of
 // their kind's sum are left out.  (#points)
-std::vector<std::vector<Movement>> movements(const MetaballModel& model, const std::vector<Vec3d>& points) {
+std::vector<std::vector<Movement>> movements(const MetaballModel& model, std::span<const Vec3d> points) {
   constexpr double kLargestShare = 0.999, kNegligibleShare = 1e-6;
-  const ModelEvaluation parameters = evaluation_parameters(model);
+  const ModelEvaluation evaluation = evaluation_parameters(model);
   std::vector<std::vector<Movement>> moved(points.size());
-  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    std::vector<double> shares;
-    const MetaballSums<double> sums =
-        totals_with_shares(model, parameters, neighbours, points[p], shares).net();
-    const Vec3d slope = metaball_distance(parameters, sums).log_gradient;
-    const double slope_length = std::sqrt(squared_norm(slope) + parameters.gradient_floor);
-    for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      if (shares[j] <= kNegligibleShare) continue;
-      moved[p].push_back(
-          {neighbours[j], level_lost(model, sums.kernel, std::min(shares[j], kLargestShare)) / slope_length});
+  for_each_block(model, points, [&](std::span<const std::int32_t> own, const ClusterScratch& scratch) {
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      const MetaballSums<double> sums = scratch.kernels.totals(j).net();
+      const Vec3d slope = metaball_distance(evaluation, sums).log_gradient;
+      const double slope_length = std::sqrt(squared_norm(slope) + evaluation.gradient_floor);
+      for (std::size_t i = 0; i < scratch.spheres.size(); ++i) {
+        const double share = scratch.kernels.share(i, j);
+        if (share <= kNegligibleShare) continue;
+        moved[static_cast<std::size_t>(own[j])].push_back(
+            {scratch.spheres[i],
+             level_lost(model, sums.kernel, std::min(share, kLargestShare)) / slope_length});
+      }
     }
   });
   return moved;
 }
 
 // For every sphere the sum of its squared movements over all points.  (#spheres)
-std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec3d>& points) {
+std::vector<double> usefulness(const MetaballModel& model, std::span<const Vec3d> points) {
   std::vector<double> use(model.spheres.size(), 0.0);
   for (const std::vector<Movement>& list : movements(model, points)) {
     for (const Movement& m : list) use[static_cast<std::size_t>(m.sphere)] += m.distance * m.distance;
@@ -99,16 +146,16 @@ std::vector<double> usefulness(const MetaballModel& model, const std::vector<Vec
 }
 
 // Marks the spheres of one kind that hold `share` of its sum at one of the points.
-void mark_holding(const MetaballModel& model, bool subtractive, const std::vector<Vec3d>& points,
-                  double share, std::vector<bool>& marks) {
-  const ModelEvaluation parameters = evaluation_parameters(model);
-  std::vector<std::vector<std::int32_t>> holding(points.size());  // one list for each point
-  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    std::vector<double> shares;
-    totals_with_shares(model, parameters, neighbours, points[p], shares);
-    for (std::size_t j = 0; j < neighbours.size(); ++j) {
-      const bool of_kind = model.spheres[static_cast<std::size_t>(neighbours[j])].subtractive == subtractive;
-      if (of_kind && shares[j] >= share) holding[p].push_back(neighbours[j]);
+void mark_holding(const MetaballModel& model, bool subtractive, std::span<const Vec3d> points, double share,
+                  std::vector<bool>& marks) {
+  std::vector<std::vector<std::int32_t>> holding(
+      points.size());  // one list for the first point of each block
+  for_each_block(model, points, [&](std::span<const std::int32_t> own, const ClusterScratch& scratch) {
+    std::vector<std::int32_t>& list = holding[static_cast<std::size_t>(own.front())];
+    for (std::size_t i = 0; i < scratch.spheres.size(); ++i) {
+      const std::int32_t sphere = scratch.spheres[i];
+      const bool of_kind = model.spheres[static_cast<std::size_t>(sphere)].subtractive == subtractive;
+      if (of_kind && scratch.kernels.largest_share(i) >= share) list.push_back(sphere);
     }
   });
   for (const auto& list : holding) {
@@ -162,15 +209,12 @@ std::vector<ModelSphere> spheres_for_largest_errors(const MetaballModel& model, 
   const double radius = radius_for_patch(model, patch);
   const double depth = radius * radii_at_kernel(model, kStartShare);
   std::vector<ModelSphere> grown;
-  std::vector<Vec3d> occupied;
+  SpacedPlaces occupied(2.0 * patch);
   int num_subtractive = 0;
   for (const std::size_t i : order) {
     if (grown.size() >= static_cast<std::size_t>(options.count)) break;
     const Vec3d& p = samples.points[i];
-    const bool free = std::none_of(occupied.begin(), occupied.end(),
-                                   [&](const Vec3d& q) { return squared_norm(p - q) < 4.0 * patch * patch; });
-    if (!free) continue;
-    occupied.push_back(p);
+    if (!occupied.take(p)) continue;
     const bool subtractive = errors[i].mean > 0.0 && num_subtractive < options.subtractive;
     if (subtractive) ++num_subtractive;
     grown.emplace_back(p + samples.normals[i] * (subtractive ? depth : -depth), radius, subtractive);

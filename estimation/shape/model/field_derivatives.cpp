@@ -3,6 +3,7 @@
 #include <array>
 
 #include "estimation/shape/model/compact_kernel_derivatives_internal.h"
+#include "estimation/shape/model/signed_terms_internal.h"
 
 namespace astrolith {
 namespace {
@@ -31,31 +32,6 @@ MetaballTotals<double> totals_at(const MetaballModel& model, const ModelEvaluati
   return totals;
 }
 
-// The terms that all spheres of one kind, additive or subtractive, have in common.
-struct KindTerms {
-  double weight;  // w_i over exp k_i
-  Vec3d mean;     // G_i
-};
-
-class SignedTerms {
- public:
-  explicit SignedTerms(const MetaballTotals<double>& totals)
-      : added_(terms_of(totals.added, 1.0 / (totals.added.kernel + double{kKernelFloor}))),
-        subtracted_(terms_of(totals.subtracted, 1.0 / (1.0 + totals.subtracted.kernel))) {
-    subtracted_.weight *= -1.0;
-  }
-
-  const KindTerms& of(const ModelSphere& sphere) const { return sphere.subtractive ? subtracted_ : added_; }
-  Vec3d weighted_mean() const { return added_.mean - subtracted_.mean; }  // G
-
- private:
-  static KindTerms terms_of(const MetaballSums<double>& sums, double weight) {
-    return {weight, sums.weighted * weight};
-  }
-
-  KindTerms added_, subtracted_;
-};
-
 }  // namespace
 
 double distance_with_derivatives(const MetaballModel& model, const ModelEvaluation& parameters,
@@ -78,7 +54,7 @@ double distance_with_derivatives(const MetaballModel& model, const ModelEvaluati
   double by_kappa = -s / kappa;
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
     const ModelSphere& sphere = model.spheres[static_cast<std::size_t>(neighbours[j])];
-    const KindTerms& kind = terms.of(sphere);
+    const KindTerms& kind = terms.of(sphere.subtractive);
     const double radius = sphere.radius;
     const Vec3d u{by_sphere[j][0], by_sphere[j][1], by_sphere[j][2]};
     const double weight = by_sphere[j][3] * kind.weight;
@@ -108,7 +84,7 @@ double level_with_derivatives(const MetaballModel& model, const ModelEvaluation&
   for (std::size_t j = 0; j < neighbours.size(); ++j) {
     const ModelSphere& sphere = model.spheres[static_cast<std::size_t>(neighbours[j])];
     const Vec3d u{by_sphere[j][0], by_sphere[j][1], by_sphere[j][2]};
-    const double weight = by_sphere[j][3] * terms.of(sphere).weight;
+    const double weight = by_sphere[j][3] * terms.of(sphere.subtractive).weight;
     const double q = squared_norm(u) * sphere.radius * sphere.radius;
     by_sphere[j] = {2.0 * weight * u.x, 2.0 * weight * u.y, 2.0 * weight * u.z, 2.0 * weight * q};
     by_log_kappa += (1.0 - q) * weight;

@@ -1,43 +1,38 @@
 #include "estimation/shape/model/isosurface_projection.h"
 
-#include "estimation/shape/model/point_clusters.h"
-#include "numerics/parallel_for.h"
+#include <algorithm>
+
+#include "estimation/shape/model/block_kernels.h"
+#include "estimation/shape/model/model_evaluation_internal.h"
 
 namespace astrolith {
 namespace {
-
-constexpr std::size_t kPointsPerCluster = 64;
 
 class Projector {
  public:
   Projector(const MetaballModel& model, int steps)
       : model_(model),
-        parameters_(evaluation_parameters(model)),
-        cutoff_(support_radii(model)),
+        evaluation_(evaluation_parameters(model)),
         longest_step_(largest_radius(model)),
         steps_(steps) {}
 
-  // Spheres whose support may reach a point of the cluster after the point has moved by up to half the
-  // largest radius.
-  std::vector<MetaballSphere<double>> neighbours(const PointCluster& cluster) const {
-    std::vector<MetaballSphere<double>> found;
-    const double reach = cluster.radius + 0.5 * longest_step_;
-    for (const ModelSphere& s : model_.spheres) {
-      if (norm(s.center - cluster.center) < reach + cutoff_ * s.radius) found.push_back(kernel_of(s));
-    }
-    return found;
-  }
+  // A point moves by up to half the largest radius on its way to the surface.
+  double margin() const { return 0.5 * longest_step_; }
 
-  void project(const std::vector<MetaballSphere<double>>& spheres, Vec3d& point, Vec3d& normal) const {
-    normal = nearest_sphere_direction(point);
+  // Projects the points of a block, which the spheres reach.
+  void project(std::span<const std::int32_t> spheres, BlockKernels& kernels, std::span<Vec3d> points,
+               std::span<Vec3d> normals) const {
+    for (std::size_t j = 0; j < points.size(); ++j) normals[j] = nearest_sphere_direction(points[j]);
     for (int step = 0; step <= steps_; ++step) {
-      MetaballTotals<double> totals;
-      for (const MetaballSphere<double>& s : spheres) accumulate_metaball(parameters_, s, point, totals);
-      const SurfaceDistance<double> at = metaball_distance(parameters_, totals.net());
-      if (squared_norm(at.log_gradient) == 0.0) return;
-      normal = normalized(-at.log_gradient);
-      // The last evaluation only gives the normal.
-      if (step < steps_) point += normal * std::clamp(at.distance, -longest_step_, longest_step_);
+      kernels.evaluate(model_, evaluation_, spheres, points);
+      for (std::size_t j = 0; j < points.size(); ++j) {
+        const SurfaceDistance<double> at = metaball_distance(evaluation_, kernels.totals(j).net());
+        // Without a gradient the point stays here, and so does its gradient.
+        if (squared_norm(at.log_gradient) == 0.0) continue;
+        normals[j] = normalized(-at.log_gradient);
+        // The last evaluation only gives the normal.
+        if (step < steps_) points[j] += normals[j] * std::clamp(at.distance, -longest_step_, longest_step_);
+      }
     }
   }
 
@@ -55,8 +50,7 @@ class Projector {
   }
 
   const MetaballModel& model_;
-  MetaballParameters<double> parameters_;
-  double cutoff_;
+  ModelEvaluation evaluation_;
   double longest_step_;
   int steps_;
 };
@@ -68,15 +62,21 @@ SurfaceSamples project_onto_isosurface(const MetaballModel& model, std::span<con
   result.points.assign(points.begin(), points.end());
   result.normals.resize(points.size());
   const Projector projector(model, steps);
-  const std::vector<PointCluster> clusters = cluster_points(result.points, kPointsPerCluster);
-  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
-    const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];
-    const std::vector<MetaballSphere<double>> spheres = projector.neighbours(cluster);
-    for (const std::int32_t i : cluster.points) {
-      projector.project(spheres, result.points[static_cast<std::size_t>(i)],
-                        result.normals[static_cast<std::size_t>(i)]);
-    }
-  });
+  std::vector<PointCluster> clusters = cluster_points(points, BlockKernels::kMostPoints);
+  for (PointCluster& cluster : clusters) cluster.radius += projector.margin();
+  for_each_cluster(model, clusters, group_clusters(clusters, 2), support_radii(model),
+                   [&](std::size_t c, ClusterScratch& scratch) {
+                     const std::vector<std::int32_t>& own = clusters[c].points;
+                     std::vector<Vec3d> moved(own.size()), normals(own.size());
+                     for (std::size_t j = 0; j < own.size(); ++j) {
+                       moved[j] = points[static_cast<std::size_t>(own[j])];
+                     }
+                     projector.project(scratch.spheres, scratch.kernels, moved, normals);
+                     for (std::size_t j = 0; j < own.size(); ++j) {
+                       result.points[static_cast<std::size_t>(own[j])] = moved[j];
+                       result.normals[static_cast<std::size_t>(own[j])] = normals[j];
+                     }
+                   });
   return result;
 }
 

@@ -1,82 +1,78 @@
 // A metaball model evaluated at many points. Points that lie close together form a cluster and share one list
-// of spheres.
+// of spheres. Clusters that follow one another form a group: the spheres that reach the group are found
+// first, and each cluster of the group looks only among these.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "estimation/shape/model/block_kernels.h"
 #include "estimation/shape/model/metaball_model.h"
 #include "estimation/shape/model/point_clusters.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
 
-// Indices, ascending, of the spheres that may reach the cluster. `reach` is their support as a multiple of
-// their radii.
-inline std::vector<std::int32_t> spheres_within(const MetaballModel& model, const PointCluster& cluster,
-                                                double reach) {
-  std::vector<std::int32_t> found;
-  for (std::size_t i = 0; i < model.spheres.size(); ++i) {
-    const Sphere& s = model.spheres[i];
-    const double distance = cluster.radius + reach * s.radius;
-    if (squared_norm(s.center - cluster.center) < distance * distance) {
-      found.push_back(static_cast<std::int32_t>(i));
-    }
-  }
-  return found;
-}
+// Some clusters that follow one another, and a ball that holds their points.
+struct ClusterGroup {
+  std::size_t begin, end;
+  Vec3d center;
+  double radius;
+};
 
-// Calls visit(point index, indices of the spheres whose support may reach it) for all points, in parallel.
+// Groups of up to `size` > 0 clusters each, in order.
+std::vector<ClusterGroup> group_clusters(std::span<const PointCluster> clusters, std::size_t size);
+
+// Sets `found` to the indices, ascending, of the spheres whose supports reach a ball. `reach` is the support
+// as a multiple of the radius.
+void find_spheres(const MetaballModel& model, double reach, const Vec3d& center, double radius,
+                  std::vector<std::int32_t>& found);
+// Looks only among some of the spheres, given by their indices, ascending.
+void find_spheres(const MetaballModel& model, double reach, const Vec3d& center, double radius,
+                  std::span<const std::int32_t> among, std::vector<std::int32_t>& found);
+
+// What one thread needs to evaluate clusters one after another.
+struct ClusterScratch {
+  std::vector<std::int32_t> of_group, spheres;  // indices, ascending: that reach the group, and the cluster
+  std::vector<Vec3d> points;
+  BlockKernels kernels;
+};
+
+// Calls visit(cluster's index, scratch) for all clusters, in parallel. scratch.spheres holds the spheres
+// whose supports may reach the cluster.
 template <typename Visit>
-void for_each_with_neighbours(const MetaballModel& model, const std::vector<Vec3d>& points,
-                              const Visit& visit) {
-  constexpr std::size_t kPointsPerCluster = 32;
-  const double cutoff = support_radii(model);
-  const std::vector<PointCluster> clusters = cluster_points(points, kPointsPerCluster);
-  parallel_for(0, static_cast<std::int64_t>(clusters.size()), [&](std::int64_t c) {
-    const PointCluster& cluster = clusters[static_cast<std::size_t>(c)];
-    const std::vector<std::int32_t> neighbours = spheres_within(model, cluster, cutoff);
-    for (const std::int32_t i : cluster.points) visit(static_cast<std::size_t>(i), neighbours);
+void for_each_cluster(const MetaballModel& model, std::span<const PointCluster> clusters,
+                      std::span<const ClusterGroup> groups, double reach, const Visit& visit) {
+  parallel_for(0, static_cast<std::int64_t>(groups.size()), [&](std::int64_t g) {
+    const ClusterGroup& group = groups[static_cast<std::size_t>(g)];
+    ClusterScratch scratch;
+    find_spheres(model, reach, group.center, group.radius, scratch.of_group);
+    for (std::size_t c = group.begin; c < group.end; ++c) {
+      find_spheres(model, reach, clusters[c].center, clusters[c].radius, scratch.of_group, scratch.spheres);
+      visit(c, scratch);
+    }
   });
 }
 
-inline void add_sums(const MetaballSums<double>& more, MetaballSums<double>& sums) {
-  sums.kernel += more.kernel;
-  sums.weighted += more.weighted;
-}
+// How many clusters a group has in the evaluations of a model.
+inline constexpr std::size_t kClustersPerGroup = 16;
 
-// Returns the sums at a point over some of the model's spheres. `shares` receives the share of each sphere in
-// the sum of its kind: k / P for an additive metaball, k / (1 + N) for a subtractive one.
-inline MetaballTotals<double> totals_with_shares(const MetaballModel& model,
-                                                 const ModelEvaluation& evaluation,
-                                                 std::span<const std::int32_t> spheres, const Vec3d& p,
-                                                 std::vector<double>& shares) {
-  MetaballTotals<double> totals;
-  shares.resize(spheres.size());
-  for (std::size_t j = 0; j < spheres.size(); ++j) {
-    MetaballTotals<double> own;
-    accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(spheres[j])]), p, own);
-    shares[j] = own.added.kernel + own.subtracted.kernel;
-    add_sums(own.added, totals.added);
-    add_sums(own.subtracted, totals.subtracted);
-  }
-  const double added = totals.added.kernel + double{kKernelFloor},
-               subtracted = 1.0 + totals.subtracted.kernel;
-  for (std::size_t j = 0; j < spheres.size(); ++j) {
-    shares[j] /= model.spheres[static_cast<std::size_t>(spheres[j])].subtractive ? subtracted : added;
-  }
-  return totals;
-}
-
-// The net sums at a point over some of the model's spheres.
-inline MetaballSums<double> net_sums_at(const MetaballModel& model, const ModelEvaluation& evaluation,
-                                        std::span<const std::int32_t> spheres, const Vec3d& p) {
-  MetaballTotals<double> totals;
-  for (const std::int32_t i : spheres) {
-    accumulate_metaball(evaluation, kernel_of(model.spheres[static_cast<std::size_t>(i)]), p, totals);
-  }
-  return totals.net();
+// Evaluates the kernels at all points, in parallel. Calls visit(indices of some points, scratch) for every
+// cluster of them: number j of scratch.kernels is point j of the list.
+template <typename Visit>
+void for_each_block(const MetaballModel& model, std::span<const Vec3d> points, const Visit& visit) {
+  const ModelEvaluation evaluation = evaluation_parameters(model);
+  const std::vector<PointCluster> clusters = cluster_points(points, BlockKernels::kMostPoints);
+  for_each_cluster(model, clusters, group_clusters(clusters, kClustersPerGroup), support_radii(model),
+                   [&](std::size_t c, ClusterScratch& scratch) {
+                     scratch.points.clear();
+                     for (const std::int32_t i : clusters[c].points) {
+                       scratch.points.push_back(points[static_cast<std::size_t>(i)]);
+                     }
+                     scratch.kernels.evaluate(model, evaluation, scratch.spheres, scratch.points);
+                     visit(clusters[c].points, scratch);
+                   });
 }
 
 }  // namespace astrolith

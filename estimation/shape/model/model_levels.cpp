@@ -4,21 +4,24 @@
 
 namespace astrolith {
 
-std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points) {
+std::vector<double> model_levels(const MetaballModel& model, std::span<const Vec3d> points) {
   std::vector<double> levels(points.size());
-  const ModelEvaluation parameters = evaluation_parameters(model);
-  for_each_with_neighbours(model, points, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    levels[p] = level_of(model, net_sums_at(model, parameters, neighbours, points[p]).kernel);
+  for_each_block(model, points, [&](std::span<const std::int32_t> own, const ClusterScratch& scratch) {
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      levels[static_cast<std::size_t>(own[j])] = level_of(model, scratch.kernels.totals(j).net().kernel);
+    }
   });
   return levels;
 }
 
 std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points) {
-  const std::vector<Vec3d> all(points.begin(), points.end());
-  std::vector<double> distances(all.size());
-  const ModelEvaluation parameters = evaluation_parameters(model);
-  for_each_with_neighbours(model, all, [&](std::size_t p, const std::vector<std::int32_t>& neighbours) {
-    distances[p] = metaball_distance(parameters, net_sums_at(model, parameters, neighbours, all[p])).distance;
+  std::vector<double> distances(points.size());
+  const ModelEvaluation evaluation = evaluation_parameters(model);
+  for_each_block(model, points, [&](std::span<const std::int32_t> own, const ClusterScratch& scratch) {
+    for (std::size_t j = 0; j < own.size(); ++j) {
+      distances[static_cast<std::size_t>(own[j])] =
+          metaball_distance(evaluation, scratch.kernels.totals(j).net()).distance;
+    }
   });
   return distances;
 }

@@ -11,7 +11,7 @@
 namespace astrolith {
 
 // The level L of every point: 0 on the surface, positive inside, without unit.  (#points)
-std::vector<double> model_levels(const MetaballModel& model, const std::vector<Vec3d>& points);
+std::vector<double> model_levels(const MetaballModel& model, std::span<const Vec3d> points);
 
 // The first-order signed distance s of every point: positive inside, in length units.  (#points)
 std::vector<double> model_distances(const MetaballModel& model, std::span<const Vec3d> points);

@@ -2,56 +2,95 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
-#include <span>
+#include <cmath>
+
+#include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
 
-PointCluster cluster_of(const std::vector<Vec3d>& points, std::span<const std::int32_t> indices,
-                        const Box& box) {
-  PointCluster cluster{{indices.begin(), indices.end()}, box.center(), 0.0};
-  for (const std::int32_t i : indices) {
-    cluster.radius = std::max(cluster.radius, norm(points[static_cast<std::size_t>(i)] - cluster.center));
+// Sides with more points are split in parallel.
+constexpr std::size_t kManyPoints = 2048;
+
+// A point that carries its index, so that the split reads memory in order.
+struct IndexedPoint {
+  std::array<double, 3> at;
+  std::int32_t index;
+};
+
+struct Corners {
+  std::array<double, 3> low, high;
+
+  Vec3d center() const {
+    return {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])};
+  }
+  std::size_t longest_axis() const {
+    const double x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+    if (x >= y && x >= z) return 0;
+    return y >= z ? 1 : 2;
+  }
+};
+
+Corners corners_of(std::span<const IndexedPoint> points) {
+  Corners box{points.front().at, points.front().at};
+  for (const IndexedPoint& p : points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] = p.at[axis] < box.low[axis] ? p.at[axis] : box.low[axis];
+      box.high[axis] = p.at[axis] > box.high[axis] ? p.at[axis] : box.high[axis];
+    }
+  }
+  return box;
+}
+
+PointCluster cluster_of(std::span<const IndexedPoint> points, const Vec3d& center) {
+  PointCluster cluster{{}, center, 0.0};
+  cluster.points.reserve(points.size());
+  for (const IndexedPoint& p : points) {
+    cluster.points.push_back(p.index);
+    cluster.radius = std::max(cluster.radius, norm(Vec3d{p.at[0], p.at[1], p.at[2]} - center));
   }
   return cluster;
 }
 
-int longest_axis(const Vec3d& extent) {
-  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
-  return extent.y >= extent.z ? 1 : 2;
-}
-
-double coordinate(const Vec3d& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
-void split(const std::vector<Vec3d>& points, std::span<std::int32_t> indices, std::size_t size,
-           std::vector<PointCluster>& clusters) {
-  Box box;
-  for (const std::int32_t i : indices) box.extend(points[static_cast<std::size_t>(i)]);
-  if (indices.size() <= size) {
-    clusters.push_back(cluster_of(points, indices, box));
+// Splits the points into all of these clusters.
+void split(std::span<IndexedPoint> points, std::span<PointCluster> clusters) {
+  const Corners box = corners_of(points);
+  if (clusters.size() == 1) {
+    clusters.front() = cluster_of(points, box.center());
     return;
   }
-  const int axis = longest_axis(box.extent());
-  const std::size_t half = indices.size() / 2;
+  // Each side gets its share of the clusters and of the points, so that clusters are nearly full.
+  const std::size_t first = clusters.size() / 2;
+  const std::size_t half = (points.size() * first + clusters.size() - 1) / clusters.size();
   // Points with equal coordinates are ordered by index, so that the order does not depend on the library.
-  std::nth_element(indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(half), indices.end(),
-                   [&](std::int32_t i, std::int32_t j) {
-                     const double xi = coordinate(points[static_cast<std::size_t>(i)], axis);
-                     const double xj = coordinate(points[static_cast<std::size_t>(j)], axis);
-                     return xi < xj || (xi == xj && i < j);
+  const std::size_t axis = box.longest_axis();
+  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half), points.end(),
+                   [axis](const IndexedPoint& a, const IndexedPoint& b) {
+                     return a.at[axis] < b.at[axis] || (a.at[axis] == b.at[axis] && a.index < b.index);
                    });
-  split(points, indices.first(half), size, clusters);
-  split(points, indices.subspan(half), size, clusters);
+  const auto split_side = [&](std::int64_t side) {
+    if (side == 0) split(points.first(half), clusters.first(first));
+    if (side == 1) split(points.subspan(half), clusters.subspan(first));
+  };
+  if (points.size() > kManyPoints) {
+    parallel_for(0, 2, split_side);
+  } else {
+    split_side(0);
+    split_side(1);
+  }
 }
 
 }  // namespace
 
-std::vector<PointCluster> cluster_points(const std::vector<Vec3d>& points, std::size_t size) {
-  std::vector<std::int32_t> indices(points.size());
-  std::iota(indices.begin(), indices.end(), 0);
-  std::vector<PointCluster> clusters;
-  if (!points.empty()) split(points, indices, std::max<std::size_t>(size, 1), clusters);
+std::vector<PointCluster> cluster_points(std::span<const Vec3d> points, std::size_t size) {
+  if (points.empty()) return {};
+  std::vector<IndexedPoint> indexed;
+  indexed.reserve(points.size());
+  for (const Vec3d& p : points) {
+    indexed.push_back({{p.x, p.y, p.z}, static_cast<std::int32_t>(indexed.size())});
+  }
+  std::vector<PointCluster> clusters((points.size() + size - 1) / size);
+  split(indexed, clusters);
   return clusters;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "numerics/vec3.h"
@@ -14,8 +15,9 @@ struct PointCluster {
   double radius = 0.0;               // radius of this ball
 };
 
-// Splits the points at the median along the longest side of their bounding box until no cluster has more than
-// `size` points. The result depends on the points only.
-std::vector<PointCluster> cluster_points(const std::vector<Vec3d>& points, std::size_t size);
+// Splits the points along the longest side of their bounding box until no cluster has more than `size` > 0
+// points. Their number is the least, #points / size rounded up, and clusters differ by a point or two.
+// Clusters that follow one another lie close together. The result depends on the points only.
+std::vector<PointCluster> cluster_points(std::span<const Vec3d> points, std::size_t size);
 
 }  // namespace astrolith

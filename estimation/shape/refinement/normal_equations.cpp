@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 
 #include "estimation/shape/refinement/normal_equations_internal.h"
 #include "numerics/host_device.h"
@@ -10,78 +11,39 @@ namespace {
 // Every entry of D is at least this part of the largest, so that idle spheres do not move freely.
 constexpr double kLeastDiagonal = 1e-8;
 
-// out[a][c] += sum_r rows[r][a] rows[r][c] for a = 0 .. 3 and all columns c. The first four columns of `rows`
-// are the derivatives by one sphere, and the other columns those by the spheres that follow it in the block.
-ASTROLITH_SIMD_CLONES void add_products(const double* rows, std::size_t row_count, std::size_t row_stride,
-                                        std::size_t columns, double* __restrict out) {
+// out[a][c] = sum_r rows[r][a] rows[r][first + c] for a = 0 .. 3 and some columns c. The sums stay in
+// registers.
+template <std::size_t columns>
+ASTROLITH_KERNEL void column_products(const double* rows, std::size_t row_count, std::size_t row_stride,
+                                      std::size_t first, double* __restrict out, std::size_t out_stride) {
+  double sums[4][columns] = {};
   for (std::size_t r = 0; r < row_count; ++r) {
-    const double* __restrict row = rows + r * row_stride;
+    const double* row = rows + r * row_stride;
+    ASTROLITH_UNROLL
     for (std::size_t a = 0; a < 4; ++a) {
       const double left = row[a];
-      double* __restrict sums = out + a * columns;
 #pragma omp simd
-      for (std::size_t c = 0; c < columns; ++c) sums[c] += left * row[c];
+      for (std::size_t c = 0; c < columns; ++c) sums[a][c] += left * row[first + c];
     }
+  }
+  ASTROLITH_UNROLL
+  for (std::size_t a = 0; a < 4; ++a) {
+#pragma omp simd
+    for (std::size_t c = 0; c < columns; ++c) out[a * out_stride + c] = sums[a][c];
   }
 }
 
+// out[a][c] = sum_r rows[r][a] rows[r][c] for a = 0 .. 3 and all columns c, a multiple of 4. The first four
+// columns of `rows` are the derivatives by one sphere, and the other columns those by the spheres that follow
+// it in the block.
+ASTROLITH_SIMD_CLONES void sphere_products(const double* rows, std::size_t row_count, std::size_t row_stride,
+                                           std::size_t columns, double* __restrict out) {
+  std::size_t c = 0;
+  for (; c + 8 <= columns; c += 8) column_products<8>(rows, row_count, row_stride, c, out + c, columns);
+  if (c < columns) column_products<4>(rows, row_count, row_stride, c, out + c, columns);
+}
+
 }  // namespace
-
-// The rows of H and g that belong to one sphere, while they are summed. H is symmetric, so only the products
-// with the sphere itself and with later spheres are needed.
-class NormalEquations::SphereRow {
- public:
-  // `partners` are the spheres of the row's blocks, ascending; the first is the sphere itself.
-  SphereRow(const std::vector<std::int32_t>& partners, std::size_t spheres)
-      : by_partners_(Eigen::MatrixXd::Zero(4, static_cast<Eigen::Index>(4 * partners.size()))),
-        column_of_sphere_(spheres) {
-    for (std::size_t k = 0; k < partners.size(); ++k) {
-      column_of_sphere_[static_cast<std::size_t>(partners[k])] = static_cast<Eigen::Index>(4 * k);
-    }
-  }
-
-  // Adds the products of a residual block, in which the sphere stands at `position` in the list of
-  // neighbours.
-  void add(const ResidualBlock& block, std::size_t position) {
-    add_products_with_spheres(block, position);
-    const std::size_t neighbours = block.neighbours.size();
-    for (std::size_t r = 0; r < block.residuals.size(); ++r) {
-      const Eigen::Map<const Eigen::Vector4d> derivatives(block.by_sphere[r * neighbours + position].data());
-      by_sharpness_ += derivatives * block.by_sharpness[r];
-      gradient_ += derivatives * block.residuals[r];
-    }
-  }
-
-  // Adds the products of the condition on the sphere's centre.
-  void add(const CenterCondition& condition) {
-    const Eigen::Map<const Eigen::Vector4d> derivatives(condition.derivatives.data());
-    by_partners_.leftCols<4>() += derivatives * derivatives.transpose();
-    gradient_ += derivatives * condition.residual;
-  }
-
-  const Eigen::MatrixXd& by_partners() const { return by_partners_; }  // (4 x 4 #partners)
-  const Eigen::Vector4d& by_sharpness() const { return by_sharpness_; }
-  const Eigen::Vector4d& gradient() const { return gradient_; }
-
- private:
-  void add_products_with_spheres(const ResidualBlock& block, std::size_t position) {
-    const std::size_t neighbours = block.neighbours.size(), columns = 4 * (neighbours - position);
-    products_.setZero(4, static_cast<Eigen::Index>(columns));
-    add_products(block.by_sphere[position].data(), block.residuals.size(), 4 * neighbours, columns,
-                 products_.data());
-    Eigen::Index from = 0;
-    for (std::size_t k = position; k < neighbours; ++k, from += 4) {
-      const Eigen::Index to = column_of_sphere_[static_cast<std::size_t>(block.neighbours[k])];
-      by_partners_.middleCols<4>(to) += products_.middleCols<4>(from);
-    }
-  }
-
-  Eigen::MatrixXd by_partners_;
-  Eigen::Vector4d by_sharpness_ = Eigen::Vector4d::Zero();
-  Eigen::Vector4d gradient_ = Eigen::Vector4d::Zero();
-  std::vector<Eigen::Index> column_of_sphere_;                          // where a partner's products begin
-  Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor> products_;  // scratch, of one block
-};
 
 NormalEquations::NormalEquations(const ResidualBlocks& residuals, std::size_t spheres)
     : residuals_(residuals), spheres_(spheres), places_(spheres), partners_(spheres) {
@@ -102,15 +64,15 @@ void NormalEquations::find_places() {
 
 void NormalEquations::find_partners() {
   parallel_for(0, static_cast<std::int64_t>(spheres_), [&](std::int64_t i) {
-    std::vector<char> meets(spheres_, 0);
-    meets[static_cast<std::size_t>(i)] = 1;
+    std::vector<std::int32_t>& partners = partners_[static_cast<std::size_t>(i)];
+    std::vector<std::int32_t> merged;
+    partners = {static_cast<std::int32_t>(i)};
     for (const Place& place : places_[static_cast<std::size_t>(i)]) {
-      for (const std::int32_t j : residuals_.blocks()[static_cast<std::size_t>(place.block)].neighbours) {
-        meets[static_cast<std::size_t>(j)] = 1;
-      }
-    }
-    for (auto j = static_cast<std::size_t>(i); j < spheres_; ++j) {
-      if (meets[j] != 0) partners_[static_cast<std::size_t>(i)].push_back(static_cast<std::int32_t>(j));
+      const auto& neighbours = residuals_.blocks()[static_cast<std::size_t>(place.block)].neighbours;
+      merged.clear();
+      std::set_union(partners.begin(), partners.end(), neighbours.begin() + place.position, neighbours.end(),
+                     std::back_inserter(merged));
+      partners.swap(merged);
     }
   });
 }
@@ -121,24 +83,27 @@ void NormalEquations::make_pattern() {
   hessian_.resize(size, size);
   gradient_.resize(size);
   diagonal_.resize(size);
-  Eigen::VectorXi entries(size);
+  int entries = 0;
   for (std::size_t i = 0; i < spheres_; ++i) {
-    entries.segment<4>(static_cast<Eigen::Index>(4 * i))
-        .setConstant(static_cast<int>(4 * partners_[i].size() + 1));
-  }
-  entries[size - 1] = 1;
-  hessian_.reserve(entries);
-  for (std::size_t i = 0; i < spheres_; ++i) {
-    for (int a = 0; a < 4; ++a) {
-      const auto column = static_cast<Eigen::Index>(4 * i) + a;
-      for (const std::int32_t j : partners_[i]) {
-        for (int b = 0; b < 4; ++b) hessian_.insert(4 * Eigen::Index{j} + b, column) = 1.0;
-      }
-      hessian_.insert(size - 1, column) = 1.0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      hessian_.outerIndexPtr()[4 * i + a] = entries;
+      entries += static_cast<int>(4 * partners_[i].size() + 1);
     }
   }
-  hessian_.insert(size - 1, size - 1) = 1.0;
-  hessian_.makeCompressed();
+  hessian_.outerIndexPtr()[4 * spheres_] = entries;
+  hessian_.outerIndexPtr()[4 * spheres_ + 1] = entries + 1;
+  hessian_.resizeNonZeros(entries + 1);
+  int* row = hessian_.innerIndexPtr();
+  for (std::size_t i = 0; i < spheres_; ++i) {
+    for (int a = 0; a < 4; ++a) {
+      for (const std::int32_t j : partners_[i]) {
+        for (int b = 0; b < 4; ++b) *row++ = 4 * j + b;
+      }
+      *row++ = static_cast<int>(size) - 1;
+    }
+  }
+  *row = static_cast<int>(size) - 1;
+  std::fill_n(hessian_.valuePtr(), hessian_.nonZeros(), 1.0);
   factor_.analyzePattern(hessian_);
 }
 
@@ -149,14 +114,64 @@ void NormalEquations::assemble() {
   diagonal_ = diagonal_.cwiseMax(kLeastDiagonal * diagonal_.maxCoeff());
 }
 
+// Sums the rows of H and g that belong to one sphere. H is symmetric, so only the products with the sphere
+// itself and with later spheres are needed. Row a of the sphere's products is column 4 i + a of the lower
+// triangle.
 void NormalEquations::assemble_row(std::size_t sphere) {
-  SphereRow row(partners_[sphere], spheres_);
+  const std::vector<std::int32_t>& partners = partners_[sphere];
+  const std::size_t stride = 4 * partners.size() + 1;
+  double* columns = hessian_.valuePtr() + hessian_.outerIndexPtr()[4 * sphere];
+  std::fill_n(columns, 4 * stride, 0.0);
+  Eigen::Vector4d by_sharpness = Eigen::Vector4d::Zero(), gradient = Eigen::Vector4d::Zero();
+  std::vector<double> products;
   for (const Place& place : places_[sphere]) {
-    row.add(residuals_.blocks()[static_cast<std::size_t>(place.block)],
-            static_cast<std::size_t>(place.position));
+    const ResidualBlock& block = residuals_.blocks()[static_cast<std::size_t>(place.block)];
+    const auto position = static_cast<std::size_t>(place.position);
+    add_products(block, position, partners, products, columns);
+    const std::size_t neighbours = block.neighbours.size();
+    for (std::size_t r = 0; r < block.residuals.size(); ++r) {
+      const Eigen::Map<const Eigen::Vector4d> derivatives(block.by_sphere[r * neighbours + position].data());
+      by_sharpness += derivatives * block.by_sharpness[r];
+      gradient += derivatives * block.residuals[r];
+    }
   }
-  if (!residuals_.center_conditions().empty()) row.add(residuals_.center_conditions()[sphere]);
-  store(sphere, row);
+  if (!residuals_.center_conditions().empty()) {
+    const CenterCondition& condition = residuals_.center_conditions()[sphere];
+    const Eigen::Map<const Eigen::Vector4d> derivatives(condition.derivatives.data());
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        columns[a * stride + b] += condition.derivatives[a] * condition.derivatives[b];
+      }
+    }
+    gradient += derivatives * condition.residual;
+  }
+  for (std::size_t a = 0; a < 4; ++a) {
+    const auto column = static_cast<Eigen::Index>(4 * sphere + a);
+    columns[(a + 1) * stride - 1] = by_sharpness[static_cast<Eigen::Index>(a)];
+    gradient_[column] = gradient[static_cast<Eigen::Index>(a)];
+    diagonal_[column] = columns[a * stride + a];
+  }
+}
+
+// Adds the products of one block to a sphere's columns. The block's spheres are among the partners, in the
+// same order.
+void NormalEquations::add_products(const ResidualBlock& block, std::size_t position,
+                                   const std::vector<std::int32_t>& partners, std::vector<double>& products,
+                                   double* columns) {
+  const std::size_t neighbours = block.neighbours.size(), stride = 4 * partners.size() + 1;
+  const std::size_t product_stride = 4 * (neighbours - position);
+  products.resize(4 * product_stride);
+  sphere_products(block.by_sphere[position].data(), block.points.size(), 4 * neighbours, product_stride,
+                  products.data());
+  std::size_t partner = 0;
+  for (std::size_t k = position; k < neighbours; ++k) {
+    while (partners[partner] != block.neighbours[k]) ++partner;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double* from = products.data() + a * product_stride + 4 * (k - position);
+      double* to = columns + a * stride + 4 * partner;
+      for (std::size_t b = 0; b < 4; ++b) to[b] += from[b];
+    }
+  }
 }
 
 void NormalEquations::assemble_sharpness() {
@@ -173,26 +188,15 @@ void NormalEquations::assemble_sharpness() {
   diagonal_[last] = square;
 }
 
-void NormalEquations::store(std::size_t sphere, const SphereRow& row) {
-  const Eigen::Index entries = row.by_partners().cols();
-  for (Eigen::Index a = 0; a < 4; ++a) {
-    const auto column = static_cast<Eigen::Index>(4 * sphere) + a;
-    double* values = hessian_.valuePtr() + hessian_.outerIndexPtr()[column];
-    for (Eigen::Index k = 0; k < entries; ++k) values[k] = row.by_partners()(a, k);
-    values[entries] = row.by_sharpness()[a];
-    gradient_[column] = row.gradient()[a];
-    diagonal_[column] = row.by_partners()(a, a);
-  }
-}
-
-Eigen::SparseMatrix<double> NormalEquations::damped(double damping) const {
-  Eigen::SparseMatrix<double> damped = hessian_;
-  for (Eigen::Index column = 0; column < damped.cols(); ++column) {
+const Eigen::SparseMatrix<double>& NormalEquations::damped(double damping) {
+  if (damped_.nonZeros() != hessian_.nonZeros()) damped_ = hessian_;
+  std::copy_n(hessian_.valuePtr(), hessian_.nonZeros(), damped_.valuePtr());
+  for (Eigen::Index column = 0; column < damped_.cols(); ++column) {
     // The diagonal's place among the entries of its column: the block on the diagonal comes first.
-    const Eigen::Index within = column + 1 < damped.cols() ? column % 4 : 0;
-    damped.valuePtr()[damped.outerIndexPtr()[column] + within] += damping * diagonal_[column];
+    const Eigen::Index within = column + 1 < damped_.cols() ? column % 4 : 0;
+    damped_.valuePtr()[damped_.outerIndexPtr()[column] + within] += damping * diagonal_[column];
   }
-  return damped;
+  return damped_;
 }
 
 bool NormalEquations::solve(double damping, Eigen::VectorXd& step) {

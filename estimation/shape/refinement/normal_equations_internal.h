@@ -20,11 +20,11 @@ class NormalEquations {
   // this.
   NormalEquations(const ResidualBlocks& residuals, std::size_t spheres);
 
-  // Sums the blocks as they were last evaluated. The evaluation must have included the derivatives.
+  // Sums the blocks as they were last evaluated.
   void assemble();
 
-  // The lower triangle of H + damping D.
-  Eigen::SparseMatrix<double> damped(double damping) const;
+  // The lower triangle of H + damping D, until the next call.
+  const Eigen::SparseMatrix<double>& damped(double damping);
 
   // Solves (H + damping D) step = -g, where D is the diagonal of H. Returns false where the matrix is not
   // positive definite.
@@ -34,7 +34,6 @@ class NormalEquations {
   double predicted_decrease(const Eigen::VectorXd& step) const;
 
  private:
-  class SphereRow;
   struct Place {
     std::int32_t block;
     std::int32_t position;  // in the block's list of neighbours
@@ -45,7 +44,9 @@ class NormalEquations {
   void make_pattern();
   void assemble_row(std::size_t sphere);
   void assemble_sharpness();
-  void store(std::size_t sphere, const SphereRow& row);
+  static void add_products(const ResidualBlock& block, std::size_t position,
+                           const std::vector<std::int32_t>& partners, std::vector<double>& products,
+                           double* columns);
 
   const ResidualBlocks& residuals_;
   std::size_t spheres_;
@@ -53,6 +54,7 @@ class NormalEquations {
   std::vector<std::vector<std::int32_t>>
       partners_;                         // spheres j >= i that meet sphere i in a block, ascending
   Eigen::SparseMatrix<double> hessian_;  // lower triangle; whole blocks on the diagonal
+  Eigen::SparseMatrix<double> damped_;   // with the same pattern
   Eigen::VectorXd gradient_, diagonal_;
   Eigen::CholmodDecomposition<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
 };

@@ -45,7 +45,7 @@ class Refinement {
  private:
   // Takes the steps of one round. Returns true if one of them lowered the cost.
   bool round(ResidualBlocks& residuals, bool first) {
-    residuals.evaluate(true);
+    residuals.evaluate();
     round_start_ = result_.final_cost = residuals.cost();
     if (!std::isfinite(round_start_)) throw WorkError("refinement: the distances are not finite");
     if (first) result_.initial_cost = round_start_;
@@ -57,8 +57,6 @@ class Refinement {
       stale = step(residuals, equations);
       moved = moved || stale;
       ++result_.iterations;
-      // After the last step of a round the derivatives are not needed: the next round makes new lists.
-      if (stale && result_.iterations < last) residuals.evaluate(true);
     }
     return moved;
   }
@@ -77,7 +75,9 @@ class Refinement {
       keep_within_reach(change);
       const RefinementParameters before = parameters_;
       parameters_.add(change.data());
-      residuals.evaluate(false);
+      // Most steps are taken, and the next one needs the derivatives. Their sums at the present parameters
+      // stay in the equations if the step is not taken.
+      residuals.evaluate();
       const double cost = residuals.cost();
       const double ratio = (result_.final_cost - cost) / equations.predicted_decrease(change);
       if (cost < result_.final_cost && ratio > kWorthwhile) {

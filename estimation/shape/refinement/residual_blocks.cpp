@@ -1,18 +1,13 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
 
-#include "estimation/shape/model/model_evaluation_internal.h"
 #include "estimation/shape/model/model_levels.h"
 #include "estimation/shape/refinement/residual_blocks_internal.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
-
-// The number of points in a residual block, at most. Larger blocks make the solver's sums longer and fewer,
-// but they gather more spheres that reach only some of the points.
-constexpr std::size_t kPointsPerBlock = 24;
 
 // Derivatives are taken by the spheres that hold at least this share of their kind's sum at a point of the
 // block when a round starts. The residuals themselves include every sphere whose support reaches the block.
@@ -34,20 +29,23 @@ ScaledResidual pseudo_huber(double s, double c) {
   return {s * shrink, 1.0 / (shrink * t)};
 }
 
-// The spheres of the list that hold at least kSmallestShare of their kind's sum at one of the points.
-std::vector<std::int32_t> spheres_with_share(const MetaballModel& model, const ModelEvaluation& evaluation,
-                                             const std::vector<Vec3d>& points,
-                                             const std::vector<std::int32_t>& spheres) {
-  std::vector<double> shares, largest(spheres.size());
-  for (const Vec3d& p : points) {
-    totals_with_shares(model, evaluation, spheres, p, shares);
-    for (std::size_t j = 0; j < spheres.size(); ++j) largest[j] = std::max(largest[j], shares[j]);
+// The places of the neighbours in a list of spheres that holds them, unless they have left it. Both lists are
+// ascending. Neighbours that have left reach no point of the block.
+struct PlacesInList {
+  std::vector<std::int32_t> places;  // in the list of spheres
+  std::vector<std::size_t> columns;  // in the list of neighbours
+};
+PlacesInList find_places(const std::vector<std::int32_t>& neighbours,
+                         const std::vector<std::int32_t>& spheres) {
+  PlacesInList found;
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < neighbours.size(); ++k) {
+    while (i < spheres.size() && spheres[i] < neighbours[k]) ++i;
+    if (i == spheres.size() || spheres[i] != neighbours[k]) continue;
+    found.places.push_back(static_cast<std::int32_t>(i));
+    found.columns.push_back(k);
   }
-  std::vector<std::int32_t> kept;
-  for (std::size_t j = 0; j < spheres.size(); ++j) {
-    if (largest[j] >= kSmallestShare) kept.push_back(spheres[j]);
-  }
-  return kept;
+  return found;
 }
 
 CenterCondition center_condition(const SurfaceTree& target, double weight, const ModelSphere& sphere) {
@@ -74,15 +72,23 @@ ResidualBlocks::ResidualBlocks(const FitPoints& points, const RefinementOptions&
     add_blocks(active(points.inside, PointCondition::inside), PointCondition::inside);
     add_blocks(active(points.outside, PointCondition::outside), PointCondition::outside);
   }
-  find_neighbours();
 }
 
-void ResidualBlocks::evaluate(bool with_derivatives) {
+void ResidualBlocks::evaluate() {
   const MetaballModel model = parameters_.model();
   const ModelEvaluation evaluation = evaluation_parameters(model);
-  parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
-    evaluate_block(static_cast<std::size_t>(b), model, evaluation, with_derivatives);
-  });
+  for_each_cluster(model, clusters_, groups_, std::sqrt(evaluation.cutoff_squared),
+                   [&](std::size_t b, ClusterScratch& scratch) {
+                     ResidualBlock& block = blocks_[b];
+                     scratch.kernels.evaluate(model, evaluation, scratch.spheres, block.points);
+                     if (!has_neighbours_) choose_neighbours(block, scratch);
+                     if (model.kernel == Kernel::kGaussian) {
+                       evaluate_gaussians(block, model, evaluation, scratch);
+                     } else {
+                       evaluate_other_kernels(block, model, evaluation, scratch);
+                     }
+                   });
+  has_neighbours_ = true;
   if (options_.keep_centers_inside != nullptr) evaluate_centers(model);
 }
 
@@ -105,11 +111,19 @@ void ResidualBlocks::evaluate_centers(const MetaballModel& model) {
 }
 
 void ResidualBlocks::add_blocks(const std::vector<Vec3d>& points, PointCondition condition) {
-  for (const PointCluster& cluster : cluster_points(points, kPointsPerBlock)) {
+  const std::size_t before = clusters_.size();
+  for (PointCluster& cluster : cluster_points(points, BlockKernels::kMostPoints)) {
     ResidualBlock block{condition, {}, {}, {}, {}, {}};
     for (const std::int32_t i : cluster.points) block.points.push_back(points[static_cast<std::size_t>(i)]);
     blocks_.push_back(std::move(block));
-    clusters_.push_back(cluster);
+    clusters_.push_back(std::move(cluster));
+  }
+  const std::span<const PointCluster> own(clusters_.begin() + static_cast<std::ptrdiff_t>(before),
+                                          clusters_.end());
+  for (ClusterGroup group : group_clusters(own, kClustersPerGroup)) {
+    group.begin += before;
+    group.end += before;
+    groups_.push_back(group);
   }
 }
 
@@ -124,71 +138,69 @@ std::vector<Vec3d> ResidualBlocks::active(const std::vector<Vec3d>& points, Poin
   return kept;
 }
 
-void ResidualBlocks::find_neighbours() {
-  const MetaballModel model = parameters_.model();
-  const ModelEvaluation evaluation = evaluation_parameters(model);
-  const double reach = support_radii(model);
-  parallel_for(0, static_cast<std::int64_t>(blocks_.size()), [&](std::int64_t b) {
-    ResidualBlock& block = blocks_[static_cast<std::size_t>(b)];
-    block.neighbours =
-        spheres_with_share(model, evaluation, block.points,
-                           spheres_within(model, clusters_[static_cast<std::size_t>(b)], reach));
-    block.residuals.resize(block.points.size());
-    block.by_sharpness.resize(block.points.size());
-    block.by_sphere.resize(block.points.size() * block.neighbours.size());
-  });
-}
-
-// The neighbours of the block, then the other spheres whose support reaches the block now.
-std::vector<std::int32_t> ResidualBlocks::contributors(std::size_t b, const MetaballModel& model,
-                                                       double cutoff) const {
-  std::vector<std::int32_t> all = blocks_[b].neighbours;
-  const std::vector<std::int32_t> within = spheres_within(model, clusters_[b], cutoff);
-  std::set_difference(within.begin(), within.end(), blocks_[b].neighbours.begin(),
-                      blocks_[b].neighbours.end(), std::back_inserter(all));
-  return all;
-}
-
-void ResidualBlocks::evaluate_block(std::size_t b, const MetaballModel& model,
-                                    const ModelEvaluation& evaluation, bool with_derivatives) {
-  ResidualBlock& block = blocks_[b];
-  const std::vector<std::int32_t> spheres = contributors(b, model, std::sqrt(evaluation.cutoff_squared));
-  std::vector<SphereDerivatives> row(with_derivatives ? spheres.size() : 0);
-  const std::size_t n = block.neighbours.size();
-  for (std::size_t j = 0; j < block.points.size(); ++j) {
-    const ScaledResidual scaled = block.condition == PointCondition::on_surface
-                                      ? surface_condition(block, j, model, evaluation, spheres, row)
-                                      : containment_condition(block, j, model, evaluation, spheres, row);
-    block.residuals[j] = scaled.value;
-    if (!with_derivatives) continue;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < 4; ++k) block.by_sphere[j * n + i][k] = row[i][k] * scaled.derivative;
-    }
-    block.by_sharpness[j] *= scaled.derivative * parameters_.sharpness_slope();
+void ResidualBlocks::choose_neighbours(ResidualBlock& block, const ClusterScratch& scratch) const {
+  for (std::size_t i = 0; i < scratch.spheres.size(); ++i) {
+    if (scratch.kernels.largest_share(i) >= kSmallestShare) block.neighbours.push_back(scratch.spheres[i]);
   }
+  block.residuals.resize(block.points.size());
+  block.by_sharpness.resize(block.points.size());
+  block.by_sphere.resize(block.points.size() * block.neighbours.size());
 }
 
-ScaledResidual ResidualBlocks::surface_condition(ResidualBlock& block, std::size_t j,
-                                                 const MetaballModel& model,
-                                                 const ModelEvaluation& evaluation,
-                                                 std::span<const std::int32_t> spheres,
-                                                 std::span<SphereDerivatives> row) const {
-  const double s =
-      distance_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
-  return pseudo_huber(s, options_.loss_scale);
-}
-
-ScaledResidual ResidualBlocks::containment_condition(ResidualBlock& block, std::size_t j,
-                                                     const MetaballModel& model,
-                                                     const ModelEvaluation& evaluation,
-                                                     std::span<const std::int32_t> spheres,
-                                                     std::span<SphereDerivatives> row) const {
-  const double level =
-      level_with_derivatives(model, evaluation, spheres, block.points[j], row, &block.by_sharpness[j]);
-  const double sign = block.condition == PointCondition::inside ? -1.0 : 1.0;
-  const double lack = options_.containment_margin + sign * level;
+ScaledResidual ResidualBlocks::scaled(PointCondition condition, double value) const {
+  if (condition == PointCondition::on_surface) return pseudo_huber(value, options_.loss_scale);
+  const double sign = condition == PointCondition::inside ? -1.0 : 1.0;
+  const double lack = options_.containment_margin + sign * value;
   if (!(lack > 0.0)) return {0.0, 0.0};
   return {options_.containment_weight * lack, options_.containment_weight * sign};
+}
+
+void ResidualBlocks::evaluate_gaussians(ResidualBlock& block, const MetaballModel& model,
+                                        const ModelEvaluation& evaluation,
+                                        const ClusterScratch& scratch) const {
+  std::array<BlockKernels::Slopes, BlockKernels::kMostPoints> slopes;
+  const std::size_t points = block.points.size();
+  for (std::size_t j = 0; j < points; ++j) {
+    const MetaballTotals<double> totals = scratch.kernels.totals(j);
+    const double value = block.condition == PointCondition::on_surface
+                             ? distance_with_slopes(model, evaluation, totals, slopes[j])
+                             : level_with_slopes(model, totals, slopes[j]);
+    const ScaledResidual residual = scaled(block.condition, value);
+    block.residuals[j] = residual.value;
+    slopes[j].scale(residual.derivative);
+  }
+  const auto [places, columns] = find_places(block.neighbours, scratch.spheres);
+  if (places.size() != block.neighbours.size())
+    std::fill(block.by_sphere.begin(), block.by_sphere.end(), SphereDerivatives{});
+  scratch.kernels.differentiate({slopes.data(), points}, {places, columns, block.neighbours.size()},
+                                block.by_sphere.data(), block.by_sharpness);
+  const double slope = parameters_.sharpness_slope();
+  for (double& by : block.by_sharpness) by *= slope;
+}
+
+void ResidualBlocks::evaluate_other_kernels(ResidualBlock& block, const MetaballModel& model,
+                                            const ModelEvaluation& evaluation,
+                                            const ClusterScratch& scratch) const {
+  // The spheres that have left the list reach no point: their derivatives are zero.
+  const std::size_t n = block.neighbours.size();
+  const auto [places, columns] = find_places(block.neighbours, scratch.spheres);
+  std::fill(block.by_sphere.begin(), block.by_sphere.end(), SphereDerivatives{});
+  std::vector<SphereDerivatives> row(scratch.spheres.size());
+  const auto function =
+      block.condition == PointCondition::on_surface ? distance_with_derivatives : level_with_derivatives;
+  for (std::size_t j = 0; j < block.points.size(); ++j) {
+    const double value =
+        function(model, evaluation, scratch.spheres, block.points[j], row, &block.by_sharpness[j]);
+    const ScaledResidual residual = scaled(block.condition, value);
+    block.residuals[j] = residual.value;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const SphereDerivatives& by = row[static_cast<std::size_t>(places[i])];
+      for (std::size_t k = 0; k < 4; ++k) {
+        block.by_sphere[j * n + columns[i]][k] = by[k] * residual.derivative;
+      }
+    }
+    block.by_sharpness[j] *= residual.derivative * parameters_.sharpness_slope();
+  }
 }
 
 }  // namespace astrolith

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimation/shape/model/field_derivatives.h"
-#include "estimation/shape/model/point_clusters.h"
+#include "estimation/shape/model/model_evaluation_internal.h"
 #include "estimation/shape/refinement/refinement.h"
 #include "estimation/shape/refinement/refinement_parameters_internal.h"
 
@@ -44,8 +44,9 @@ class ResidualBlocks {
   ResidualBlocks(const FitPoints& points, const RefinementOptions& options,
                  const RefinementParameters& parameters);
 
-  // Evaluates every block at the present parameters, in parallel.
-  void evaluate(bool with_derivatives);
+  // Evaluates every block and its derivatives at the present parameters, in parallel. The first call also
+  // chooses every block's neighbours.
+  void evaluate();
 
   const std::vector<ResidualBlock>& blocks() const { return blocks_; }
   // One condition for each sphere, or none if the options let centres leave the target.
@@ -56,23 +57,20 @@ class ResidualBlocks {
  private:
   void add_blocks(const std::vector<Vec3d>& points, PointCondition condition);
   std::vector<Vec3d> active(const std::vector<Vec3d>& points, PointCondition condition) const;
-  void find_neighbours();
-  std::vector<std::int32_t> contributors(std::size_t b, const MetaballModel& model, double cutoff) const;
+  void choose_neighbours(ResidualBlock& block, const ClusterScratch& scratch) const;
   void evaluate_centers(const MetaballModel& model);
-  void evaluate_block(std::size_t b, const MetaballModel& model, const ModelEvaluation& evaluation,
-                      bool with_derivatives);
-  ScaledResidual surface_condition(ResidualBlock& block, std::size_t j, const MetaballModel& model,
-                                   const ModelEvaluation& evaluation, std::span<const std::int32_t> spheres,
-                                   std::span<SphereDerivatives> row) const;
-  ScaledResidual containment_condition(ResidualBlock& block, std::size_t j, const MetaballModel& model,
-                                       const ModelEvaluation& evaluation,
-                                       std::span<const std::int32_t> spheres,
-                                       std::span<SphereDerivatives> row) const;
+  void evaluate_gaussians(ResidualBlock& block, const MetaballModel& model, const ModelEvaluation& evaluation,
+                          const ClusterScratch& scratch) const;
+  void evaluate_other_kernels(ResidualBlock& block, const MetaballModel& model,
+                              const ModelEvaluation& evaluation, const ClusterScratch& scratch) const;
+  ScaledResidual scaled(PointCondition condition, double value) const;
 
   const RefinementOptions& options_;
   const RefinementParameters& parameters_;
+  bool has_neighbours_ = false;
   std::vector<ResidualBlock> blocks_;
   std::vector<PointCluster> clusters_;  // one for each block
+  std::vector<ClusterGroup> groups_;    // of clusters with one condition
   std::vector<CenterCondition> center_conditions_;
 };
 

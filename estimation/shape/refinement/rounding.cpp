@@ -68,7 +68,7 @@ ModelRounding::ModelRounding(const MetaballModel& model, const FitPoints& points
     : model_(model), factor_(std::make_unique<Factor>()) {
   const RefinementParameters parameters = parameters_of(model);
   ResidualBlocks residuals(points, options, parameters);
-  residuals.evaluate(true);
+  residuals.evaluate();
   NormalEquations equations(residuals, model.spheres.size());
   equations.assemble();
   factor_->cholesky.compute(equations.damped(damping));

@@ -45,7 +45,7 @@ TEST(NormalEquations, AgreeWithDenseLeastSquares) {
   options.loss_scale = 0.05;
   const RefinementParameters parameters(model);
   ResidualBlocks residuals(points, options, parameters);
-  residuals.evaluate(true);
+  residuals.evaluate();
   NormalEquations equations(residuals, model.spheres.size());
   equations.assemble();
   Eigen::VectorXd step;
