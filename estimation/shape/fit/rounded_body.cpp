@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "estimation/shape/fit/fit_check.h"
@@ -11,6 +12,7 @@
 #include "numerics/errors.h"
 #include "recipe/compact/number_table.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/body/body_spheres.h"
 
 namespace astrolith {
 namespace {
@@ -18,6 +20,12 @@ namespace {
 // Steps of 10 to 99 units of the last decimal, numbered from the coarsest down: 90 in a decade.
 constexpr int kStepsInDecade = 90;
 constexpr int kDecades = 8;
+
+// Of the normal equations that the roundings to bytes make up for errors with, and of those that the rounding
+// to digits does. Its steps are finer, and it has one, since a factorisation takes as long as ten steps of
+// the fit.
+constexpr double kDampings[] = {1e-3, 1e-2, 1e-1, 1.0};
+constexpr double kDigitsDamping = 1e-2;
 
 constexpr std::int64_t kCheckSamples = 1000;  // of the distances of a checked mesh, which are not used
 
@@ -74,10 +82,27 @@ class BodyRounding {
         coarsest_decimals_(decimals_of(target.diagonal)) {}
 
   RoundedBody run() {
-    for (const double damping : {1e-3, 1e-2, 1e-1, 1.0}) {
+    for (const double damping : kDampings) {
       keep_better(within_bytes(ModelRounding(model_, points_, options_.refinement, damping)));
     }
     return std::move(best_);
+  }
+
+  // The fewest decimals with which the body loses no more than allowed, or none.
+  std::optional<RoundedBody> run_for_digits(double most_loss) const {
+    const ModelRounding rounding(model_, points_, options_.refinement, kDigitsDamping);
+    const double most = (1.0 + most_loss) * mean_distance_of(model_, points_.on_surface);
+    std::optional<std::int64_t> wrong_unrounded;
+    for (int decade = 0; decade < kDecades; ++decade) {
+      // Ten units of the last decimal: one of the decimal before it.
+      const MetaballBody body = rounded(rounding, lattice((decade + 1) * kStepsInDecade - 1));
+      if (distance_of(body) > most) continue;
+      if (!wrong_unrounded)
+        wrong_unrounded = measured(body_in_file_frame(metaball_body(model_))).wrong_components;
+      RoundedBody found = measured(body);
+      if (found.wrong_components <= *wrong_unrounded) return found;
+    }
+    return std::nullopt;
   }
 
  private:
@@ -114,11 +139,24 @@ class BodyRounding {
     return body;
   }
 
+  // Mean |s| at the samples of a body in the file's frame, fraction of the diagonal.
+  double distance_of(const MetaballBody& body) const {
+    return mean_distance_of(model_of(in_target_frame(target_, body)), points_.on_surface);
+  }
+
   RoundedBody measured(MetaballBody body) const {
     const MetaballBody in_frame = in_target_frame(target_, body);
     const FitCheck check = check_fit(target_, in_frame, options_.check_resolution, kCheckSamples, 1);
-    return {std::move(body), mean_distance_of(model_of(in_frame), points_.on_surface),
-            compare_components(target_, check.mesh).wrong()};
+    const double distance = distance_of(body);
+    return {std::move(body), distance, compare_components(target_, check.mesh).wrong()};
+  }
+
+  MetaballBody body_in_file_frame(MetaballBody body) const {
+    for_each_sphere(body, [&](Sphere& s) {
+      s.center = target_.center + target_.diagonal * s.center;
+      s.radius *= target_.diagonal;
+    });
+    return body;
   }
 
   void keep_better(RoundedBody other) {
@@ -140,6 +178,12 @@ class BodyRounding {
 RoundedBody round_body(const TargetBody& target, const MetaballModel& model, const FitPoints& points,
                        const RoundingOptions& options) {
   return BodyRounding(target, model, points, options).run();
+}
+
+std::optional<RoundedBody> round_body_to_digits(const TargetBody& target, const MetaballModel& model,
+                                                const FitPoints& points, const RoundingOptions& options,
+                                                double most_loss) {
+  return BodyRounding(target, model, points, options).run_for_digits(most_loss);
 }
 
 }  // namespace astrolith

@@ -1,8 +1,9 @@
-// The body of a fit in as many bytes as it may take.
+// The body of a fit in as many bytes as it may take, or with the digits that matter.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "estimation/shape/model/metaball_model.h"
@@ -30,5 +31,12 @@ struct RoundedBody {
 // distance. Throws InputError "bytes: ..." if the model does not fit into the bytes at all.
 RoundedBody round_body(const TargetBody& target, const MetaballModel& model, const FitPoints& points,
                        const RoundingOptions& options);
+
+// Rounds the model to the fewest decimals with which the mean distance grows by at most the share `most_loss`
+// and no part is lost or added: what a recipe in JSON needs. `options.bytes` and the unit are not used.
+// Returns nothing if no decimals are enough.
+std::optional<RoundedBody> round_body_to_digits(const TargetBody& target, const MetaballModel& model,
+                                                const FitPoints& points, const RoundingOptions& options,
+                                                double most_loss);
 
 }  // namespace astrolith

@@ -19,6 +19,10 @@ namespace {
 constexpr double kBaseShare = 0.5;
 constexpr int kFewSpheres = 16;  // so many metaballs may all come from the packing
 
+// The numbers of a body keep the digits that matter: without the others its mean distance grows by this
+// share.
+constexpr double kMostDigitsLoss = 0.01;
+
 constexpr std::int64_t kSearchSamples = 800;       // the cost of a fitness grows with the square
 constexpr std::int64_t kSimilaritySamples = 5000;  // of each body in the final comparison
 
@@ -97,7 +101,9 @@ MetaballBody rounded_body(const TargetBody& target, const MetaballModel& model, 
   rounding.refinement.loss_scale = adaptive.loss_scale;
   rounding.refinement.containment_weight = adaptive.containment_weight;
   rounding.refinement.keep_centers_inside = &target.tree;
-  return round_body(target, model, points, rounding).body;
+  if (options.bytes > 0) return round_body(target, model, points, rounding).body;
+  const auto few_digits = round_body_to_digits(target, model, points, rounding, kMostDigitsLoss);
+  return few_digits ? few_digits->body : body_in_file_frame(model, target);
 }
 
 RefinedBody refine_model(const TargetBody& target, const Packing& packing, const MetaballModel& start,
@@ -118,9 +124,9 @@ RefinedBody refine_model(const TargetBody& target, const Packing& packing, const
   adaptive.repair_resolution = options.check_resolution;
   if (!report(progress, 0.0, "starting")) return unrefined;
   AdaptiveFitSummary fit = fit_adaptively(target, start, samples, containment, adaptive, progress);
-  MetaballBody body = options.bytes > 0
-                          ? rounded_body(target, fit.model, samples, containment, adaptive, options)
-                          : body_in_file_frame(fit.model, target);
+  const bool round = options.bytes > 0 || !fit.interrupted;
+  MetaballBody body = round ? rounded_body(target, fit.model, samples, containment, adaptive, options)
+                            : body_in_file_frame(fit.model, target);
   return {std::move(fit), std::move(body)};
 }
 

@@ -120,6 +120,44 @@ TEST(RoundedBody, SameForOneAndTwoThreads) {
   EXPECT_EQ(texts[0], texts[1]);
 }
 
+std::string json_of(const MetaballBody& body) {
+  Recipe recipe;
+  recipe.length_unit = "m";
+  recipe.body = body;
+  return recipe_to_json(recipe);
+}
+
+TEST(RoundedBody, KeepsTheDigitsThatMatter) {
+  RoughBall ball;
+  std::size_t last = 0;
+  for (const double loss : {2.0, 0.2, 0.02}) {
+    const auto rounded = round_body_to_digits(ball.target, ball.model, ball.points, ball.options, loss);
+    ASSERT_TRUE(rounded);
+    EXPECT_LE(rounded->mean_distance, (1.0 + loss) * ball.distance_of(ball.model));
+    EXPECT_EQ(rounded->body.num_metaballs(), static_cast<std::size_t>(kMetaballs));
+    EXPECT_GE(json_of(rounded->body).size(), last);
+    last = json_of(rounded->body).size();
+  }
+}
+
+TEST(RoundedBody, TheDigitsThatMatterAreFewerThanSeven) {
+  RoughBall ball;
+  const auto rounded = round_body_to_digits(ball.target, ball.model, ball.points, ball.options, 0.2);
+  ASSERT_TRUE(rounded);
+  MetaballModel in_file = ball.model;
+  for (ModelSphere& s : in_file.spheres) {
+    s.center = ball.target.center + ball.target.diagonal * s.center;
+    s.radius *= ball.target.diagonal;
+  }
+  // This ball is fitted within a few millionths, so that more digits matter than on a body of rock.
+  EXPECT_LT(json_of(rounded->body).size(), json_of(metaball_body(in_file)).size());
+}
+
+TEST(RoundedBody, NoDigitsAreEnoughForNoLoss) {
+  RoughBall ball;
+  EXPECT_FALSE(round_body_to_digits(ball.target, ball.model, ball.points, ball.options, -0.5));
+}
+
 TEST(RoundedBody, TooFewBytesAreRefused) {
   RoughBall ball;
   EXPECT_THROW(ball.rounded(60), InputError);
