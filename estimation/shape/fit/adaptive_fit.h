@@ -28,8 +28,8 @@ struct AdaptiveFitOptions {
   int last_iterations = 60;        // of the refinement on all samples
   double subtractive = 0.5;        // share of the metaballs that may be subtractive, with the Gaussian kernel
   double relocated = 0.15;         // share of the metaballs that the first relocation moves
-  double least_relocated = 0.005;  // share that a relocation moves at least; with fewer the fit goes on
-  double relocation_gain = 1e-3;   // share of the mean distance; a smaller gain lets fewer move
+  double least_relocated = 0.01;   // share that a relocation moves at least; with fewer the fit goes on
+  double relocation_gain = 3e-3;   // share of the mean distance; a smaller gain lets fewer move
   int samples_per_sphere = 60;     // used until the final refinement
   double tolerance = 0.0;          // growth stops at this mean |s| over the samples, fraction of the diagonal
   double loss_scale = 1e-3;        // fraction of the diagonal
