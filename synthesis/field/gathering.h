@@ -106,8 +106,9 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
   const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[from.layer].noise);
   const SurfaceBand& band = f.arrays[noise.bands][from.element];
   const FloatBox at = outer_float_box(projected_block(f, box), noise.low, noise.high);
+  const GaborTarget target = gabor_target(band.a, at.center, at.half);
   const auto write_reaching = [&](const GaborImpulse& impulse) {
-    if (beyond_gabor_reach(impulse, at.center, at.half) <= 0.0f) write(impulse);
+    if (gabor_reaches(impulse, target)) write(impulse);
   };
   for_each_gabor_cell(band, at, [&](int x, int y, int z) {
     const BodyAtPoint s = unwarped_body_at(f.body, f.arrays, metaballs, gabor_cell_center(band, x, y, z));

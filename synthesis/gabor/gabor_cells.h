@@ -35,9 +35,13 @@ struct GaborCellCenters {
   void find(std::span<const GaborCell> cells, const SurfaceBand& band, const GaborGround& ground);
 };
 
-// The impulses of the given cells, in the order of the cells. The tangent frame of a cell is that of the
-// level set of the body through the centre of the cell.
+// The cells of a tile.
+inline constexpr std::size_t kTileVolume{kTileCells * kTileCells * kTileCells};
+using TileCells = std::array<GaborCell, kTileVolume>;
+
+// The impulses of the cells of a tile, in the order of the cells. The tangent frame of a cell is that of the
+// level set of the body through the centre of the cell. The bits are those of for_each_gabor_impulse().
 std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
-                                     std::span<const GaborCell> cells);
+                                     const TileCells& cells);
 
 }  // namespace astrolith

@@ -1,6 +1,7 @@
 #include "synthesis/gabor/gabor_chunk.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,75 +10,116 @@ namespace astrolith {
 namespace {
 
 // An impulse so far away that its kernel is 0 at every point of any body.
-GaborImpulse nowhere() { return {1e18f, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0}; }
+GaborImpulse nowhere() { return {1e18f, 0, 0, 0, 0, 0, 0, 0, 0, 0}; }
 
-// Half the extents along x, y and z of the support of a kernel. The support is a box along the frame of the
-// impulse.
-std::array<double, 3> half_extents(const GaborImpulse& k, double a) {
-  const auto along = [a](float u, float v, float n) {
-    const double tangential = std::fabs(double{u}) + std::fabs(double{v});
-    return double{kGaborSlack} *
-           (double{kGaborReach} * tangential + double{kGaborSlabReach} * std::fabs(double{n})) / (a * a);
+using Extents = std::array<float, 3>;
+
+// Half the extents along x, y and z of the support of a kernel: a disc across the normal, and a slab.
+Extents half_extents(const GaborImpulse& k, double a) {
+  const auto along = [a](float normal) {
+    const double n = double{normal} / a;
+    const double tangential = std::sqrt(std::max(1.0 - n * n, 0.0));
+    return static_cast<float>(
+        (1.0 + 1e-6) * double{kGaborSlack} *
+        (double{kGaborDiscReach} * tangential + double{kGaborSlabReach} * std::fabs(n)) / a);
   };
-  return {along(k.ux, k.vx, k.nx), along(k.uy, k.vy, k.ny), along(k.uz, k.vz, k.nz)};
+  return {along(k.nx), along(k.ny), along(k.nz)};
 }
 
-void extend(const GaborImpulse& impulse, double a, ImpulseChunk& chunk) {
-  const std::array<double, 3> half = half_extents(impulse, a);
+void extend(const GaborImpulse& impulse, const Extents& half, ImpulseChunk& chunk) {
   const std::array<float, 3> center{impulse.x, impulse.y, impulse.z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    chunk.low[axis] = std::min(chunk.low[axis], static_cast<float>(double{center[axis]} - half[axis]));
-    chunk.high[axis] = std::max(chunk.high[axis], static_cast<float>(double{center[axis]} + half[axis]));
+    chunk.low[axis] = std::min(chunk.low[axis], center[axis] - half[axis]);
+    chunk.high[axis] = std::max(chunk.high[axis], center[axis] + half[axis]);
   }
 }
 
-// Writes reaches[i] = 1 if the kernel of lane i may reach the box about `center`, else 0.
-ASTROLITH_KERNEL void find_reaching(const ImpulseChunk& chunk, const float* center, const float* half,
-                                    int* reaches) {
+// The members of the impulse in a lane.
+ASTROLITH_KERNEL GaborImpulse impulse_at(const float* lane) {
+  constexpr std::size_t k = kLanes;
+  return {lane[0],     lane[k],     lane[2 * k], lane[3 * k], lane[4 * k],
+          lane[5 * k], lane[6 * k], lane[7 * k], lane[8 * k], lane[9 * k]};
+}
+
+// The most chunks whose impulses are sorted into groups at once.
+constexpr std::size_t kPiece = 32;
+
+// Impulses that reach a target, and the impulses among them that reach each group.
+struct GroupLists {
+  std::array<GaborImpulse, kPiece * kLanes> impulses;
+  std::array<std::array<std::uint16_t, kPiece * kLanes>, kLanes> numbers;
+  std::array<std::size_t, kLanes> counts;
+};
+
+// Writes the impulses of a chunk that reach the target to `impulses`. Returns their number.
+ASTROLITH_KERNEL std::size_t write_reaching(const ImpulseChunk& chunk, const GaborTarget& target,
+                                            GaborImpulse* impulses) {
+  std::array<int, kLanes> reaches;
 #pragma omp simd
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const GaborImpulse k = impulse_at(&chunk.members[i]);
-    reaches[i] = beyond_gabor_reach(k, center, half) <= 0.0f ? 1 : 0;
+    reaches[i] = gabor_reaches(impulse_at(&chunk.members[i]), target) ? 1 : 0;
   }
-}
-
-// Writes the lanes whose kernels may reach the box; at most kLanes lanes for each chunk. Returns their
-// number.
-ASTROLITH_SIMD_CLONES std::size_t write_reaching(const ImpulseChunk* const* chunks, std::size_t num_chunks,
-                                                 const float* center, const float* half, ImpulseLane* lanes) {
   std::size_t count = 0;
-  for (std::size_t c = 0; c < num_chunks; ++c) {
-    std::array<int, kLanes> reaches;
-    find_reaching(*chunks[c], center, half, reaches.data());
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      lanes[count] = &chunks[c]->members[i];
-      count += static_cast<std::size_t>(reaches[i]);
-    }
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    if (reaches[i] != 0) impulses[count++] = impulse_at(&chunk.members[i]);
   }
   return count;
 }
 
-ASTROLITH_SIMD_CLONES void add_values(const ImpulseLane* lanes, std::size_t num_lanes, float amplitude,
-                                      const float* __restrict x, const float* __restrict y,
-                                      const float* __restrict z, float* __restrict height) {
-  for (std::size_t j = 0; j < num_lanes; ++j) {
-    const GaborImpulse impulse = impulse_at(lanes[j]);
-#pragma omp simd
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      height[i] = math::fma(amplitude, gabor_kernel(impulse, x[i], y[i], z[i]), height[i]);
+// The groups that an impulse reaches, one bit each.
+ASTROLITH_KERNEL std::uint32_t groups_reached(const GaborImpulse& k, float a_squared, const PointGroups& g) {
+  std::uint32_t reached = 0;
+#pragma omp simd reduction(| : reached)
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const bool reaches =
+        gabor_reaches(k, a_squared, g.x[i], g.y[i], g.z[i], g.half_x[i], g.half_y[i], g.half_z[i], g.disc[i]);
+    reached |= reaches ? 1u << i : 0u;
+  }
+  return reached;
+}
+
+// Sorts the impulses of at most kPiece chunks into groups.
+ASTROLITH_KERNEL void sort_into_groups(const ImpulseChunk* const* chunks, std::size_t num_chunks,
+                                       const GaborTarget& target, const PointGroups& groups,
+                                       GroupLists& lists) {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < num_chunks; ++c) {
+    count += write_reaching(*chunks[c], target, &lists.impulses[count]);
+  }
+  lists.counts.fill(0);
+  const std::uint32_t used = (1u << groups.count) - 1u;
+  for (std::size_t j = 0; j < count; ++j) {
+    std::uint32_t reached = groups_reached(lists.impulses[j], target.a_squared, groups) & used;
+    for (; reached != 0; reached &= reached - 1) {
+      const auto g = static_cast<std::size_t>(std::countr_zero(reached));
+      lists.numbers[g][lists.counts[g]++] = static_cast<std::uint16_t>(j);
     }
   }
 }
 
-ASTROLITH_SIMD_CLONES void add_slopes(const ImpulseLane* lanes, std::size_t num_lanes, float amplitude,
-                                      const float* __restrict x, const float* __restrict y,
-                                      const float* __restrict z, float* __restrict height,
-                                      float* __restrict sx, float* __restrict sy, float* __restrict sz) {
-  for (std::size_t j = 0; j < num_lanes; ++j) {
-    const GaborImpulse impulse = impulse_at(lanes[j]);
+ASTROLITH_KERNEL void add_values(const GaborImpulse* impulses, const std::uint16_t* numbers,
+                                 std::size_t count, float scale, float amplitude, const float* __restrict x,
+                                 const float* __restrict y, const float* __restrict z,
+                                 float* __restrict height) {
+  for (std::size_t j = 0; j < count; ++j) {
+    const GaborImpulse impulse = impulses[numbers[j]];
 #pragma omp simd
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const GaborSample k = gabor_kernel_with_slope(impulse, x[i], y[i], z[i]);
+      height[i] = math::fma(amplitude, gabor_kernel(impulse, scale, x[i], y[i], z[i]), height[i]);
+    }
+  }
+}
+
+ASTROLITH_KERNEL void add_slopes(const GaborImpulse* impulses, const std::uint16_t* numbers,
+                                 std::size_t count, float scale, float amplitude, const float* __restrict x,
+                                 const float* __restrict y, const float* __restrict z,
+                                 float* __restrict height, float* __restrict sx, float* __restrict sy,
+                                 float* __restrict sz) {
+  for (std::size_t j = 0; j < count; ++j) {
+    const GaborImpulse impulse = impulses[numbers[j]];
+#pragma omp simd
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const GaborSample k = gabor_kernel_with_slope(impulse, scale, x[i], y[i], z[i]);
       height[i] = math::fma(amplitude, k.value, height[i]);
       sx[i] = math::fma(amplitude, k.slope.x, sx[i]);
       sy[i] = math::fma(amplitude, k.slope.y, sy[i]);
@@ -86,21 +128,39 @@ ASTROLITH_SIMD_CLONES void add_slopes(const ImpulseLane* lanes, std::size_t num_
   }
 }
 
-// The values of the kernels of a chunk at one point.
-ASTROLITH_SIMD_CLONES void values_at_point(const ImpulseChunk& chunk, float x, float y, float z,
-                                           float* __restrict value) {
-#pragma omp simd
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    value[i] = gabor_kernel(impulse_at(&chunk.members[i]), x, y, z);
+ASTROLITH_SIMD_CLONES void add_piece(const ImpulseChunk* const* chunks, std::size_t num_chunks, float scale,
+                                     float amplitude, const GaborTarget& target, const PointGroups& groups,
+                                     const HeightSums& sums, GroupLists& lists) {
+  sort_into_groups(chunks, num_chunks, target, groups, lists);
+  for (std::size_t g = 0; g < groups.count; ++g) {
+    const std::size_t i = g * kLanes, count = lists.counts[g];
+    const GaborImpulse* impulses = lists.impulses.data();
+    const std::uint16_t* numbers = lists.numbers[g].data();
+    if (sums.slope_x == nullptr) {
+      add_values(impulses, numbers, count, scale, amplitude, sums.x + i, sums.y + i, sums.z + i,
+                 sums.height + i);
+    } else {
+      add_slopes(impulses, numbers, count, scale, amplitude, sums.x + i, sums.y + i, sums.z + i,
+                 sums.height + i, sums.slope_x + i, sums.slope_y + i, sums.slope_z + i);
+    }
   }
 }
 
-ASTROLITH_SIMD_CLONES void slopes_at_point(const ImpulseChunk& chunk, float x, float y, float z,
+// The values of the kernels of a chunk at one point.
+ASTROLITH_SIMD_CLONES void values_at_point(const ImpulseChunk& chunk, float scale, float x, float y, float z,
+                                           float* __restrict value) {
+#pragma omp simd
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    value[i] = gabor_kernel(impulse_at(&chunk.members[i]), scale, x, y, z);
+  }
+}
+
+ASTROLITH_SIMD_CLONES void slopes_at_point(const ImpulseChunk& chunk, float scale, float x, float y, float z,
                                            float* __restrict value, float* __restrict sx,
                                            float* __restrict sy, float* __restrict sz) {
 #pragma omp simd
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const GaborSample k = gabor_kernel_with_slope(impulse_at(&chunk.members[i]), x, y, z);
+    const GaborSample k = gabor_kernel_with_slope(impulse_at(&chunk.members[i]), scale, x, y, z);
     value[i] = k.value;
     sx[i] = k.slope.x;
     sy[i] = k.slope.y;
@@ -136,51 +196,53 @@ void empty_lanes(std::size_t first, ImpulseChunk& chunk) {
 std::vector<ImpulseChunk> make_chunks(std::span<const GaborImpulse> impulses, double a) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::vector<ImpulseChunk> chunks((impulses.size() + kLanes - 1) / kLanes);
-  for (std::size_t c = 0; c < chunks.size(); ++c) {
-    chunks[c].low = {kInfinity, kInfinity, kInfinity};
-    chunks[c].high = {-kInfinity, -kInfinity, -kInfinity};
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const std::size_t j = c * kLanes + i;
-      const GaborImpulse impulse = j < impulses.size() ? impulses[j] : nowhere();
-      if (j < impulses.size()) extend(impulse, a, chunks[c]);
-      set_lane(impulse, i, chunks[c]);
+  Extents half{};
+  const GaborImpulse* before = nullptr;
+  for (std::size_t j = 0; j < impulses.size(); ++j) {
+    const GaborImpulse& k = impulses[j];
+    // The impulses of a cell share their normal.
+    if (before == nullptr || k.nx != before->nx || k.ny != before->ny || k.nz != before->nz) {
+      half = half_extents(k, a);
     }
+    before = &k;
+    ImpulseChunk& chunk = chunks[j / kLanes];
+    if (j % kLanes == 0) {
+      chunk.low = {kInfinity, kInfinity, kInfinity};
+      chunk.high = {-kInfinity, -kInfinity, -kInfinity};
+    }
+    extend(k, half, chunk);
+    set_lane(k, j % kLanes, chunk);
   }
+  if (impulses.size() % kLanes != 0) empty_lanes(impulses.size() % kLanes, chunks.back());
   return chunks;
 }
 
-void append_reaching(std::span<const ImpulseChunk* const> chunks, const PointBox& box,
-                     std::vector<ImpulseLane>& lanes) {
+GaborTarget target_of(const PointBox& box, float a) {
   std::array<float, 3> center, half;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     center[axis] = 0.5f * (box.low[axis] + box.high[axis]);
     half[axis] = std::max(box.high[axis] - center[axis], center[axis] - box.low[axis]);
   }
-  const std::size_t before = lanes.size();
-  lanes.resize(before + chunks.size() * kLanes + 1);  // the last element is written, not kept
-  const std::size_t count =
-      write_reaching(chunks.data(), chunks.size(), center.data(), half.data(), &lanes[before]);
-  lanes.resize(before + count);
+  return gabor_target(a, center.data(), half.data());
 }
 
-void add_to_group(std::span<const ImpulseLane> lanes, float amplitude, const float* x, const float* y,
-                  const float* z, const HeightSums& sums) {
-  if (sums.slope_x == nullptr) {
-    add_values(lanes.data(), lanes.size(), amplitude, x, y, z, sums.height);
-  } else {
-    add_slopes(lanes.data(), lanes.size(), amplitude, x, y, z, sums.height, sums.slope_x, sums.slope_y,
-               sums.slope_z);
+void add_to_groups(std::span<const ImpulseChunk* const> chunks, float a, float amplitude,
+                   const GaborTarget& target, const PointGroups& groups, const HeightSums& sums) {
+  GroupLists lists;
+  for (std::size_t c = 0; c < chunks.size(); c += kPiece) {
+    add_piece(&chunks[c], std::min(kPiece, chunks.size() - c), gabor_disc_scale(a), amplitude, target, groups,
+              sums, lists);
   }
 }
 
-void add_at_point(std::span<const ImpulseChunk> chunks, float amplitude, float x, float y, float z,
-                  const HeightSums& sums) {
+void add_at_point(std::span<const ImpulseChunk> chunks, float a, float amplitude, const HeightSums& sums) {
+  const float scale = gabor_disc_scale(a), x = *sums.x, y = *sums.y, z = *sums.z;
   std::array<float, kLanes> value, sx, sy, sz;
   for (const ImpulseChunk& chunk : chunks) {
     if (sums.slope_x == nullptr) {
-      values_at_point(chunk, x, y, z, value.data());
+      values_at_point(chunk, scale, x, y, z, value.data());
     } else {
-      slopes_at_point(chunk, x, y, z, value.data(), sx.data(), sy.data(), sz.data());
+      slopes_at_point(chunk, scale, x, y, z, value.data(), sx.data(), sy.data(), sz.data());
       *sums.slope_x = sum_of(sx.data(), amplitude, *sums.slope_x);
       *sums.slope_y = sum_of(sy.data(), amplitude, *sums.slope_y);
       *sums.slope_z = sum_of(sz.data(), amplitude, *sums.slope_z);

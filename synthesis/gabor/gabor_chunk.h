@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,32 +43,32 @@ inline bool overlap(const PointBox& box, const std::array<float, 3>& low, const 
          low[1] <= box.high[1] && low[2] <= box.high[2];
 }
 
-// A pointer to the first member of one impulse in a chunk. Its other members follow at steps of kLanes.
-using ImpulseLane = const float*;
-ASTROLITH_KERNEL GaborImpulse impulse_at(ImpulseLane lane) {
-  constexpr std::size_t k = kLanes;
-  return {lane[0],      lane[k],      lane[2 * k],  lane[3 * k],  lane[4 * k],
-          lane[5 * k],  lane[6 * k],  lane[7 * k],  lane[8 * k],  lane[9 * k],
-          lane[10 * k], lane[11 * k], lane[12 * k], lane[13 * k], lane[14 * k]};
-}
+// The target that holds the points of a box.
+GaborTarget target_of(const PointBox& box, float a);
 
-// Appends the impulses of the chunks whose kernels may reach the box, in their order. An impulse whose kernel
-// reaches the box is never left out.
-void append_reaching(std::span<const ImpulseChunk* const> chunks, const PointBox& box,
-                     std::vector<ImpulseLane>& lanes);
+// Up to sixteen groups of points. Each group lies in a box about its centre, and within a radius of it.
+struct PointGroups {
+  std::size_t count = 0;
+  std::array<float, kLanes> x{}, y{}, z{};                 // centres
+  std::array<float, kLanes> half_x{}, half_y{}, half_z{};  // half the sides of the boxes
+  std::array<float, kLanes> disc{};                        // most_disc() of the radii
+};
 
-// The arrays that heights and slopes are added to. The slopes are null if they are not wanted.
+// The points that heights and slopes are added to: kLanes for each group. The slopes are null if they are not
+// wanted.
 struct HeightSums {
+  const float *x, *y, *z;
   float *height, *slope_x, *slope_y, *slope_z;
 };
 
-// Adds amplitude times each kernel to the sums at kLanes points, one kernel after another.
-void add_to_group(std::span<const ImpulseLane> lanes, float amplitude, const float* x, const float* y,
-                  const float* z, const HeightSums& sums);
+// Adds amplitude times the kernels of the chunks to the sums at the points of the groups. Impulses that reach
+// no point of `target`, or no point of a group, are left out there: their kernels are 0. The kernels are
+// added one after another, in their order.
+void add_to_groups(std::span<const ImpulseChunk* const> chunks, float a, float amplitude,
+                   const GaborTarget& target, const PointGroups& groups, const HeightSums& sums);
 
 // Adds amplitude times each kernel of whole chunks to the sums at one point. The bits are those of
-// add_to_group().
-void add_at_point(std::span<const ImpulseChunk> chunks, float amplitude, float x, float y, float z,
-                  const HeightSums& sums);
+// add_to_groups().
+void add_at_point(std::span<const ImpulseChunk> chunks, float a, float amplitude, const HeightSums& sums);
 
 }  // namespace astrolith

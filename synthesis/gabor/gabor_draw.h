@@ -45,17 +45,17 @@ ASTROLITH_HD inline TangentFrame tangent_frame(const Vec3f& inward) {
   return {u, cross(u, n), n};
 }
 
-ASTROLITH_HD inline Vec3f gabor_cell_center(const GaborDraw& band, int cx, int cy, int cz) {
+ASTROLITH_KERNEL Vec3f gabor_cell_center(const GaborDraw& band, int cx, int cy, int cz) {
   const auto at = [&](int c, float first) { return (static_cast<float>(c) + 0.5f) * band.cell + first; };
   return {at(cx, band.first_corner.x), at(cy, band.first_corner.y), at(cz, band.first_corner.z)};
 }
 
 // The position of an impulse in its cell. Ten bits of the hash choose each coordinate, to a thousandth of a
 // cell.
-ASTROLITH_HD inline Vec3f point_in_gabor_cell(const GaborDraw& band, std::uint32_t hash, int cx, int cy,
-                                              int cz) {
+ASTROLITH_KERNEL Vec3f point_in_gabor_cell(const GaborDraw& band, std::uint32_t hash, int cx, int cy,
+                                           int cz) {
   const auto at = [&](int c, int shift, float first) {
-    const std::uint32_t bits = (hash >> shift) & 1023u;
+    const auto bits = static_cast<std::int32_t>((hash >> shift) & 1023u);
     return (static_cast<float>(c) + (static_cast<float>(bits) + 0.5f) * 0x1p-10f) * band.cell + first;
   };
   return {at(cx, 2, band.first_corner.x), at(cy, 12, band.first_corner.y), at(cz, 22, band.first_corner.z)};
@@ -78,9 +78,32 @@ ASTROLITH_HD inline const GaborLobeShare& drawn_lobe(const GaborLobeShare* lobes
 
 ASTROLITH_HD inline GaborImpulse gabor_impulse(float a, const Vec3f& p, const TangentFrame& f,
                                                const GaborLobeShare& lobe, float phase) {
-  return {p.x,       p.y,       p.z,       a * f.u.x, a * f.u.y, a * f.u.z,        a * f.v.x,
-          a * f.v.y, a * f.v.z, a * f.n.x, a * f.n.y, a * f.n.z, lobe.frequency_x, lobe.frequency_y,
-          phase};
+  const auto wave = [&](float u, float v) {
+    return a * math::fma(lobe.frequency_x, u, lobe.frequency_y * v);
+  };
+  return {p.x,       p.y,       p.z,  wave(f.u.x, f.v.x), wave(f.u.y, f.v.y), wave(f.u.z, f.v.z), a * f.n.x,
+          a * f.n.y, a * f.n.z, phase};
+}
+
+// The lobe and the phase of an impulse: sixteen bits of `bits` each.
+ASTROLITH_HD inline const GaborLobeShare& lobe_of_bits(const GaborLobeShare* lobes, std::uint32_t num_lobes,
+                                                       std::uint32_t bits) {
+  return drawn_lobe(lobes, num_lobes, static_cast<float>(bits >> 16) * 0x1p-16f);
+}
+ASTROLITH_HD inline float phase_of_bits(std::uint32_t bits) {
+  return static_cast<float>(bits & 0xffffu) * 0x1p-16f;
+}
+
+// How far a point of a cell lies outside the surface of a body, to first order, length units. The centre of
+// the cell lies `height` outside, and n is the normal there.
+ASTROLITH_KERNEL float height_in_gabor_cell(float height, float nx, float ny, float nz, const Vec3f& center,
+                                            const Vec3f& p) {
+  return height + (nx * (p.x - center.x) + ny * (p.y - center.y) + nz * (p.z - center.z));
+}
+
+ASTROLITH_HD inline std::uint32_t gabor_cell_hash(const GaborDraw& band, int cx, int cy, int cz) {
+  const std::int64_t* first = band.first_cell;
+  return hash_wide_cell(band.seed, first[0] + cx, first[1] + cy, first[2] + cz);
 }
 
 // Calls visit(impulse) for the impulses of one cell, whose tangent frame is given. The centre of the cell
@@ -90,17 +113,14 @@ ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeS
                                          std::uint32_t num_lobes, int cx, int cy, int cz, float height,
                                          const TangentFrame& frame, Visit&& visit) {
   const Vec3f center = gabor_cell_center(band, cx, cy, cz);
-  const std::int64_t* first = band.first_cell;
-  const std::uint32_t cell_hash = hash_wide_cell(band.seed, first[0] + cx, first[1] + cy, first[2] + cz);
+  const std::uint32_t cell_hash = gabor_cell_hash(band, cx, cy, cz);
   for (int j = 0; j < band.impulses_per_cell; ++j) {
     const std::uint32_t hash = hash_append(cell_hash, static_cast<std::uint32_t>(j));
     const Vec3f p = point_in_gabor_cell(band, hash, cx, cy, cz);
-    const float above = height + dot(frame.n, p - center);
+    const float above = height_in_gabor_cell(height, frame.n.x, frame.n.y, frame.n.z, center, p);
     if (math::abs(above) > band.farthest) continue;
-    // Sixteen bits choose the lobe, the other sixteen the phase.
     const std::uint32_t bits = hash_append(hash, 0);
-    const GaborLobeShare& lobe = drawn_lobe(lobes, num_lobes, static_cast<float>(bits >> 16) * 0x1p-16f);
-    visit(gabor_impulse(band.a, p, frame, lobe, static_cast<float>(bits & 0xffffu) * 0x1p-16f));
+    visit(gabor_impulse(band.a, p, frame, lobe_of_bits(lobes, num_lobes, bits), phase_of_bits(bits)));
   }
 }
 
@@ -122,25 +142,42 @@ ASTROLITH_HD void for_each_gabor_impulse(const GaborDraw& band, const GaborLobeS
 // Slack factor for the rounding of positions and frames to float.
 inline constexpr float kGaborSlack = 1.0f + 1e-3f;
 
-// A lower bound of the distance along one axis of a kernel from its impulse to the points of a box, in units
-// of 1/a. It is negative if the range of the box along the axis holds the impulse. (dx, dy, dz) is the offset
-// of the centre of the box from the impulse, `half` half its extents.
-ASTROLITH_KERNEL float nearest_along(float ax, float ay, float az, float dx, float dy, float dz,
-                                     const float* half) {
-  const float center = math::abs(math::fma(ax, dx, math::fma(ay, dy, az * dz)));
-  const float spread =
-      math::fma(math::abs(ax), half[0], math::fma(math::abs(ay), half[1], math::abs(az) * half[2]));
-  return center - spread;
+// A box of points to which kernels of one bandwidth may reach.
+struct GaborTarget {
+  float center[3], half[3];  // its centre and half its sides, length units
+  float a_squared;           // of the bandwidth a
+  float disc;                // most_disc() of the box
+};
+
+// The square of the greatest distance along its tangent plane, in units of 1/a, at which a kernel may reach
+// points within `radius` length units of a centre.
+ASTROLITH_HD inline float most_disc(float a, float radius) {
+  const float reach = kGaborSlack * (kGaborDiscReach + a * radius);
+  return reach * reach;
+}
+ASTROLITH_HD inline GaborTarget gabor_target(float a, const float* center, const float* half) {
+  const float radius = math::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+  return {{center[0], center[1], center[2]}, {half[0], half[1], half[2]}, a * a, most_disc(a, radius)};
 }
 
-// The distance of a box beyond the reach of a kernel, in units of 1/a. The kernel cannot reach the box if it
-// is above 0.
-ASTROLITH_KERNEL float beyond_gabor_reach(const GaborImpulse& k, const float* center, const float* half) {
-  const float dx = center[0] - k.x, dy = center[1] - k.y, dz = center[2] - k.z;
-  const float u = nearest_along(k.ux, k.uy, k.uz, dx, dy, dz, half);
-  const float v = nearest_along(k.vx, k.vy, k.vz, dx, dy, dz, half);
-  const float n = nearest_along(k.nx, k.ny, k.nz, dx, dy, dz, half);
-  return math::max(math::max(u, v) - kGaborSlack * kGaborReach, n - kGaborSlack * kGaborSlabReach);
+// Whether a kernel may reach points of a box, given as the members of a GaborTarget. The answer is true for
+// every kernel that reaches a point:
+//
+//   |n of the point| >= |n of the centre| - sum_i |N_i| half_i,
+//   tangential distance of the point >= that of the centre - radius.
+ASTROLITH_KERNEL bool gabor_reaches(const GaborImpulse& k, float a_squared, float cx, float cy, float cz,
+                                    float hx, float hy, float hz, float disc) {
+  const float dx = cx - k.x, dy = cy - k.y, dz = cz - k.z;
+  const float r2 = math::fma(dx, dx, math::fma(dy, dy, dz * dz));
+  const float n = math::fma(dx, k.nx, math::fma(dy, k.ny, dz * k.nz));
+  const float spread = math::fma(math::abs(k.nx), hx, math::fma(math::abs(k.ny), hy, math::abs(k.nz) * hz));
+  const bool in_slab = math::abs(n) - spread <= kGaborSlack * kGaborSlabReach;
+  const bool in_disc = math::fma(a_squared, r2, -(n * n)) <= disc;
+  return in_slab & in_disc;
+}
+ASTROLITH_KERNEL bool gabor_reaches(const GaborImpulse& k, const GaborTarget& to) {
+  return gabor_reaches(k, to.a_squared, to.center[0], to.center[1], to.center[2], to.half[0], to.half[1],
+                       to.half[2], to.disc);
 }
 
 // The cells along axis 0, 1 or 2 whose impulses may reach float points between low and high.

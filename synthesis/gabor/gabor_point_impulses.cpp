@@ -12,7 +12,7 @@ constexpr double kCellSlack = 0.125;
 
 // The cells along one axis whose impulses may reach a point, and how far each cell is from the point.
 struct CellsOfAxis {
-  static constexpr int kMost = 8;  // a span of 2 kGaborReach sqrt(2) and the slab is below 7 cells long
+  static constexpr int kMost = 8;  // twice the reach of a kernel, 1.53/a, is below 5 cells long
 
   CellsOfAxis(const SurfaceBand& band, int axis, float at) {
     const GaborCellSpan span = gabor_cells_around(band, axis, at, at);
@@ -50,7 +50,7 @@ bool cell_reaches(const SurfaceBand& band, const TangentFrame& frame, float dx, 
   const GaborImpulse at_center = gabor_impulse(band.a, {0.0f, 0.0f, 0.0f}, frame, {1.0f, 0.0f, 0.0f}, 0.0f);
   const float half = (0.5f + static_cast<float>(kCellSlack)) * band.cell;
   const std::array<float, 3> offset{dx, dy, dz}, halves{half, half, half};
-  return beyond_gabor_reach(at_center, offset.data(), halves.data()) <= 0.0f;
+  return gabor_reaches(at_center, gabor_target(band.a, offset.data(), halves.data()));
 }
 
 }  // namespace

@@ -16,22 +16,32 @@ namespace astrolith {
 namespace {
 
 // On a flat patch an impulse farther than 1/a from the surface reaches no point of the surface. A body is
-// nearly flat beside small kernels, which leave out impulses farther than 1.25/a. For large kernels s is too
-// inaccurate, since it is a distance to first order only. They keep all impulses.
-constexpr double kSmallKernel = 1.0 / 128.0;  // 1/a over the domain's longest side
-constexpr double kFarthestReach = 1.25;       // in units of 1/a
+// nearly flat beside small kernels: they leave out impulses that are a little farther. What they keep beyond
+// 1/a allows for the curvature of the surface, which counts more for larger kernels, and for the rounding of
+// distances to float, which counts more for smaller ones. For large kernels s is too inaccurate, since it is
+// a distance to first order only. They keep all impulses.
+constexpr double kSmallKernel = 1.0 / 128.0;               // 1/a over the domain's longest side
+constexpr double kLeastMargin = 0.02, kMostMargin = 0.25;  // in units of 1/a
 
-// The distance from an impulse to the corner of its support, in units of 1/a.
-const double kCornerReach = std::sqrt(2.0 * double{kGaborReach} * double{kGaborReach} +
-                                      double{kGaborSlabReach} * double{kGaborSlabReach});
+// The greatest first-order distance of an impulse from the surface, in units of 1/a, for kernels of a size
+// 1/a over the domain's longest side.
+double farthest_impulse(double size) {
+  if (!(size < kSmallKernel)) return std::numeric_limits<double>::infinity();
+  const double curvature = (kMostMargin - kLeastMargin) * (size / kSmallKernel), rounding = 0x1p-22 / size;
+  return 1.0 + std::min(kLeastMargin + curvature + rounding, kMostMargin);
+}
+
+// The distance from an impulse to the rim of its support, in units of 1/a.
+const double kRimReach = std::sqrt(double{kGaborDiscReach} * double{kGaborDiscReach} +
+                                   double{kGaborSlabReach} * double{kGaborSlabReach});
 
 double longest_side(const Box& box) {
   const Vec3d e = box.extent();
   return std::max({e.x, e.y, e.z});
 }
 
-// One bandwidth at the scale of a domain. The variance is density K^2/2 (integral of e^2)^2 (integral of
-// W^2); the factor 1/2 comes from the uniform phase.
+// One bandwidth at the scale of a domain. The variance is density K^2/2 (integral of P^2) (integral of W^2);
+// the factor 1/2 comes from the uniform phase.
 SurfaceBand surface_band(const GaborLayer& layer, const GaborBand& band, std::uint32_t seed,
                          const Vec3d& origin, double body_side, ArrayStore& arrays) {
   const double a = band.a / layer.pixel_size;
@@ -39,20 +49,18 @@ SurfaceBand surface_band(const GaborLayer& layer, const GaborBand& band, std::ui
       kGaborKernelArea * kGaborSlabThickness / portable::whole_power(kGaborSpaceCell, 3);
   const int count =
       std::max(1, static_cast<int>(std::lround(layer.impulses_per_kernel / cells_under_kernel)));
-  const double energy = kGaborProfileEnergy * kGaborProfileEnergy * kGaborSlabEnergy;
+  const double energy = kGaborDiscEnergy * kGaborSlabEnergy;
   const double density = count / portable::whole_power(kGaborSpaceCell, 3);
   const double amplitude = layer.height_rms * std::sqrt(2.0 * band.variance_share / (density * energy));
-  const double farthest_impulse =
-      1.0 / a < kSmallKernel * body_side ? kFarthestReach / a : std::numeric_limits<double>::infinity();
   const auto cell = static_cast<float>(kGaborSpaceCell / a);
   const OriginCell first = origin_cell(1.0 / double{cell} * origin);
   return {{seed,
            static_cast<float>(a),
            cell,
-           static_cast<float>(kCornerReach / a),
+           static_cast<float>(kRimReach / a),
            count,
            static_cast<float>(amplitude),
-           static_cast<float>(farthest_impulse),
+           static_cast<float>(farthest_impulse(1.0 / (a * body_side)) / a),
            {first.x, first.y, first.z},
            to_float(-double{cell} * first.rest)},
           arrays.add(band.lobes)};

@@ -22,9 +22,9 @@ namespace astrolith {
 struct GaborTileCache;  // synthesis/gabor/gabor_tiles.h
 
 // The noise and its slope at a point, with one more impulse added.
-ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float amplitude, const Vec3f& p,
-                                          const GaborSample& sum) {
-  const GaborSample k = gabor_kernel_with_slope(impulse, p.x, p.y, p.z);
+ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float disc_scale, float amplitude,
+                                          const Vec3f& p, const GaborSample& sum) {
+  const GaborSample k = gabor_kernel_with_slope(impulse, disc_scale, p.x, p.y, p.z);
   return {math::fma(amplitude, k.value, sum.value),
           {math::fma(amplitude, k.slope.x, sum.slope.x), math::fma(amplitude, k.slope.y, sum.slope.y),
            math::fma(amplitude, k.slope.z, sum.slope.z)}};
@@ -74,8 +74,9 @@ ASTROLITH_HD inline float height_at(const GaborSurfaceNoise& n, const ArrayView&
   const SurfaceBand* bands = arrays[n.bands];
   float height = 0.0f;
   for (std::uint32_t b = 0; b < n.bands.count; ++b) {
+    const float scale = gabor_disc_scale(bands[b].a);
     for (std::uint32_t j = first[b]; j < first[b + 1]; ++j) {
-      height = math::fma(bands[b].amplitude, gabor_kernel(impulses[j], p.x, p.y, p.z), height);
+      height = math::fma(bands[b].amplitude, gabor_kernel(impulses[j], scale, p.x, p.y, p.z), height);
     }
   }
   return math::clamp(height, -n.clip, n.clip);
@@ -92,8 +93,9 @@ ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const A
   const SurfaceBand* bands = arrays[n.bands];
   GaborSample sum{};
   for (std::uint32_t b = 0; b < n.bands.count; ++b) {
+    const float scale = gabor_disc_scale(bands[b].a);
     for (std::uint32_t j = first[b]; j < first[b + 1]; ++j) {
-      sum = with_impulse(impulses[j], bands[b].amplitude, q, sum);
+      sum = with_impulse(impulses[j], scale, bands[b].amplitude, q, sum);
     }
   }
   for (int k = 0; k < 4; ++k) {

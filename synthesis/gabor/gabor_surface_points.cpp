@@ -10,8 +10,8 @@ namespace astrolith {
 namespace {
 
 constexpr int kGroup = static_cast<int>(kLanes);
-// Four groups form a cluster. The impulses are narrowed down for a cluster first, then for each group.
-constexpr int kCluster = 4 * kGroup;
+// Sixteen groups form a cluster. The impulses that reach a cluster are sorted into its groups.
+constexpr int kCluster = static_cast<int>(kLanes) * kGroup;
 
 // Points whose boxes have more cells than this are split, so that memory is bounded.
 constexpr std::int64_t kMostCells = 1 << 17;
@@ -105,6 +105,31 @@ GaborSurfacePoints::GaborSurfacePoints(int n, const float* x, const float* y, co
   if (with_slopes) {
     for (auto* s : {&sx_, &sy_, &sz_}) s->assign(padded, 0.0f);
   }
+  find_groups();
+}
+
+// The last points of the last group repeat its last point.
+void GaborSurfacePoints::find_groups() {
+  groups_.resize(x_.size() / kLanes);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const std::array<const float*, 3> at{&x_[g * kLanes], &y_[g * kLanes], &z_[g * kLanes]};
+    PointBox box{{at[0][0], at[1][0], at[2][0]}, {at[0][0], at[1][0], at[2][0]}};
+    std::array<float, kLanes> squares{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        box.low[axis] = math::min(box.low[axis], at[axis][i]);
+        box.high[axis] = math::max(box.high[axis], at[axis][i]);
+      }
+      const float center = 0.5f * (box.low[axis] + box.high[axis]);
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const float d = at[axis][i] - center;
+        squares[i] += d * d;
+      }
+    }
+    float farthest = 0.0f;
+    for (const float square : squares) farthest = math::max(farthest, square);
+    groups_[g] = {box, math::sqrt(farthest)};
+  }
 }
 
 // Splits the points into halves along their longest axis until groups are left. `begin` is a multiple of the
@@ -135,21 +160,52 @@ void GaborSurfacePoints::sort(int begin, int end) {
 }
 
 PointBox GaborSurfacePoints::box_of(int begin, int end) const {
-  PointBox box;
-  const std::array<const std::vector<float>*, 3> coordinates{&x_, &y_, &z_};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] =
-        std::minmax_element(coordinates[axis]->begin() + begin, coordinates[axis]->begin() + end);
-    box.low[axis] = *low;
-    box.high[axis] = *high;
+  const auto at = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    return std::array<float, 3>{x_[k], y_[k], z_[k]};
+  };
+  const auto extended = [](const PointBox& box, const std::array<float, 3>& low,
+                           const std::array<float, 3>& high) {
+    PointBox both;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      both.low[axis] = std::min(box.low[axis], low[axis]);
+      both.high[axis] = std::max(box.high[axis], high[axis]);
+    }
+    return both;
+  };
+  PointBox box{at(begin), at(begin)};
+  if (whole_groups(begin, end)) {
+    for (int i = begin; i < end; i += kGroup) {
+      const PointBox& group = groups_[static_cast<std::size_t>(i / kGroup)].box;
+      box = extended(box, group.low, group.high);
+    }
+  } else {
+    for (int i = begin; i < end; ++i) box = extended(box, at(i), at(i));
   }
   return box;
 }
 
+PointGroups GaborSurfacePoints::groups_of(float a, int begin, int end) const {
+  PointGroups groups;
+  for (int i = begin; i < end; i += kGroup) {
+    const Group& from = groups_[static_cast<std::size_t>(i / kGroup)];
+    const GaborTarget target = target_of(from.box, a);
+    const std::size_t g = groups.count++;
+    groups.x[g] = target.center[0];
+    groups.y[g] = target.center[1];
+    groups.z[g] = target.center[2];
+    groups.half_x[g] = target.half[0];
+    groups.half_y[g] = target.half[1];
+    groups.half_z[g] = target.half[2];
+    groups.disc[g] = most_disc(a, from.radius);
+  }
+  return groups;
+}
+
 HeightSums GaborSurfacePoints::sums_from(int begin) {
   const auto i = static_cast<std::size_t>(begin);
-  if (sx_.empty()) return {&height_[i], nullptr, nullptr, nullptr};
-  return {&height_[i], &sx_[i], &sy_[i], &sz_[i]};
+  if (sx_.empty()) return {&x_[i], &y_[i], &z_[i], &height_[i], nullptr, nullptr, nullptr};
+  return {&x_[i], &y_[i], &z_[i], &height_[i], &sx_[i], &sy_[i], &sz_[i]};
 }
 
 void GaborSurfacePoints::add_band(const GaborTiles& tiles) {
@@ -184,26 +240,20 @@ void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& 
   for (std::size_t next = 0; next < range.size();) {
     const HeldTiles held = next_tiles(tiles, range, next);
     find_chunks(held, box, chunks);
-    if (!chunks.empty()) add_chunks(chunks, tiles.band().amplitude, begin, end);
+    if (!chunks.empty()) add_chunks(chunks, tiles.band(), begin, end);
   }
 }
 
 // Adds the kernels of the chunks to the sums at the points of a range of whole groups.
-void GaborSurfacePoints::add_chunks(const std::vector<const ImpulseChunk*>& all, float amplitude, int begin,
-                                    int end) {
-  Chunks cluster_chunks, group_chunks;
-  std::vector<ImpulseLane> lanes;
+void GaborSurfacePoints::add_chunks(const std::vector<const ImpulseChunk*>& all, const SurfaceBand& band,
+                                    int begin, int end) {
+  Chunks chunks;
   for (int cluster = begin; cluster < end; cluster += kCluster) {
     const int cluster_end = std::min(cluster + kCluster, end);
-    narrow(all, box_of(cluster, cluster_end), cluster_chunks);
-    for (int group = cluster; group < cluster_end; group += kGroup) {
-      const PointBox box = box_of(group, std::min(group + kGroup, end));
-      narrow(cluster_chunks, box, group_chunks);
-      lanes.clear();
-      append_reaching(group_chunks, box, lanes);
-      const auto i = static_cast<std::size_t>(group);
-      add_to_group(lanes, amplitude, &x_[i], &y_[i], &z_[i], sums_from(group));
-    }
+    const PointBox box = box_of(cluster, cluster_end);
+    narrow(all, box, chunks);
+    add_to_groups(chunks, band.a, band.amplitude, target_of(box, band.a),
+                  groups_of(band.a, cluster, cluster_end), sums_from(cluster));
   }
 }
 
@@ -211,8 +261,7 @@ void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, int begin, in
   GaborPointImpulses impulses(tiles.band(), tiles.ground());
   for (int i = begin; i < end; ++i) {
     const auto p = static_cast<std::size_t>(i);
-    add_at_point(impulses.around(x_[p], y_[p], z_[p]), tiles.band().amplitude, x_[p], y_[p], z_[p],
-                 sums_from(i));
+    add_at_point(impulses.around(x_[p], y_[p], z_[p]), tiles.band().a, tiles.band().amplitude, sums_from(i));
   }
 }
 

@@ -40,9 +40,19 @@ class GaborSurfacePoints {
   void add_band(const GaborTiles& tiles, int begin, int end);
   void add_to_scattered(const GaborTiles& tiles, int begin, int end);
   void add_to_dense(const GaborTiles& tiles, const CellRange& cells, int begin, int end);
-  void add_chunks(const std::vector<const ImpulseChunk*>& chunks, float amplitude, int begin, int end);
+  void add_chunks(const std::vector<const ImpulseChunk*>& chunks, const SurfaceBand& band, int begin,
+                  int end);
+  void find_groups();
+  PointGroups groups_of(float a, int begin, int end) const;
 
-  std::vector<int> index_;                    // number of each point before sorting
+  // The box of the points of a group, and their greatest distance from its centre.
+  struct Group {
+    PointBox box;
+    float radius;
+  };
+
+  std::vector<int> index_;  // number of each point before sorting
+  std::vector<Group> groups_;
   std::vector<float> x_, y_, z_;              // whole groups; the last point fills up the last group
   std::vector<float> height_, sx_, sy_, sz_;  // sums; slopes are empty if not wanted
 };

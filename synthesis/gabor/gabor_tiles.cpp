@@ -62,11 +62,11 @@ std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& inde
 }
 
 std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& index) const {
-  std::vector<GaborCell> cells;
-  for (int i = 0; i < kTileCells * kTileCells * kTileCells; ++i) {
-    cells.push_back({index[0] * kTileCells + i % kTileCells,
-                     index[1] * kTileCells + i / kTileCells % kTileCells,
-                     index[2] * kTileCells + i / (kTileCells * kTileCells)});
+  TileCells cells;
+  for (int i = 0; i < static_cast<int>(kTileVolume); ++i) {
+    cells[static_cast<std::size_t>(i)] = {index[0] * kTileCells + i % kTileCells,
+                                          index[1] * kTileCells + i / kTileCells % kTileCells,
+                                          index[2] * kTileCells + i / (kTileCells * kTileCells)};
   }
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   GaborTile tile{make_chunks(draw_cells(band_, ground_, cells), double{band_.a}),

@@ -72,7 +72,7 @@ TEST_F(SynthRefusal, GaborLayersThatTakeTooLongAreRefused) {
   };
   expect_recipe_refused(recipe("1024"),
                         "layers[0].impulses_per_kernel: these impulses, with those of earlier "
-                        "layers, take 520034");
+                        "layers, take 136584");
   const testing::Outcome made = run_program(kSynth, {folder_.write("r.json", recipe("32")), "-o",
                                                      (folder_ / "m.ply").string(), "--resolution", "16"});
   EXPECT_EQ(made.status, 0) << made.errors;

@@ -227,10 +227,10 @@ class GaborReference {
         std::max(1, static_cast<int>(std::lround(layer_.impulses_per_kernel * std::pow(kGaborSpaceCell, 3) /
                                                  (kGaborKernelArea * kGaborSlabThickness))));
     const double density = count / std::pow(kGaborSpaceCell, 3);
-    const double energy = kGaborProfileEnergy * kGaborProfileEnergy * kGaborSlabEnergy;
+    const double energy = kGaborDiscEnergy * kGaborSlabEnergy;
     const double amplitude = layer_.height_rms * std::sqrt(2.0 * band.variance_share / (density * energy));
     const std::uint32_t seed = gabor_band_seed(seed_, 0, band.bandwidth);
-    const auto around = static_cast<std::int64_t>(std::ceil(2.3 / kGaborSpaceCell)) + 1;
+    const auto around = static_cast<std::int64_t>(std::ceil(1.6 / kGaborSpaceCell)) + 1;
     const std::array<std::int64_t, 3> at{static_cast<std::int64_t>(std::floor(p.x / cell)),
                                          static_cast<std::int64_t>(std::floor(p.y / cell)),
                                          static_cast<std::int64_t>(std::floor(p.z / cell))};
@@ -271,16 +271,12 @@ class GaborReference {
     return sum;
   }
 
-  static double window(double u) {
-    const double r2 = double{kGaborReach} * double{kGaborReach};
-    const double t = std::clamp((r2 - u * u) / (r2 * 0.51), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-  }
   static double kernel(double u, double v, double n, const GaborBand::Lobe& lobe, double phase) {
-    constexpr double kPi = std::numbers::pi;
-    const double slab = std::max(1.0 - n * n, 0.0);
-    return window(u) * window(v) * slab * slab * std::exp(-kPi * (u * u + v * v)) *
-           std::cos(2.0 * kPi * (double{lobe.frequency_x} * u + double{lobe.frequency_y} * v + phase));
+    const double t = std::max(1.0 - (u * u + v * v) / std::pow(double{kGaborDiscReach}, 2), 0.0);
+    const double slab = std::max(1.0 - std::pow(n, 8), 0.0);
+    return t * t * (1.81 - 4.23 * t + 3.42 * t * t) * slab * slab *
+           std::cos(2.0 * std::numbers::pi *
+                    (double{lobe.frequency_x} * u + double{lobe.frequency_y} * v + phase));
   }
 
   GaborLayer layer_;
