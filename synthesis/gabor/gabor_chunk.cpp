@@ -67,7 +67,7 @@ ASTROLITH_KERNEL std::size_t write_reaching(const ImpulseChunk& chunk, const Gab
 }
 
 // The groups that an impulse reaches, one bit each.
-ASTROLITH_KERNEL std::uint32_t groups_reached(const GaborImpulse& k, float a_squared, const PointGroups& g) {
+ASTROLITH_KERNEL std::uint32_t groups_reached(const GaborImpulse& k, float a_squared, const GroupBoxes& g) {
   std::uint32_t reached = 0;
 #pragma omp simd reduction(| : reached)
   for (std::size_t i = 0; i < kLanes; ++i) {
@@ -80,7 +80,7 @@ ASTROLITH_KERNEL std::uint32_t groups_reached(const GaborImpulse& k, float a_squ
 
 // Sorts the impulses of at most kPiece chunks into groups.
 ASTROLITH_KERNEL void sort_into_groups(const ImpulseChunk* const* chunks, std::size_t num_chunks,
-                                       const GaborTarget& target, const PointGroups& groups,
+                                       const GaborTarget& target, const GroupBoxes& groups,
                                        GroupLists& lists) {
   std::size_t count = 0;
   for (std::size_t c = 0; c < num_chunks; ++c) {
@@ -129,7 +129,7 @@ ASTROLITH_KERNEL void add_slopes(const GaborImpulse* impulses, const std::uint16
 }
 
 ASTROLITH_SIMD_CLONES void add_piece(const ImpulseChunk* const* chunks, std::size_t num_chunks, float scale,
-                                     float amplitude, const GaborTarget& target, const PointGroups& groups,
+                                     float amplitude, const GaborTarget& target, const GroupBoxes& groups,
                                      const HeightSums& sums, GroupLists& lists) {
   sort_into_groups(chunks, num_chunks, target, groups, lists);
   for (std::size_t g = 0; g < groups.count; ++g) {
@@ -227,7 +227,7 @@ GaborTarget target_of(const PointBox& box, float a) {
 }
 
 void add_to_groups(std::span<const ImpulseChunk* const> chunks, float a, float amplitude,
-                   const GaborTarget& target, const PointGroups& groups, const HeightSums& sums) {
+                   const GaborTarget& target, const GroupBoxes& groups, const HeightSums& sums) {
   GroupLists lists;
   for (std::size_t c = 0; c < chunks.size(); c += kPiece) {
     add_piece(&chunks[c], std::min(kPiece, chunks.size() - c), gabor_disc_scale(a), amplitude, target, groups,

@@ -47,7 +47,7 @@ inline bool overlap(const PointBox& box, const std::array<float, 3>& low, const 
 GaborTarget target_of(const PointBox& box, float a);
 
 // Up to sixteen groups of points. Each group lies in a box about its centre, and within a radius of it.
-struct PointGroups {
+struct GroupBoxes {
   std::size_t count = 0;
   std::array<float, kLanes> x{}, y{}, z{};                 // centres
   std::array<float, kLanes> half_x{}, half_y{}, half_z{};  // half the sides of the boxes
@@ -65,7 +65,7 @@ struct HeightSums {
 // no point of `target`, or no point of a group, are left out there: their kernels are 0. The kernels are
 // added one after another, in their order.
 void add_to_groups(std::span<const ImpulseChunk* const> chunks, float a, float amplitude,
-                   const GaborTarget& target, const PointGroups& groups, const HeightSums& sums);
+                   const GaborTarget& target, const GroupBoxes& groups, const HeightSums& sums);
 
 // Adds amplitude times each kernel of whole chunks to the sums at one point. The bits are those of
 // add_to_groups().

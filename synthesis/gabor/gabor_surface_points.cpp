@@ -185,8 +185,8 @@ PointBox GaborSurfacePoints::box_of(int begin, int end) const {
   return box;
 }
 
-PointGroups GaborSurfacePoints::groups_of(float a, int begin, int end) const {
-  PointGroups groups;
+GroupBoxes GaborSurfacePoints::groups_of(float a, int begin, int end) const {
+  GroupBoxes groups;
   for (int i = begin; i < end; i += kGroup) {
     const Group& from = groups_[static_cast<std::size_t>(i / kGroup)];
     const GaborTarget target = target_of(from.box, a);

@@ -43,7 +43,7 @@ class GaborSurfacePoints {
   void add_chunks(const std::vector<const ImpulseChunk*>& chunks, const SurfaceBand& band, int begin,
                   int end);
   void find_groups();
-  PointGroups groups_of(float a, int begin, int end) const;
+  GroupBoxes groups_of(float a, int begin, int end) const;
 
   // The box of the points of a group, and their greatest distance from its centre.
   struct Group {
