@@ -47,6 +47,20 @@ Recipe recipe_of(const Program& program, const FitArguments& arguments, const Sh
   return recipe;
 }
 
+// Adds learnt details, and says what was learnt. A target without surface statistics gets none.
+void learn(Program& program, const FitArguments& arguments, const TargetBody& target, EvaluationLog& log,
+           const Progress& progress, Recipe& recipe) {
+  try {
+    const LearntDetails learnt =
+        add_learnt_details(target, arguments.fit, arguments.details.everywhere, log, progress, recipe);
+    const nlohmann::ordered_json figures = learnt_json(learnt, arguments.unit);
+    for (const auto& words : figures["words"]) program.say("learnt: " + words.get<std::string>());
+    program.summary["learnt"] = figures;
+  } catch (const InputError& e) {
+    program.say(std::string("no details are learnt: ") + e.what());
+  }
+}
+
 // Adds details to the recipe, and to the summary; the fit's figures become those of both together.
 void add_details(Program& program, const FitArguments& arguments, const TargetBody& target, TimeLimit& limit,
                  FitCheckpoint& checkpoint, ShapeFitResult& fit, Recipe& recipe) {
@@ -56,13 +70,18 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
   if (wanted.micro == "auto") {
     program.say("micro: " + add_residual_texture(target, arguments.fit.seed,
                                                  limit.guard(program.progress("micro"), "micro"), recipe));
-  } else if (!wanted.transfer.empty()) {
-    const Recipe other = read_details(wanted.transfer);
+  } else if (wanted.base_only) {
+    // The micro layers alone.
+  } else if (wanted.transfers()) {
+    const Recipe other = read_details(wanted.details);
     const double ratio = transfer_details(other, recipe);
     program.say(
-        fmt::format("{}: {} layers, lengths times {:.4g}", wanted.transfer, other.layers.size(), ratio));
-  } else if (!wanted.base_only) {
-    const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
+        fmt::format("{}: {} layers, lengths times {:.4g}", wanted.details, other.layers.size(), ratio));
+  } else if (const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
+             wanted.learns()) {
+    learn(program, arguments, target, checkpoint.log(), progress, recipe);
+    checkpoint.save();
+  } else {
     const DetailsFitResult details =
         search_details(program, target, arguments.fit, wanted, checkpoint.log(), progress, recipe);
     checkpoint.save();
@@ -167,7 +186,7 @@ void run(Program& program, FitArguments& arguments) {
     require_other_file(arguments.checkpoint, arguments.mesh);
   }
   const auto variations = variation_files(arguments.output, arguments.details.variations);
-  check_detail_inputs(arguments.details);
+  check_detail_inputs(program, arguments.details);
   if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
   TimeLimit limit(arguments.time_limit);
   settle_fit_options(program, arguments);
@@ -205,7 +224,10 @@ void run(Program& program, FitArguments& arguments) {
   const std::optional<FitRealism> realism = judge_surface(program, arguments, target, recipe, limit);
   if (!arguments.report.empty()) {
     std::optional<ReportedRealism> shown;
-    if (realism) shown.emplace(reported(*realism, target, arguments.unit));
+    if (realism) {
+      shown.emplace(reported(*realism, target, arguments.unit));
+      if (program.summary.contains("learnt")) program.summary["learnt"]["words"].get_to(shown->learnt);
+    }
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(), arguments.report,
                      shown ? &*shown : nullptr);
   }

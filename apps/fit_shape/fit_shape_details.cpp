@@ -45,20 +45,25 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
   arguments.device.add_to(program.app);
   Option base_only = program.app.add_flag("--base-only", arguments.base_only,
                                           "metaballs alone, without a search for details");
-  Option generations =
-      program.app
-          .add_option(
-              "--generations", arguments.generations,
-              "generations of the search for details, which makes population x generations evaluations; a "
-              "mesh of more than 50,000 triangles is measured on about so many, and details narrower than "
-              "two of their edges are not searched for")
-          .check(in_range(1, 100000));
   program.app
-      .add_option("--details", arguments.transfer,
-                  "no search: the layers of this recipe, scaled by the ratio of the two bodies' sizes")
-      .placeholder("OTHER.json")
-      .excludes(base_only)
-      .excludes(generations);
+      .add_option(
+          "--generations", arguments.generations,
+          "generations of the search for details, which makes population x generations evaluations; a "
+          "mesh of more than 50,000 triangles is measured on about so many, and details narrower than "
+          "two of their edges are not searched for")
+      .check(in_range(1, 100000));
+  program.app
+      .add_option(
+          "--details", arguments.details,
+          "thesis: the search for the 34 parameters of three noises. learnt: noise that is rough and "
+          "smooth by regions, and boulders or craters where the mesh shows them; some 80 candidates are "
+          "meshed and compared with the mesh's surface, as compare --realism does. Or no search: the "
+          "layers of this recipe, scaled by the ratio of the two bodies' sizes")
+      .placeholder("thesis|learnt|OTHER.json")
+      .excludes(base_only);
+  program.app.add_flag("--everywhere", arguments.everywhere,
+                       "with --details learnt: details on ground, too, that is smooth in the mesh since no "
+                       "camera saw it; else such ground gets none");
   declare_micro_options(program, arguments);
   Option variations =
       program.app
@@ -74,9 +79,15 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
       .needs(variations);
 }
 
-void check_detail_inputs(const DetailArguments& arguments) {
+void check_detail_inputs(const Program& program, const DetailArguments& arguments) {
+  if (program.app.option("--generations").count() > 0 && (arguments.learns() || arguments.transfers())) {
+    throw InputError("--generations: are those of --details thesis; leave one of both out");
+  }
+  if (arguments.everywhere && !arguments.learns()) {
+    throw InputError("--everywhere: needs --details learnt");
+  }
   Recipe unused;
-  if (!arguments.transfer.empty()) unused.layers = read_details(arguments.transfer).layers;
+  if (arguments.transfers()) unused.layers = read_details(arguments.details).layers;
   if (!arguments.micro.empty() && arguments.micro != "auto") {
     add_micro_layers(arguments.micro, arguments.mm_per_px, arguments.micro_height_mm, unused);
   }

@@ -16,19 +16,25 @@ namespace astrolith {
 struct DetailArguments {
   bool base_only = false;
   int generations = 100;
-  std::string transfer;                           // a recipe whose layers are taken instead of a search
+  std::string details = "thesis";                 // "learnt", "thesis", or a recipe whose layers are taken
+  bool everywhere = false;                        // learnt details on ground that is smooth in the target
   std::string micro;                              // a recipe of Gabor layers, "auto", or nothing
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;
   DeviceOption device;  // computes the search
+
+  bool learns() const { return details == "learnt"; }
+  // Whether the layers of another recipe are taken instead of a search.
+  bool transfers() const { return !learns() && details != "thesis"; }
 };
 
 // Declares the options that fill in the arguments.
 void declare_detail_options(Program& program, DetailArguments& arguments);
 
-// Throws InputError where a recipe that the options name cannot be used. Programs call it before long work.
-void check_detail_inputs(const DetailArguments& arguments);
+// Throws InputError where options contradict each other or a recipe that they name cannot be used. Programs
+// call it before long work.
+void check_detail_inputs(const Program& program, const DetailArguments& arguments);
 
 // Adds the layers that the search finds to the recipe (in the file's frame, with its body). The optimiser and
 // its population are the base fit's; candidates that the log knows are not measured again.

@@ -56,9 +56,14 @@ namespace {
 struct DetailArguments {
   bool base_only = false;
   int generations = 100;
-  std::string transfer, micro;  // as fit_shape --details and --micro
+  std::string details, micro;  // as fit_shape --details and --micro
   double mm_per_px = 0.0, micro_height = 0.0;
   std::string device;  // "auto", "cpu" or "cuda"
+  bool everywhere = false;
+
+  bool learns() const { return details == "learnt"; }
+  // Whether the layers of another recipe are taken instead of a search.
+  bool transfers() const { return !learns() && details != "thesis"; }
 };
 
 struct ShapeArguments {
@@ -89,7 +94,7 @@ std::unique_ptr<CandidateEvaluator> evaluator_on(const std::string& device) {
 // Inputs and results that cannot be used are refused before the work.
 void check_files(const ShapeArguments& a) {
   Recipe unused;
-  if (!a.details.transfer.empty()) unused.layers = read_details(a.details.transfer).layers;
+  if (a.details.transfers()) unused.layers = read_details(a.details.details).layers;
   if (!a.details.micro.empty() && a.details.micro != "auto") {
     add_micro_layers(a.details.micro, a.details.mm_per_px, a.details.micro_height, unused);
   }
@@ -112,10 +117,18 @@ void add_details(const TargetBody& target, const ShapeArguments& a, FitCheckpoin
   const DetailArguments& wanted = a.details;
   if (wanted.micro == "auto") {
     add_residual_texture(target, a.fit.seed, limit.guard(state.progress("micro"), "micro"), recipe);
-  } else if (!wanted.transfer.empty()) {
-    transfer_details(read_details(wanted.transfer), recipe);
+  } else if (wanted.base_only) {
+    // The micro layers alone.
+  } else if (wanted.transfers()) {
+    transfer_details(read_details(wanted.details), recipe);
     find_images_from_here(recipe);
-  } else if (!wanted.base_only) {
+  } else if (wanted.learns()) {
+    const LearntDetails learnt =
+        add_learnt_details(target, a.fit, wanted.everywhere, checkpoint.log(),
+                           checkpoint.guard(limit.guard(state.progress("details"), "details")), recipe);
+    checkpoint.save();
+    figures = learnt_json(learnt, a.unit);
+  } else {
     const std::unique_ptr<CandidateEvaluator> evaluator = evaluator_on(wanted.device);
     const DetailsFitResult found =
         add_searched_details(target, a.fit, wanted.generations, checkpoint.log(), evaluator.get(),
@@ -170,7 +183,7 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   figures["stopped_early"] = stopped() || limit.reached();
   figures["diagonal"] = target.diagonal;
   figures["remarks"] = target.remarks;
-  if (!details.is_null()) figures["details"] = details;
+  if (!details.is_null()) figures[arguments.details.learns() ? "learnt" : "details"] = details;
   return {recipe_to_json(recipe), figures.dump()};
 }
 
@@ -179,11 +192,11 @@ std::pair<std::string, std::string> fit_shape_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, int bytes,
     double subtract, std::int64_t points, double tolerance, const std::string& optimizer, int population,
-    int generations, bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
+    int generations, bool base_only, const std::string& details, bool everywhere, const std::string& micro, double mm_per_px,
     double micro_height, const std::string& device, double time_limit, const std::string& unit,
     const std::string& checkpoint, const std::string& report, const Options& options, std::uint64_t seed,
     int threads, nb::object progress) {
-  const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device};
+  const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device, everywhere};
   ShapeArguments arguments{name, vertices ? "" : name, {},     layers, time_limit,
                            unit, checkpoint,           report, options};
   arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
@@ -252,7 +265,7 @@ NB_MODULE(_estimation, module) {
   module.def("fit_shape", &fit_shape_in_job, nb::arg("name"), nb::arg("vertices").noconvert().none(),
              nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("bytes"),
              nb::arg("subtract"), nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"),
-             nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"),
+             nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"), nb::arg("everywhere"),
              nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"),
              nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"),
              nb::arg("options"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());

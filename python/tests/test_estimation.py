@@ -248,3 +248,12 @@ def test_wrong_meshes(peanut):
         astrolith.fit_shape(peanut.vertices, peanut.faces.astype(np.int64) - 1)
     with pytest.raises(ValueError, match="^spheres: "):
         astrolith.fit_shape(peanut, spheres=0)
+
+
+def test_options_of_another_search_for_details_are_refused(peanut):
+    with pytest.raises(ValueError, match="generations"):
+        astrolith.fit_shape(peanut, details="learnt", generations=3)
+    with pytest.raises(ValueError, match="everywhere"):
+        astrolith.fit_shape(peanut, everywhere=True)
+    with pytest.raises(ValueError, match="base_only"):
+        astrolith.fit_shape(peanut, details="learnt", base_only=True)

@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "cuda/candidate_evaluator.h"
 #include "estimation/shape/details/details_fit.h"
 #include "estimation/shape/fit/shape_fit.h"
+#include "estimation/shape/learning/learnt_details.h"
 #include "recipe/recipe.h"
 #include "tasks/estimation/fit_checkpoint.h"
 
@@ -24,6 +26,12 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
                                       int generations, EvaluationLog& log, CandidateEvaluator* evaluator,
                                       const Progress& progress, Recipe& recipe);
 
+// Replaces the layers of the recipe (in the file's frame, with its body) by details learnt from the target.
+// The body gets a group of metaballs where only a part of the target has details. Candidates that the log
+// knows are not measured again. Throws InputError where the target is too coarse to have surface statistics.
+LearntDetails add_learnt_details(const TargetBody& target, const ShapeFitOptions& options, bool everywhere,
+                                 EvaluationLog& log, const Progress& progress, Recipe& recipe);
+
 // Measures the whole recipe as the fit measured its base: the fit's check and similarity become those of the
 // recipe. The similarity is that of the descriptor that `compare` uses by default (ahd), with 5,000 points
 // for each mesh.
@@ -35,6 +43,10 @@ void note_achieved(const ShapeFitResult& fit, Recipe& recipe);
 
 // The figures of a fit, for summaries. Distances are fractions of the bounding-box diagonal.
 nlohmann::ordered_json fit_figures(const ShapeFitResult& fit);
+
+// What was learnt: sentences in `unit`, "m" or "km", the model with lengths in that unit, and the figures of
+// each candidate that fresh seeds judged.
+nlohmann::ordered_json learnt_json(const LearntDetails& learnt, const std::string& unit);
 
 // The figures of a search: its evaluations and scores, and the roughness of target and details at each lag.
 nlohmann::ordered_json details_json(const DetailsFitResult& details);

@@ -196,6 +196,26 @@ TEST_F(FitShape, DetailsOfAnotherBodyAreScaledToThisOne) {
                  "egg.json");
 }
 
+TEST_F(FitShape, OptionsOfAnotherSearchForDetailsAreRefusedBeforeAnyWork) {
+  const std::string none = (folder_ / "none.obj").string(), out = (folder_ / "no.json").string();
+  expect_refusal(folder_, kFitShape, {none, "-o", out, "--details", "learnt", "--generations", "3"},
+                 "--generations: are those of --details thesis");
+  expect_refusal(folder_, kFitShape, {none, "-o", out, "--everywhere"},
+                 "--everywhere: needs --details learnt");
+  expect_refusal(folder_, kFitShape, {none, "-o", out, "--details", "learnt", "--base-only"}, "excludes");
+}
+
+// The egg has too few triangles to say what its surface is like.
+TEST_F(FitShape, WithoutSurfaceStatisticsNothingIsLearntAndTheBaseIsWritten) {
+  const std::string mesh = folder_.write("egg.obj", testing::ellipsoid_obj(1.5, 1.1, 0.9, 15, 24));
+  const std::string out = (folder_ / "egg.json").string();
+  const testing::Outcome outcome =
+      run_program(kFitShape, {mesh, "-o", out, "--spheres", "12", "--points", "400", "--details", "learnt"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("no details are learnt"), std::string::npos) << outcome.errors;
+  EXPECT_TRUE(read_recipe(out).layers.empty());
+}
+
 TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {
   fit("egg.json", {"--base-only"});
   Recipe rock;

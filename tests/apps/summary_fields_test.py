@@ -126,6 +126,7 @@ def runs(folder):
     yield [*fit, folder / "fit.json", "--population", "4", "--generations", "2", "--variations", "1"]
     yield [*fit, folder / "packing.csv", "--packing-only"]
     yield ["fit_shape", fine, "--spheres", "6", "-o", folder / "judged.json", "--base-only"]
+    yield ["fit_shape", fine, "--spheres", "6", "-o", folder / "learnt.json", "--details", "learnt"]
     yield ["describe", fine, "--surface", "-o", folder / "surface.json"]
     yield ["compare", fine, finer, "--floor", "--realism", "-o", folder / "realism.json"]
     yield ["describe", ball, "-o", folder / "description.npy"]

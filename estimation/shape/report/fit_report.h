@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "descriptor/surface/realism.h"
 #include "estimation/shape/fit/shape_fit.h"
@@ -17,6 +18,7 @@ struct ReportedRealism {
   const TriangleMesh& mesh;  // of the fit with its details, as the verdict took it
   const SurfaceStatistics& fit;
   LengthWords lengths;
+  std::vector<std::string> learnt = {};  // what was learnt of the details, in sentences
 };
 
 // Writes these files into the folder, which is made if it is missing. Throws InputError where a file cannot

@@ -1,0 +1,96 @@
+#include "estimation/shape/learning/imaged_ground.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace astrolith {
+namespace {
+
+constexpr double kMeanReach = 10.0, kPieceReach = 8.0;  // edges
+constexpr double kFarBelow = 2.0;
+constexpr double kLeastSmoothShare = 0.03;
+
+// The mean of the values over the places within a distance of each place.
+std::vector<double> means_around(const std::vector<Vec3d>& places, const std::vector<double>& values,
+                                 double reach) {
+  std::vector<double> means;
+  for (const Vec3d& p : places) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      if (squared_norm(places[j] - p) > reach * reach) continue;
+      sum += values[j];
+      count += 1.0;
+    }
+    means.push_back(sum / count);
+  }
+  return means;
+}
+
+std::vector<char> far_below(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  const double limit = sorted[(3 * sorted.size()) / 4] - kFarBelow;
+  std::vector<char> below;
+  for (const double value : values) below.push_back(value < limit ? 1 : 0);
+  return below;
+}
+
+// Leaves the largest piece of the marked places, whose neighbours lie within `reach` of each other.
+std::vector<char> largest_piece(const std::vector<Vec3d>& places, std::vector<char> marked, double reach) {
+  std::vector<std::size_t> largest;
+  for (std::size_t first = 0; first < places.size(); ++first) {
+    if (marked[first] == 0) continue;
+    std::vector<std::size_t> piece{first};
+    marked[first] = 0;
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      for (std::size_t j = 0; j < places.size(); ++j) {
+        if (marked[j] == 0 || squared_norm(places[j] - places[piece[k]]) > reach * reach) continue;
+        marked[j] = 0;
+        piece.push_back(j);
+      }
+    }
+    if (piece.size() > largest.size()) largest = std::move(piece);
+  }
+  std::vector<char> in_piece(places.size(), 0);
+  for (const std::size_t i : largest) in_piece[i] = 1;
+  return in_piece;
+}
+
+std::size_t nearest_sphere(const Vec3d& p, const std::vector<Sphere>& spheres) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < spheres.size(); ++s) {
+    const double distance = norm(p - spheres[s].center) - spheres[s].radius;
+    if (distance >= least) continue;
+    least = distance;
+    nearest = s;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+ImagedGround find_imaged_ground(const SurfaceStatistics& target, const std::vector<Sphere>& spheres) {
+  const LocalStatistic* roughness = target.find(SurfaceQuantity::roughness, 6.0);
+  if (roughness == nullptr || spheres.empty()) return {};
+  const std::vector<char> smooth = largest_piece(
+      target.places, far_below(means_around(target.places, roughness->values, kMeanReach * target.edge)),
+      kPieceReach * target.edge);
+  ImagedGround ground;
+  ground.smooth_share =
+      static_cast<double>(std::count(smooth.begin(), smooth.end(), 1)) / static_cast<double>(smooth.size());
+  if (ground.smooth_share < kLeastSmoothShare) return {};
+  std::vector<int> balance(spheres.size(), 0);  // places with details less smooth ones
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
+    balance[nearest_sphere(target.places[i], spheres)] += smooth[i] != 0 ? -1 : 1;
+  }
+  for (std::size_t s = 0; s < spheres.size(); ++s) {
+    if (balance[s] > 0) ground.metaballs.push_back(static_cast<int>(s));
+  }
+  const bool all = ground.metaballs.size() == spheres.size();
+  if (all) ground.metaballs.clear();
+  return ground;
+}
+
+}  // namespace astrolith
