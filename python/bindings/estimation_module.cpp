@@ -192,11 +192,12 @@ std::pair<std::string, std::string> fit_shape_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, int bytes,
     double subtract, std::int64_t points, double tolerance, const std::string& optimizer, int population,
-    int generations, bool base_only, const std::string& details, bool everywhere, const std::string& micro, double mm_per_px,
-    double micro_height, const std::string& device, double time_limit, const std::string& unit,
-    const std::string& checkpoint, const std::string& report, const Options& options, std::uint64_t seed,
-    int threads, nb::object progress) {
-  const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device, everywhere};
+    int generations, bool base_only, const std::string& details, bool everywhere, const std::string& micro,
+    double mm_per_px, double micro_height, const std::string& device, double time_limit,
+    const std::string& unit, const std::string& checkpoint, const std::string& report, const Options& options,
+    std::uint64_t seed, int threads, nb::object progress) {
+  const DetailArguments layers{base_only, generations,  details, micro,
+                               mm_per_px, micro_height, device,  everywhere};
   ShapeArguments arguments{name, vertices ? "" : name, {},     layers, time_limit,
                            unit, checkpoint,           report, options};
   arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
@@ -265,10 +266,11 @@ NB_MODULE(_estimation, module) {
   module.def("fit_shape", &fit_shape_in_job, nb::arg("name"), nb::arg("vertices").noconvert().none(),
              nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("bytes"),
              nb::arg("subtract"), nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"),
-             nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"), nb::arg("everywhere"),
-             nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"),
-             nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"),
-             nb::arg("options"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"),
+             nb::arg("everywhere"), nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"),
+             nb::arg("device"), nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"),
+             nb::arg("report"), nb::arg("options"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),
              nb::arg("depth"), nb::arg("components"), nb::arg("seed"), nb::arg("threads"),
