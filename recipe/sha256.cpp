@@ -58,6 +58,10 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   const auto refuse = [&] {
     throw InputError(file.string() + ": cannot read (" + std::strerror(errno) + "); check the name");
   };
+  std::error_code none;
+  if (std::filesystem::is_fifo(file, none)) {  // opening one waits until somebody writes
+    throw InputError(file.string() + ": is a pipe; give a file");
+  }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!stream) refuse();
   Sha256 hash;

@@ -28,7 +28,7 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-// 64 lower-case hexadecimal digits. Throws InputError when the file cannot be read.
+// 64 lower-case hexadecimal digits. Throws InputError when the file cannot be read, as a pipe cannot.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -84,7 +84,7 @@ void check_detail_inputs(const Program& program, const DetailArguments& argument
     throw InputError("--generations: are those of --details thesis; leave one of both out");
   }
   if (arguments.everywhere && !arguments.learns()) {
-    throw InputError("--everywhere: needs --details learnt");
+    throw InputError("--everywhere: goes with --details learnt; give that too, or leave it out");
   }
   Recipe unused;
   if (arguments.transfers()) unused.layers = read_details(arguments.details).layers;

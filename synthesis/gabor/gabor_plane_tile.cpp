@@ -7,6 +7,8 @@
 // kernel fill whole vectors: as many lanes for its columns as for its rows.
 #include "synthesis/gabor/gabor_plane_tile.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -77,7 +79,7 @@ struct PlaneImpulse {
 // Wide kernels go in blocks of sixteen lanes, without the blocks that the kernel does not reach.
 template <int kWidth>
 ASTROLITH_KERNEL void add_kernel(const PlaneImpulse& k, float* __restrict height) {
-  constexpr int kBlock = kWidth < 16 ? kWidth : 16, kProfileBlock = kWidth < 16 ? 2 * kWidth : 16;
+  constexpr int kBlock = std::min(kWidth, 16), kProfileBlock = std::min(2 * kWidth, 16);
   const int first_x = k.begin_x < kTextureTile - kWidth ? k.begin_x : kTextureTile - kWidth;
   const int first_y = k.begin_y < kTextureTile - kWidth ? k.begin_y : kTextureTile - kWidth;
   const int begin_x = k.begin_x - first_x, end_x = k.end_x - first_x;

@@ -201,7 +201,7 @@ TEST_F(FitShape, OptionsOfAnotherSearchForDetailsAreRefusedBeforeAnyWork) {
   expect_refusal(folder_, kFitShape, {none, "-o", out, "--details", "learnt", "--generations", "3"},
                  "--generations: are those of --details thesis");
   expect_refusal(folder_, kFitShape, {none, "-o", out, "--everywhere"},
-                 "--everywhere: needs --details learnt");
+                 "--everywhere: goes with --details learnt");
   expect_refusal(folder_, kFitShape, {none, "-o", out, "--details", "learnt", "--base-only"}, "excludes");
 }
 

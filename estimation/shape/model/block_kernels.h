@@ -66,12 +66,12 @@ class BlockKernels {
 
   void add_other_kernel(const ModelEvaluation& evaluation, std::size_t sphere, Sums& sums);
 
+  alignas(64) Lanes x_{}, y_{}, z_{};
+  Sums added_, subtracted_;
   double sharpness_ = 0.0;
   std::size_t points_ = 0;
-  alignas(64) Lanes x_{}, y_{}, z_{};
   std::vector<MetaballSphere<double>> spheres_;
   std::vector<Lanes> kernels_;  // (#spheres)
-  Sums added_, subtracted_;
 };
 
 // s at a point from its sums, as distance_with_derivatives() gives it, and its slopes; Gaussian kernels only.

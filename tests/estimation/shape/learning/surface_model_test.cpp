@@ -45,14 +45,11 @@ TEST(SurfaceModel, LengthsFollowTheEdge) {
   EXPECT_NEAR(b.amplitude / a.amplitude, 2.0, 1e-6);
   EXPECT_NEAR(a.frequency / b.frequency, 2.0, 1e-6);
   EXPECT_NEAR(b.use.mask->to / a.use.mask->to, 2.0, 1e-6);
-  EXPECT_NEAR(
-      population_of(large.layers[2])->least_diameter / population_of(small.layers[2])->least_diameter, 2.0,
-      1e-6);
+  EXPECT_NEAR(population_of(large.layers[2])->least_diameter / population_of(small.layers[2])->least_diameter,
+              2.0, 1e-6);
 }
 
-TEST(SurfaceModel, WithoutAmplitudeAndLandformsThereAreNoLayers) {
-  EXPECT_TRUE(layers_of({}, 0.1).empty());
-}
+TEST(SurfaceModel, WithoutAmplitudeAndLandformsThereAreNoLayers) { EXPECT_TRUE(layers_of({}, 0.1).empty()); }
 
 TEST(SurfaceModel, TheCentreOfTheSearchIsTheModelItself) {
   const SurfaceModel model = rubble();
