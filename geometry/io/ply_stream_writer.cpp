@@ -88,6 +88,7 @@ void PlyStreamWriter::write_with_extras(std::span<const MeshVertex> vertices) {
 }
 
 void PlyStreamWriter::add_triangles(std::span<const Triangle> triangles) {
+  if (triangles.empty()) return;  // as of a tile without surface
   constexpr std::size_t kAtOnce = 4096;
   std::vector<char> block;
   block.reserve(std::min(kAtOnce, triangles.size()) * kPlyTriangleBytes);
