@@ -263,7 +263,7 @@ std::vector<double> unusualness(const std::vector<Measures>& samples) {
 }
 
 constexpr int kSmallSide = 128;  // sides of fewer pixels let most textures pass for Gaussian ones
-constexpr const char* kWords = "comparing with Gaussian textures";
+constexpr const char* kComparing = "comparing with Gaussian textures";
 
 // The largest measures of a photo that is close to, or roughly, a Gaussian texture.
 struct Limits {
@@ -326,7 +326,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
   Surrogates noise(tiling, seed);
   MeasureSums photo;
   for (int t = 0; t < tiling.count(); ++t) {
-    if (!report(progress, 0.0, kWords)) throw WorkError("gaussianity: stopped");
+    if (!report(progress, 0.0, kComparing)) throw WorkError("gaussianity: stopped");
     const GreyImage tile = decompose_periodic(tile_of(image, tiling, t)).periodic;
     photo.add(tile);
     noise.add_tile(tile);
@@ -334,7 +334,7 @@ Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const P
   const int surrogates = std::clamp(kSurrogateTiles / tiling.count(), kFewestSurrogates, kMostSurrogates);
   std::vector<Measures> samples(static_cast<std::size_t>(surrogates) + 1);
   samples[0] = photo.measures();
-  reported_parallel_for({1, surrogates + 1, surrogates + 1}, progress, kWords, [&](std::int64_t i) {
+  reported_parallel_for({1, surrogates + 1, surrogates + 1}, progress, kComparing, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     samples[k] = noise.measure(k);
   });

@@ -11,8 +11,8 @@ namespace astrolith {
 namespace {
 
 constexpr double kMostOverlaps =
-    2000.0;                    // the most craters over a place on average, which bounds a point's cost
-constexpr double kClip = 2.0;  // bound of the relief of all craters, in the greatest relief of one
+    2000.0;                          // the most craters over a place on average, which bounds a point's cost
+constexpr double kReliefClip = 2.0;  // bound of the relief of all craters, in the greatest relief of one
 
 const CraterProfile& profile_of(const CraterLayer& layer, bool complex) {
   return complex ? layer.complex : layer.simple;
@@ -203,7 +203,7 @@ double crater_rise(const CraterLayer& layer) {
     const CraterPopulation& drawn = *layer.population;
     include(drawn.drawn.greatest_diameter, (1.0 + drawn.depth_spread) * (1.0 + 3.0 * drawn.depth_deviation));
   }
-  return kClip * greatest;
+  return kReliefClip * greatest;
 }
 
 BoxTree crater_tree(std::span<const CraterKernel> craters) {
@@ -226,7 +226,7 @@ CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const Placed
   find_bases(oldest_first, elevations, craters);
   // Which of the craters drawn by cells is the largest depends on the region; the bound must not.
   const bool by_cells = layer.population && layer.population->drawn.by_cells;
-  const double rise = by_cells ? crater_rise(layer) : kClip * greatest;
+  const double rise = by_cells ? crater_rise(layer) : kReliefClip * greatest;
   return {arrays.add(craters), bound_before + rise, 0};
 }
 

@@ -17,7 +17,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kClip = 2.0;  // limit of a sum of overlapping spots, in units of the greatest kernel
+constexpr double kSpotClip = 2.0;  // limit of a sum of overlapping spots, in units of the greatest kernel
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 ASTROLITH_SIMD_CLONES void add_spots(const SpotKernel& spot_kernel, const SpotImpulse* impulses,
@@ -101,7 +101,8 @@ SpotKind kind_of(const SpotLayer& layer, const SpotPart& part, const SpotLattice
 }
 
 double clip_of(const SpotLayer& layer, const SpotPart& part, double amplitude) {
-  return kClip * std::fabs(part.weight * amplitude) * (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
+  return kSpotClip * std::fabs(part.weight * amplitude) *
+         (std::fabs(layer.gaussian) + std::fabs(layer.kappa));
 }
 
 // Counts the cells of a lattice from the one that holds the origin of a frame. Returns the vector from the

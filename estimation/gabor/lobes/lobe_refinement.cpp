@@ -25,14 +25,14 @@ class MisfitFunction : public ceres::FirstOrderFunction {
   const LobeMisfit& misfit_;
 };
 
-constexpr const char* kWords = "refining";
+constexpr const char* kRefining = "refining";
 
 // Ends the minimisation, with its best so far, when progress asks to stop.
 class StopWhenAsked : public ceres::IterationCallback {
  public:
   explicit StopWhenAsked(const Progress& progress) : progress_(progress) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return report(progress_, 1.0, kWords) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    return report(progress_, 1.0, kRefining) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_TERMINATE_SUCCESSFULLY;
   }
 
  private:
@@ -67,10 +67,10 @@ RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpe
 
 RefinedLobes fewest_lobes(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate,
                           const std::vector<double>& weight, const Progress& progress) {
-  if (!report(progress, 1.0, kWords)) return {lobes, false};
+  if (!report(progress, 1.0, kRefining)) return {lobes, false};
   const double allowed = estimate.standard_error / 3.0;
   RefinedLobes best = refine_lobes(lobes, estimate.spectrum, progress);
-  while (best.lobes.size() > 1 && report(progress, 1.0, kWords)) {
+  while (best.lobes.size() > 1 && report(progress, 1.0, kRefining)) {
     const auto fewer = static_cast<int>(0.75 * static_cast<double>(best.lobes.size()));
     RefinedLobes candidate = refine_lobes(
         select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum, progress);
