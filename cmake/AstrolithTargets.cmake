@@ -85,6 +85,8 @@ endfunction()
 # astrolith_test(NAME [ROOMS] [OPTIMISED] SOURCES x_test.cpp ... LINK link ...)  one executable of GoogleTest cases
 # A release build compiles the tests' own code with -O1, which takes half the time of -O3; the libraries under test keep
 # -O3. OPTIMISED is for tests that run an algorithm of a header at length: their code keeps -O3, too.
+# Every case is a test of ctest. With a sanitizer, where a start takes half a second, six processes run the cases in turn;
+# the environment's GTEST_FILTER chooses among them.
 function(astrolith_test name)
   cmake_parse_arguments(ARG "ROOMS;OPTIMISED" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name}_tests ${ARG_SOURCES})
@@ -95,5 +97,13 @@ function(astrolith_test name)
     target_compile_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-O1>)
     target_precompile_headers(${name}_tests REUSE_FROM astrolith_test_headers)
   endif()
-  gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  if(NOT ASTROLITH_SANITIZE)
+    gtest_discover_tests(${name}_tests TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    return()
+  endif()
+  foreach(shard RANGE 5)
+    add_test(NAME ${name}.shard_${shard} COMMAND ${name}_tests --gtest_brief=1)
+    set_tests_properties(${name}.shard_${shard} PROPERTIES TIMEOUT 3600
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=6;GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

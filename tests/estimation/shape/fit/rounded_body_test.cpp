@@ -34,7 +34,8 @@ struct RoughBall {
     RefinementOptions& refinement = options.refinement;
     refinement.loss_scale = 1e-3;
     refinement.max_iterations = 80;
-    model = refine(model, points, refinement).model;
+    static const MetaballModel refined = refine(model, points, refinement).model;  // the same in every test
+    model = refined;
     options.length_unit = "m";
     options.check_resolution = 32;
   }
