@@ -102,7 +102,7 @@ function(astrolith_test name)
     return()
   endif()
   foreach(shard RANGE 5)
-    add_test(NAME ${name}.shard_${shard} COMMAND ${name}_tests --gtest_brief=1)
+    add_test(NAME ${name}.shard_${shard} COMMAND ${name}_tests)
     set_tests_properties(${name}.shard_${shard} PROPERTIES TIMEOUT 3600
       ENVIRONMENT "GTEST_TOTAL_SHARDS=6;GTEST_SHARD_INDEX=${shard}")
   endforeach()
