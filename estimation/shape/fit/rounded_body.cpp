@@ -21,9 +21,9 @@ namespace {
 constexpr int kStepsInDecade = 90;
 constexpr int kDecades = 8;
 
-// Of the normal equations that the roundings to bytes make up for errors with, and of those that the rounding
-// to digits does. Its steps are finer, and it has one, since a factorisation takes as long as ten steps of
-// the fit.
+// The dampings of the normal equations by which later numbers make up for the rounding of earlier ones. A
+// rounding to bytes tries all of the first. A rounding to digits has finer steps, and takes one: a
+// factorisation takes as long as ten steps of the fit.
 constexpr double kDampings[] = {1e-3, 1e-2, 1e-1, 1.0};
 constexpr double kDigitsDamping = 1e-2;
 

@@ -141,7 +141,7 @@ class Learning {
     std::vector<double> values = roughness->values;
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
                      values.end());
-    // Of noise with a gain of one half the residual within 3 edges is about a tenth of the first octave.
+    // Noise with a gain of one half has a residual within 3 edges of about a tenth of its first octave.
     model.amplitude = 3.0 * portable::exp(values[values.size() / 2]) * 8.0;
     const double far = std::clamp(target.regions.correlation(1), 0.0, 0.4);
     model.mask_wavelength = target.body_radius * (0.5 + far);
