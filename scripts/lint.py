@@ -52,8 +52,8 @@ def write_groups(build):
         if source.suffix not in (".cpp", ".cxx") or any(source.is_relative_to(base / "tests") for base in (ROOT, build)):
             continue
         if source.stem.startswith("unity_"):
-            members = [Path(path) for path in INCLUDED.findall(source.read_text())]
-            if not all(member.is_file() for member in members):
+            members = [member for member in map(Path, INCLUDED.findall(source.read_text())) if member.is_file()]
+            if not members:
                 continue
             target, number = source.parts[-3].removesuffix(".dir"), source.stem.split("_")[1]
             group = folder / f"{target}_{number}.cpp"
@@ -73,6 +73,7 @@ def findings(file, origins, commands):
         return ""
     # The count of warnings that were left out says nothing.
     said = "\n".join(line for line in done.stdout.splitlines() if not re.fullmatch(r"\d+ warnings? generated\.", line))
+    said = said.strip() or f"{file}: clang-tidy ended with status {done.returncode} and said nothing"
     return re.sub(re.escape(file) + r":(\d+)", lambda place: origins[int(place[1]) - 1] if origins else place[0], said)
 
 
