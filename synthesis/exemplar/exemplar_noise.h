@@ -10,10 +10,18 @@
 #include "synthesis/exemplar/exemplar_anchors.h"
 #include "synthesis/exemplar/exemplar_texture.h"
 #include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
 
 namespace astrolith {
 
 struct ExemplarNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = true,
+                                       .lifts = true,
+                                       .has_heights = true,
+                                       .bounded_by_box = false,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kNone};
+
   Vec3f low, high;  // points outside are moved to the border
   ExemplarTexture texture;
   ExemplarLattice lattice;    // without anchors where the layer is left out

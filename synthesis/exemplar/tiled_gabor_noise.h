@@ -10,16 +10,28 @@
 #include "numerics/interval.h"
 #include "synthesis/exemplar/exemplar_noise.h"
 #include "synthesis/gabor/gabor_surface_noise.h"
+#include "synthesis/noise/noise_traits.h"
 
 namespace astrolith {
 
 struct TiledGaborNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = true,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = false,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kGabor};
+
   GaborSurfaceNoise narrow;  // without bands where all lobes are wide
   ArrayRange<ExemplarNoise> tiles;
   float clip = 0.0f;          // heights are clamped to +- clip: 6 standard deviations, length units
   double height_bound = 0.0;  // bound of |n(p)|, length units
   NoiseDetail detail;
 };
+
+ASTROLITH_HD inline const GaborSurfaceNoise& gabor_impulses(const TiledGaborNoise& noise) {
+  return noise.narrow;
+}
 
 // A Gabor layer, taken apart.
 struct PhaseTileSet {

@@ -50,38 +50,52 @@ struct LayerAtPoint {
   const Vec3f& p;
   FieldState& state;
 
-  ASTROLITH_HD void operator()(const CraterRelief& relief) const {
+  template <class Noise>
+  ASTROLITH_HD void operator()(const Noise& noise) const {
+    if constexpr (Noise::kTraits.has_heights) {
+      join_height(f, layer.join, p, height_of(noise), state);
+    } else {
+      change_elevation(noise);
+    }
+  }
+
+ private:
+  ASTROLITH_HD void change_elevation(const CraterRelief& relief) const {
     const std::uint32_t first = lists.first_landform[relief.list],
                         end = lists.first_landform[relief.list + 1];
     state.elevation = cratered_elevation(relief, f.arrays, lists.landforms + first, end - first,
                                          projected_point(f, body), state.elevation);
   }
-  ASTROLITH_HD void operator()(const GaborSurfaceNoise& noise) const {
-    join(height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list,
-                   projected_point(f, body)));
-  }
-  ASTROLITH_HD void operator()(const TiledGaborNoise& noise) const {
-    join(height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list,
-                   projected_point(f, body)));
-  }
-  ASTROLITH_HD void operator()(const ExemplarNoise& noise) const {
-    const Vec3f foot = projected_point(f, body);
-    join(height_at(
-        noise, f.arrays,
-        noise.lifted ? lifted_point(body, f.leaf(0).metaballs.gradient_floor, foot, state.elevation) : foot));
-  }
-  ASTROLITH_HD void operator()(const SpotNoise& noise) const {
-    join(height_at(noise, f.arrays, lists.spots, lists.first_spot + layer.first_list, displaced()));
-  }
+
   template <class Noise>
-  ASTROLITH_HD void operator()(const Noise& noise) const {
-    join(height_at(noise, f.arrays, displaced()));
+  ASTROLITH_HD float height_of(const Noise& noise) const {
+    const Vec3f at = place_of(noise);
+    if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
+      return height_at(noise, f.arrays, lists.spots, lists.first_spot + layer.first_list, at);
+    } else if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
+      return height_at(noise, f.arrays, lists.gabor, lists.first_gabor + layer.first_list, at);
+    } else {
+      static_assert(Noise::kTraits.lists == NoiseLists::kNone);
+      return height_at(noise, f.arrays, at);
+    }
   }
 
- private:
-  // The point where a noise in space is evaluated.
-  ASTROLITH_HD Vec3f displaced() const { return state.is_displaced ? p + state.displacement : p; }
-  ASTROLITH_HD void join(float height) const { join_height(f, layer.join, p, height, state); }
+  // The point where a noise is evaluated.
+  template <class Noise>
+  ASTROLITH_HD Vec3f place_of(const Noise& noise) const {
+    if constexpr (Noise::kTraits.on_surface) {
+      return lifted(noise, projected_point(f, body));
+    } else {
+      return state.is_displaced ? p + state.displacement : p;
+    }
+  }
+  template <class Noise>
+  ASTROLITH_HD Vec3f lifted(const Noise& noise, const Vec3f& foot) const {
+    if constexpr (Noise::kTraits.lifts) {
+      if (noise.lifted) return lifted_point(body, f.leaf(0).metaballs.gradient_floor, foot, state.elevation);
+    }
+    return foot;
+  }
 };
 
 // Whether a boulder that reaches the block may change F at the point.
@@ -139,11 +153,13 @@ struct LayerAtTetrahedron {
   const Vec3f* p;
   FieldState* state;
 
-  ASTROLITH_HD void operator()(const GaborSurfaceNoise& noise) const { join_gabor(noise); }
-  ASTROLITH_HD void operator()(const TiledGaborNoise& noise) const { join_gabor(noise); }
   template <class Noise>
   ASTROLITH_HD void operator()(const Noise& noise) const {
-    for (int k = 0; k < 4; ++k) LayerAtPoint{f, lists, layer, body[k], p[k], state[k]}(noise);
+    if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
+      join_gabor(noise);
+    } else {
+      for (int k = 0; k < 4; ++k) LayerAtPoint{f, lists, layer, body[k], p[k], state[k]}(noise);
+    }
   }
 
  private:

@@ -33,23 +33,41 @@ struct LayerOverBox {
   Interval* kept;  // bounds of the heights kept for masks, by slot
   bool in_patch;   // whether the noise is that in the frame of the field's patch
 
-  ASTROLITH_HD Interval operator()(const CraterRelief& relief) const {
-    const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
-    return bound_cratered_elevation(relief, f.arrays, for_each, projected, before);
-  }
-  ASTROLITH_HD Interval operator()(const SpotNoise& noise) const {
-    return joined(lists.bound_spots(noise, number, displaced_box_of_layer()));
-  }
   template <class Noise>
   ASTROLITH_HD Interval operator()(const Noise& noise) const {
-    return joined(bound_heights(noise, f.arrays, displaced_box_of_layer()));
+    if constexpr (Noise::kTraits.has_heights) {
+      return joined(heights_of(noise));
+    } else {
+      return changed_elevation(noise);
+    }
   }
 
  private:
   ASTROLITH_HD const LayerJoin& join() const { return f.layers[number].join; }
-  ASTROLITH_HD Box displaced_box_of_layer() const {
-    return displaced_layer_box(in_patch ? Box{box.min - f.patch_origin, box.max - f.patch_origin} : box,
-                               join().displaced);
+  ASTROLITH_HD Interval changed_elevation(const CraterRelief& relief) const {
+    const auto for_each = [&](const auto& visit) { lists.for_each_crater(relief, projected, visit); };
+    return bound_cratered_elevation(relief, f.arrays, for_each, projected, before);
+  }
+  template <class Noise>
+  ASTROLITH_HD Interval heights_of(const Noise& noise) const {
+    if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
+      return lists.bound_spots(noise, number, box_of<Noise>());
+    } else {
+      return bound_heights(noise, f.arrays, box_of<Noise>());
+    }
+  }
+  // Holds the places where a noise is evaluated for the points of the box.
+  template <class Noise>
+  ASTROLITH_HD Box box_of() const {
+    if constexpr (Noise::kTraits.on_surface) {
+      return in_frame(projected);
+    } else {
+      return displaced_layer_box(in_frame(box), join().displaced);
+    }
+  }
+  // The box in the coordinates of the noise.
+  ASTROLITH_HD Box in_frame(const Box& of_body) const {
+    return in_patch ? Box{of_body.min - f.patch_origin, of_body.max - f.patch_origin} : of_body;
   }
   ASTROLITH_HD Interval joined(const Interval& heights) const {
     const double slack = kHeightSlack * join().height_bound;
@@ -102,8 +120,7 @@ ASTROLITH_HD BlockContent content_of_plain(const FieldView& f, const Lists& list
   const BlockContent content = content_by_height_bound(bound, f.height_bound);
   if (content != BlockContent::kMixed || f.num_layers == 0) return content;
   const auto divisor = [&] { return smallest_gradient(leaf, spheres, at, scratch.kernels); };
-  // Only craters read the projected box.
-  const Box projected = f.crater_layers.count == 0 ? at : projected_box(at, bound, f.height_bound, divisor());
+  const Box projected = f.reads_projections ? projected_box(at, bound, f.height_bound, divisor()) : at;
   return content_by_heights(bound, bound_elevations(f, lists, box, projected, scratch.kept), divisor);
 }
 

@@ -23,15 +23,33 @@
 
 namespace astrolith {
 
-// The table of kinds: every type that a layer of heights can have. A new noise in space needs an entry here,
-// a make_noise, a height_at, an evaluate_heights and a bound_heights, and nothing else.
+// The table of kinds: every type that a layer of heights can have. A new kind needs an entry here, traits, a
+// height_at, an evaluate_heights and a bound_heights. docs/architecture.md lists what else it needs.
 using LayerNoise = PlainVariant<FractalNoise, SparseNoise, SpotNoise, PhasorNoise, RandomPhaseNoise,
                                 CraterRelief, GaborSurfaceNoise, ExemplarNoise, TiledGaborNoise>;
 
-// The impulses of a layer of Gabor noise; null for other layers.
+// Visits a layer's noise: its traits.
+struct TraitsOfNoise {
+  template <class Noise>
+  constexpr NoiseTraits operator()(const Noise&) const {
+    return Noise::kTraits;
+  }
+};
+inline NoiseTraits traits_of(const LayerNoise& noise) { return noise.visit(TraitsOfNoise{}); }
+
+// Visits a layer's noise: the impulses of Gabor noise; null for kinds with other lists or none.
+struct GaborImpulsesOf {
+  template <class Noise>
+  ASTROLITH_HD const GaborSurfaceNoise* operator()(const Noise& noise) const {
+    if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
+      return &gabor_impulses(noise);
+    } else {
+      return nullptr;
+    }
+  }
+};
 ASTROLITH_HD inline const GaborSurfaceNoise* gabor_impulses_of(const LayerNoise& noise) {
-  const TiledGaborNoise* tiled = noise.get_if<TiledGaborNoise>();
-  return tiled != nullptr ? &tiled->narrow : noise.get_if<GaborSurfaceNoise>();
+  return noise.visit(GaborImpulsesOf{});
 }
 
 // A layer and how it joins the layers before it. Craters change the elevation by their own rule, so that only
@@ -63,6 +81,7 @@ struct FieldView {
   float height_reach;                       // height_bound with a margin for rounding, length units
   float longest_step;                       // height_bound as a float: how far points are projected
   float steepest;                           // the body's lipschitz_bound as a float
+  bool reads_projections;  // whether bounds of a layer depend on the box of the points' projections
   // Noise in the frame of the patch that the field was made for. A GPU does not read it.
   const LayerNoise* patch_noises = nullptr;
   Vec3d patch_origin;

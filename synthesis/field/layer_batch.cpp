@@ -60,25 +60,6 @@ ASTROLITH_SIMD_CLONES void lift_coordinates(int n, const float* __restrict proje
   }
 }
 
-// Where an exemplar is evaluated for the points: their projections, in the patch's frame if `in_patch`,
-// lifted to the surface that the layers below make. Uses the arrays of displaced coordinates.
-PointArrays exemplar_points(const FieldModel& model, const ExemplarNoise& noise, bool in_patch, Batch& b) {
-  in_patch ? project_locally(model, b) : project(model, b);
-  const PointArrays feet = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
-                                    : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
-  if (!noise.lifted) return feet;
-  std::array<float, kBatch> length;
-  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
-                   length.data());
-  const auto along = [&](const float* foot, const std::array<float, kBatch>& g, float* out) {
-    lift_coordinates(b.n, foot, g.data(), length.data(), b.elevation.data(), out);
-  };
-  along(feet.x, b.gx, b.qx.data());
-  along(feet.y, b.gy, b.qy.data());
-  along(feet.z, b.gz, b.qz.data());
-  return {b.qx.data(), b.qy.data(), b.qz.data()};
-}
-
 // The points p, displaced by the layers so far that warp later layers.
 PointArrays displaced(Batch& b, const PointArrays& p) {
   if (!b.is_displaced) return p;
@@ -91,61 +72,78 @@ PointArrays displaced(Batch& b, const PointArrays& p) {
 }
 PointArrays local_points(Batch& b) { return displaced(b, {b.lx.data(), b.ly.data(), b.lz.data()}); }
 
-// Visits a layer's noise: evaluates its heights at the points of a batch.
+// Projections, lifted to the surface that the layers so far make. Uses the arrays of displaced coordinates.
+PointArrays lifted(const FieldModel& model, const PointArrays& feet, Batch& b) {
+  std::array<float, kBatch> length;
+  gradient_lengths(b.n, b.gx.data(), b.gy.data(), b.gz.data(), model.tables.leaf(0).metaballs.gradient_floor,
+                   length.data());
+  const auto along = [&](const float* foot, const std::array<float, kBatch>& g, float* out) {
+    lift_coordinates(b.n, foot, g.data(), length.data(), b.elevation.data(), out);
+  };
+  along(feet.x, b.gx, b.qx.data());
+  along(feet.y, b.gy, b.qy.data());
+  along(feet.z, b.gz, b.qz.data());
+  return {b.qx.data(), b.qy.data(), b.qz.data()};
+}
+
+// Where a noise is evaluated for the points, in the patch's frame if `in_patch`.
+template <class Noise>
+PointArrays places_of(const FieldModel& model, const Noise& noise, bool in_patch, Batch& b) {
+  if constexpr (Noise::kTraits.on_surface) {
+    in_patch ? project_locally(model, b) : project(model, b);
+    const PointArrays feet = in_patch ? PointArrays{b.lpx.data(), b.lpy.data(), b.lpz.data()}
+                                      : PointArrays{b.px.data(), b.py.data(), b.pz.data()};
+    if constexpr (Noise::kTraits.lifts) {
+      if (noise.lifted) return lifted(model, feet, b);
+    }
+    return feet;
+  } else {
+    return in_patch ? local_points(b) : displaced(b, {b.x.data(), b.y.data(), b.z.data()});
+  }
+}
+
+// Visits a layer's noise: evaluates its heights at the points of a batch. Kinds without heights are skipped.
 struct LayerHeights {
   const FieldModel& model;
   const FieldLayer& layer;
   Batch& b;
   bool in_patch;  // whether the noise is that in the frame of the field's patch
 
-  void operator()(const FractalNoise& noise) const {
-    if (in_patch || b.origin == nullptr || !noise.has_local_form()) return evaluate(noise);
-    const PointArrays p = local_points(b);
-    evaluate_local_heights(noise, arrays(), *b.origin, b.n, p.x, p.y, p.z, b.height.data());
-  }
-  void operator()(const SpotNoise& noise) const {
-    const PointArrays p = points();
-    evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data(), b.spots);
-  }
-  void operator()(const GaborSurfaceNoise& noise) const { evaluate_gabor(noise); }
-  void operator()(const TiledGaborNoise& noise) const { evaluate_gabor(noise); }
-  template <class GaborNoise>
-  void evaluate_gabor(const GaborNoise& noise) const {
-    GaborGround ground{model.body, arrays(), model.metaballs.lists()};
-    if (in_patch) {
-      project_locally(model, b);
-      ground.origin = b.origin;
-      const auto number = static_cast<std::size_t>(layer.in_patch);
-      add_gabor(noise, ground, model.patch_caches[number].data(), {b.lpx.data(), b.lpy.data(), b.lpz.data()});
-    } else {
-      project(model, b);
-      add_gabor(noise, ground, model.gabor_caches.data() + layer.first_list,
-                {b.px.data(), b.py.data(), b.pz.data()});
-    }
-  }
-  void operator()(const ExemplarNoise& noise) const {
-    const PointArrays p = exemplar_points(model, noise, in_patch, b);
-    evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
-  }
-  void operator()(const CraterRelief&) const {}  // craters change elevations and have no heights
   template <class Noise>
   void operator()(const Noise& noise) const {
-    evaluate(noise);
+    if constexpr (Noise::kTraits.has_heights) {
+      if constexpr (Noise::kTraits.local_form) {
+        if (!in_patch && b.origin != nullptr && noise.has_local_form()) return evaluate_locally(noise);
+      }
+      evaluate(noise, places_of(model, noise, in_patch, b));
+    }
   }
 
  private:
   const ArrayView& arrays() const { return model.tables.arrays; }
   template <class Noise>
-  void evaluate(const Noise& noise) const {
-    const PointArrays p = points();
-    evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
+  void evaluate_locally(const Noise& noise) const {
+    const PointArrays p = local_points(b);
+    evaluate_local_heights(noise, arrays(), *b.origin, b.n, p.x, p.y, p.z, b.height.data());
   }
-  PointArrays points() const {
-    return in_patch ? local_points(b) : displaced(b, {b.x.data(), b.y.data(), b.z.data()});
+  template <class Noise>
+  void evaluate(const Noise& noise, const PointArrays& p) const {
+    if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
+      evaluate_gabor(noise, p);
+    } else if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
+      evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data(), b.spots);
+    } else {
+      static_assert(Noise::kTraits.lists == NoiseLists::kNone);
+      evaluate_heights(noise, arrays(), b.n, p.x, p.y, p.z, b.height.data());
+    }
   }
   template <class GaborNoise>
-  void add_gabor(const GaborNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
-                 const PointArrays& p) const {
+  void evaluate_gabor(const GaborNoise& noise, const PointArrays& p) const {
+    GaborGround ground{model.body, arrays(), model.metaballs.lists()};
+    if (in_patch) ground.origin = b.origin;
+    const GaborTileCache* caches = in_patch
+                                       ? model.patch_caches[static_cast<std::size_t>(layer.in_patch)].data()
+                                       : model.gabor_caches.data() + layer.first_list;
     if (b.tetrahedra) {
       evaluate_tetrahedron_heights(noise, ground, caches, b.n, p.x, p.y, p.z, b.height.data());
     } else {
@@ -205,6 +203,18 @@ const PatchCraters* craters_in_patch(const FieldModel& model, const CraterRelief
   return local ? &*local : nullptr;
 }
 
+void change_elevation(const FieldModel& model, const CraterRelief& relief, Batch& b) {
+  if (const PatchCraters* local = craters_in_patch(model, relief, b)) {
+    project_locally(model, b);
+    apply_craters(local->relief, model.tables.arrays, local->tree, b.n, b.lpx.data(), b.lpy.data(),
+                  b.lpz.data(), b.elevation.data());
+    return;
+  }
+  project(model, b);
+  apply_craters(relief, model.tables.arrays, model.crater_trees[relief.list], b.n, b.px.data(), b.py.data(),
+                b.pz.data(), b.elevation.data());
+}
+
 // Writes what a layer paints at the points of a batch.
 void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const LayerPaint& paint, Batch& b,
                      Vec3f* color) {
@@ -212,7 +222,7 @@ void evaluate_colors(const FieldModel& model, const FieldLayer& layer, const Lay
   const bool in_patch = stands_in_patch(layer, b);
   ExemplarNoise noise = *(in_patch ? noise_of(model, layer) : layer.noise).get_if<ExemplarNoise>();
   if (noise.lattice.anchors.count == 0) return;
-  const PointArrays p = exemplar_points(model, noise, in_patch, b);
+  const PointArrays p = places_of(model, noise, in_patch, b);
   const ExemplarAnchor* anchors = model.tables.arrays[noise.lattice.anchors];
   for (const PaintChannel& channel : paint.channels) {
     noise.texture = channel.texture;
@@ -241,21 +251,15 @@ void paint_layer(const FieldModel& model, const FieldLayer& layer, const LayerPa
 }
 
 void apply_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {
-  if (const CraterRelief* relief = layer.noise.get_if<CraterRelief>()) {
-    if (const PatchCraters* local = craters_in_patch(model, *relief, b)) {
-      project_locally(model, b);
-      apply_craters(local->relief, model.tables.arrays, local->tree, b.n, b.lpx.data(), b.lpy.data(),
-                    b.lpz.data(), b.elevation.data());
-      return;
+  layer.noise.visit([&]<class Noise>(const Noise& noise) {
+    if constexpr (Noise::kTraits.has_heights) {
+      if (layer.join.idle()) return;
+      evaluate_layer(model, layer, b);
+      join_heights(model, layer.join, b);
+    } else {
+      change_elevation(model, noise, b);
     }
-    project(model, b);
-    apply_craters(*relief, model.tables.arrays, model.crater_trees[relief->list], b.n, b.px.data(),
-                  b.py.data(), b.pz.data(), b.elevation.data());
-    return;
-  }
-  if (layer.join.idle()) return;
-  evaluate_layer(model, layer, b);
-  join_heights(model, layer.join, b);
+  });
 }
 
 void evaluate_layer(const FieldModel& model, const FieldLayer& layer, Batch& b) {

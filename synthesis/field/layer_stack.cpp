@@ -624,6 +624,10 @@ void FieldModel::update() {
   tables.height_reach = static_cast<float>(height_bound * (1.0 + 1e-5));
   tables.longest_step = static_cast<float>(height_bound);
   tables.steepest = static_cast<float>(body.lipschitz_bound);
+  tables.reads_projections = std::any_of(layers.begin(), layers.end(), [](const FieldLayer& layer) {
+    const NoiseTraits traits = traits_of(layer.noise);
+    return traits.on_surface && traits.bounded_by_box;
+  });
   tables.patch_noises = patch_noises.data();
   if (patch) tables.patch_origin = patch->center;
 }

@@ -43,11 +43,8 @@ ASTROLITH_SIMD_CLONES void bound_distances(const LevelExpansion& of, float floor
   }
 }
 
-// Whether a layer's heights depend on the projections of points on the bare surface.
-bool stands_on_body(const LayerNoise& noise) {
-  return noise.get_if<CraterRelief>() != nullptr || noise.get_if<GaborSurfaceNoise>() != nullptr ||
-         noise.get_if<TiledGaborNoise>() != nullptr || noise.get_if<ExemplarNoise>() != nullptr;
-}
+// Whether a layer depends on the projections of points on the bare surface, which are not found here.
+bool stands_on_body(const FieldLayer& layer) { return traits_of(layer.noise).on_surface; }
 
 // Writes the signs of middle[i] + elevation[i] that are certain if the sum may err by half[i] + rest, else 0.
 ASTROLITH_SIMD_CLONES void decide_signs(int n, const float* __restrict middle, const float* __restrict half,
@@ -184,7 +181,7 @@ class SignFinder {
   void add_layers(OpenPoints& open) {
     const bool bounded = !model_.layers.empty() &&
                          model_.layers.front().join.remaining_change < std::numeric_limits<float>::max();
-    if (open.n == 0 || !bounded || stands_on_body(model_.layers.front().noise)) return;
+    if (open.n == 0 || !bounded || stands_on_body(model_.layers.front())) return;
     Batch b;
     std::copy_n(open.x.data(), open.n, b.x.data());
     std::copy_n(open.y.data(), open.n, b.y.data());
@@ -192,7 +189,7 @@ class SignFinder {
     std::fill_n(b.elevation.data(), open.n, 0.0f);
     b.kept.resize(model_.num_kept_heights);
     for (std::size_t l = 0; l < model_.layers.size() && open.n > 0; ++l) {
-      if (stands_on_body(model_.layers[l].noise)) return;
+      if (stands_on_body(model_.layers[l])) return;
       b.n = open.n;
       b.spots = spots_of(lists_.spots, l);
       apply_layer(model_, model_.layers[l], b);

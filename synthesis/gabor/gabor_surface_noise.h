@@ -16,6 +16,7 @@
 #include "synthesis/gabor/gabor_cells.h"
 #include "synthesis/gabor/gabor_kernel.h"
 #include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
 
 namespace astrolith {
 
@@ -40,12 +41,22 @@ ASTROLITH_KERNEL float height_beside(const GaborSample& center, float dx, float 
 }
 
 struct GaborSurfaceNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = true,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = false,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kGabor};
+
   Vec3f low, high;            // points outside are moved to the border
   float clip = 0.0f;          // heights are clamped to +- clip: 6 standard deviations, length units
   double height_bound = 0.0;  // bound of |n(p)|, length units
   ArrayRange<SurfaceBand> bands;
   NoiseDetail detail;
 };
+
+// The impulses of a kind of noise that has lists of them.
+ASTROLITH_HD inline const GaborSurfaceNoise& gabor_impulses(const GaborSurfaceNoise& noise) { return noise; }
 
 // `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
 // frame holds the surface; points outside it are moved to its border. Bands whose grids reach beyond 2^20

@@ -14,6 +14,7 @@
 #include "synthesis/landforms/crater_bounds.h"
 #include "synthesis/landforms/crater_profile.h"
 #include "synthesis/landforms/population.h"
+#include "synthesis/noise/noise_traits.h"
 
 namespace astrolith {
 
@@ -46,6 +47,13 @@ double crater_rise(const CraterLayer& layer);
 
 // The craters of a layer, oldest first, with the constants that their evaluation needs.
 struct CraterRelief {
+  static constexpr NoiseTraits kTraits{.on_surface = true,
+                                       .lifts = false,
+                                       .has_heights = false,
+                                       .bounded_by_box = true,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kCraters};
+
   ArrayRange<CraterKernel> craters;
   // Bound of |elevation| after the layer, length units. Where many craters overlap, elevations are cut at the
   // bound before the layer plus twice the greatest depth or height of one crater.

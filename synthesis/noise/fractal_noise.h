@@ -8,6 +8,7 @@
 #include "numerics/scalar_math.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/coordinate_warp.h"
+#include "synthesis/noise/noise_traits.h"
 #include "synthesis/noise/octave_bounds.h"
 
 namespace astrolith {
@@ -19,6 +20,13 @@ ASTROLITH_KERNEL float placed_coordinate(float p, float low, float high, float s
 }
 
 struct FractalNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = false,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = true,
+                                       .local_form = true,
+                                       .lists = NoiseLists::kNone};
+
   Noise noise = Noise::kSimplex;
   bool warped = false;
   CoordinateWarp warp;

@@ -19,6 +19,7 @@
 #include "recipe/recipe.h"
 #include "synthesis/noise/lattice_noise.h"
 #include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
 
 namespace astrolith {
 
@@ -80,6 +81,13 @@ ASTROLITH_HD inline float phasor_profile(PhasorProfile profile, float turns) {
 }
 
 struct PhasorNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = false,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = false,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kNone};
+
   Vec3f low, high;  // points outside are moved to the border
   PhasorKernels kernels{};
   float inverse_cell = 0.0f, amplitude = 0.0f;

@@ -17,6 +17,7 @@
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
 #include "synthesis/noise/perlin_noise.h"
 
 namespace astrolith {
@@ -62,6 +63,13 @@ ASTROLITH_KERNEL float with_wave(const Wave& w, float randomness, const PhaseCor
 }
 
 struct RandomPhaseNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = false,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = false,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kNone};
+
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<Wave> waves;
   float inverse_cell = 0.0f, randomness = 0.0f, coherence = 0.0f;

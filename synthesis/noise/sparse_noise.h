@@ -12,6 +12,7 @@
 #include "recipe/recipe.h"
 #include "synthesis/noise/lattice_noise.h"
 #include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
 
 namespace astrolith {
 
@@ -82,6 +83,13 @@ ASTROLITH_KERNEL float sparse_height(float amplitude, float sum, float cut) {
 // The thresholds cut either each level (level_cut) or the sum of all levels (sum_cut). The other threshold is
 // 0.
 struct SparseNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = false,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = true,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kNone};
+
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<SparseLevel> levels;
   float amplitude = 0.0f, level_cut = 0.0f, sum_cut = 0.0f;

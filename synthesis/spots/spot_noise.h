@@ -14,6 +14,7 @@
 #include "numerics/interval.h"
 #include "recipe/recipe.h"
 #include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
 #include "synthesis/spots/spot_bounds.h"
 #include "synthesis/spots/spot_kernel.h"
 #include "synthesis/spots/spot_lattice.h"
@@ -21,6 +22,13 @@
 namespace astrolith {
 
 struct SpotNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = false,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = true,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kSpots};
+
   Vec3f low, high;  // points outside are moved to the border
   ArrayRange<SpotKind> kinds;
   ArrayRange<std::uint32_t> thresholds;  // shared by the lattices of all kinds
