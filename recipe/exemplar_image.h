@@ -1,9 +1,10 @@
-// The pixels of an exemplar's image. A recipe names the image's file; tasks/synthesis/load_recipe.h decodes
-// it.
+// The image that a layer names by its file, and the image's pixels.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace astrolith {
@@ -15,6 +16,15 @@ struct ExemplarImage {
   std::vector<std::uint16_t> values;    // grey values, or the luma of the colours
   std::filesystem::path file;           // absolute path of the file that was decoded
   std::vector<std::uint16_t> rgb = {};  // (height x width x 3); empty for a grey image
+};
+
+// What a layer with an image states of it. load_recipe() (tasks/synthesis/load_recipe.h) decodes the file.
+struct NamedImage {
+  std::string image;         // path of a PNG file, relative to the folder of the recipe
+  std::string image_sha256;  // SHA-256 of that file, 64 hexadecimal digits
+
+  // The decoded image, which is no field of the recipe. Null: the layer cannot be evaluated.
+  std::shared_ptr<const ExemplarImage> pixels;
 };
 
 // The sides of an exemplar, in pixels. Programs refuse images outside this range before they decode them.

@@ -122,6 +122,7 @@ struct CraterPopulation {
 // is at least `complex_from` has the profile `complex`, and a smaller one has `simple`.
 struct CraterLayer {
   static constexpr std::string_view kType = "craters";
+  static constexpr LayerTraits kTraits = kLandforms;
 
   std::string name;
   std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h
@@ -173,6 +174,7 @@ struct BoulderPopulation {
 // Boulders join the body as a smooth union with the joint k = smoothing * (half the shortest axis).
 struct BoulderLayer {
   static constexpr std::string_view kType = "boulders";
+  static constexpr LayerTraits kTraits = kLandforms;
 
   std::string name;
   std::optional<int> seed;  // a LayerSeed, recipe/noise_layers.h

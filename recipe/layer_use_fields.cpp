@@ -58,12 +58,13 @@ void check_layer_use(const Recipe& recipe, std::size_t index, const Place& place
     if (drawn->locality) check_group(*drawn->locality, recipe.body, at.field("locality"));
     if (drawn->mask) check_masking_layer(*drawn->mask, before, at.field("mask"));
   }
-  const bool on_surface =
-      std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer);
-  if (on_surface && std::any_of(before.begin(), before.end(), displaces)) {
+  const LayerTraits traits = traits_of(layer);
+  if (traits.is_noise && traits.on_surface && std::any_of(before.begin(), before.end(), displaces)) {
+    const std::string_view word = type_word(layer);
+    const bool has_vowel = std::string_view("aeiou").find(word.front()) != std::string_view::npos;
     place.fail(
-        fmt::format("a{} {} layer is bound to the surface and cannot be warped; move it before the warp",
-                    std::holds_alternative<ExemplarLayer>(layer) ? "n" : "", type_word(layer)));
+        fmt::format("{} {} layer is bound to the surface and cannot be warped; move it before the warp",
+                    has_vowel ? "an" : "a", word));
   }
 }
 

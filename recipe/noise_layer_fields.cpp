@@ -27,13 +27,13 @@ void check_lobes(const GaborLayer& layer, const Place& place) {
   place.field("lobes").fail("must hold at least one [bandwidth, frequency_x, frequency_y, variance]");
 }
 
-void check_image(const ExemplarLayer& layer, const Place& place) {
-  const bool relative = !layer.image.empty() && layer.image.front() != '/';
+void check_image(const NamedImage& named, const Place& place) {
+  const bool relative = !named.image.empty() && named.image.front() != '/';
   if (!relative) {
     place.field("image").fail("must be a path relative to the recipe's folder, is " +
-                              quote_text(layer.image));
+                              quote_text(named.image));
   }
-  const std::string& hash = layer.image_sha256;
+  const std::string& hash = named.image_sha256;
   const bool digits = std::all_of(hash.begin(), hash.end(), [](unsigned char c) { return std::isxdigit(c); });
   if (hash.size() == 64 && digits) return;
   place.field("image_sha256")
@@ -153,10 +153,14 @@ void visit_fields(FieldVisitor& v, GaborLayer& layer) {
   v.required("lobes", layer.lobes);
 }
 
+static void visit_image(FieldVisitor& v, NamedImage& named) {
+  v.required("image", named.image);
+  v.required("image_sha256", named.image_sha256);
+  v.rule(check_image, named);
+}
+
 void visit_fields(FieldVisitor& v, ExemplarLayer& layer) {
-  v.required("image", layer.image);
-  v.required("image_sha256", layer.image_sha256);
-  v.rule(check_image, layer);
+  visit_image(v, layer);
   v.field("pixel_size", layer.pixel_size, kPositive);
   v.field("height_rms", layer.height_rms, kNotNegative);
   v.field("height_range", layer.height_range, kAnyNumber);

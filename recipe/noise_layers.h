@@ -13,6 +13,7 @@
 #include "numerics/vec3.h"
 #include "recipe/body.h"
 #include "recipe/exemplar_image.h"
+#include "recipe/layer_traits.h"
 
 namespace astrolith {
 
@@ -76,6 +77,13 @@ constexpr int layer_number(const LayerSeed& seed, int index) {
   return seed ? kMaxLayerSeed + 1 + *seed : index;
 }
 
+// The field of a layer that states how high it is, for messages, and its value. Kinds without a
+// stated_height() have a field `amplitude` or `height_rms` instead.
+struct StatedHeight {
+  std::string_view name;
+  double height;  // length units
+};
+
 // Simplex and Perlin noise lie in [-1, 1]. Worley noise is the distance to the nearest feature point (F1), to
 // the second nearest (F2) or the difference of both, less its mean, and spans a range of length 1. Every
 // noise has zero mean.
@@ -89,6 +97,15 @@ inline constexpr bool is_worley(Noise noise) { return noise != Noise::kSimplex &
 //   D_o = sum_{k <= o} (gain lacunarity)^k grad noise_k, the slope so far over amplitude * frequency.
 // n is a height in length units along the outward normal.
 struct FractalLayer {
+  static constexpr LayerTraits kTraits{.is_noise = true,
+                                       .on_surface = false,
+                                       .on_layers = false,
+                                       .has_image = false,
+                                       .has_color = false,
+                                       .paints_bodies = false,
+                                       .in_plane = false,
+                                       .varies = true};
+
   std::string name;
   LayerSeed seed;
   LayerUse use;
@@ -150,6 +167,14 @@ constexpr std::string_view evaluation_word(GaborEvaluation evaluation) {
 // Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
 struct GaborLayer {
   static constexpr std::string_view kType = "gabor";
+  static constexpr LayerTraits kTraits{.is_noise = true,
+                                       .on_surface = true,
+                                       .on_layers = false,
+                                       .has_image = false,
+                                       .has_color = true,
+                                       .paints_bodies = false,
+                                       .in_plane = true,
+                                       .varies = false};
 
   std::string name;
   LayerSeed seed;
@@ -163,6 +188,7 @@ struct GaborLayer {
   std::optional<LayerColor> color;
   std::vector<GaborLobe> lobes;  // at least one
 
+  bool has_height() const { return height_rms > 0.0; }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     pixel_size *= ratio;
@@ -197,14 +223,20 @@ constexpr std::string_view rotation_word(ExemplarRotation rotation) {
 // is Gaussianised and blended as above, with the weights and offsets of the height. The layer's weight (mask,
 // locality) blends the colour over that of the layers before it. A layer that combines as a warp or a mask
 // paints nothing.
-struct ExemplarLayer {
+struct ExemplarLayer : NamedImage {
   static constexpr std::string_view kType = "exemplar";
+  static constexpr LayerTraits kTraits{.is_noise = true,
+                                       .on_surface = true,
+                                       .on_layers = true,
+                                       .has_image = true,
+                                       .has_color = true,
+                                       .paints_bodies = true,
+                                       .in_plane = true,
+                                       .varies = false};
 
   std::string name;
   LayerSeed seed;
   LayerUse use;
-  std::string image;            // path of a PNG file, relative to the folder of the recipe
-  std::string image_sha256;     // SHA-256 of that file, 64 hexadecimal digits
   double pixel_size = 1.0;      // length units per pixel of the image, > 0
   double height_rms = 0.0;      // length units, >= 0
   double height_range = 0.0;    // height of white above black, length units; at most one of both is not 0
@@ -214,10 +246,11 @@ struct ExemplarLayer {
   ExemplarRotation rotation = ExemplarRotation::kNone;
   bool color = false;  // whether the layer paints the colours of the image
 
-  // The image, which load_recipe() decodes. It is no field of the file. Null: the layer cannot be evaluated.
-  std::shared_ptr<const ExemplarImage> pixels;
-
   bool has_height() const { return height_rms != 0.0 || height_range != 0.0; }
+  StatedHeight stated_height() const {
+    return height_range != 0.0 ? StatedHeight{"height_range", height_range}
+                               : StatedHeight{"height_rms", height_rms};
+  }
   // Whether the layer paints the surface of a body.
   bool paints() const {
     return color && use.combination.kind != Combine::kWarp && use.combination.kind != Combine::kMask;
@@ -266,6 +299,7 @@ inline double least_height(const CellEdges& e) {
 // lacunarity^(j (exponent - 2)).
 struct SpotLayer {
   static constexpr std::string_view kType = "spots";
+  static constexpr LayerTraits kTraits = kNoiseInSpace;
 
   std::string name;
   LayerSeed seed;
@@ -318,6 +352,7 @@ inline constexpr double kMaxSpotCells = 4.0;
 // or, merged, n(p) = -amplitude max(sum_l gain^l N_l - threshold, 0). The threshold cuts a crisp border.
 struct SparseLayer {
   static constexpr std::string_view kType = "sparse";
+  static constexpr LayerTraits kTraits = kNoiseInSpace;
 
   std::string name;
   LayerSeed seed;
@@ -345,6 +380,7 @@ struct SparseLayer {
 // pattern is left.
 struct RandomPhaseLayer {
   static constexpr std::string_view kType = "random_phase";
+  static constexpr LayerTraits kTraits = kNoiseInSpace;
 
   std::string name;
   LayerSeed seed;
@@ -381,6 +417,7 @@ constexpr std::string_view profile_word(PhasorProfile profile) {
 // Gabor kernels. It makes stripes, ridges, hatches and ripples whose contrast never fades.
 struct PhasorLayer {
   static constexpr std::string_view kType = "phasor";
+  static constexpr LayerTraits kTraits = kNoiseInSpace;
 
   std::string name;
   LayerSeed seed;

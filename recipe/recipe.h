@@ -29,11 +29,16 @@ using Layer = std::variant<FractalLayer, SpotLayer, SparseLayer, CraterLayer, Bo
 // The layer's `type` in a file: "simplex", "perlin" or "worley" of a fractal layer, kType of the others.
 std::string_view type_word(const Layer& layer);
 
+// What the layer is.
+inline LayerTraits traits_of(const Layer& layer) {
+  return std::visit([]<class Kind>(const Kind&) { return Kind::kTraits; }, layer);
+}
+
 // The layer's use, or null for craters and boulders.
 inline LayerUse* use_of(Layer& layer) {
   return std::visit(
-      [](auto& l) -> LayerUse* {
-        if constexpr (requires { l.use; }) {
+      []<class Kind>(Kind& l) -> LayerUse* {
+        if constexpr (Kind::kTraits.is_noise) {
           return &l.use;
         } else {
           return nullptr;
@@ -45,13 +50,71 @@ inline const LayerUse* use_of(const Layer& layer) { return use_of(const_cast<Lay
 
 // The population of a layer of craters or boulders, or null.
 inline Population* population_of(Layer& layer) {
-  if (auto* craters = std::get_if<CraterLayer>(&layer))
-    return craters->population ? &craters->population->drawn : nullptr;
-  auto* boulders = std::get_if<BoulderLayer>(&layer);
-  return boulders != nullptr && boulders->population ? &boulders->population->drawn : nullptr;
+  return std::visit(
+      []<class Kind>(Kind& l) -> Population* {
+        if constexpr (Kind::kTraits.is_noise) {
+          return nullptr;
+        } else {
+          return l.population ? &l.population->drawn : nullptr;
+        }
+      },
+      layer);
 }
 inline const Population* population_of(const Layer& layer) {
   return population_of(const_cast<Layer&>(layer));
+}
+
+// The image that the layer names, or null for kinds without one.
+inline NamedImage* image_of(Layer& layer) {
+  return std::visit(
+      []<class Kind>(Kind& l) -> NamedImage* {
+        if constexpr (Kind::kTraits.has_image) {
+          return &l;
+        } else {
+          return nullptr;
+        }
+      },
+      layer);
+}
+inline const NamedImage* image_of(const Layer& layer) { return image_of(const_cast<Layer&>(layer)); }
+
+// Whether the layer has a colour.
+inline bool has_color(const Layer& layer) {
+  return std::visit(
+      []<class Kind>(const Kind& l) {
+        if constexpr (Kind::kTraits.has_color) {
+          return static_cast<bool>(l.color);
+        } else {
+          return false;
+        }
+      },
+      layer);
+}
+
+// Whether the layer paints the surface of a body.
+inline bool paints(const Layer& layer) {
+  return std::visit(
+      []<class Kind>(const Kind& l) {
+        if constexpr (Kind::kTraits.paints_bodies) {
+          return l.paints();
+        } else {
+          return false;
+        }
+      },
+      layer);
+}
+
+// Whether the layer may change a surface. A layer of colour alone does not.
+inline bool has_height(const Layer& layer) {
+  return std::visit(
+      []<class Kind>(const Kind& l) {
+        if constexpr (Kind::kTraits.has_color) {
+          return l.has_height();
+        } else {
+          return true;
+        }
+      },
+      layer);
 }
 
 // The locality of a layer of noise, or that of the landforms that a layer draws; null without one.

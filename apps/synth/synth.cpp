@@ -98,8 +98,8 @@ void make_texture(Program& program, const Options& options, const Recipe& recipe
   for (const fs::path& file : files) {
     require_writable(file);
     for (const Layer& layer : recipe.layers) {
-      const auto* exemplar = std::get_if<ExemplarLayer>(&layer);
-      if (exemplar != nullptr && exemplar->pixels) require_other_file(file, exemplar->pixels->file);
+      const NamedImage* named = image_of(layer);
+      if (named != nullptr && named->pixels) require_other_file(file, named->pixels->file);
     }
   }
   write_texture(program, options.texture, recipe, options.recipe, options.output);

@@ -85,16 +85,16 @@ class Recipe(Record):
     def read(cls, file: PathLike) -> "Recipe":
         """Read a JSON file or a compact recipe of at most 64 MB. Raises ValueError as :meth:`from_json`.
 
-        The image of an ``exemplar`` layer lies relative to the file; its path becomes one relative to the current
-        folder, where every function looks for it.
+        The image of a layer lies relative to the file; its path becomes one relative to the current folder, where every
+        function looks for it.
         """
         recipe = cls(records(_synthesis.read_recipe(os.fspath(file))))
-        for layer in recipe._exemplars():
+        for layer in recipe._layers_with_images():
             layer["image"] = os.path.relpath(os.path.join(os.path.dirname(os.fspath(file)), layer["image"]))
         return recipe
 
-    def _exemplars(self) -> list[Any]:
-        return [layer for layer in self.get("layers", []) if layer.get("type") == "exemplar"]
+    def _layers_with_images(self) -> list[Any]:
+        return [layer for layer in self.get("layers", []) if "image" in layer]
 
     def validate(self, name: str = "recipe") -> None:
         """Raise ValueError at the first field that breaks a rule."""
@@ -121,8 +121,8 @@ class Recipe(Record):
         RuntimeError
             The disk is full.
         """
-        written = Recipe.from_json(self.to_json()) if self._exemplars() else self
-        for layer in written._exemplars():
+        written = Recipe.from_json(self.to_json()) if self._layers_with_images() else self
+        for layer in written._layers_with_images():
             layer["image"] = os.path.relpath(layer["image"], os.path.dirname(os.fspath(file)) or os.curdir)
         _synthesis.write_recipe(_dumped(written, "recipe"), "recipe", os.fspath(file))
 

@@ -103,10 +103,10 @@ void check_files(const ShapeArguments& a) {
 
 // The images of layers that another recipe gave: their paths become relative to the current folder.
 void find_images_from_here(Recipe& recipe) {
-  for (Layer& any : recipe.layers) {
-    auto* layer = std::get_if<ExemplarLayer>(&any);
-    if (layer != nullptr && layer->pixels != nullptr) {
-      layer->image = std::filesystem::proximate(layer->pixels->file).generic_string();
+  for (Layer& layer : recipe.layers) {
+    NamedImage* named = image_of(layer);
+    if (named != nullptr && named->pixels != nullptr) {
+      named->image = std::filesystem::proximate(named->pixels->file).generic_string();
     }
   }
 }

@@ -12,7 +12,7 @@ namespace astrolith::python {
 // Recipe.read() has made them so.
 inline Recipe loaded_recipe(const std::string& json, const std::string& name) {
   Recipe recipe = parse_recipe(json, name);
-  load_exemplars(recipe, {}, name);
+  load_images(recipe, {}, name);
   return recipe;
 }
 

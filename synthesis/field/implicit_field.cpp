@@ -223,6 +223,8 @@ std::vector<GaborCacheUse> ImplicitField::gabor_caches() const {
   return uses;
 }
 
+std::span<const int> ImplicitField::recipe_layers() const { return model_->recipe_layers; }
+
 const FieldView& ImplicitField::tables() const { return model_->tables; }
 
 }  // namespace astrolith

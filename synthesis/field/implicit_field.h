@@ -180,6 +180,9 @@ class ImplicitField {
   // What the cache of each list of Gabor impulses holds; tables().gabor_lists says which bands these are.
   std::vector<GaborCacheUse> gabor_caches() const;
 
+  // The place in the recipe of each layer of the tables, which lack boulders and layers that act on nothing.
+  std::span<const int> recipe_layers() const;
+
   // The field's tables, for evaluation on a GPU. They live as long as the field.
   const FieldView& tables() const;
 

@@ -5,7 +5,6 @@
 
 #include "numerics/parallel_for.h"
 #include "synthesis/exemplar/exemplar_colors.h"
-#include "synthesis/field/field_tables.h"
 #include "synthesis/field/layer_paint_internal.h"
 
 namespace astrolith {
@@ -17,7 +16,7 @@ std::uint8_t color_byte(float value) {
   return static_cast<std::uint8_t>(255.0f * math::clamp(value, 0.0f, 1.0f) + 0.5f);
 }
 
-LayerPaint make_paint(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures) {
+LayerPaint paint_of(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures) {
   const ExemplarColors colors = exemplar_colors(layer, place);
   LayerPaint paint;
   paint.mean = to_float(colors.mean);
@@ -27,29 +26,33 @@ LayerPaint make_paint(const ExemplarLayer& layer, const std::string& place, Arra
   return paint;
 }
 
+// What a layer paints that paints().
+LayerPaint make_paint(const Layer& layer, const std::string& place, ArrayStore& textures) {
+  return std::visit(
+      [&]<class Kind>(const Kind& l) -> LayerPaint {
+        if constexpr (Kind::kTraits.paints_bodies) {
+          return paint_of(l, place, textures);
+        } else {
+          return {};
+        }
+      },
+      layer);
+}
+
 }  // namespace
 
 bool has_colors(const Recipe& recipe) {
-  return std::any_of(recipe.layers.begin(), recipe.layers.end(), [](const Layer& layer) {
-    const auto* exemplar = std::get_if<ExemplarLayer>(&layer);
-    return exemplar != nullptr && exemplar->paints();
-  });
+  return std::any_of(recipe.layers.begin(), recipe.layers.end(), paints);
 }
 
 SurfaceColors::SurfaceColors(const Recipe& recipe, const std::string& name, const ImplicitField& field)
     : field_(field) {
-  // The tables hold the recipe's exemplars in its order, without those that neither move nor paint.
-  std::uint32_t number = 0;
-  const FieldView& tables = field.tables();
-  for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    const auto* layer = std::get_if<ExemplarLayer>(&recipe.layers[i]);
-    if (layer == nullptr || !(layer->has_height() || layer->paints())) continue;
-    while (tables.layers[number].noise.get_if<ExemplarNoise>() == nullptr) ++number;
-    if (layer->paints()) {
-      paints_.push_back(make_paint(*layer, name + ": layers[" + std::to_string(i) + "]", textures_));
-      paints_.back().layer = number;
-    }
-    ++number;
+  const std::span<const int> places = field.recipe_layers();
+  for (std::uint32_t number = 0; number < places.size(); ++number) {
+    const auto i = static_cast<std::size_t>(places[number]);
+    if (!paints(recipe.layers[i])) continue;
+    paints_.push_back(make_paint(recipe.layers[i], name + ": layers[" + std::to_string(i) + "]", textures_));
+    paints_.back().layer = number;
   }
   for (LayerPaint& paint : paints_) paint.arrays = textures_.view();
 }

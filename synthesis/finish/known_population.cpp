@@ -16,6 +16,18 @@ namespace {
 
 constexpr double kAnySize = std::numeric_limits<double>::infinity();
 
+// The size of the smallest landform that a layer lists, length units.
+double least_listed(const CraterLayer& layer) {
+  double least = kAnySize;
+  for (const Crater& crater : layer.craters) least = std::min(least, crater.diameter);
+  return least;
+}
+double least_listed(const BoulderLayer& layer) {
+  double least = kAnySize;
+  for (const Boulder& boulder : layer.boulders) least = std::min(least, boulder.axes.x);
+  return least;
+}
+
 // 373 boulders of 5 m and more lie on 0.393 km^2.
 constexpr KnownLandforms kItokawa[] = {
     {.least = 0.0,
@@ -216,11 +228,11 @@ double finest_size(const Recipe& recipe) {
   double landform = kAnySize, metaball = kAnySize;
   for (const Layer& layer : recipe.layers) {
     if (const Population* drawn = population_of(layer)) landform = std::min(landform, drawn->least_diameter);
-    if (const auto* craters = std::get_if<CraterLayer>(&layer)) {
-      for (const Crater& crater : craters->craters) landform = std::min(landform, crater.diameter);
-    } else if (const auto* boulders = std::get_if<BoulderLayer>(&layer)) {
-      for (const Boulder& boulder : boulders->boulders) landform = std::min(landform, boulder.axes.x);
-    }
+    std::visit(
+        [&]<class Kind>(const Kind& l) {
+          if constexpr (!Kind::kTraits.is_noise) landform = std::min(landform, least_listed(l));
+        },
+        layer);
   }
   if (landform < kAnySize) return landform;
   for (const Sphere& sphere : recipe.body->spheres) metaball = std::min(metaball, 2.0 * sphere.radius);

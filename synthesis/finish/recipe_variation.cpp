@@ -95,10 +95,16 @@ double vary(FractalLayer& layer, double strength, CounterRandom random) {
   return growth;
 }
 
-// Other layers change with the seed alone.
-template <typename OtherLayer>
-double vary(OtherLayer&, double, CounterRandom) {
-  return 1.0;
+double vary(Layer& layer, double strength, CounterRandom random) {
+  return std::visit(
+      [&]<class Kind>(Kind& l) {
+        if constexpr (Kind::kTraits.varies) {
+          return vary(l, strength, random);
+        } else {
+          return 1.0;
+        }
+      },
+      layer);
 }
 
 const std::string& name_of(const Layer& layer) {
@@ -141,8 +147,7 @@ Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variatio
   std::vector<double> growth;
   for (std::size_t i = 0; i < varied.layers.size(); ++i) {
     const CounterRandom random(variation_seed, (std::uint64_t{kLayerStream} << 32) + i);
-    growth.push_back(
-        std::visit([&](auto& layer) { return vary(layer, strength, random); }, varied.layers[i]));
+    growth.push_back(vary(varied.layers[i], strength, random));
   }
   follow_heights(growth, varied.layers);
   return varied;

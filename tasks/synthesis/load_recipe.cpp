@@ -44,20 +44,22 @@ bool same_digits(const std::string& a, const std::string& b) {
                     [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-void load_exemplar(ExemplarLayer& layer, const std::filesystem::path& folder, const std::string& place) {
-  const std::filesystem::path file = folder / layer.image;
+// Decodes an image; without `keeps_colors` only its grey values.
+void load_image(NamedImage& named, bool keeps_colors, const std::filesystem::path& folder,
+                const std::string& place) {
+  const std::filesystem::path file = folder / named.image;
   const std::vector<std::uint8_t> bytes = read_bytes(file, place + ".image");
   Sha256 hash;
   hash.update(bytes.data(), bytes.size());
-  if (!same_digits(hash.hex(), layer.image_sha256)) {
+  if (!same_digits(hash.hex(), named.image_sha256)) {
     throw InputError(place + ".image: " + file.string() +
                      " has changed since the recipe was written; restore it, or state its SHA-256 " +
                      hash.hex());
   }
   GreyPng png =
       decode_grey_png(bytes, place + ".image: " + file.string(), kLeastExemplarSide, kMostExemplarSide);
-  if (!layer.color) png.rgb.clear();
-  layer.pixels = std::make_shared<ExemplarImage>(ExemplarImage{
+  if (!keeps_colors) png.rgb.clear();
+  named.pixels = std::make_shared<ExemplarImage>(ExemplarImage{
       png.width, png.height, std::move(png.values), std::filesystem::absolute(file), std::move(png.rgb)});
 }
 
@@ -77,27 +79,29 @@ void require_no_input_of_fits(const std::filesystem::path& file) {
 
 }  // namespace
 
-void load_exemplars(Recipe& recipe, const std::filesystem::path& folder, const std::string& name) {
+void load_images(Recipe& recipe, const std::filesystem::path& folder, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    auto* layer = std::get_if<ExemplarLayer>(&recipe.layers[i]);
-    if (layer != nullptr) load_exemplar(*layer, folder, name + ": layers[" + std::to_string(i) + "]");
+    Layer& layer = recipe.layers[i];
+    if (NamedImage* named = image_of(layer)) {
+      load_image(*named, has_color(layer), folder, name + ": layers[" + std::to_string(i) + "]");
+    }
   }
 }
 
 Recipe load_recipe(const std::filesystem::path& file) {
   require_no_input_of_fits(file);
   Recipe recipe = read_recipe(file);
-  load_exemplars(recipe, file.parent_path(), file.string());
+  load_images(recipe, file.parent_path(), file.string());
   return recipe;
 }
 
 void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
-  for (Layer& any : recipe.layers) {
-    auto* layer = std::get_if<ExemplarLayer>(&any);
-    if (layer == nullptr || layer->pixels == nullptr) continue;
-    layer->image =
-        layer->pixels->file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
+  for (Layer& layer : recipe.layers) {
+    NamedImage* named = image_of(layer);
+    if (named == nullptr || named->pixels == nullptr) continue;
+    named->image =
+        named->pixels->file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
   }
   write_recipe(recipe, file);
 }

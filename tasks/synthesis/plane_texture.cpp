@@ -1,5 +1,6 @@
 #include "tasks/synthesis/plane_texture.h"
 
+#include <algorithm>
 #include <atomic>
 #include <string_view>
 
@@ -15,20 +16,14 @@ namespace {
 
 // The place of the first layer with a colour; the number of layers where none has one.
 std::size_t first_colored_layer(const Recipe& recipe) {
-  std::size_t i = 0;
-  for (; i < recipe.layers.size(); ++i) {
-    const auto* gabor = std::get_if<GaborLayer>(&recipe.layers[i]);
-    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe.layers[i]);
-    if ((gabor != nullptr && gabor->color) || (exemplar != nullptr && exemplar->color)) break;
-  }
-  return i;
+  const auto found = std::find_if(recipe.layers.begin(), recipe.layers.end(), has_color);
+  return static_cast<std::size_t>(found - recipe.layers.begin());
 }
 
 // The place of the first layer that a plane can show.
 std::size_t first_plane_layer(const Recipe& recipe, const std::string& file) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
-    const Layer& layer = recipe.layers[i];
-    if (std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer)) return i;
+    if (traits_of(recipe.layers[i]).in_plane) return i;
   }
   throw InputError(
       file + ": layers: hold no Gabor or exemplar layer, which a texture draws; make one with fit_gabor");
@@ -40,63 +35,85 @@ void check_side(int side) {
                    std::to_string(kMaxTextureSide));
 }
 
-PlaneTexture draw_heights(GaborLayer layer, const PlaneTextureRequest& request, const TextureOptions& options,
-                          const Progress& progress) {
+// A layer that is drawn.
+struct PlaneJob {
+  const Recipe& recipe;
+  const std::string& file;
+  std::size_t index;  // of the layer
+  const PlaneTextureRequest& request;
+  const Progress& progress;
+
+  std::string place() const { return file + ": layers[" + std::to_string(index) + "]"; }
+};
+
+TextureOptions gabor_options(const PlaneJob& job) {
+  TextureOptions options{job.recipe.seed};
+  if (job.request.tileable) {
+    options.period_width = job.request.width;
+    options.period_height = job.request.height;
+  }
+  return options;
+}
+
+PlaneTexture draw_heights(GaborLayer layer, const PlaneJob& job) {
   PlaneTexture texture;
   // A layer without a height is drawn in units of its own standard deviation.
-  texture.has_height = layer.height_rms > 0.0;
+  texture.has_height = layer.has_height();
   if (!texture.has_height) layer.height_rms = 1.0;
   texture.height_rms = layer.height_rms;
-  texture.values = synthesize_texture(layer, request.width, request.height, options, progress);
+  texture.values =
+      synthesize_texture(layer, job.request.width, job.request.height, gabor_options(job), job.progress);
   return texture;
 }
 
-PlaneTexture draw_heights(ExemplarLayer layer, std::size_t index, const std::string& file,
-                          const PlaneTextureRequest& request, std::uint64_t seed, const Progress& progress) {
+PlaneTexture draw_heights(ExemplarLayer layer, const PlaneJob& job) {
   PlaneTexture texture;
   texture.has_height = layer.has_height();
   if (!texture.has_height) layer.height_rms = 1.0;
-  const std::string place = file + ": layers[" + std::to_string(index) + "]";
-  const int number = layer_number(layer.seed, static_cast<int>(index));
-  texture.values = synthesize_exemplar(layer, place, request.width, request.height,
-                                       {seed, number, request.tileable}, progress);
+  const int number = layer_number(layer.seed, static_cast<int>(job.index));
+  texture.values = synthesize_exemplar(layer, job.place(), job.request.width, job.request.height,
+                                       {job.recipe.seed, number, job.request.tileable}, job.progress);
   texture.height_rms = exemplar_height_rms(layer);
   return texture;
 }
 
-PlaneTexture draw_colors(const ExemplarLayer& layer, std::size_t index, const std::string& file,
-                         const PlaneTextureRequest& request, std::uint64_t seed, const Progress& progress) {
+PlaneTexture draw_colors(const ExemplarLayer& layer, const PlaneJob& job) {
   PlaneTexture texture;
   texture.channels = 3;
-  const std::string place = file + ": layers[" + std::to_string(index) + "]";
-  const int number = layer_number(layer.seed, static_cast<int>(index));
-  texture.values = synthesize_exemplar_colors(layer, place, request.width, request.height,
-                                              {seed, number, request.tileable}, progress);
+  const int number = layer_number(layer.seed, static_cast<int>(job.index));
+  texture.values = synthesize_exemplar_colors(layer, job.place(), job.request.width, job.request.height,
+                                              {job.recipe.seed, number, job.request.tileable}, job.progress);
   return texture;
 }
 
-PlaneTexture draw_colors(const std::vector<GaborLayer>& layers, const PlaneTextureRequest& request,
-                         const TextureOptions& options, const Progress& progress) {
+// The colours of all Gabor layers that have one, since each has only one axis of an image's colours.
+PlaneTexture draw_colors(const GaborLayer&, const PlaneJob& job) {
+  const std::vector<GaborLayer> layers = colored_layers(job.recipe);
   PlaneTexture texture;
   texture.channels = 3;
   texture.layers = layers.size();
-  texture.values = synthesize_color_texture(layers, request.width, request.height, options, progress);
+  texture.values = synthesize_color_texture(layers, job.request.width, job.request.height, gabor_options(job),
+                                            job.progress);
   return texture;
 }
 
-// The side of a pixel of a Gabor or exemplar layer, length units.
-double pixel_size_of(const Layer& layer) {
-  const auto* exemplar = std::get_if<ExemplarLayer>(&layer);
-  return exemplar != nullptr ? exemplar->pixel_size : std::get<GaborLayer>(layer).pixel_size;
+// Calls use(layer) with a layer that a plane can show. Expects that it can.
+template <class Result, class Use>
+Result with_plane_layer(const Layer& layer, const Use& use) {
+  return std::visit(
+      [&]<class Kind>(const Kind& l) -> Result {
+        if constexpr (Kind::kTraits.in_plane) {
+          return use(l);
+        } else {
+          return {};
+        }
+      },
+      layer);
 }
 
-TextureOptions gabor_options(const Recipe& recipe, const PlaneTextureRequest& request) {
-  TextureOptions options{recipe.seed};
-  if (request.tileable) {
-    options.period_width = request.width;
-    options.period_height = request.height;
-  }
-  return options;
+// The side of a pixel of a layer that a plane can show, length units.
+double pixel_size_of(const Layer& layer) {
+  return with_plane_layer<double>(layer, [](const auto& l) { return l.pixel_size; });
 }
 
 // A recipe's textures, with one progress that remembers whether it was told to stop.
@@ -117,18 +134,12 @@ class PlaneDrawing {
   PlaneDrawing& operator=(const PlaneDrawing&) = delete;
 
   PlaneTexture heights(std::size_t i) {
-    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe_.layers[i]);
-    return finished(exemplar != nullptr ? draw_heights(*exemplar, i, file_, request_, recipe_.seed, progress_)
-                                        : draw_heights(std::get<GaborLayer>(recipe_.layers[i]), request_,
-                                                       gabor_options(recipe_, request_), progress_));
+    return finished(with_plane_layer<PlaneTexture>(
+        recipe_.layers[i], [&](const auto& layer) { return draw_heights(layer, job(i)); }));
   }
-
-  // The colours of an exemplar layer, or of all Gabor layers that have one.
   PlaneTexture colors(std::size_t i) {
-    const auto* exemplar = std::get_if<ExemplarLayer>(&recipe_.layers[i]);
-    return finished(exemplar != nullptr ? draw_colors(*exemplar, i, file_, request_, recipe_.seed, progress_)
-                                        : draw_colors(colored_layers(recipe_), request_,
-                                                      gabor_options(recipe_, request_), progress_));
+    return finished(with_plane_layer<PlaneTexture>(
+        recipe_.layers[i], [&](const auto& layer) { return draw_colors(layer, job(i)); }));
   }
 
   const Progress& progress() const { return progress_; }
@@ -137,6 +148,7 @@ class PlaneDrawing {
   }
 
  private:
+  PlaneJob job(std::size_t i) const { return {recipe_, file_, i, request_, progress_}; }
   PlaneTexture finished(PlaneTexture texture) const {
     expect_complete();
     return texture;
