@@ -25,7 +25,7 @@ struct AnchorRow {
 };
 
 // Finds the distance and the gradient of the bare body at the points of a row.
-void evaluate_row(const GaborGround& ground, AnchorRow& row) {
+void evaluate_row(const BodyGround& ground, AnchorRow& row) {
   Box box;
   for (std::size_t i = 0; i < row.size(); ++i) box.extend({row.x[i], row.y[i], row.z[i]});
   const int n = static_cast<int>(row.size());
@@ -109,7 +109,7 @@ class BodyRow {
   }
 
   // The gradients at the nearest points of the surface. Where the field is flat, they point to `middle`.
-  void find_gradients(const GaborGround& ground, float longest, const Vec3f& middle) {
+  void find_gradients(const BodyGround& ground, float longest, const Vec3f& middle) {
     evaluate_row(ground, row_);
     const AnchorRow at_anchors = row_;
     distance_ = at_anchors.distance;
@@ -196,7 +196,7 @@ ExemplarCells exemplar_cells(const NoiseFrame& frame, const Vec3d& edge) {
 std::vector<ExemplarAnchor> anchors_on_body(const ExemplarLayer& layer, const ExemplarCells& cells,
                                             std::uint32_t seed, const ExemplarGround& on) {
   const ExemplarLattice& l = cells.lattice;
-  const GaborGround& ground = on.body;
+  const BodyGround& ground = on.body;
   std::vector<ExemplarAnchor> anchors(static_cast<std::size_t>(cells.anchors));
   const Box& supports = ground.body.supports;
   const Vec3d origin = ground.origin != nullptr ? *ground.origin : Vec3d{};

@@ -127,6 +127,10 @@ double exemplar_edge(double anchor_spacing);
 // The edge for a layer with pixels, length units.
 double exemplar_edge(const ExemplarLayer& layer);
 
+// How far beyond points the layer looks at the slopes below it: the farthest anchor of a point lies within an
+// edge of it. Length units.
+inline double reach_below(const ExemplarLayer& layer) { return 2.0 * exemplar_edge(layer); }
+
 // The cells of a lattice that hold the anchors of all points of a frame.
 struct ExemplarCells {
   ExemplarLattice lattice;             // without its anchors; empty where they are too many

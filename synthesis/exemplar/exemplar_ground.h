@@ -1,19 +1,13 @@
 // The surface that an exemplar layer lies on: the body with the layers below the exemplar.
 #pragma once
 
-#include <functional>
-
+#include "synthesis/body/layer_site.h"
 #include "synthesis/gabor/gabor_cells.h"
 
 namespace astrolith {
 
-// Writes F of the body with the layers below (implicit_field.h) at n points in the coordinates of the
-// exemplar's frame, length units. At a point of the bare surface, F is the elevation of these layers. Many
-// threads may call it at once.
-using FieldBelow = std::function<void(int n, const float* x, const float* y, const float* z, float* field)>;
-
 struct ExemplarGround {
-  const GaborGround& body;
+  const BodyGround& body;
   FieldBelow below = {};      // empty where no layer below makes an elevation
   double height_bound = 0.0;  // bound of the |elevation| of the layers below, length units
 };

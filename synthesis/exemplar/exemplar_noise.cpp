@@ -172,6 +172,13 @@ ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place
   return noise;
 }
 
+ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& prepared, const LayerSource& source,
+                     const LayerSite& site, ArrayStore& arrays) {
+  const BodyGround body = site.ground();
+  return placed_exemplar(prepared, layer, source.recipe.seed, source.number, site.frame,
+                         {body, site.below, site.height_bound}, arrays);
+}
+
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
                               int layer_index, const NoiseFrame& frame, const ExemplarGround& ground,
                               ArrayStore& arrays) {

@@ -7,6 +7,7 @@
 
 #include "numerics/arrays.h"
 #include "numerics/interval.h"
+#include "synthesis/body/layer_site.h"
 #include "synthesis/exemplar/exemplar_anchors.h"
 #include "synthesis/exemplar/exemplar_texture.h"
 #include "synthesis/noise/noise_frame.h"
@@ -40,6 +41,13 @@ ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
                               int layer_index, const NoiseFrame& frame, const ExemplarGround& ground,
                               ArrayStore& arrays);
+
+// What a layer is at every site, and the noise with the anchors of one site (synthesis/field/layer_maker.h).
+inline ExemplarNoise prepare(const ExemplarLayer& layer, const LayerSource& source, ArrayStore& arrays) {
+  return make_exemplar(layer, source.place, arrays);
+}
+ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& prepared, const LayerSource& source,
+                     const LayerSite& site, ArrayStore& arrays);
 
 // The weights of the four anchors in z: w^exponent over the root of the sum of the squares.
 ASTROLITH_KERNEL void sharpen_weights(std::int32_t exponent, float* weight) {

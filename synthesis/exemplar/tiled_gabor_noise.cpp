@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "numerics/hash_random.h"
+#include "synthesis/exemplar/exemplar_ground.h"
 #include "synthesis/exemplar/phase_tile.h"
 #include "synthesis/gabor/gabor_bands.h"
 
@@ -37,38 +38,7 @@ PhaseTileSet::Tile make_phase_tile(const GaborLayer& layer, const PhaseTile& til
   return made;
 }
 
-void add_tiles(const TiledGaborNoise& noise, const GaborGround& ground, int n, const float* x, const float* y,
-               const float* z, float* height) {
-  std::vector<float> of_tile(static_cast<std::size_t>(n));
-  for (const ExemplarNoise& tile : ground.arrays.span(noise.tiles)) {
-    evaluate_heights(tile, ground.arrays, n, x, y, z, of_tile.data());
-    for (int i = 0; i < n; ++i) height[i] += of_tile[static_cast<std::size_t>(i)];
-  }
-  for (int i = 0; i < n; ++i) height[i] = math::clamp(height[i], -noise.clip, noise.clip);
-}
-
-}  // namespace
-
-PhaseTileSet make_phase_tiles(const GaborLayer& layer, std::uint64_t seed, int layer_index,
-                              ArrayStore& arrays) {
-  const PhaseTilePlan plan = plan_phase_tiles(layer.lobes);
-  double narrow = 0.0, total = 0.0;
-  for (const GaborLobe& lobe : plan.narrow) narrow += lobe.variance;
-  total = narrow;
-  for (const PhaseTile& tile : plan.tiles) total += tile.variance();
-  PhaseTileSet set;
-  set.narrow = layer;
-  set.narrow.lobes = plan.narrow;
-  set.narrow_share = narrow / total;
-  set.narrow.height_rms = layer.height_rms * std::sqrt(set.narrow_share);
-  for (const PhaseTile& tile : plan.tiles) {
-    const int number = static_cast<int>(set.tiles.size());
-    set.tiles.push_back(make_phase_tile(layer, tile, tile.variance() / total,
-                                        gabor_band_seed(seed, layer_index, kFirstTileBand + number), arrays));
-  }
-  return set;
-}
-
+// Joins the tiles of a layer, placed by placed_exemplar(), and the noise of its narrow lobes.
 TiledGaborNoise join_phase_tiles(const GaborLayer& layer, const PhaseTileSet& set,
                                  const std::vector<ExemplarNoise>& placed, const GaborSurfaceNoise& narrow,
                                  ArrayStore& arrays) {
@@ -86,14 +56,58 @@ TiledGaborNoise join_phase_tiles(const GaborLayer& layer, const PhaseTileSet& se
   return noise;
 }
 
-void evaluate_heights(const TiledGaborNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
+void add_tiles(const TiledGaborNoise& noise, const BodyGround& ground, int n, const float* x, const float* y,
+               const float* z, float* height) {
+  std::vector<float> of_tile(static_cast<std::size_t>(n));
+  for (const ExemplarNoise& tile : ground.arrays.span(noise.tiles)) {
+    evaluate_heights(tile, ground.arrays, n, x, y, z, of_tile.data());
+    for (int i = 0; i < n; ++i) height[i] += of_tile[static_cast<std::size_t>(i)];
+  }
+  for (int i = 0; i < n; ++i) height[i] = math::clamp(height[i], -noise.clip, noise.clip);
+}
+
+}  // namespace
+
+PhaseTileSet prepare_tiles(const GaborLayer& layer, const LayerSource& source, ArrayStore& arrays) {
+  const PhaseTilePlan plan = plan_phase_tiles(layer.lobes);
+  double narrow = 0.0, total = 0.0;
+  for (const GaborLobe& lobe : plan.narrow) narrow += lobe.variance;
+  total = narrow;
+  for (const PhaseTile& tile : plan.tiles) total += tile.variance();
+  PhaseTileSet set;
+  set.narrow = layer;
+  set.narrow.lobes = plan.narrow;
+  set.narrow_share = narrow / total;
+  set.narrow.height_rms = layer.height_rms * std::sqrt(set.narrow_share);
+  for (const PhaseTile& tile : plan.tiles) {
+    const int number = static_cast<int>(set.tiles.size());
+    set.tiles.push_back(
+        make_phase_tile(layer, tile, tile.variance() / total,
+                        gabor_band_seed(source.recipe.seed, source.number, kFirstTileBand + number), arrays));
+  }
+  return set;
+}
+
+TiledGaborNoise placed(const GaborLayer& layer, const PhaseTileSet& set, const LayerSource& source,
+                       const LayerSite& site, ArrayStore& arrays) {
+  std::vector<ExemplarNoise> tiles;
+  for (const PhaseTileSet::Tile& tile : set.tiles) {
+    const BodyGround body = site.ground();  // each tile makes the arrays grow
+    tiles.push_back(placed_exemplar(tile.made, tile.layer, tile.seed, 0, site.frame, {body}, arrays));
+  }
+  const GaborSurfaceNoise narrow =
+      make_noise(set.narrow, source.recipe.seed, source.number, site.frame, site.body_side, arrays);
+  return join_phase_tiles(layer, set, tiles, narrow, arrays);
+}
+
+void evaluate_heights(const TiledGaborNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height) {
   std::fill(height, height + n, 0.0f);
   if (noise.narrow.bands.count > 0) evaluate_heights(noise.narrow, ground, caches, n, x, y, z, height);
   add_tiles(noise, ground, n, x, y, z, height);
 }
 
-void evaluate_tetrahedron_heights(const TiledGaborNoise& noise, const GaborGround& ground,
+void evaluate_tetrahedron_heights(const TiledGaborNoise& noise, const BodyGround& ground,
                                   const GaborTileCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height) {
   std::fill(height, height + n, 0.0f);

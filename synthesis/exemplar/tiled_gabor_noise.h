@@ -46,15 +46,13 @@ struct PhaseTileSet {
   double narrow_share = 0.0;
 };
 
-// Makes the tiles of a layer. `layer_index` is the layer's number in the recipe.
-PhaseTileSet make_phase_tiles(const GaborLayer& layer, std::uint64_t seed, int layer_index,
-                              ArrayStore& arrays);
+// Makes the tiles of a layer, which are the same at every site.
+PhaseTileSet prepare_tiles(const GaborLayer& layer, const LayerSource& source, ArrayStore& arrays);
 
-// Joins the tiles of a layer, placed by placed_exemplar(), and the noise of its narrow lobes. The heights
-// have mean 0 and the standard deviation layer.height_rms where no part is left out.
-TiledGaborNoise join_phase_tiles(const GaborLayer& layer, const PhaseTileSet& set,
-                                 const std::vector<ExemplarNoise>& placed, const GaborSurfaceNoise& narrow,
-                                 ArrayStore& arrays);
+// The tiles with the anchors of a site, and the impulses of the narrow lobes. The heights have mean 0 and the
+// standard deviation layer.height_rms where no part is left out.
+TiledGaborNoise placed(const GaborLayer& layer, const PhaseTileSet& set, const LayerSource& source,
+                       const LayerSite& site, ArrayStore& arrays);
 
 // The height of all tiles at a point of the bare surface, added to `height`, length units.
 ASTROLITH_HD inline float with_phase_tiles(const TiledGaborNoise& n, const ArrayView& arrays, const Vec3f& at,
@@ -84,12 +82,12 @@ ASTROLITH_HD inline void tetrahedron_heights(const TiledGaborNoise& n, const Arr
 
 // Writes height[i] = n(p_i) at points of the bare surface, with the bits of height_at. `caches` has one
 // element for each band of the narrow lobes.
-void evaluate_heights(const TiledGaborNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
+void evaluate_heights(const TiledGaborNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height);
 
 // Writes the heights at the corners of small tetrahedra, with the bits of tetrahedron_heights. Points 4 t to
 // 4 t + 3 are the corners of tetrahedron t.
-void evaluate_tetrahedron_heights(const TiledGaborNoise& noise, const GaborGround& ground,
+void evaluate_tetrahedron_heights(const TiledGaborNoise& noise, const BodyGround& ground,
                                   const GaborTileCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height);
 

@@ -139,7 +139,7 @@ struct LayerHeights {
   }
   template <class GaborNoise>
   void evaluate_gabor(const GaborNoise& noise, const PointArrays& p) const {
-    GaborGround ground{model.body, arrays(), model.metaballs.lists()};
+    BodyGround ground{model.body, arrays(), model.metaballs.lists()};
     if (in_patch) ground.origin = b.origin;
     const GaborTileCache* caches = in_patch
                                        ? model.patch_caches[static_cast<std::size_t>(layer.in_patch)].data()

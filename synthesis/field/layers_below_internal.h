@@ -1,7 +1,7 @@
 // The surface that the first layers of a model make, for layers that are placed on it.
 #pragma once
 
-#include "synthesis/exemplar/exemplar_ground.h"
+#include "synthesis/body/layer_site.h"
 #include "synthesis/field/field_model_internal.h"
 
 namespace astrolith {

@@ -9,7 +9,7 @@
 namespace astrolith {
 
 void GaborCellCenters::find(std::span<const GaborCell> cells, const SurfaceBand& band,
-                            const GaborGround& ground) {
+                            const BodyGround& ground) {
   for (std::vector<float>* v : {&x, &y, &z, &distance, &gx, &gy, &gz}) v->resize(cells.size());
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Vec3f low{kInfinity, kInfinity, kInfinity}, high = low * -1.0f;
@@ -96,7 +96,7 @@ ASTROLITH_SIMD_CLONES void draw_places(const GaborDraw& draw, std::uint32_t j, s
 
 }  // namespace
 
-std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
+std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const BodyGround& ground,
                                      const TileCells& cells) {
   GaborCellCenters centers;
   centers.find(cells, band, ground);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "synthesis/body/body_tables.h"
+#include "synthesis/body/body_ground.h"
 #include "synthesis/gabor/gabor_draw.h"
 
 namespace astrolith {
@@ -16,15 +16,6 @@ struct SurfaceBand : GaborDraw {
   ArrayRange<GaborLobeShare> lobes;
 };
 
-// The body whose level sets give the tangent frames of cells, and the arrays that hold the body and the
-// bands.
-struct GaborGround {
-  const BodyTables& body;
-  ArrayView arrays;
-  LeafLists metaballs;            // all metaballs of the body
-  const Vec3d* origin = nullptr;  // of the coordinates of a patch on a plain body; null: the body's own
-};
-
 using GaborCell = std::array<int, 3>;
 
 // The centres of cells, and the distance and gradient of the body there.
@@ -32,7 +23,7 @@ struct GaborCellCenters {
   std::vector<float> x, y, z, distance, gx, gy, gz;
 
   // Replaces the centres by those of other cells, in the same memory.
-  void find(std::span<const GaborCell> cells, const SurfaceBand& band, const GaborGround& ground);
+  void find(std::span<const GaborCell> cells, const SurfaceBand& band, const BodyGround& ground);
 };
 
 // The cells of a tile.
@@ -41,7 +32,7 @@ using TileCells = std::array<GaborCell, kTileVolume>;
 
 // The impulses of the cells of a tile, in the order of the cells. The tangent frame of a cell is that of the
 // level set of the body through the centre of the cell. The bits are those of for_each_gabor_impulse().
-std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const GaborGround& ground,
+std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const BodyGround& ground,
                                      const TileCells& cells);
 
 }  // namespace astrolith

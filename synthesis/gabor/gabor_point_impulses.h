@@ -13,7 +13,7 @@ namespace astrolith {
 class GaborPointImpulses {
  public:
   // Both arguments must outlive the object.
-  GaborPointImpulses(const SurfaceBand& band, const GaborGround& ground) : band_(band), ground_(ground) {}
+  GaborPointImpulses(const SurfaceBand& band, const BodyGround& ground) : band_(band), ground_(ground) {}
 
   // The impulses that may reach the point, in the order in which tiles hold them. The chunks have no boxes,
   // and are valid until the next call.
@@ -24,7 +24,7 @@ class GaborPointImpulses {
   void append(const GaborImpulse& impulse);
 
   const SurfaceBand& band_;
-  const GaborGround& ground_;
+  const BodyGround& ground_;
   std::vector<GaborCell> cells_;  // those that may hold an impulse that reaches the point
   GaborCellCenters centers_;
   std::vector<ImpulseChunk> chunks_;

@@ -116,13 +116,13 @@ ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const A
 
 // Writes height[i] = n(p_i) at points of the bare surface. The loop is vectorised and gives the same bits as
 // height_at. `caches` has one element for each band.
-void evaluate_heights(const GaborSurfaceNoise& noise, const GaborGround& ground, const GaborTileCache* caches,
+void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height);
 
 // Writes the heights at the corners of small tetrahedra, to first order about their centres. Points 4 t to 4
 // t + 3 are the corners of tetrahedron t. Differences of these heights give gradients; a tetrahedron costs
 // about as much as one point.
-void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const GaborGround& ground,
+void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const BodyGround& ground,
                                   const GaborTileCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height);
 

@@ -50,11 +50,11 @@ inline constexpr double kMostCacheBytes = double(GaborTileCache::kShelves) * (1 
 class GaborTiles {
  public:
   // `cache` must belong to this band on this body. All three arguments must outlive the object.
-  GaborTiles(const SurfaceBand& band, const GaborGround& ground, const GaborTileCache& cache)
+  GaborTiles(const SurfaceBand& band, const BodyGround& ground, const GaborTileCache& cache)
       : band_(band), ground_(ground), cache_(cache) {}
 
   const SurfaceBand& band() const { return band_; }
-  const GaborGround& ground() const { return ground_; }
+  const BodyGround& ground() const { return ground_; }
 
   // The tile whose first cell is kTileCells times the index. It is drawn unless the cache holds it.
   std::shared_ptr<const GaborTile> tile(const std::array<int, 3>& index) const;
@@ -63,7 +63,7 @@ class GaborTiles {
   std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index) const;
 
   const SurfaceBand& band_;
-  const GaborGround& ground_;
+  const BodyGround& ground_;
   const GaborTileCache& cache_;
 };
 

@@ -48,7 +48,7 @@ class BallNoise {
 
   double points_per_second(const BallPoints& points) const {
     const FieldView& view = field_.tables();
-    const GaborGround ground{view.body, view.arrays, {}};
+    const BodyGround ground{view.body, view.arrays, {}};
     constexpr int n = kSide * kSide;
     std::vector<float> height(n);
     const double seconds = least_processor_seconds([&] {
@@ -72,7 +72,7 @@ class BallNoise {
     return recipe;
   }
   // The frames of impulses follow from the one metaball of the ball.
-  GaborGround field_ground(GaborGround ground) const {
+  BodyGround field_ground(BodyGround ground) const {
     ground.metaballs = metaballs_.lists();
     return ground;
   }

@@ -25,7 +25,7 @@ class LoneGaborNoise {
   }
 
  private:
-  GaborGround ground() const { return {tables_, arrays_.view(), metaballs_.lists()}; }
+  BodyGround ground() const { return {tables_, arrays_.view(), metaballs_.lists()}; }
 
   ArrayStore arrays_;
   BodyTables tables_;

@@ -22,7 +22,7 @@ TEST(LayeredGround, FindsTheSlopeOfAPlane) {
     for (int i = 0; i < n; ++i) field[i] = slope.x * x[i] + slope.y * y[i] - z[i] + 5.0f;
   };
   const BodyTables none{};
-  const GaborGround body{none, {}, {}};
+  const BodyGround body{none, {}, {}};
   const ExemplarGround ground{body, below, 10.0};
   const Vec3f inward = inward_of_layered(ground, {0.1f, 0.2f, 0.0f}, {0.0f, 0.0f, -2.0f}, 0.5f);
   EXPECT_NEAR(inward.x, slope.x, 1e-5f);

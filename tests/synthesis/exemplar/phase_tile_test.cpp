@@ -211,7 +211,7 @@ TEST(TiledGaborNoise, HasTheBitsOfOnePointInABatch) {
         z.push_back(static_cast<float>(p.z));
   }
   const BodyTables& body = ball.field.tables().body;
-  const GaborGround ground{body, ball.field.tables().arrays, {}};
+  const BodyGround ground{body, ball.field.tables().arrays, {}};
   const int n = static_cast<int>(heights.size());
   evaluate_heights(ball.noise, ground, nullptr, n, x.data(), y.data(), z.data(), heights.data());
   for (std::size_t i = 0; i < heights.size(); ++i) {
