@@ -29,6 +29,7 @@ void visit_fields(FieldVisitor& v, FractalLayer& layer);
 void visit_fields(FieldVisitor& v, GaborLayer& layer);
 void visit_fields(FieldVisitor& v, LayerColor& color);
 void visit_fields(FieldVisitor& v, ExemplarLayer& layer);
+void visit_fields(FieldVisitor& v, ReliefLayer& layer);
 void visit_fields(FieldVisitor& v, SpotLayer& layer);
 void visit_fields(FieldVisitor& v, SpotPart& part);
 void visit_fields(FieldVisitor& v, SparseLayer& layer);

@@ -45,6 +45,13 @@ void check_exemplar_height(const ExemplarLayer& layer, const Place& place) {
   place.field("height_range").fail("must be 0 where height_rms is not; state one of both");
 }
 
+constexpr ReliefArrangement kArrangements[] = {ReliefArrangement::kMeasured};
+
+void check_relief_heights(const ReliefLayer& layer, const Place& place) {
+  if (layer.high >= layer.low) return;
+  place.field("high").fail("must not be below low");
+}
+
 void check_edge(const Vec3d& edge, const Place& place) {
   const double length = norm(edge);
   if (length >= kLeastCellHeight && length <= kLongestCellEdge) return;
@@ -157,6 +164,19 @@ static void visit_image(FieldVisitor& v, NamedImage& named) {
   v.required("image", named.image);
   v.required("image_sha256", named.image_sha256);
   v.rule(check_image, named);
+}
+
+// A compact recipe holds the pixels of a relief itself, and no name of a file.
+void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
+  v.field_if(!layer.is_embedded(), "image", layer.image);
+  v.field_if(!layer.is_embedded(), "image_sha256", layer.image_sha256);
+  if (!layer.is_embedded()) v.rule(check_image, layer);
+  v.word("arrangement", layer.arrangement, kArrangements, arrangement_word);
+  v.required("spacing", layer.spacing, kPositive);
+  v.required("low", layer.low, kAnyNumber);
+  v.required("high", layer.high, kAnyNumber);
+  v.rule(check_relief_heights, layer);
+  v.required("levels", layer.levels, range(2, 65535));
 }
 
 void visit_fields(FieldVisitor& v, ExemplarLayer& layer) {

@@ -18,13 +18,14 @@
 #include "recipe/landforms.h"
 #include "recipe/limits.h"
 #include "recipe/noise_layers.h"
+#include "recipe/relief_layer.h"
 
 namespace astrolith {
 
 inline constexpr int kRecipeFormatVersion = 1;
 
 using Layer = std::variant<FractalLayer, SpotLayer, SparseLayer, CraterLayer, BoulderLayer, RandomPhaseLayer,
-                           PhasorLayer, GaborLayer, ExemplarLayer>;
+                           PhasorLayer, GaborLayer, ExemplarLayer, ReliefLayer>;
 
 // The layer's `type` in a file: "simplex", "perlin" or "worley" of a fractal layer, kType of the others.
 std::string_view type_word(const Layer& layer);

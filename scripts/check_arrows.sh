@@ -27,7 +27,8 @@ synthesis/spots            -> numerics recipe synthesis/noise synthesis/body
 synthesis/gabor            -> numerics recipe synthesis/noise synthesis/body
 synthesis/exemplar         -> numerics recipe synthesis/noise synthesis/body synthesis/gabor
 synthesis/landforms        -> numerics recipe geometry gravity synthesis/noise synthesis/mesh synthesis/body
-synthesis/field            -> numerics recipe geometry synthesis/noise synthesis/mesh synthesis/body synthesis/spots synthesis/gabor synthesis/exemplar synthesis/landforms
+synthesis/relief           -> numerics recipe synthesis/noise synthesis/body
+synthesis/field            -> numerics recipe geometry synthesis/noise synthesis/mesh synthesis/body synthesis/spots synthesis/gabor synthesis/exemplar synthesis/landforms synthesis/relief
 synthesis/finish           -> numerics recipe geometry synthesis
 cuda                       -> numerics descriptor synthesis cuda/.
 cuda/mesher                -> numerics synthesis cuda/.
@@ -47,6 +48,7 @@ estimation/shape/refinement -> numerics recipe geometry estimation/shape/target 
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
 estimation/shape/learning  -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target
+estimation/shape/relief    -> numerics recipe geometry synthesis
 estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
 tasks/gravity              -> numerics recipe geometry gravity synthesis
 tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda

@@ -61,6 +61,15 @@ void learn(Program& program, const FitArguments& arguments, const TargetBody& ta
   }
 }
 
+// Adds the measured surface as a relief, and says how much nearer it brings the model.
+void keep_relief(Program& program, const FitArguments& arguments, const TargetBody& target,
+                 const Progress& progress, Recipe& recipe) {
+  const ReliefFit relief = add_relief(target, progress, recipe);
+  program.say(fmt::format("relief: {} heights, {:.3g} {} apart, in steps of {:.2g} {}", relief.heights,
+                          relief.layer.spacing, arguments.unit, relief.layer.step(), arguments.unit));
+  program.summary["relief"] = relief_json(relief);
+}
+
 // Adds details to the recipe, and to the summary; the fit's figures become those of both together.
 void add_details(Program& program, const FitArguments& arguments, const TargetBody& target, TimeLimit& limit,
                  FitCheckpoint& checkpoint, ShapeFitResult& fit, Recipe& recipe) {
@@ -78,7 +87,9 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
     program.say(
         fmt::format("{}: {} layers, lengths times {:.4g}", wanted.details, other.layers.size(), ratio));
   } else if (const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
-             wanted.learns()) {
+             wanted.keeps_relief()) {
+    keep_relief(program, arguments, target, progress, recipe);
+  } else if (wanted.learns()) {
     learn(program, arguments, target, checkpoint.log(), progress, recipe);
     checkpoint.save();
   } else {

@@ -43,8 +43,8 @@ void declare_micro_options(Program& program, DetailArguments& arguments) {
 
 void declare_detail_options(Program& program, DetailArguments& arguments) {
   arguments.device.add_to(program.app);
-  Option base_only = program.app.add_flag("--base-only", arguments.base_only,
-                                          "metaballs alone, without a search for details");
+  Option base_only =
+      program.app.add_flag("--base-only", arguments.base_only, "metaballs alone, without details");
   program.app
       .add_option(
           "--generations", arguments.generations,
@@ -55,11 +55,13 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
   program.app
       .add_option(
           "--details", arguments.details,
-          "thesis: the search for the 34 parameters of three noises. learnt: noise that is rough and "
+          "relief: the measured surface itself, as heights over the metaballs that a picture or a compact "
+          "recipe holds. thesis: the search for the 34 parameters of three noises. learnt: noise that is "
+          "rough and "
           "smooth by regions, and boulders or craters where the mesh shows them; some 80 candidates are "
-          "meshed and compared with the mesh's surface, as compare --realism does. Or no search: the "
+          "meshed and compared with the mesh's surface, as compare --realism does. Or the "
           "layers of this recipe, scaled by the ratio of the two bodies' sizes")
-      .placeholder("thesis|learnt|OTHER.json")
+      .placeholder("relief|thesis|learnt|OTHER.json")
       .excludes(base_only);
   program.app.add_flag("--everywhere", arguments.everywhere,
                        "with --details learnt: details on ground, too, that is smooth in the mesh since no "
@@ -80,8 +82,8 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
 }
 
 void check_detail_inputs(const Program& program, const DetailArguments& arguments) {
-  if (program.app.option("--generations").count() > 0 && (arguments.learns() || arguments.transfers())) {
-    throw InputError("--generations: are those of --details thesis; leave one of both out");
+  if (program.app.option("--generations").count() > 0 && !arguments.searches()) {
+    throw InputError("--generations: are those of --details thesis; give that too, or leave them out");
   }
   if (arguments.everywhere && !arguments.learns()) {
     throw InputError("--everywhere: goes with --details learnt; give that too, or leave it out");

@@ -16,17 +16,19 @@ namespace astrolith {
 struct DetailArguments {
   bool base_only = false;
   int generations = 100;
-  std::string details = "thesis";                 // "learnt", "thesis", or a recipe whose layers are taken
-  bool everywhere = false;                        // learnt details on ground that is smooth in the target
-  std::string micro;                              // a recipe of Gabor layers, "auto", or nothing
+  std::string details = "relief";  // "relief", "learnt", "thesis", or a recipe whose layers are taken
+  bool everywhere = false;         // learnt details on ground that is smooth in the target
+  std::string micro;               // a recipe of Gabor layers, "auto", or nothing
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;
   DeviceOption device;  // computes the search
 
+  bool keeps_relief() const { return details == "relief"; }
   bool learns() const { return details == "learnt"; }
-  // Whether the layers of another recipe are taken instead of a search.
-  bool transfers() const { return !learns() && details != "thesis"; }
+  bool searches() const { return details == "thesis"; }
+  // Whether the layers of another recipe are taken.
+  bool transfers() const { return !keeps_relief() && !learns() && !searches(); }
 };
 
 // Declares the options that fill in the arguments.

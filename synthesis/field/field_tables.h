@@ -19,6 +19,7 @@
 #include "synthesis/noise/phasor_noise.h"
 #include "synthesis/noise/random_phase_noise.h"
 #include "synthesis/noise/sparse_noise.h"
+#include "synthesis/relief/relief_noise.h"
 #include "synthesis/spots/spot_noise.h"
 
 namespace astrolith {
@@ -26,7 +27,7 @@ namespace astrolith {
 // The table of kinds: every type that a layer of heights can have. A new kind needs an entry here, traits, a
 // height_at, an evaluate_heights and a bound_heights. docs/architecture.md lists what else it needs.
 using LayerNoise = PlainVariant<FractalNoise, SparseNoise, SpotNoise, PhasorNoise, RandomPhaseNoise,
-                                CraterRelief, GaborSurfaceNoise, ExemplarNoise, TiledGaborNoise>;
+                                CraterRelief, GaborSurfaceNoise, ExemplarNoise, TiledGaborNoise, ReliefNoise>;
 
 // Visits a layer's noise: its traits.
 struct TraitsOfNoise {

@@ -77,6 +77,21 @@ LearntDetails add_learnt_details(const TargetBody& target, const ShapeFitOptions
   return learnt;
 }
 
+ReliefFit add_relief(const TargetBody& target, const Progress& progress, Recipe& recipe) {
+  TriangleMesh surface = target.surface;
+  for (Vec3d& p : surface.vertices) p = target.center + target.diagonal * p;
+  ReliefFit relief = fit_relief(surface, recipe, {}, progress);
+  recipe.layers.emplace_back(relief.layer);
+  return relief;
+}
+
+nlohmann::ordered_json relief_json(const ReliefFit& relief) {
+  return {
+      {"heights", relief.heights},     {"spacing", relief.layer.spacing},       {"step", relief.layer.step()},
+      {"levels", relief.layer.levels}, {"base_distance", relief.base_distance}, {"residual", relief.residual},
+      {"left_out", relief.left_out}};
+}
+
 void measure_recipe(const TargetBody& target, const Recipe& recipe, const ShapeFitOptions& options,
                     ShapeFitResult& fit) {
   fit.check = check_recipe(target, recipe, options.check_resolution, options.check_samples, options.seed);

@@ -9,6 +9,7 @@
 #include "estimation/shape/details/details_fit.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/learning/learnt_details.h"
+#include "estimation/shape/relief/relief_fit.h"
 #include "recipe/recipe.h"
 #include "tasks/estimation/fit_checkpoint.h"
 
@@ -32,6 +33,10 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
 LearntDetails add_learnt_details(const TargetBody& target, const ShapeFitOptions& options, bool everywhere,
                                  EvaluationLog& log, const Progress& progress, Recipe& recipe);
 
+// Adds the heights of the target's surface over the recipe's body (in the file's frame) as a relief layer.
+// Throws as fit_relief().
+ReliefFit add_relief(const TargetBody& target, const Progress& progress, Recipe& recipe);
+
 // Measures the whole recipe as the fit measured its base: the fit's check and similarity become those of the
 // recipe. The similarity is that of the descriptor that `compare` uses by default (ahd), with 5,000 points
 // for each mesh.
@@ -47,6 +52,10 @@ nlohmann::ordered_json fit_figures(const ShapeFitResult& fit);
 // What was learnt: sentences in `unit`, "m" or "km", the model with lengths in that unit, and the figures of
 // each candidate that fresh seeds judged.
 nlohmann::ordered_json learnt_json(const LearntDetails& learnt, const std::string& unit);
+
+// The figures of a relief: heights, spacing, step, mean distances before and after, lengths in the recipe's
+// unit.
+nlohmann::ordered_json relief_json(const ReliefFit& relief);
 
 // The figures of a search: its evaluations and scores, and the roughness of target and details at each lag.
 nlohmann::ordered_json details_json(const DetailsFitResult& details);

@@ -13,6 +13,7 @@
 #include "numerics/files/input_file.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
+#include "synthesis/picture/image_file.h"
 #include "synthesis/picture/png_reader.h"
 
 namespace astrolith {
@@ -77,12 +78,27 @@ void require_no_input_of_fits(const std::filesystem::path& file) {
   }
 }
 
+// The name of the image of a recipe's first relief, and of further ones: bennu.relief.png,
+// bennu.relief_1.png.
+std::filesystem::path relief_image_name(const std::filesystem::path& recipe, int number) {
+  std::filesystem::path name = recipe;
+  return name.replace_extension(number == 0 ? ".relief.png" : ".relief_" + std::to_string(number) + ".png");
+}
+
+// Writes pixels that no file holds yet, and names the file in the layer.
+void write_image(NamedImage& named, const std::filesystem::path& file) {
+  write_png16_grey(named.pixels->values, named.pixels->width, named.pixels->height, file);
+  named.image = file.filename().string();
+  named.image_sha256 = sha256_of_file(file);
+}
+
 }  // namespace
 
 void load_images(Recipe& recipe, const std::filesystem::path& folder, const std::string& name) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     Layer& layer = recipe.layers[i];
-    if (NamedImage* named = image_of(layer)) {
+    NamedImage* named = image_of(layer);
+    if (named != nullptr && named->pixels == nullptr) {
       load_image(*named, has_color(layer), folder, name + ": layers[" + std::to_string(i) + "]");
     }
   }
@@ -97,9 +113,20 @@ Recipe load_recipe(const std::filesystem::path& file) {
 
 void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
   const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  int number = 0;
   for (Layer& layer : recipe.layers) {
     NamedImage* named = image_of(layer);
     if (named == nullptr || named->pixels == nullptr) continue;
+    if (auto* relief = std::get_if<ReliefLayer>(&layer)) {
+      if (is_compact_name(file)) {
+        relief->image.clear(), relief->image_sha256.clear();  // the recipe holds the pixels
+        continue;
+      }
+      if (named->pixels->file.empty()) {
+        write_image(*named, relief_image_name(file, number++));
+        continue;
+      }
+    }
     named->image =
         named->pixels->file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
   }

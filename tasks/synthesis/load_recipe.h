@@ -16,7 +16,8 @@ Recipe load_recipe(const std::filesystem::path& file);
 // of the recipe in messages. Throws as load_recipe() does.
 void load_images(Recipe& recipe, const std::filesystem::path& folder, const std::string& name);
 
-// Writes a recipe. The paths of its decoded images become relative to the folder of `file`. Throws as
+// Writes a recipe. The paths of its decoded images become relative to the folder of `file`. The pixels of a
+// relief that no file holds are written beside it, as FILE.relief.png, or into a compact recipe. Throws as
 // write_recipe() does.
 void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file);
 

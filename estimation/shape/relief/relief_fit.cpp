@@ -1,0 +1,102 @@
+#include "estimation/shape/relief/relief_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "estimation/shape/relief/relief_samples.h"
+#include "estimation/shape/relief/relief_solver.h"
+#include "geometry/mesh_measure.h"
+#include "numerics/errors.h"
+#include "synthesis/relief/relief_picture.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kDefaultStep = 4.0;  // mean residuals: rounding adds a tenth to the residual
+constexpr int kMostLevels = 65535;
+
+double mean_of(const std::vector<double>& values) {
+  return values.empty()
+             ? 0.0
+             : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+void expect_fit(const TriangleMesh& surface, const Recipe& recipe) {
+  if (surface.triangles.size() < kFewestReliefFacets) {
+    throw InputError("a relief needs a model of at least " + std::to_string(kFewestReliefFacets) +
+                     " facets, this one has " + std::to_string(surface.triangles.size()) +
+                     "; use --base-only");
+  }
+  if (!recipe.body || !recipe.body->operations.empty()) {
+    throw InputError("a relief needs a body without operations; fit the relief before bodies are combined");
+  }
+}
+
+// Rounds the heights to levels of the layer. Returns the code of each.
+std::vector<std::uint16_t> rounded(std::vector<double>& heights, double step, ReliefLayer& layer) {
+  const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
+  const double range = *most - *least;
+  layer.low = step * std::floor(*least / step);
+  const double levels = std::ceil((*most - layer.low) / step) + 1.0;
+  if (levels > kMostLevels) step = range / (kMostLevels - 2);
+  layer.levels = std::max(2, static_cast<int>(std::min<double>(levels, kMostLevels)));
+  layer.high = layer.low + step * (layer.levels - 1);
+  std::vector<std::uint16_t> codes(heights.size());
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double code = std::floor((heights[i] - layer.low) / step + 0.5);
+    codes[i] = static_cast<std::uint16_t>(std::clamp(code, 0.0, layer.levels - 1.0));
+    heights[i] = layer.low + step * codes[i];
+  }
+  return codes;
+}
+
+std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
+                                          const std::vector<std::uint16_t>& codes) {
+  const ReliefLayout layout = relief_layout(places);
+  auto image = std::make_shared<ExemplarImage>();
+  // Programs read no image that is smaller.
+  image->width = std::max(layout.width, kLeastExemplarSide),
+  image->height = std::max(layout.height, kLeastExemplarSide);
+  image->values.assign(static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height), 0);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t row = layout.pixels[i] / static_cast<std::size_t>(layout.width),
+                      column = layout.pixels[i] % static_cast<std::size_t>(layout.width);
+    image->values[row * static_cast<std::size_t>(image->width) + column] = layer.value_of(codes[i]);
+  }
+  return image;
+}
+
+}  // namespace
+
+ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const ReliefOptions& options,
+                     const Progress& progress) {
+  expect_fit(surface, recipe);
+  ReliefFit fit;
+  ReliefLayer& layer = fit.layer;
+  layer.spacing = options.spacing > 0.0
+                      ? options.spacing
+                      : std::sqrt(surface_area(surface) / static_cast<double>(surface.vertices.size()));
+  const ReliefEquations equations = relief_equations(surface, recipe, layer.spacing);
+  const ReliefSamples& samples = equations.samples;
+  if (equations.places.empty() || samples.size() == 0) {
+    throw InputError("the body lies nowhere near the surface; fit its base first");
+  }
+  std::vector<double> heights = solve_relief(samples, equations.places.size(), progress);
+  const double step =
+      options.step > 0.0 ? options.step : kDefaultStep * mean_of(relief_residuals(samples, heights));
+  const std::vector<std::uint16_t> codes = rounded(heights, step > 0.0 ? step : 1e-6 * layer.spacing, layer);
+  layer.pixels = picture_of(layer, equations.places, codes);
+  fit.heights = heights.size();
+  fit.base_distance = mean_of(relief_residuals(samples, std::vector<double>(heights.size(), 0.0)));
+  fit.residual = mean_of(relief_residuals(samples, heights));
+  const double all =
+      4.0 * static_cast<double>(surface.triangles.size()) + static_cast<double>(surface.vertices.size());
+  fit.left_out = std::max(0.0, 1.0 - static_cast<double>(samples.size()) / all);
+  return fit;
+}
+
+}  // namespace astrolith

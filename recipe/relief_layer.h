@@ -1,0 +1,64 @@
+// A relief layer: the measured heights of a body over its metaballs.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "recipe/exemplar_image.h"
+#include "recipe/layer_traits.h"
+#include "recipe/noise_layers.h"
+
+namespace astrolith {
+
+// Where the heights of a relief stand.
+enum class ReliefArrangement { kMeasured };  // each in its own place
+constexpr std::string_view arrangement_word(ReliefArrangement) { return "measured"; }
+
+// Heights over the bare surface, stored at places q that follow from the body and the spacing
+// (synthesis/relief/relief_places.h). With maps of the surface along the axes a = x, y, z,
+//   n(p) = sum_q B(p - q) w(q) h(q) / sum_q B(p - q) w(q),   w = max((n_a^2 - 1/5) / (4/5), 0)^2 at q,
+// where the sums run over the places of all maps around p, B is the product of two cubic B-splines of the
+// distances along the two other axes, in spacings, and n_a the normal's component along the map's axis. h(q)
+// comes from the grey value v of the image's pixel for q:
+//   h = low + (high - low) round((v - 1) (levels - 1) / 65534) / (levels - 1).
+struct ReliefLayer : NamedImage {
+  static constexpr std::string_view kType = "relief";
+  static constexpr LayerTraits kTraits{.is_noise = true,
+                                       .on_surface = true,
+                                       .on_layers = false,
+                                       .has_image = true,
+                                       .has_color = false,
+                                       .paints_bodies = false,
+                                       .in_plane = false,
+                                       .varies = false};
+
+  std::string name;
+  LayerSeed seed;
+  LayerUse use;
+  ReliefArrangement arrangement = ReliefArrangement::kMeasured;
+  double spacing = 1.0;  // length units between lines of the lattice, > 0
+  double low = 0.0;      // height of the grey value 1, length units
+  double high = 0.0;     // height of the grey value 65535, >= low
+  int levels = 2;        // heights from low to high, 2 .. 65535
+
+  // Whether the layer names no file, since the recipe holds its pixels.
+  bool is_embedded() const { return image.empty() && image_sha256.empty(); }
+  double step() const { return (high - low) / (levels - 1); }
+  // The code 0 .. levels - 1 of a grey value above 0, and the grey value of a code.
+  std::uint16_t code_of(std::uint16_t value) const {
+    return static_cast<std::uint16_t>(((value - 1u) * (levels - 1u) + 32767u) / 65534u);
+  }
+  std::uint16_t value_of(std::uint16_t code) const {
+    return static_cast<std::uint16_t>(1u + (code * 65534u + (levels - 1u) / 2u) / (levels - 1u));
+  }
+  StatedHeight stated_height() const { return {low < -high ? "low" : "high", low < -high ? low : high}; }
+  // Multiplies all lengths by the ratio.
+  void rescale(double ratio) {
+    spacing *= ratio;
+    low *= ratio;
+    high *= ratio;
+  }
+};
+
+}  // namespace astrolith

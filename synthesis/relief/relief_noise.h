@@ -1,0 +1,186 @@
+// A relief layer of the recipe as plain tables: its height at one point of the bare surface, over many points
+// at once, and as a bound. The equation stands at ReliefLayer (recipe/relief_layer.h).
+#pragma once
+
+#include <cstdint>
+
+#include "numerics/arrays.h"
+#include "numerics/host_device.h"
+#include "numerics/interval.h"
+#include "numerics/scalar_math.h"
+#include "recipe/relief_layer.h"
+#include "synthesis/body/layer_site.h"
+#include "synthesis/noise/noise_frame.h"
+#include "synthesis/noise/noise_traits.h"
+#include "synthesis/relief/relief_tiles.h"
+
+namespace astrolith {
+
+// The least and the greatest code of the tiles of a cell; least > greatest where it has none.
+struct ReliefCodeRange {
+  std::uint16_t least, greatest;
+};
+
+struct ReliefNoise {
+  static constexpr NoiseTraits kTraits{.on_surface = true,
+                                       .lifts = false,
+                                       .has_heights = true,
+                                       .bounded_by_box = true,
+                                       .local_form = false,
+                                       .lists = NoiseLists::kNone};
+
+  float inverse_spacing = 1.0f;  // 1 / length units
+  Vec3f origin;                  // of the points' frame, in spacings from the corner of the first cell
+  std::int32_t count_x = 0, count_y = 0, count_z = 0;  // cells
+  float low = 0.0f, step = 0.0f;   // the height of code 0, and of a code above the one before; length units
+  ArrayRange<std::int32_t> tiles;  // (cells x 3) ReliefTiles::tiles
+  ArrayRange<ReliefSplit> splits;
+  ArrayRange<std::uint32_t> words;     // (tiles x kReliefTileSize) weight << 16 | code
+  ArrayRange<ReliefCodeRange> ranges;  // (cells)
+  double height_bound = 0.0;           // bound of |n(p)|, length units
+  NoiseDetail detail;
+};
+
+// What all sites of a layer share.
+ReliefNoise prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore& arrays);
+
+// The noise at a site. Throws InputError, which begins with the source's place, where the layer has no
+// pixels, or where they are not those of the places on this body.
+ReliefNoise placed(const ReliefLayer& layer, const ReliefNoise& prepared, const LayerSource& source,
+                   const LayerSite& site, ArrayStore& arrays);
+
+// The weights of the four places next to a point, which lies t in [0, 1] beyond the second: a cubic B-spline.
+struct CubicWeights {
+  float w0, w1, w2, w3;
+};
+ASTROLITH_KERNEL CubicWeights cubic_weights(float t) {
+  constexpr float kSixth = 1.0f / 6.0f;
+  const float s = 1.0f - t, t2 = t * t, s2 = s * s;
+  return {kSixth * s2 * s, math::fma(0.5f * t - 1.0f, t2, 2.0f / 3.0f),
+          math::fma(0.5f * s - 1.0f, s2, 2.0f / 3.0f), kSixth * t2 * t};
+}
+
+// The sums over the places of a tile around a point: of weights, and of weights times codes.
+struct ReliefSums {
+  float weight = 0.0f, code = 0.0f;
+};
+
+ASTROLITH_KERNEL void add_relief_row(const std::uint32_t* row, const CubicWeights& u, float v,
+                                     ReliefSums& sums) {
+  const auto add = [&](std::uint32_t word, float by) {
+    const float weight = by * static_cast<float>(static_cast<std::int32_t>(word >> 16));
+    sums.weight += weight;
+    sums.code = math::fma(weight, static_cast<float>(static_cast<std::int32_t>(word & 0xffffu)), sums.code);
+  };
+  add(row[0], u.w0 * v);
+  add(row[1], u.w1 * v);
+  add(row[2], u.w2 * v);
+  add(row[3], u.w3 * v);
+}
+
+// Adds a tile to the sums at the point (u, v) in [0, kReliefCell], in spacings from the corner of its cell.
+ASTROLITH_KERNEL void add_relief_tile(const std::uint32_t* words, float u, float v, ReliefSums& sums) {
+  constexpr float kLast = static_cast<float>(kReliefCell - 1);
+  const float iu = math::clamp(math::floor(u), 0.0f, kLast), iv = math::clamp(math::floor(v), 0.0f, kLast);
+  const CubicWeights wu = cubic_weights(u - iu), wv = cubic_weights(v - iv);
+  const std::uint32_t* first =
+      words + static_cast<std::int32_t>(iv) * kReliefTileSide + static_cast<std::int32_t>(iu);
+  add_relief_row(first, wu, wv.w0, sums);
+  add_relief_row(first + kReliefTileSide, wu, wv.w1, sums);
+  add_relief_row(first + 2 * kReliefTileSide, wu, wv.w2, sums);
+  add_relief_row(first + 3 * kReliefTileSide, wu, wv.w3, sums);
+}
+
+// A point in the lattice: its cell, and its place there in spacings from the corner of the cell.
+struct ReliefPoint {
+  std::int32_t cell;
+  float x, y, z;
+};
+ASTROLITH_KERNEL ReliefPoint relief_point(const ReliefNoise& n, const Vec3f& p) {
+  constexpr float kInverse = 1.0f / static_cast<float>(kReliefCell), kCell = static_cast<float>(kReliefCell);
+  const auto along = [&](float coordinate, float origin, std::int32_t count) {
+    const float most = static_cast<float>(count) * kCell;
+    return math::clamp(math::fma(coordinate, n.inverse_spacing, origin), 0.0f, most);
+  };
+  const auto cell = [&](float at, std::int32_t count) {
+    return math::min(math::floor(at * kInverse), static_cast<float>(count - 1));
+  };
+  const float x = along(p.x, n.origin.x, n.count_x), y = along(p.y, n.origin.y, n.count_y),
+              z = along(p.z, n.origin.z, n.count_z);
+  const float cx = cell(x, n.count_x), cy = cell(y, n.count_y), cz = cell(z, n.count_z);
+  const std::int32_t number =
+      static_cast<std::int32_t>(cx) +
+      n.count_x * (static_cast<std::int32_t>(cy) + n.count_y * static_cast<std::int32_t>(cz));
+  return {number, math::fma(-kCell, cx, x), math::fma(-kCell, cy, y), math::fma(-kCell, cz, z)};
+}
+
+// The number of the tile of an axis for a point with the coordinates (u, v, w) along it.
+ASTROLITH_HD inline std::int32_t relief_tile(std::int32_t tile, const ReliefSplit* splits, float u, float v,
+                                             float w) {
+  if (tile >= 0) return tile;
+  const ReliefSplit& s = splits[-1 - tile];
+  return w > math::fma(s.of_u, u, math::fma(s.of_v, v, s.at)) ? s.upper : s.lower;
+}
+
+// The height of these sums. Where no place has a weight, it is 0.
+ASTROLITH_KERNEL float relief_height(const ReliefNoise& n, const ReliefSums& sums) {
+  constexpr float kHardlyAny = 1e-3f;  // of 65535
+  return math::fma(n.step, sums.code, n.low * sums.weight) / (sums.weight + kHardlyAny);
+}
+
+// The height at a point of the bare surface, length units.
+ASTROLITH_HD inline float height_at(const ReliefNoise& n, const ArrayView& arrays, const Vec3f& at) {
+  if (n.count_x == 0) return 0.0f;
+  const ReliefPoint p = relief_point(n, at);
+  const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{p.cell};
+  const ReliefSplit* splits = arrays[n.splits];
+  const std::uint32_t* words = arrays[n.words];
+  ReliefSums sums;
+  add_relief_tile(words + kReliefTileSize * relief_tile(tiles[0], splits, p.y, p.z, p.x), p.y, p.z, sums);
+  add_relief_tile(words + kReliefTileSize * relief_tile(tiles[1], splits, p.z, p.x, p.y), p.z, p.x, sums);
+  add_relief_tile(words + kReliefTileSize * relief_tile(tiles[2], splits, p.x, p.y, p.z), p.x, p.y, sums);
+  return relief_height(n, sums);
+}
+
+// Writes height[i] = n(p_i) at these points, length units. The loops are vectorised and give the same bits as
+// height_at.
+void evaluate_heights(const ReliefNoise& n, const ArrayView& arrays, int count, const float* x,
+                      const float* y, const float* z, float* height);
+
+// An interval that holds n(p) for every point of a box, length units.
+ASTROLITH_HD inline Interval bound_heights(const ReliefNoise& n, const ArrayView& arrays, const Box& box) {
+  if (n.count_x == 0) return {0.0, 0.0};
+  constexpr double kMostCells = 4096;  // beyond them the bound of all heights is as good
+  const double scale = n.inverse_spacing / static_cast<double>(kReliefCell);
+  const auto cell = [&](double coordinate, float origin, double slack, std::int32_t count) {
+    const double at = coordinate * scale + origin / static_cast<double>(kReliefCell) + slack;
+    return static_cast<std::int32_t>(std::floor(std::min(std::max(at, 0.0), static_cast<double>(count - 1))));
+  };
+  constexpr double kSlack = 1e-3;  // of a cell, for the rounding of lattice coordinates
+  const std::int32_t x0 = cell(box.min.x, n.origin.x, -kSlack, n.count_x),
+                     x1 = cell(box.max.x, n.origin.x, kSlack, n.count_x),
+                     y0 = cell(box.min.y, n.origin.y, -kSlack, n.count_y),
+                     y1 = cell(box.max.y, n.origin.y, kSlack, n.count_y),
+                     z0 = cell(box.min.z, n.origin.z, -kSlack, n.count_z),
+                     z1 = cell(box.max.z, n.origin.z, kSlack, n.count_z);
+  if ((x1 - x0 + 1.0) * (y1 - y0 + 1.0) * (z1 - z0 + 1.0) > kMostCells)
+    return {-n.height_bound, n.height_bound};
+  const ReliefCodeRange* ranges = arrays[n.ranges];
+  std::uint16_t least = 0xffff, greatest = 0;
+  for (std::int32_t k = z0; k <= z1; ++k) {
+    for (std::int32_t j = y0; j <= y1; ++j) {
+      for (std::int32_t i = x0; i <= x1; ++i) {
+        const ReliefCodeRange& r = ranges[i + std::int64_t{n.count_x} * (j + std::int64_t{n.count_y} * k)];
+        least = r.least < least ? r.least : least;
+        greatest = r.greatest > greatest ? r.greatest : greatest;
+      }
+    }
+  }
+  if (least > greatest) return {0.0, 0.0};
+  const double slack = 1e-5 * n.height_bound;
+  const double low = double{n.low} + double{n.step} * least - slack,
+               high = double{n.low} + double{n.step} * greatest + slack;
+  return {std::min(low, 0.0), std::max(high, 0.0)};  // 0 where no place has a weight
+}
+
+}  // namespace astrolith

@@ -1,0 +1,276 @@
+#include "synthesis/relief/relief_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+
+namespace astrolith {
+namespace {
+
+std::int32_t cell_of(std::int32_t line) {
+  return line >= 0 ? line / kReliefCell : -((-line + kReliefCell - 1) / kReliefCell);
+}
+
+// The places of one axis by their lines.
+class Lines {
+ public:
+  Lines(const std::vector<ReliefPlace>& places, int axis) : places_(places) {
+    const auto of_axis = [axis](const ReliefPlace& p) { return p.axis == axis; };
+    const auto first = std::find_if(places.begin(), places.end(), of_axis);
+    const auto end = std::find_if_not(first, places.end(), of_axis);
+    begin_ = static_cast<std::uint32_t>(first - places.begin());
+    if (first == end) return;
+    low_v_ = first->v, high_v_ = (end - 1)->v;
+    const auto [least, most] =
+        std::minmax_element(first, end, [](const ReliefPlace& a, const ReliefPlace& b) { return a.u < b.u; });
+    low_u_ = least->u, high_u_ = most->u;
+    const auto lines =
+        static_cast<std::size_t>(high_u_ - low_u_ + 1) * static_cast<std::size_t>(high_v_ - low_v_ + 1);
+    first_.assign(lines + 1, 0);
+    for (auto p = first; p != end; ++p) ++first_[number(p->u, p->v) + 1];
+    for (std::size_t i = 0; i < lines; ++i) first_[i + 1] += first_[i];
+  }
+
+  // The places on a line, ascending, as a range of numbers.
+  std::pair<std::uint32_t, std::uint32_t> on(std::int32_t u, std::int32_t v) const {
+    if (first_.empty() || u < low_u_ || u > high_u_ || v < low_v_ || v > high_v_) return {0, 0};
+    const std::size_t n = number(u, v);
+    return {begin_ + first_[n], begin_ + first_[n + 1]};
+  }
+  const ReliefPlace& place(std::uint32_t i) const { return places_[i]; }
+
+ private:
+  std::size_t number(std::int32_t u, std::int32_t v) const {
+    return static_cast<std::size_t>(v - low_v_) * static_cast<std::size_t>(high_u_ - low_u_ + 1) +
+           static_cast<std::size_t>(u - low_u_);
+  }
+
+  const std::vector<ReliefPlace>& places_;
+  std::uint32_t begin_ = 0;
+  std::int32_t low_u_ = 0, high_u_ = -1, low_v_ = 0, high_v_ = -1;
+  std::vector<std::uint32_t> first_;
+};
+
+// How much w grows from a place to the next line, by the tangent plane of the place.
+float slope(const ReliefPlace& p, int du, int dv) {
+  return -(p.normal.y * static_cast<float>(du) + p.normal.z * static_cast<float>(dv)) / p.normal.x;
+}
+
+// A sheet of the surface within the lines of a tile.
+struct Sheet {
+  std::array<std::uint32_t, kReliefTileSize> places;
+  int seeds = 0;
+};
+
+// The sheets of one axis that pass through one cell.
+class CellSheets {
+ public:
+  CellSheets(const Lines& lines, std::int32_t u, std::int32_t v, std::int32_t w)
+      : lines_(lines), u_(u), v_(v), w_(w) {}
+
+  // The two that pass it in most lines, the greatest first; fewer where there are fewer.
+  std::vector<Sheet> find() const {
+    std::vector<Sheet> sheets;
+    for (int j = 0; j <= kReliefCell; ++j) {
+      for (int i = 0; i <= kReliefCell; ++i) {
+        const auto [first, end] = lines_.on(u_ + i, v_ + j);
+        for (std::uint32_t p = first; p < end; ++p) {
+          if (!is_seed(lines_.place(p)) || is_in(sheets, i, j, p)) continue;
+          sheets.push_back(grown_from(i, j, p));
+        }
+      }
+    }
+    std::stable_sort(sheets.begin(), sheets.end(),
+                     [](const Sheet& a, const Sheet& b) { return a.seeds > b.seeds; });
+    if (sheets.size() > 2) sheets.resize(2);
+    return sheets;
+  }
+
+ private:
+  // Points that are projected a little beside the surface may lie in the next cell.
+  static constexpr float kMargin = 1.0f;
+
+  bool is_seed(const ReliefPlace& p) const {
+    const float w = p.w - static_cast<float>(w_);
+    return w >= -kMargin && w <= static_cast<float>(kReliefCell) + kMargin;
+  }
+  static std::size_t index(int i, int j) {
+    return static_cast<std::size_t>((j + 1) * kReliefTileSide + i + 1);
+  }
+  static bool is_in(const std::vector<Sheet>& sheets, int i, int j, std::uint32_t place) {
+    return std::any_of(sheets.begin(), sheets.end(),
+                       [&](const Sheet& s) { return s.places[index(i, j)] == place; });
+  }
+
+  // From a place, the sheet is followed from line to line, breadth first.
+  Sheet grown_from(int i, int j, std::uint32_t place) const {
+    Sheet sheet;
+    sheet.places.fill(kNoPlace);
+    std::array<std::array<int, 2>, kReliefTileSize> open;
+    std::size_t next = 0, end = 0;
+    const auto add = [&](int at_i, int at_j, std::uint32_t p) {
+      sheet.places[index(at_i, at_j)] = p;
+      open[end++] = {at_i, at_j};
+      const bool inside = at_i >= 0 && at_i <= kReliefCell && at_j >= 0 && at_j <= kReliefCell;
+      sheet.seeds += inside && is_seed(lines_.place(p));
+    };
+    add(i, j, place);
+    while (next < end) {
+      const auto [from_i, from_j] = open[next++];
+      const ReliefPlace& from = lines_.place(sheet.places[index(from_i, from_j)]);
+      for (const auto& [di, dj] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        const int to_i = from_i + di, to_j = from_j + dj;
+        if (to_i < -1 || to_i > kReliefCell + 1 || to_j < -1 || to_j > kReliefCell + 1) continue;
+        if (sheet.places[index(to_i, to_j)] != kNoPlace) continue;
+        const std::uint32_t to = continued(from, di, dj);
+        if (to != kNoPlace) add(to_i, to_j, to);
+      }
+    }
+    return sheet;
+  }
+
+  // The place on the next line at which the surface goes on; kNoPlace where it does not.
+  std::uint32_t continued(const ReliefPlace& from, int du, int dv) const {
+    constexpr float kNearEnough = 1.0f;  // spacings
+    const auto [first, end] = lines_.on(from.u + du, from.v + dv);
+    std::uint32_t nearest = kNoPlace;
+    float least = kNearEnough;
+    for (std::uint32_t p = first; p < end; ++p) {
+      const ReliefPlace& to = lines_.place(p);
+      if ((to.normal.x > 0.0f) != (from.normal.x > 0.0f)) continue;
+      const float expected = from.w + 0.5f * (slope(from, du, dv) + slope(to, du, dv));
+      const float error = std::abs(to.w - expected);
+      if (error < least) least = error, nearest = p;
+    }
+    return nearest;
+  }
+
+  const Lines& lines_;
+  std::int32_t u_, v_, w_;
+};
+
+// The plane w = at + of_u u + of_v v through the middle of a sheet, in spacings from the corner of the cell.
+ReliefSplit middle_plane(const Lines& lines, const Sheet& sheet, std::int32_t u0, std::int32_t v0,
+                         std::int32_t w0) {
+  float u = 0, v = 0, w = 0, of_u = 0, of_v = 0, n = 0;
+  for (const std::uint32_t number : sheet.places) {
+    if (number == kNoPlace) continue;
+    const ReliefPlace& p = lines.place(number);
+    u += static_cast<float>(p.u - u0), v += static_cast<float>(p.v - v0), w += p.w - static_cast<float>(w0);
+    of_u += slope(p, 1, 0), of_v += slope(p, 0, 1);
+    n += 1.0f;
+  }
+  of_u /= n, of_v /= n;
+  return {w / n - of_u * (u / n) - of_v * (v / n), of_u, of_v, 0, 0};
+}
+
+float middle_value(const ReliefSplit& plane) {
+  return plane.at + 0.5f * static_cast<float>(kReliefCell) * (plane.of_u + plane.of_v);
+}
+
+// The cells that a line passes, along one of its two axes: one, or two where it lies on their border.
+struct CellsOfLine {
+  std::int32_t first, last;
+  explicit CellsOfLine(std::int32_t line) : first(cell_of(line)), last(first) {
+    if (line - first * kReliefCell == 0) --first;
+  }
+};
+
+// The sheets of the cells along one axis.
+struct FoundSheets {
+  std::size_t slot;  // cell and axis, as in ReliefTiles::tiles
+  std::vector<Sheet> sheets;
+  std::array<std::int32_t, 3> corner;  // u, v, w
+};
+
+void add_cell(const Lines& lines, const FoundSheets& found, ReliefTiles& to) {
+  const auto add_tile = [&](const Sheet& sheet) {
+    to.places.insert(to.places.end(), sheet.places.begin(), sheet.places.end());
+    return static_cast<std::int32_t>(to.num_tiles() - 1);
+  };
+  const std::int32_t first = add_tile(found.sheets[0]);
+  to.tiles[found.slot] = first;
+  if (found.sheets.size() < 2) return;
+  const auto& [u, v, w] = found.corner;
+  const ReliefSplit a = middle_plane(lines, found.sheets[0], u, v, w),
+                    b = middle_plane(lines, found.sheets[1], u, v, w);
+  const std::int32_t second = add_tile(found.sheets[1]);
+  const bool first_is_upper = middle_value(a) > middle_value(b);
+  to.tiles[found.slot] = -1 - static_cast<std::int32_t>(to.splits.size());
+  to.splits.push_back({0.5f * (a.at + b.at), 0.5f * (a.of_u + b.of_u), 0.5f * (a.of_v + b.of_v),
+                       first_is_upper ? second : first, first_is_upper ? first : second});
+}
+
+}  // namespace
+
+ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where) {
+  ReliefTiles made;
+  made.places.assign(kReliefTileSize, kNoPlace);
+  if (places.empty()) return made;
+  std::array<std::int32_t, 3> high;
+  made.low.fill(std::numeric_limits<std::int32_t>::max());
+  high.fill(std::numeric_limits<std::int32_t>::min());
+  const auto extend = [&](std::size_t axis, std::int32_t low_cell, std::int32_t high_cell) {
+    made.low[axis] = std::min(made.low[axis], low_cell);
+    high[axis] = std::max(high[axis], high_cell);
+  };
+  for (const ReliefPlace& p : places) {
+    const auto a = static_cast<std::size_t>(p.axis);
+    const CellsOfLine u(p.u), v(p.v);
+    const auto w = static_cast<std::int32_t>(std::floor(p.w));
+    extend((a + 1) % 3, u.first, u.last);
+    extend((a + 2) % 3, v.first, v.last);
+    extend(a, cell_of(w - 1), cell_of(w + 2));
+  }
+  double cells = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    made.count[a] = high[a] - made.low[a] + 1;
+    cells *= made.count[a];
+  }
+  if (cells > 0x1p27) throw InputError(where + ".spacing: too small for this body; make it larger");
+  made.tiles.assign(3 * static_cast<std::size_t>(cells), 0);
+
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis), au = (a + 1) % 3, av = (a + 2) % 3;
+    const Lines lines(places, axis);
+    std::vector<std::int64_t> keys;  // of the cells with a place, along u, v, w
+    for (const ReliefPlace& p : places) {
+      if (p.axis != axis) continue;
+      const CellsOfLine u(p.u), v(p.v);
+      const auto w = static_cast<std::int32_t>(std::floor(p.w));
+      for (std::int32_t cv = v.first; cv <= v.last; ++cv) {
+        for (std::int32_t cu = u.first; cu <= u.last; ++cu) {
+          for (std::int32_t cw = cell_of(w - 1); cw <= cell_of(w + 2); ++cw) {
+            std::array<std::int64_t, 3> cell;
+            cell[a] = cw - made.low[a], cell[au] = cu - made.low[au], cell[av] = cv - made.low[av];
+            keys.push_back(cell[0] + made.count[0] * (cell[1] + made.count[1] * cell[2]));
+          }
+        }
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<FoundSheets> found(keys.size());
+    parallel_for(0, static_cast<std::int64_t>(keys.size()), [&](std::int64_t i) {
+      const std::int64_t key = keys[static_cast<std::size_t>(i)];
+      const std::array<std::int32_t, 3> cell{
+          static_cast<std::int32_t>(key % made.count[0]) + made.low[0],
+          static_cast<std::int32_t>(key / made.count[0] % made.count[1]) + made.low[1],
+          static_cast<std::int32_t>(key / (std::int64_t{made.count[0]} * made.count[1])) + made.low[2]};
+      FoundSheets& of_cell = found[static_cast<std::size_t>(i)];
+      of_cell.slot = 3 * static_cast<std::size_t>(key) + a;
+      of_cell.corner = {cell[au] * kReliefCell, cell[av] * kReliefCell, cell[a] * kReliefCell};
+      of_cell.sheets = CellSheets(lines, of_cell.corner[0], of_cell.corner[1], of_cell.corner[2]).find();
+    });
+    for (const FoundSheets& of_cell : found) {
+      if (!of_cell.sheets.empty()) add_cell(lines, of_cell, made);
+    }
+  }
+  return made;
+}
+
+}  // namespace astrolith

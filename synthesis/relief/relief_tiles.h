@@ -1,0 +1,46 @@
+// The places of a relief, sorted into small tiles for evaluation.
+//
+// Space is cut into cubic cells, kReliefCell spacings wide. In a cell a map of one axis is a tile: the places
+// on the lines in and next to the cell that belong to one sheet of the surface. Where two sheets of one axis
+// pass through a cell, as at a thin rim, a plane between them tells which of two tiles a point belongs to.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "synthesis/relief/relief_places.h"
+
+namespace astrolith {
+
+inline constexpr int kReliefCell = 4;                    // spacings
+inline constexpr int kReliefTileSide = kReliefCell + 3;  // places along a side of a tile
+inline constexpr int kReliefTileSize = kReliefTileSide * kReliefTileSide;
+inline constexpr std::uint32_t kNoPlace = 0xffffffffu;
+
+// Two tiles of one axis and cell. A point belongs to `upper` where w > at + of_u u + of_v v, in spacings from
+// the corner of the cell.
+struct ReliefSplit {
+  float at, of_u, of_v;
+  std::int32_t lower, upper;
+};
+
+struct ReliefTiles {
+  std::array<std::int32_t, 3> low{}, count{};  // cells: the first one along each axis, and how many
+  // (cells x 3) For each cell, x fastest, and axis: the number of the tile, or -1 - number of the split. Tile
+  // 0 is empty.
+  std::vector<std::int32_t> tiles;
+  std::vector<ReliefSplit> splits;
+  // (tiles x kReliefTileSize) The number of the place on each line of a tile, u fastest; kNoPlace without
+  // one.
+  std::vector<std::uint32_t> places;
+
+  std::size_t num_tiles() const { return places.size() / kReliefTileSize; }
+};
+
+// Expects places in the order of find_relief_places(). Throws InputError, which begins with `where`, where
+// the box of the places has more than 2^27 cells.
+ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where);
+
+}  // namespace astrolith
