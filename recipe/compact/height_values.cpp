@@ -23,7 +23,7 @@ constexpr int kMostFineBits = 4;
 constexpr Weight kNeighbours[HeightPredictor::kMostNeighbours] = {
     {-1, 0, 2},  {0, -1, 2},  {-1, -1, 1}, {1, -1, 1}, {-2, 0, 0}, {0, -2, 0},
     {2, -1, 0}, {-2, -1, 0}, {-1, -2, 0}, {1, -2, 0}, {-3, 0, 0}, {0, -3, 0}};
-constexpr int kNeighbourWeights = 6;
+constexpr int kHole = -1;
 
 // The pixels whose errors tell the error of a pixel.
 constexpr Weight kErrors[] = {{-1, 0, 4}, {0, -1, 4},  {-1, -1, 2}, {1, -1, 2}, {-2, 0, 1},
@@ -61,7 +61,8 @@ class HeightCoder {
         steps_(range.high - range.low + 1),
         unit_(1 << std::clamp(kPredictorBits - static_cast<int>(std::bit_width(static_cast<unsigned>(steps_))), 0,
                               kMostFineBits)),
-        heights_(picture.width, picture.height, steps_ / 2 * unit_),
+        last_(steps_ / 2 * unit_),
+        heights_(picture.width, picture.height, kHole),
         predictors_{HeightPredictor(picture.width, 12, 230, unit_), HeightPredictor(picture.width, 6, 155, unit_)},
         errors_{Errors(picture.width, picture.height, unit_), Errors(picture.width, picture.height, unit_)},
         best_errors_(picture.width, picture.height, unit_),
@@ -73,7 +74,7 @@ class HeightCoder {
       for (HeightPredictor& predictor : predictors_) predictor.start_row();
       for (int x = 0; x < picture_.width; ++x, ++value) {
         if (*value == 0) {
-          fill_hole(x, y);
+          pass_hole(x, y);
         } else {
           *value = static_cast<std::uint16_t>(low_ + code_height(x, y, *value - low_));
         }
@@ -98,7 +99,7 @@ class HeightCoder {
       predictors_[i].learn(x, neighbours, height - mean);
     }
     best_errors_.set(x, y, height - best.height);
-    heights_.at(x, y) = height;
+    last_ = heights_.at(x, y) = height;
     return step;
   }
 
@@ -109,42 +110,38 @@ class HeightCoder {
     return static_cast<int>((first * guesses[0].height + second * guesses[1].height) / (first + second));
   }
 
+  // The mean of the pixels around that have a height, or else the height coded last.
   int mean_around(int x, int y) const {
-    int sum = 0;
-    for (const Weight& n : kNeighbours) sum += n.weight * heights_.at(x + n.x, y + n.y);
-    return sum / kNeighbourWeights;
+    int sum = 0, weights = 0;
+    for (const Weight& n : kNeighbours) {
+      const int height = heights_.at(x + n.x, y + n.y);
+      if (height == kHole) continue;
+      sum += n.weight * height;
+      weights += n.weight;
+    }
+    return weights > 0 ? sum / weights : last_;
   }
 
+  // Holes are taken to have the mean height.
   HeightPredictor::Neighbours neighbours_over(int mean, int x, int y) const {
     HeightPredictor::Neighbours heights{};
-    for (std::size_t i = 0; i < heights.size(); ++i)
-      heights[i] = heights_.at(x + kNeighbours[i].x, y + kNeighbours[i].y) - mean;
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const int height = heights_.at(x + kNeighbours[i].x, y + kNeighbours[i].y);
+      if (height != kHole) heights[i] = height - mean;
+    }
     return heights;
   }
 
-  void fill_hole(int x, int y) {
+  void pass_hole(int x, int y) {
     for (HeightPredictor& predictor : predictors_) predictor.pass(x);
     for (Errors& errors : errors_) errors.fill(x, y);
     best_errors_.fill(x, y);
-    int sum = 0, count = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const int column = x + kNeighbours[i].x, row = y + kNeighbours[i].y;
-      if (!has_height(column, row)) continue;
-      sum += heights_.at(column, row);
-      ++count;
-    }
-    heights_.at(x, y) = count > 0 ? sum / count : (heights_.at(x, y - 1) + heights_.at(x + 1, y - 1)) / 2;
-  }
-
-  bool has_height(int x, int y) const {
-    if (x < 0 || x >= picture_.width || y < 0) return false;
-    return picture_.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width) +
-                           static_cast<std::size_t>(x)] != 0;
   }
 
   HeightPicture& picture_;
   int low_, steps_;
   int unit_;  // heights are kept in fine units, of which a step has so many
+  int last_;
   PaddedGrid<int> heights_;
   std::array<HeightPredictor, 2> predictors_;
   std::array<Errors, 2> errors_;
