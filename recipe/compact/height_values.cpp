@@ -1,0 +1,158 @@
+#include "recipe/compact/height_values_internal.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+
+#include "recipe/compact/height_predictor_internal.h"
+#include "recipe/compact/height_search_internal.h"
+#include "recipe/compact/padded_grid_internal.h"
+
+namespace astrolith {
+namespace {
+
+struct Weight {
+  int x, y;  // offset of a pixel
+  int weight;
+};
+
+constexpr int kPredictorBits = 16;  // of a difference of heights
+constexpr int kMostFineBits = 4;
+
+// The pixels that predict a pixel. The weights are those of the mean around it.
+constexpr Weight kNeighbours[HeightPredictor::kMostNeighbours] = {
+    {-1, 0, 2},  {0, -1, 2},  {-1, -1, 1}, {1, -1, 1}, {-2, 0, 0}, {0, -2, 0},
+    {2, -1, 0}, {-2, -1, 0}, {-1, -2, 0}, {1, -2, 0}, {-3, 0, 0}, {0, -3, 0}};
+constexpr int kHole = -1;
+
+// The pixels whose errors tell the error of a pixel.
+constexpr Weight kErrors[] = {{-1, 0, 4}, {0, -1, 4},  {-1, -1, 2}, {1, -1, 2}, {-2, 0, 1},
+                              {0, -2, 1}, {-1, -2, 1}, {1, -2, 1},  {2, -1, 1}, {-2, -1, 1}};
+
+// The absolute errors of a guess at every pixel so far.
+class Errors {
+ public:
+  Errors(int width, int height, int unit) : grid_(width, height, 4 * unit), least_(std::max(1, kErrorParts * unit / 16)) {}
+
+  // The expected error times kErrorParts.
+  int around(int x, int y) const {
+    int sum = 0;
+    for (const Weight& w : kErrors) sum += w.weight * grid_.at(x + w.x, y + w.y);
+    return std::max(sum, least_);
+  }
+  void set(int x, int y, int error) { grid_.at(x, y) = std::abs(error); }
+  // Continues the errors into a hole.
+  void fill(int x, int y) {
+    grid_.at(x, y) = (grid_.at(x, y - 1) + grid_.at(x - 1, y) + grid_.at(x + 1, y - 1)) / 3;
+  }
+
+ private:
+  PaddedGrid<int> grid_;
+  int least_;
+};
+
+// Two predictors guess each height, one from twelve pixels and one from six with a shorter memory. Holes are
+// filled from the pixels beside them, so that every pixel has all its neighbours.
+class HeightCoder {
+ public:
+  HeightCoder(HeightPicture& picture, const HeightRange& range, BitCoder& coder)
+      : picture_(picture),
+        low_(range.low),
+        steps_(range.high - range.low + 1),
+        unit_(1 << std::clamp(kPredictorBits - static_cast<int>(std::bit_width(static_cast<unsigned>(steps_))), 0,
+                              kMostFineBits)),
+        last_(steps_ / 2 * unit_),
+        heights_(picture.width, picture.height, kHole),
+        predictors_{HeightPredictor(picture.width, 12, 230, unit_), HeightPredictor(picture.width, 6, 155, unit_)},
+        errors_{Errors(picture.width, picture.height, unit_), Errors(picture.width, picture.height, unit_)},
+        best_errors_(picture.width, picture.height, unit_),
+        search_(steps_, unit_, coder) {}
+
+  void code_picture() {
+    std::uint16_t* value = picture_.values.data();
+    for (int y = 0; y < picture_.height; ++y) {
+      for (HeightPredictor& predictor : predictors_) predictor.start_row();
+      for (int x = 0; x < picture_.width; ++x, ++value) {
+        if (*value == 0) {
+          pass_hole(x, y);
+        } else {
+          *value = static_cast<std::uint16_t>(low_ + code_height(x, y, *value - low_));
+        }
+      }
+    }
+  }
+
+ private:
+  int code_height(int x, int y, int step) {
+    const int mean = mean_around(x, y);
+    const HeightPredictor::Neighbours neighbours = neighbours_over(mean, x, y);
+    std::array<HeightGuess, 2> guesses;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const int guess = mean + predictors_[i].predict(x, neighbours);
+      guesses[i] = {std::clamp(guess, 0, (steps_ - 1) * unit_), errors_[i].around(x, y)};
+    }
+    const HeightGuess best = {blend(guesses), best_errors_.around(x, y)};
+    step = search_.code(step, best, guesses);
+    const int height = step * unit_;
+    for (std::size_t i = 0; i < 2; ++i) {
+      errors_[i].set(x, y, height - guesses[i].height);
+      predictors_[i].learn(x, neighbours, height - mean);
+    }
+    best_errors_.set(x, y, height - best.height);
+    last_ = heights_.at(x, y) = height;
+    return step;
+  }
+
+  // The mean of two guesses, weighted by the inverse squares of their errors.
+  static int blend(const std::array<HeightGuess, 2>& guesses) {
+    const auto square = [](std::int64_t error) { return error * error; };
+    const std::int64_t first = square(guesses[1].error), second = square(guesses[0].error);
+    return static_cast<int>((first * guesses[0].height + second * guesses[1].height) / (first + second));
+  }
+
+  // The mean of the pixels around that have a height, or else the height coded last.
+  int mean_around(int x, int y) const {
+    int sum = 0, weights = 0;
+    for (const Weight& n : kNeighbours) {
+      const int height = heights_.at(x + n.x, y + n.y);
+      if (height == kHole) continue;
+      sum += n.weight * height;
+      weights += n.weight;
+    }
+    return weights > 0 ? sum / weights : last_;
+  }
+
+  // Holes are taken to have the mean height.
+  HeightPredictor::Neighbours neighbours_over(int mean, int x, int y) const {
+    HeightPredictor::Neighbours heights{};
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      const int height = heights_.at(x + kNeighbours[i].x, y + kNeighbours[i].y);
+      if (height != kHole) heights[i] = height - mean;
+    }
+    return heights;
+  }
+
+  void pass_hole(int x, int y) {
+    for (HeightPredictor& predictor : predictors_) predictor.pass(x);
+    for (Errors& errors : errors_) errors.fill(x, y);
+    best_errors_.fill(x, y);
+  }
+
+  HeightPicture& picture_;
+  int low_, steps_;
+  int unit_;  // heights are kept in fine units, of which a step has so many
+  int last_;
+  PaddedGrid<int> heights_;
+  std::array<HeightPredictor, 2> predictors_;
+  std::array<Errors, 2> errors_;
+  Errors best_errors_;
+  HeightSearch search_;
+};
+
+}  // namespace
+
+void code_heights(HeightPicture& picture, const HeightRange& range, BitCoder& coder) {
+  HeightCoder(picture, range, coder).code_picture();
+}
+
+}  // namespace astrolith

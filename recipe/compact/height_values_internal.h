@@ -1,0 +1,16 @@
+// The heights of the pixels that have one.
+#pragma once
+
+#include "recipe/compact/bit_mixture.h"
+#include "recipe/compact/height_picture.h"
+
+namespace astrolith {
+
+struct HeightRange {
+  int low = 0, high = 0;  // 1 <= low <= high <= 65535
+};
+
+// Writes the values that are not 0, or reads them in their place. All are in `range`.
+void code_heights(HeightPicture& picture, const HeightRange& range, BitCoder& coder);
+
+}  // namespace astrolith
