@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "numerics/errors.h"
+#include "recipe/base64.h"
 #include "recipe/compact/number_table.h"
 #include "recipe/compact/text_model.h"
 #include "recipe/json_document_internal.h"
@@ -20,6 +21,8 @@ constexpr std::string_view kMagic = "AST";
 constexpr unsigned char kCompactVersion = 1;
 constexpr std::size_t kHeaderBytes = 6;  // magic, version, check of the rest
 constexpr std::size_t kMaxCompactText = std::size_t{16} << 20;
+
+constexpr std::uint64_t kMostHeightBytes = std::uint64_t{1} << 26;  // of one relief
 
 // Shorter lists stay in the text.
 constexpr std::size_t kFewestRows = 4;
@@ -77,6 +80,38 @@ json rows_of(const NumberTable& table) {
   return list;
 }
 
+// Moves the coded heights of reliefs out of the value, in the order of its text; [null, null] stands for
+// them.
+void take_heights(json& value, std::vector<std::string>& all) {
+  if (!value.is_structured()) return;
+  for (auto& [name, inner] : value.items()) {
+    if (value.is_object() && name == "heights" && inner.is_string()) {
+      if (std::optional<std::string> bytes = base64_bytes(inner.get_ref<const std::string&>())) {
+        all.push_back(std::move(*bytes));
+        inner = json::array({nullptr, nullptr});
+      }
+    } else {
+      take_heights(inner, all);
+    }
+  }
+}
+
+bool stands_for_heights(const json& value) {
+  return value.is_array() && value.size() == 2 && value[0].is_null() && value[1].is_null();
+}
+
+void return_heights(json& value, RangeDecoder& decoder) {
+  if (stands_for_heights(value)) {
+    std::string bytes;  // grows with what is read, since a damaged file may state any size
+    for (std::uint64_t left = decoder.decode_uniform(kMostHeightBytes); left > 0; --left) {
+      bytes += static_cast<char>(decoder.decode_uniform(256));
+    }
+    value = base64_text(bytes);
+  } else if (value.is_structured()) {
+    for (json& inner : value) return_heights(inner, decoder);
+  }
+}
+
 // Moves the tables out of the value, in the order of its text. null stands for a list of rows, and [null] for
 // a list of numbers: recipes have no null of their own.
 void take_tables(json& value, std::vector<NumberTable>& tables) {
@@ -96,6 +131,7 @@ class TableReturner {
   explicit TableReturner(RangeDecoder& decoder) : decoder_(decoder) {}
 
   void fill(json& value) {
+    if (stands_for_heights(value)) return;
     if (value.is_null()) {
       value = rows_of(next());
     } else if (value.is_array() && value.size() == 1 && value.front().is_null()) {
@@ -116,7 +152,8 @@ class TableReturner {
   std::size_t values_left_ = kMaxJsonValues;
 };
 
-std::string encoded(const json& document, const std::vector<NumberTable>& tables) {
+std::string encoded(const json& document, const std::vector<NumberTable>& tables,
+                    const std::vector<std::string>& heights) {
   const std::string text = document.dump();
   if (text.size() > kMaxCompactText) {
     throw WorkError("the recipe is too large for a compact file; write it as .json");
@@ -126,6 +163,13 @@ std::string encoded(const json& document, const std::vector<NumberTable>& tables
   TextModel(kCompactPrimer).encode(text, encoder);
   TableEncoder table_encoder(encoder);
   for (const NumberTable& table : tables) table_encoder.encode(table);
+  for (const std::string& bytes : heights) {
+    if (bytes.size() >= kMostHeightBytes) {
+      throw WorkError("the recipe is too large for a compact file; write it as .json");
+    }
+    encoder.encode_uniform(bytes.size(), kMostHeightBytes);
+    for (const char byte : bytes) encoder.encode_uniform(static_cast<unsigned char>(byte), 256);
+  }
   return encoder.finish();
 }
 
@@ -135,6 +179,7 @@ json decoded(std::string_view bytes, const std::string& name) {
   if (size > kMaxCompactText) throw DamagedStream();
   json document = parse_json(TextModel(kCompactPrimer).decode(static_cast<std::size_t>(size), decoder), name);
   TableReturner(decoder).fill(document);
+  return_heights(document, decoder);
   return document;
 }
 
@@ -145,8 +190,10 @@ bool is_compact(std::string_view bytes) { return bytes.substr(0, kMagic.size()) 
 std::string compact_document(const json& document) {
   json rest = document;
   std::vector<NumberTable> tables;
+  std::vector<std::string> heights;
+  take_heights(rest, heights);
   take_tables(rest, tables);
-  const std::string stream = encoded(rest, tables);
+  const std::string stream = encoded(rest, tables, heights);
   const std::uint16_t check = check_of(stream);
   std::string bytes(kMagic);
   for (const unsigned char byte :

@@ -7,6 +7,7 @@
 
 #include "numerics/portable_double.h"
 #include "recipe/fields_internal.h"
+#include "recipe/relief_text.h"
 
 namespace astrolith {
 namespace {
@@ -166,17 +167,31 @@ static void visit_image(FieldVisitor& v, NamedImage& named) {
   v.rule(check_image, named);
 }
 
-// A compact recipe holds the pixels of a relief itself, and no name of a file.
+// A relief that names no file has its pixels as text.
+void visit_heights(FieldVisitor& v, ReliefLayer& layer) {
+  std::string text;
+  if (!v.reading() && layer.is_embedded() && layer.pixels != nullptr) text = relief_text(layer);
+  v.field_if(!text.empty(), "heights", text);
+  if (!v.reading() || text.empty()) return;
+  layer.pixels = relief_pixels(layer, text);
+  if (layer.pixels == nullptr)
+    v.place().field("heights").fail("is damaged; take the text that a program wrote");
+}
+void check_relief_source(const ReliefLayer& layer, const Place& place) {
+  if (!layer.is_embedded()) return check_image(layer, place);
+  if (layer.pixels == nullptr) place.field("image").fail("is missing; add it and image_sha256, or heights");
+}
 void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.field_if(!layer.is_embedded(), "image", layer.image);
   v.field_if(!layer.is_embedded(), "image_sha256", layer.image_sha256);
-  if (!layer.is_embedded()) v.rule(check_image, layer);
   v.word("arrangement", layer.arrangement, kArrangements, arrangement_word);
   v.required("spacing", layer.spacing, kPositive);
   v.required("low", layer.low, kAnyNumber);
   v.required("high", layer.high, kAnyNumber);
   v.rule(check_relief_heights, layer);
   v.required("levels", layer.levels, range(2, 65535));
+  visit_heights(v, layer);
+  v.rule(check_relief_source, layer);
 }
 
 void visit_fields(FieldVisitor& v, ExemplarLayer& layer) {

@@ -42,7 +42,7 @@ struct ReliefLayer : NamedImage {
   double high = 0.0;     // height of the grey value 65535, >= low
   int levels = 2;        // heights from low to high, 2 .. 65535
 
-  // Whether the layer names no file, since the recipe holds its pixels.
+  // Whether the layer names no file, since the recipe holds its pixels (recipe/relief_text.h).
   bool is_embedded() const { return image.empty() && image_sha256.empty(); }
   double step() const { return (high - low) / (levels - 1); }
   // The code 0 .. levels - 1 of a grey value above 0, and the grey value of a code.

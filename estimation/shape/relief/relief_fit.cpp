@@ -18,11 +18,20 @@ namespace {
 
 constexpr double kDefaultStep = 4.0;  // mean residuals: rounding adds a tenth to the residual
 constexpr int kMostLevels = 65535;
+// Places for each vertex of the surface; models of few vertices get more, since their facets are what is to be kept.
+constexpr double kPlacesOfVertex = 1.4, kMostPlacesOfVertex = 4.0, kPlacesOfSmallModel = 20000.0;
 
 double mean_of(const std::vector<double>& values) {
   return values.empty()
              ? 0.0
              : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// The spacing whose square holds one place, where a surface of this area faces an axis.
+double default_spacing(const TriangleMesh& surface) {
+  const double vertices = static_cast<double>(surface.vertices.size());
+  const double places = std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
+  return std::sqrt(surface_area(surface) / places);
 }
 
 void expect_fit(const TriangleMesh& surface, const Recipe& recipe) {
@@ -77,9 +86,7 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   expect_fit(surface, recipe);
   ReliefFit fit;
   ReliefLayer& layer = fit.layer;
-  layer.spacing = options.spacing > 0.0
-                      ? options.spacing
-                      : std::sqrt(surface_area(surface) / static_cast<double>(surface.vertices.size()));
+  layer.spacing = options.spacing > 0.0 ? options.spacing : default_spacing(surface);
   const ReliefEquations equations = relief_equations(surface, recipe, layer.spacing);
   const ReliefSamples& samples = equations.samples;
   if (equations.places.empty() || samples.size() == 0) {
