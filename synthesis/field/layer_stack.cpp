@@ -81,7 +81,8 @@ class LayerStack {
     const std::size_t number = model.layers.size();
     ArrayStore discarded;
     const NoiseFrame whole(Box{{}, {}});  // a domain without extent leaves out no size of the layer
-    work_.add(maker(stack_.site(whole, number), discarded), discarded.view(), stack_.place());
+    const LayerNoise complete = maker(stack_.site(whole, number), discarded);
+    work_.add(complete, discarded.view(), stack_.place());
     const auto first = static_cast<std::uint32_t>(lists->size());
     for (std::uint32_t i = 0; i < num_impulse_lists(noise); ++i) {
       lists->push_back({static_cast<std::uint32_t>(number), i});
