@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Configures and builds one preset of CMakePresets.json. The build uses ccache where it is installed.
+# Configures and builds one preset of CMakePresets.json. The build uses ccache where it is installed, set up so that a fresh
+# clone in another folder finds what was compiled here.
 #   build.sh PRESET [-DNAME=VALUE ...] [TARGET ...]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -12,6 +13,8 @@ while [[ ${1:-} == -D* ]]; do
   shift
 done
 if command -v ccache >/dev/null; then
+  # Paths in the checkout count as relative ones. ccache keeps precompiled headers only with this sloppiness.
+  export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
   settings+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   command -v nvcc >/dev/null && settings+=(-DCMAKE_CUDA_COMPILER_LAUNCHER=ccache)
 fi

@@ -1,22 +1,31 @@
 #!/usr/bin/env python3
 """Runs clang-tidy (.clang-tidy) on the sources of the programs and libraries; any finding fails.
 
-    lint.py             all sources, in the groups of the preset lint, whose headers are read once a group
-    lint.py SOURCE ...  these sources alone
+    lint.py                  all sources, in the groups of the preset lint, whose headers are read once a group
+    lint.py --rooms ROOM ... the groups that hold a source of these rooms, such as geometry/io
+    lint.py --but ROOM ...   all other groups
+    lint.py --includes       compiles each source by itself, tests too, which tells a missing #include
+    lint.py SOURCE ...       these sources alone
 
 Nothing is built; the folder build/lint, or build/debug for single sources, is configured. A unity source includes its sources,
 and what is included is to clang-tidy a header: the static analyzer passes it by, or analyses all headers of the system with it,
 which takes two thirds of the time. So each group is written as one file that holds the text of its sources.
+
+A group without findings is remembered by the hash of its preprocessed text, of .clang-tidy and of clang-tidy's version, in the
+folder astrolith/clang-tidy of $XDG_CACHE_HOME (default ~/.cache), and is not checked again. Nothing else is remembered.
 """
 import concurrent.futures
+import hashlib
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+CACHE = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "astrolith/clang-tidy"
 INCLUDED = re.compile(r'^#include "(/.*\.cpp)"', re.MULTILINE)
 
 
@@ -65,11 +74,32 @@ def write_groups(build):
     return files, folder
 
 
+def digest(command):
+    """The hash of all that clang-tidy's verdict on one file depends on; None where the file cannot be preprocessed."""
+    words = [word for word in shlex.split(command["command"]) if word != "-c"]
+    words = [word for word, before in zip(words, ["", *words]) if word != "-o" and before != "-o"]
+    # -CC keeps comments, which may hold NOLINT; -P leaves out the names of folders.
+    done = subprocess.run([*words, "-E", "-P", "-CC"], cwd=command["directory"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    if done.returncode != 0:
+        return None
+    version = subprocess.run(["clang-tidy-14", "--version"], stdout=subprocess.PIPE).stdout
+    text = b"\0".join([version, (ROOT / ".clang-tidy").read_bytes(), done.stdout])
+    return hashlib.sha256(text).hexdigest()
+
+
 def findings(file, origins, commands):
     """What clang-tidy says of one file, with the names and lines of the sources; empty where it finds nothing."""
+    entry = next(entry for entry in json.loads((Path(commands) / "compile_commands.json").read_text()) if entry["file"] == file)
+    key = digest(entry)
+    known = CACHE / key if key else None
+    if known and known.exists():
+        return ""
     done = subprocess.run(["clang-tidy-14", "--quiet", "-p", commands, file], cwd=ROOT, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True)  # fmt: skip
     if done.returncode == 0:
+        if known:
+            CACHE.mkdir(parents=True, exist_ok=True)
+            known.touch()
         return ""
     # The count of warnings that were left out says nothing.
     said = "\n".join(line for line in done.stdout.splitlines() if not re.fullmatch(r"\d+ warnings? generated\.", line))
@@ -77,25 +107,56 @@ def findings(file, origins, commands):
     return re.sub(re.escape(file) + r":(\d+)", lambda place: origins[int(place[1]) - 1] if origins else place[0], said)
 
 
+def is_of(rooms, file, origins):
+    """Whether a file to check holds a source of these rooms or of the rooms inside them."""
+    members = {Path(place.rsplit(":", 1)[0]) for place in origins} or {Path(file)}
+    return any(member.is_relative_to(ROOT / room) for member in members for room in rooms)
+
+
+def compiled_alone(entry):
+    """What the compiler says of one source that no other source precedes; empty where it says nothing."""
+    words = shlex.split(entry["command"])
+    words = [word for word, before in zip(words, ["", *words]) if word != "-o" and before != "-o"]
+    done = subprocess.run([*words, "-fsyntax-only"], cwd=entry["directory"], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True)  # fmt: skip
+    return done.stdout.strip() if done.returncode != 0 else ""
+
+
+def report(said):
+    """Prints findings as they come; the number of files that have some, and of all."""
+    count = failed = 0
+    for words in said:
+        count += 1
+        if words:
+            print(words, flush=True)
+            failed += 1
+    return failed, count
+
+
 def main():
     if sys.argv[1:2] in (["-h"], ["--help"]):
         print(__doc__)
         return
-    sources = [str(Path(source).resolve()) for source in sys.argv[1:]]
-    if sources:
-        files, commands = {source: [] for source in sources}, configure("debug")
-    else:
-        files, commands = write_groups(configure("lint"))
-    # The largest first, so that none is left alone at the end.
-    order = sorted(files, key=lambda file: -Path(file).stat().st_size)
-    failed = 0
+    mode, names = (sys.argv[1], sys.argv[2:]) if sys.argv[1:2] and sys.argv[1].startswith("--") else ("", sys.argv[1:])
+    if mode not in ("", "--rooms", "--but", "--includes"):
+        sys.exit(f"lint.py: {mode} is none of --rooms, --but and --includes")
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for said in pool.map(lambda file: findings(file, files[file], str(commands)), order):
-            if said:
-                print(said, flush=True)
-                failed += 1
-    if not files or failed:
-        sys.exit(f"lint.py: findings in {failed} of {len(files)} files" if files else "lint.py: found no source to check")
+        if mode == "--includes":
+            entries = json.loads((configure("debug") / "compile_commands.json").read_text())
+            failed, count = report(pool.map(compiled_alone, [entry for entry in entries if entry["file"].endswith(".cpp")]))
+        else:
+            if names and not mode:
+                sources = [str(Path(source).resolve()) for source in names]
+                files, commands = {source: [] for source in sources}, configure("debug")
+            else:
+                files, commands = write_groups(configure("lint"))
+            if mode:
+                files = {file: origins for file, origins in files.items() if is_of(names, file, origins) == (mode == "--rooms")}
+            # The largest first, so that none is left alone at the end.
+            order = sorted(files, key=lambda file: -Path(file).stat().st_size)
+            failed, count = report(pool.map(lambda file: findings(file, files[file], str(commands)), order))
+    if failed or (count == 0 and not mode):
+        sys.exit(f"lint.py: findings in {failed} of {count} files" if count else "lint.py: found no source to check")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,21 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs every test: test.sh [--full] [PRESET]
+# Sets up, builds and runs the tests: test.sh [--long|--full] [PRESET]
 #   PRESET   one of release (default), ci, debug, asan, tsan
-#   --full   runs the large size of the tests that have two sizes, which takes some minutes more
+#   --long   runs only the long tests, which are left out otherwise: cases whose names end in Long, scripts whose names end in _long
+#   --full   runs all tests, with the large size of those that have two sizes
+# GTEST_FILTER chooses cases by their names, such as 'Ply*', and `ctest --preset PRESET -R '^geometry'` one folder after a build.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [[ ${1:-} == --full ]]; then
-  export ASTROLITH_FULL_TESTS=1
-  shift
-fi
+scripts=(-E '_long$') filter='-*Long:*Long/*'
+case ${1:-} in
+  --long) scripts=(-R '_long$|[.]shard_') filter='*Long:*Long/*'; shift ;;
+  --full) scripts=() filter='*'; export ASTROLITH_FULL_TESTS=1; shift ;;
+  -*) echo "test.sh: $1 is neither --long nor --full" >&2; exit 2 ;;
+esac
 preset=${1:-release}
 scripts/setup.sh --python
+[[ $preset == asan || $preset == tsan ]] && scripts/setup.sh --sanitizers
 scripts/fetch_data.sh
 settings=(-DASTROLITH_CUDA=ON -DASTROLITH_PYTHON=OFF)
 # An interpreter without a sanitizer does not load a module with one.
@@ -18,4 +23,4 @@ if [[ $preset != asan && $preset != tsan ]] && scripts/python_venv.sh; then
   settings+=(-DASTROLITH_PYTHON=ON -DPython_EXECUTABLE="$PWD/build/python-venv/bin/python")
 fi
 scripts/build.sh "$preset" "${settings[@]}"
-ctest --preset "$preset"
+GTEST_FILTER=${GTEST_FILTER:-$filter} ctest --preset "$preset" "${scripts[@]}"
