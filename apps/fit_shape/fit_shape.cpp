@@ -63,11 +63,13 @@ void learn(Program& program, const FitArguments& arguments, const TargetBody& ta
 
 // Adds the measured surface as a relief, and says how much nearer it brings the model.
 void keep_relief(Program& program, const FitArguments& arguments, const TargetBody& target,
-                 const Progress& progress, Recipe& recipe) {
+                 const Progress& progress, Recipe& recipe) try {
   const ReliefFit relief = add_relief(target, progress, recipe);
   program.say(fmt::format("relief: {} heights, {:.3g} {} apart, in steps of {:.2g} {}", relief.heights,
                           relief.layer.spacing, arguments.unit, relief.layer.step(), arguments.unit));
   program.summary["relief"] = relief_json(relief);
+} catch (const InputError& e) {
+  program.say(std::string("no relief: ") + e.what());
 }
 
 // Adds details to the recipe, and to the summary; the fit's figures become those of both together.
@@ -147,7 +149,8 @@ std::optional<FitRealism> judge_surface(Program& program, const FitArguments& ar
                                                                           std::string_view words) {
     return shown(fraction, words) && limit.has_time_left();
   };
-  JudgedFit judged = judge_fit(target, recipe, arguments.noise_seeds, program.seed, progress);
+  const int seeds = arguments.details.keeps_relief() ? 1 : arguments.noise_seeds;  // a relief has no noise
+  JudgedFit judged = judge_fit(target, recipe, seeds, program.seed, progress);
   if (!judged.remark.empty()) program.say("the surface is not judged: " + judged.remark);
   if (!judged.realism) return std::nullopt;
   const nlohmann::ordered_json figures = fit_realism_json(*judged.realism, target, arguments.unit);
@@ -159,7 +162,7 @@ std::optional<FitRealism> judge_surface(Program& program, const FitArguments& ar
 // Writes what Ctrl-C left. Nobody waits for figures after it, which may take longer than the fit took.
 void keep_best_so_far(Program& program, const FitArguments& arguments, const FitCheckpoint& checkpoint,
                       const TargetBody& target, const ShapeFitResult& fit, const Recipe& recipe) {
-  write_recipe(recipe, arguments.output);
+  write_loaded_recipe(recipe, arguments.output);
   std::string line = fmt::format(
       "stopped by {}: {} holds the best so far, {}{}, not measured", Program::stopped_by(), arguments.output,
       counted(fit.body.num_metaballs(), "metaball"), recipe.layers.empty() ? "" : " and details");
@@ -197,6 +200,8 @@ void run(Program& program, FitArguments& arguments) {
     require_other_file(arguments.checkpoint, arguments.mesh);
   }
   const auto variations = variation_files(arguments.output, arguments.details.variations);
+  const bool asks_for_relief = arguments.details.keeps_relief();
+  settle_details(program, arguments.details);
   check_detail_inputs(program, arguments.details);
   if (!arguments.report.empty()) require_folder_can_be_made(arguments.report);
   TimeLimit limit(arguments.time_limit);
@@ -214,6 +219,7 @@ void run(Program& program, FitArguments& arguments) {
   for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
+  if (asks_for_relief) expect_relief(target);
 
   FitCheckpoint checkpoint(arguments.checkpoint, {program.tool(), kCodeVersion.changes, arguments.mesh_sha256,
                                                   program.given_options()});

@@ -16,9 +16,10 @@ namespace astrolith {
 struct DetailArguments {
   bool base_only = false;
   int generations = 100;
-  std::string details = "relief";  // "relief", "learnt", "thesis", or a recipe whose layers are taken
-  bool everywhere = false;         // learnt details on ground that is smooth in the target
-  std::string micro;               // a recipe of Gabor layers, "auto", or nothing
+  std::string
+      details;  // "relief", "learnt", "thesis", or a recipe whose layers are taken; "": not settled yet
+  bool everywhere = false;                        // learnt details on ground that is smooth in the target
+  std::string micro;                              // a recipe of Gabor layers, "auto", or nothing
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;
@@ -28,11 +29,14 @@ struct DetailArguments {
   bool learns() const { return details == "learnt"; }
   bool searches() const { return details == "thesis"; }
   // Whether the layers of another recipe are taken.
-  bool transfers() const { return !keeps_relief() && !learns() && !searches(); }
+  bool transfers() const { return !details.empty() && !keeps_relief() && !learns() && !searches(); }
 };
 
 // Declares the options that fill in the arguments.
 void declare_detail_options(Program& program, DetailArguments& arguments);
+
+// Chooses the details where the command line does not: the relief, or a search where its options are given.
+void settle_details(const Program& program, DetailArguments& arguments);
 
 // Throws InputError where options contradict each other or a recipe that they name cannot be used. Programs
 // call it before long work.

@@ -110,7 +110,7 @@ def fit_shape(
     threads: int = 0,
     progress: Progress = None,
 ) -> ShapeFit:
-    """Fit metaballs and noise to a closed mesh, as the program ``fit_shape`` does.
+    """Fit metaballs and details to a closed mesh, as the program ``fit_shape`` does.
 
     Parameters
     ----------
@@ -135,10 +135,11 @@ def fit_shape(
     population, generations
         Of the search for details: default 20 and 100.
     base_only
-        Metaballs alone, without a search for details.
+        Metaballs alone, without details.
     details
-        "thesis" (default): the search for the 34 parameters of three noises. "learnt": noise that is rough and smooth by
-        regions, and boulders or craters where the mesh shows them. Or no search: the layers of this recipe's file, scaled
+        "relief" (default): the measured surface itself, as heights over the metaballs. "thesis" (default with
+        `generations`): the search for the 34 parameters of three noises. "learnt": noise that is rough and smooth by
+        regions, and boulders or craters where the mesh shows them. Or the layers of this recipe's file, scaled
         by the ratio of the two bodies' sizes.
     everywhere
         With "learnt": details on ground, too, that is smooth in the mesh since no camera saw it.
@@ -211,7 +212,7 @@ def fit_shape(
         20 if population is None else _arrays.integer(population, "population", 1, 10000),
         100 if generations is None else _arrays.integer(generations, "generations", 1, 100000),
         bool(base_only),
-        _name(details) or "thesis",
+        _name(details) or ("relief" if generations is None else "thesis"),
         bool(everywhere),
         _name(micro) or "",
         0.0 if mm_per_px is None else _arrays.number(mm_per_px, "mm_per_px", 1e-12, 1e12),

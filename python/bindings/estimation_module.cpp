@@ -61,9 +61,10 @@ struct DetailArguments {
   std::string device;  // "auto", "cpu" or "cuda"
   bool everywhere = false;
 
+  bool keeps_relief() const { return details == "relief"; }
   bool learns() const { return details == "learnt"; }
-  // Whether the layers of another recipe are taken instead of a search.
-  bool transfers() const { return !learns() && details != "thesis"; }
+  // Whether the layers of another recipe are taken.
+  bool transfers() const { return !keeps_relief() && !learns() && details != "thesis"; }
 };
 
 struct ShapeArguments {
@@ -122,6 +123,12 @@ void add_details(const TargetBody& target, const ShapeArguments& a, FitCheckpoin
   } else if (wanted.transfers()) {
     transfer_details(read_details(wanted.details), recipe);
     find_images_from_here(recipe);
+  } else if (wanted.keeps_relief()) {
+    try {
+      figures = relief_json(add_relief(target, limit.guard(state.progress("relief"), "relief"), recipe));
+    } catch (const InputError& e) {  // a model of few facets keeps its metaballs alone
+      figures = {{"remark", e.what()}};
+    }
   } else if (wanted.learns()) {
     const LearntDetails learnt =
         add_learnt_details(target, a.fit, wanted.everywhere, checkpoint.log(),
@@ -183,7 +190,10 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   figures["stopped_early"] = stopped() || limit.reached();
   figures["diagonal"] = target.diagonal;
   figures["remarks"] = target.remarks;
-  if (!details.is_null()) figures[arguments.details.learns() ? "learnt" : "details"] = details;
+  if (!details.is_null())
+    figures[arguments.details.learns()         ? "learnt"
+            : arguments.details.keeps_relief() ? "relief"
+                                               : "details"] = details;
   return {recipe_to_json(recipe), figures.dump()};
 }
 

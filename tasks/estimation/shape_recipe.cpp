@@ -77,6 +77,8 @@ LearntDetails add_learnt_details(const TargetBody& target, const ShapeFitOptions
   return learnt;
 }
 
+void expect_relief(const TargetBody& target) { expect_relief_facets(target.surface); }
+
 ReliefFit add_relief(const TargetBody& target, const Progress& progress, Recipe& recipe) {
   TriangleMesh surface = target.surface;
   for (Vec3d& p : surface.vertices) p = target.center + target.diagonal * p;

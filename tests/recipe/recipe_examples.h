@@ -139,7 +139,7 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"("gaussian", "a": 1.5, "b": 1.25, "blend_exponent": 2)", R"("metaball", "blend_exponent": 0.5)",
        R"(body.blend_exponent: must be at least 1 for kernel "metaball")", false},
       {R"("simplex")", R"("value")",
-       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots", "sparse", "craters", "boulders", "random_phase", "phasor", "gabor" and "exemplar", is "value")"},
+       R"(layers[0].type: must be one of "simplex", "perlin", "worley", "spots", "sparse", "craters", "boulders", "random_phase", "phasor", "gabor", "exemplar" and "relief", is "value")"},
       {R"("simplex")", R"("worley")", R"(layers[0].gradient_modulation: unknown field)"},
       {R"("f2-f1")", R"("f3")", R"(layers[2].distance: must be "f1", "f2" or "f2-f1", is "f3")"},
       {R"("perlin", "amplitude")", R"("perlin", "distance")", R"(layers[3].distance: unknown field)"},

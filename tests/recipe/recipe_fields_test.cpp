@@ -102,6 +102,7 @@ std::map<std::string, Fields> described() {
           {"phasor", fields_of(Layer{PhasorLayer{}})},
           {"gabor", fields_of(Layer{GaborLayer{}})},
           {"exemplar", fields_of(Layer{ExemplarLayer{}})},
+          {"relief", fields_of(Layer{ReliefLayer{}})},
           {"color", fields_of(LayerColor{})},
           {"craters", fields_of(Layer{CraterLayer{}})},
           {"crater_profile", fields_of(CraterProfile{})},

@@ -27,7 +27,8 @@ nlohmann::json schema() { return nlohmann::json::parse(text_of(ASTROLITH_RECIPE_
 nlohmann::json least_layer(const std::string& type) {
   nlohmann::json layer = {{"type", type}};
   if (type == "gabor") layer["lobes"] = {{4, 0.1, 0.0, 1.0}};
-  if (type == "exemplar") {
+  if (type == "relief") layer.update({{"spacing", 1}, {"low", 0}, {"high", 1}, {"levels", 2}});
+  if (type == "exemplar" || type == "relief") {
     layer["image"] = "photo.png";
     layer["image_sha256"] = std::string(64, '0');
   }

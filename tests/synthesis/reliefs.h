@@ -27,9 +27,11 @@ inline Vec3d position(const ReliefPlace& p, double spacing) {
   return {at[0], at[1], at[2]};
 }
 
-// A relief over the recipe's body with the heights `height(p)` at its places p, in 65,535 levels from low to high.
+// A relief over the recipe's body with the heights `height(p)` at its places p, in 65,535 levels from low to
+// high.
 template <class Height>
-ReliefLayer relief_layer(const Recipe& recipe, double spacing, double low, double high, const Height& height) {
+ReliefLayer relief_layer(const Recipe& recipe, double spacing, double low, double high,
+                         const Height& height) {
   ReliefLayer layer;
   layer.spacing = spacing;
   layer.low = low, layer.high = high;
@@ -43,7 +45,8 @@ ReliefLayer relief_layer(const Recipe& recipe, double spacing, double low, doubl
   image->values.assign(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height), 0);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double code = (height(position(places[i], spacing)) - low) / layer.step();
-    image->values[layout.pixels[i]] = layer.value_of(static_cast<std::uint16_t>(std::clamp(code + 0.5, 0.0, 65534.0)));
+    image->values[layout.pixels[i]] =
+        layer.value_of(static_cast<std::uint16_t>(std::clamp(code + 0.5, 0.0, 65534.0)));
   }
   layer.pixels = std::move(image);
   return layer;

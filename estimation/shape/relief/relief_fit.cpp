@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kDefaultStep = 4.0;  // mean residuals: rounding adds a tenth to the residual
 constexpr int kMostLevels = 65535;
-// Places for each vertex of the surface; models of few vertices get more, since their facets are what is to be kept.
+// Places for each vertex of the surface; models of few vertices get more, since their facets are what is to
+// be kept.
 constexpr double kPlacesOfVertex = 1.4, kMostPlacesOfVertex = 4.0, kPlacesOfSmallModel = 20000.0;
 
 double mean_of(const std::vector<double>& values) {
@@ -30,19 +31,15 @@ double mean_of(const std::vector<double>& values) {
 // The spacing whose square holds one place, where a surface of this area faces an axis.
 double default_spacing(const TriangleMesh& surface) {
   const double vertices = static_cast<double>(surface.vertices.size());
-  const double places = std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
+  const double places =
+      std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
   return std::sqrt(surface_area(surface) / places);
 }
 
-void expect_fit(const TriangleMesh& surface, const Recipe& recipe) {
-  if (surface.triangles.size() < kFewestReliefFacets) {
-    throw InputError("a relief needs a model of at least " + std::to_string(kFewestReliefFacets) +
-                     " facets, this one has " + std::to_string(surface.triangles.size()) +
-                     "; use --base-only");
-  }
-  if (!recipe.body || !recipe.body->operations.empty()) {
-    throw InputError("a relief needs a body without operations; fit the relief before bodies are combined");
-  }
+void expect_plain_body(const Recipe& recipe) {
+  if (recipe.body && recipe.body->operations.empty() && !recipe.body->warp) return;
+  throw InputError(
+      "a relief needs a body without operations and warp; fit the relief before these are added");
 }
 
 // Rounds the heights to levels of the layer. Returns the code of each.
@@ -81,9 +78,17 @@ std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::v
 
 }  // namespace
 
+void expect_relief_facets(const TriangleMesh& surface) {
+  if (surface.triangles.size() >= kFewestReliefFacets) return;
+  throw InputError("a relief needs a model of at least " + std::to_string(kFewestReliefFacets) +
+                   " facets, and this one has " + std::to_string(surface.triangles.size()) +
+                   "; use --base-only, or a finer model");
+}
+
 ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const ReliefOptions& options,
                      const Progress& progress) {
-  expect_fit(surface, recipe);
+  expect_relief_facets(surface);
+  expect_plain_body(recipe);
   ReliefFit fit;
   ReliefLayer& layer = fit.layer;
   layer.spacing = options.spacing > 0.0 ? options.spacing : default_spacing(surface);

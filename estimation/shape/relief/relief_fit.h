@@ -30,6 +30,9 @@ struct ReliefFit {
   double left_out = 0.0;       // share of the samples that no height reaches, [0, 1]
 };
 
+// Throws InputError for a surface of fewer than kFewestReliefFacets facets.
+void expect_relief_facets(const TriangleMesh& surface);
+
 // Fits the heights of `surface` over the body of `recipe`; both are in the recipe's frame and unit. Throws
 // InputError for a surface of fewer than kFewestReliefFacets facets, a body with operations or a warp, and a
 // spacing too small for the body.

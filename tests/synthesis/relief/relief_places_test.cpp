@@ -21,7 +21,8 @@ using testing::sphere_recipe;
 TEST(ReliefPlaces, LieOnTheBallWithItsNormals) {
   const double spacing = 0.037;
   const std::vector<ReliefPlace> places = places_of(sphere_recipe(1.0), spacing);
-  // A line of every axis crosses the ball twice; crossings with n_a^2 <= 1/5 are left out: a share of 1/5 of the disc.
+  // A line of every axis crosses the ball twice; crossings with n_a^2 <= 1/5 are left out: a share of 1/5 of
+  // the disc.
   const double expected = 3 * 2 * 3.14159265 * (1.0 - kLeastReliefSlant) / (spacing * spacing);
   EXPECT_NEAR(static_cast<double>(places.size()), expected, 0.02 * expected);
   for (const ReliefPlace& p : places) {
