@@ -35,7 +35,7 @@ class BitCounter {
   std::uint8_t seen_ = 0;
 };
 
-// A weighted sum of opinions, whose weights follow those that were right.
+// A weighted sum of opinions. An opinion that was right gains weight.
 template <std::size_t N>
 class BitMixture {
  public:
@@ -51,7 +51,10 @@ class BitMixture {
   }
   void learn(const Opinions& opinions, std::uint32_t share, bool bit) {
     const std::int64_t error = (bit ? std::int64_t{kProbabilityScale} : 0) - std::int64_t{share};
-    for (std::size_t i = 0; i < N; ++i) weights_[i] += static_cast<int>(opinions[i] * error / kSlowness);
+    for (std::size_t i = 0; i < N; ++i) {
+      const int change = static_cast<int>(opinions[i] * error / kSlowness);
+      weights_[i] = std::clamp(weights_[i] + change, -kMostWeight, kMostWeight);
+    }
   }
 
   static constexpr int kWhole = 65536;

@@ -35,7 +35,7 @@ constexpr int kHole = -1;
 constexpr Weight kErrors[] = {{-1, 0, 4}, {0, -1, 4},  {-1, -1, 2}, {1, -1, 2}, {-2, 0, 1},
                               {0, -2, 1}, {-1, -2, 1}, {1, -2, 1},  {2, -1, 1}, {-2, -1, 1}};
 
-// The absolute errors of a guess at every pixel so far.
+// The absolute errors of the guesses at all pixels so far.
 class Errors {
  public:
   Errors(int width, int height, int unit)
@@ -48,7 +48,7 @@ class Errors {
     return std::max(sum, least_);
   }
   void set(int x, int y, int error) { grid_.at(x, y) = std::abs(error); }
-  // Continues the errors into a hole.
+  // Continues the errors around a hole into it.
   void fill(int x, int y) {
     grid_.at(x, y) = (grid_.at(x, y - 1) + grid_.at(x - 1, y) + grid_.at(x + 1, y - 1)) / 3;
   }

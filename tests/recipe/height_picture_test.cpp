@@ -60,8 +60,8 @@ int smooth_noise(std::uint32_t seed, int x, int y, int side, int below) {
 }
 
 // The six discs show a terrain of about a hundred steps, with noise.
-HeightPicture terrain() {
-  return make_picture(300, 200, [](int x, int y) {
+HeightPicture terrain(int width = 300, int height = 200) {
+  return make_picture(width, height, [](int x, int y) {
     if (!in_a_disc(x, y)) return 0;
     const int hills = smooth_noise(1, x, y, 25, 70) + smooth_noise(2, x, y, 10, 30);
     return 32700 + hills + noise(3, x, y, 4);
@@ -115,9 +115,9 @@ TEST(HeightPicture, SmallPicturesAreHeld) {
 }
 
 TEST(HeightPicture, PlainPicturesTakeFewBytes) {
-  const HeightPicture holes = make_picture(300, 200, [](int, int) { return 0; });
-  const HeightPicture plain = make_picture(300, 200, [](int, int) { return 40000; });
-  const HeightPicture ramp = make_picture(300, 200, [](int x, int y) { return 30000 + 3 * x + 2 * y; });
+  const HeightPicture holes = make_picture(200, 150, [](int, int) { return 0; });
+  const HeightPicture plain = make_picture(200, 150, [](int, int) { return 40000; });
+  const HeightPicture ramp = make_picture(200, 150, [](int x, int y) { return 30000 + 3 * x + 2 * y; });
   for (const HeightPicture& picture : {holes, plain, ramp}) expect_equal_after_coding(picture);
   EXPECT_LT(bytes_of(holes).size(), 20u);
   EXPECT_LT(bytes_of(plain).size(), 40u);
@@ -170,15 +170,15 @@ void expect_an_end(const std::string& bytes) {
 }
 
 TEST(HeightPicture, CutStreamsEnd) {
-  const std::string bytes = bytes_of(terrain());
-  for (std::size_t size = 0; size < bytes.size(); size += 997) expect_an_end(bytes.substr(0, size));
+  const std::string bytes = bytes_of(terrain(100, 100));
+  for (std::size_t size = 0; size < bytes.size(); size += 197) expect_an_end(bytes.substr(0, size));
   EXPECT_THROW(picture_of(bytes.substr(0, bytes.size() / 2)), DamagedStream);
 }
 
 TEST(HeightPicture, DamagedStreamsEnd) {
-  const std::string bytes = bytes_of(terrain());
+  const std::string bytes = bytes_of(terrain(100, 100));
   CounterRandom random(5);
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 40; ++i) {
     std::string changed = bytes;
     changed[random.below(bytes.size() / 4)] ^= static_cast<char>(1 + random.below(255));
     expect_an_end(changed);
@@ -187,7 +187,7 @@ TEST(HeightPicture, DamagedStreamsEnd) {
 
 TEST(HeightPicture, RandomBytesEnd) {
   CounterRandom random(6);
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 400; ++i) {
     std::string bytes;
     for (std::uint64_t size = random.below(200); size > 0; --size)
       bytes += static_cast<char>(random.below(256));
