@@ -8,7 +8,7 @@ namespace astrolith {
 namespace {
 
 // No bit is thought less probable than this share, so that a few bytes cannot hold millions of bits.
-constexpr std::uint32_t kLeastShare = 24;
+constexpr std::uint32_t kLeastChance = 24;
 constexpr int kMostSeen = 120;
 constexpr std::int64_t kLongestTail = 32 * kOctave;
 
@@ -39,7 +39,7 @@ std::uint64_t logistic_tail(std::int64_t x) {
 
 std::uint32_t share_of(std::int64_t opinion) {
   const auto tail = static_cast<std::uint32_t>(logistic_tail(opinion < 0 ? -opinion : opinion) >> 24);
-  const std::uint32_t less = std::max(tail, kLeastShare);
+  const std::uint32_t less = std::max(tail, kLeastChance);
   return opinion < 0 ? less : kProbabilityScale - less;
 }
 

@@ -1,10 +1,12 @@
-// Probabilities of bits in integer arithmetic: counters that learn, and mixtures of several opinions as in PAQ
-// (Mahoney, "Adaptive weighing of context models for lossless data compression", 2005).
+// Probabilities of bits in integer arithmetic: counters that learn, and mixtures of several opinions as in
+// PAQ (Mahoney, "Adaptive weighing of context models for lossless data compression", 2005).
 //
 // An opinion is the logarithm of the odds of a 1, log2(p / (1 - p)), in units of 1/256.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "recipe/compact/range_coder.h"
@@ -13,7 +15,7 @@ namespace astrolith {
 
 inline constexpr int kOctave = 256;  // a factor of two, in the units of opinions
 
-// log2(value) for value > 0.
+// log2(value) for value > 0, in the units of opinions.
 int log_of(std::uint64_t value);
 
 // The share 1 / (1 + 2^x) of 2^40 for x >= 0: the tail of the logistic distribution.
@@ -33,7 +35,7 @@ class BitCounter {
   std::uint8_t seen_ = 0;
 };
 
-// A weighted sum of opinions, whose weights follow those that were right.
+// A weighted sum of opinions. An opinion that was right gains weight.
 template <std::size_t N>
 class BitMixture {
  public:
@@ -49,14 +51,17 @@ class BitMixture {
   }
   void learn(const Opinions& opinions, std::uint32_t share, bool bit) {
     const std::int64_t error = (bit ? std::int64_t{kProbabilityScale} : 0) - std::int64_t{share};
-    for (std::size_t i = 0; i < N; ++i)
-      weights_[i] += static_cast<int>(opinions[i] * error / kSlowness);
+    for (std::size_t i = 0; i < N; ++i) {
+      const int change = static_cast<int>(opinions[i] * error / kSlowness);
+      weights_[i] = std::clamp(weights_[i] + change, -kMostWeight, kMostWeight);
+    }
   }
 
   static constexpr int kWhole = 65536;
 
  private:
   static constexpr int kSlowness = 65536;
+  static constexpr int kMostWeight = 16 * kWhole;
 
   Opinions weights_;
 };
@@ -67,7 +72,8 @@ class BitCoder {
   explicit BitCoder(RangeEncoder& encoder) : encoder_(&encoder) {}
   explicit BitCoder(RangeDecoder& decoder) : decoder_(&decoder) {}
 
-  // Writes the bit, whose share of a 1 is `one`, and returns it; or ignores `bit` and returns the one it reads.
+  // Writes the bit, whose share of a 1 is `one`, and returns it; or ignores `bit` and returns the one it
+  // reads.
   bool code(bool bit, std::uint32_t one);
 
  private:

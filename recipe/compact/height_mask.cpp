@@ -8,8 +8,8 @@ struct Offset {
 };
 
 // The pixels that predict a pixel, the nearest first.
-constexpr Offset kAround[] = {{-1, 0},  {0, -1}, {1, -1},  {-1, -1}, {-2, 0},  {0, -2}, {2, -1},  {-2, -1},
-                              {1, -2},  {-1, -2}, {3, -1}, {-3, 0},  {-3, -1}, {2, -2}, {-2, -2}, {3, -2}};
+constexpr Offset kAround[] = {{-1, 0}, {0, -1},  {1, -1}, {-1, -1}, {-2, 0},  {0, -2}, {2, -1},  {-2, -1},
+                              {1, -2}, {-1, -2}, {3, -1}, {-3, 0},  {-3, -1}, {2, -2}, {-2, -2}, {3, -2}};
 constexpr int kNear = 10, kFar = 16, kChoosing = 4;
 
 // The bits of the pixels around (x, y), of which those outside the picture are holes.
@@ -45,8 +45,8 @@ class MaskModel {
 
   std::vector<BitCounter> near_ = std::vector<BitCounter>(std::size_t{1} << kNear);
   std::vector<BitCounter> far_ = std::vector<BitCounter>(std::size_t{1} << kFar);
-  std::vector<Mixture> mixtures_ = std::vector<Mixture>(
-      std::size_t{1} << kChoosing, Mixture({Mixture::kWhole / 2, Mixture::kWhole / 2}));
+  std::vector<Mixture> mixtures_ =
+      std::vector<Mixture>(std::size_t{1} << kChoosing, Mixture({Mixture::kWhole / 2, Mixture::kWhole / 2}));
 };
 
 }  // namespace

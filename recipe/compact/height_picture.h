@@ -20,8 +20,9 @@ struct HeightPicture {
 
 void encode(const HeightPicture& picture, RangeEncoder& encoder);
 
-// Throws DamagedStream, also for a picture of more than `most_pixels`. It allocates a row of pixels after it
-// has read the rows before, and a few bytes hold less than a million pixels.
+// Throws DamagedStream, also for a picture of more than `most_pixels`. Memory grows with the rows that have
+// been read. A byte holds at most 15,200 pixels, and so does each of the kMostZerosLeftOut zeros after the
+// last.
 HeightPicture decode(std::size_t most_pixels, RangeDecoder& decoder);
 
 }  // namespace astrolith

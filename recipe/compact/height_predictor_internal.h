@@ -1,7 +1,7 @@
-// Predicts a pixel as a weighted sum of the pixels before it. The weights are those of local least squares, as
-// in GLICBAWLS (Meyer and Tischer, "GLICBAWLS: grey level image compression by adaptive weighted least
-// squares", 2001), in integer arithmetic: a few steps of Gauss and Seidel from the weights of the pixel before
-// stand for the solution of the normal equations.
+// Predicts a pixel as a weighted sum of the pixels before it. The weights are those of local least squares,
+// as in GLICBAWLS (Meyer and Tischer, "GLICBAWLS: grey level image compression by adaptive weighted least
+// squares", 2001), in integer arithmetic: a few steps of Gauss and Seidel from the weights of the pixel
+// before stand for the solution of the normal equations.
 #pragma once
 
 #include <array>

@@ -70,7 +70,8 @@ int HeightSearch::opinion(const HeightGuess& guess, int threshold) const {
 
 // Half octaves of the expected error. The least class holds all errors below a sixteenth of a step.
 std::size_t HeightSearch::class_of(int error) const {
-  const int above = log_of(static_cast<std::uint64_t>(error) * 16) - log_of(static_cast<std::uint64_t>(kErrorParts * unit_));
+  const int above = log_of(static_cast<std::uint64_t>(error) * 16) -
+                    log_of(static_cast<std::uint64_t>(kErrorParts * unit_));
   return static_cast<std::size_t>(std::clamp(2 * above / kOctave, 0, static_cast<int>(kErrorClasses) - 1));
 }
 

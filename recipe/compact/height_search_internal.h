@@ -21,13 +21,14 @@ class HeightSearch {
   // Steps are 0 .. steps - 1.
   HeightSearch(int steps, int unit, BitCoder& coder) : steps_(steps), unit_(unit), coder_(coder) {}
 
-  // Writes `step`, or ignores it and reads one. The search starts at `best`; both guesses and the bits in the
-  // same place of earlier searches predict the answers.
+  // Writes `step`, or ignores it and reads one. The search starts at `best`. Both guesses and the answers in
+  // earlier searches predict each answer.
   int code(int step, const HeightGuess& best, const std::array<HeightGuess, 2>& guesses);
 
  private:
   static constexpr std::size_t kErrorClasses = 16;
-  static constexpr int kMostBins = 15;  // that have their own models; the bins after them share the last
+  // The first bins have models of their own, up and down; the bins after them share the last model.
+  static constexpr int kMostBins = 15;
   static constexpr std::size_t kQuestions = 2 * (kMostBins + 1);
 
   using Mixture = BitMixture<3>;

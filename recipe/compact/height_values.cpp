@@ -19,20 +19,27 @@ struct Weight {
 constexpr int kPredictorBits = 16;  // of a difference of heights
 constexpr int kMostFineBits = 4;
 
-// The pixels that predict a pixel. The weights are those of the mean around it.
+// The fine units of a step: as many as the predictors bear.
+int unit_of(int steps) {
+  const int bits = static_cast<int>(std::bit_width(static_cast<unsigned>(steps)));
+  return 1 << std::min(kMostFineBits, kPredictorBits - std::min(kPredictorBits, bits));
+}
+
+// The pixels that predict a pixel, with their weights in the mean around it.
 constexpr Weight kNeighbours[HeightPredictor::kMostNeighbours] = {
-    {-1, 0, 2},  {0, -1, 2},  {-1, -1, 1}, {1, -1, 1}, {-2, 0, 0}, {0, -2, 0},
-    {2, -1, 0}, {-2, -1, 0}, {-1, -2, 0}, {1, -2, 0}, {-3, 0, 0}, {0, -3, 0}};
+    {-1, 0, 2}, {0, -1, 2},  {-1, -1, 1}, {1, -1, 1}, {-2, 0, 1}, {0, -2, 1},
+    {2, -1, 1}, {-2, -1, 1}, {-1, -2, 1}, {1, -2, 1}, {-3, 0, 1}, {0, -3, 1}};
 constexpr int kHole = -1;
 
-// The pixels whose errors tell the error of a pixel.
+// The pixels whose errors tell the error of a pixel. The weights add up to kErrorParts.
 constexpr Weight kErrors[] = {{-1, 0, 4}, {0, -1, 4},  {-1, -1, 2}, {1, -1, 2}, {-2, 0, 1},
                               {0, -2, 1}, {-1, -2, 1}, {1, -2, 1},  {2, -1, 1}, {-2, -1, 1}};
 
-// The absolute errors of a guess at every pixel so far.
+// The absolute errors of the guesses at all pixels so far.
 class Errors {
  public:
-  Errors(int width, int height, int unit) : grid_(width, height, 4 * unit), least_(std::max(1, kErrorParts * unit / 16)) {}
+  Errors(int width, int height, int unit)
+      : grid_(width, height, 4 * unit), least_(std::max(1, kErrorParts * unit / 16)) {}
 
   // The expected error times kErrorParts.
   int around(int x, int y) const {
@@ -41,7 +48,7 @@ class Errors {
     return std::max(sum, least_);
   }
   void set(int x, int y, int error) { grid_.at(x, y) = std::abs(error); }
-  // Continues the errors into a hole.
+  // Continues the errors around a hole into it.
   void fill(int x, int y) {
     grid_.at(x, y) = (grid_.at(x, y - 1) + grid_.at(x - 1, y) + grid_.at(x + 1, y - 1)) / 3;
   }
@@ -51,19 +58,19 @@ class Errors {
   int least_;
 };
 
-// Two predictors guess each height, one from twelve pixels and one from six with a shorter memory. Holes are
-// filled from the pixels beside them, so that every pixel has all its neighbours.
+// Two predictors guess each height, one from twelve pixels and one from six with a shorter memory. The errors
+// of either nearby tell how far its guess may be wrong.
 class HeightCoder {
  public:
   HeightCoder(HeightPicture& picture, const HeightRange& range, BitCoder& coder)
       : picture_(picture),
         low_(range.low),
         steps_(range.high - range.low + 1),
-        unit_(1 << std::clamp(kPredictorBits - static_cast<int>(std::bit_width(static_cast<unsigned>(steps_))), 0,
-                              kMostFineBits)),
+        unit_(unit_of(steps_)),
         last_(steps_ / 2 * unit_),
         heights_(picture.width, picture.height, kHole),
-        predictors_{HeightPredictor(picture.width, 12, 230, unit_), HeightPredictor(picture.width, 6, 155, unit_)},
+        predictors_{HeightPredictor(picture.width, 12, 230, unit_),
+                    HeightPredictor(picture.width, 6, 155, unit_)},
         errors_{Errors(picture.width, picture.height, unit_), Errors(picture.width, picture.height, unit_)},
         best_errors_(picture.width, picture.height, unit_),
         search_(steps_, unit_, coder) {}
@@ -140,8 +147,8 @@ class HeightCoder {
 
   HeightPicture& picture_;
   int low_, steps_;
-  int unit_;  // heights are kept in fine units, of which a step has so many
-  int last_;
+  int unit_;  // Heights are kept in fine units, of which a step has so many.
+  int last_;  // the height coded last
   PaddedGrid<int> heights_;
   std::array<HeightPredictor, 2> predictors_;
   std::array<Errors, 2> errors_;

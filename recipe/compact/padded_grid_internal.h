@@ -12,7 +12,8 @@ class PaddedGrid {
   static constexpr int kMargin = 3;  // pixels left, right and above
 
   PaddedGrid(int width, int height, T value)
-      : stride_(width + 2 * kMargin), values_(static_cast<std::size_t>(stride_) * (height + kMargin), value) {}
+      : stride_(width + 2 * kMargin),
+        values_(static_cast<std::size_t>(stride_) * (height + kMargin), value) {}
 
   T& at(int x, int y) { return values_[index(x, y)]; }
   T at(int x, int y) const { return values_[index(x, y)]; }

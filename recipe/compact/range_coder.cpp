@@ -45,7 +45,8 @@ void RangeEncoder::encode_number(std::uint64_t value) {
 // Moves the highest byte of `low_` out. Bytes 255 wait, since a carry would turn them into zeros.
 void RangeEncoder::shift_low() {
   const bool carry = (low_ >> 32) != 0;
-  if (low_ < 0xff000000u || carry) {
+  const bool first = pending_count_ == 0;
+  if (low_ < 0xff000000u || carry || first) {
     for (std::uint64_t i = 0; i < pending_count_; ++i) {
       bytes_ += static_cast<char>(static_cast<std::uint8_t>((i == 0 ? pending_ : 0xff) + (carry ? 1 : 0)));
     }
