@@ -81,7 +81,7 @@ void declare_options(Program& program, Options& options) {
        {"--resolution", "--triangles", "--max-memory",    "--tile",    "--patch",  "--feature-list",
         "--vary",       "--target",    "--min-component", "--predict", "--device", "--points",
         "--labels",     "--preview",   "--preview-maps",  "--view",    "--sun",    "--gravity",
-        "--height-map", "--uv",        "--finish"}) {
+        "--height-map", "--uv",        "--finish",        "--even"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {

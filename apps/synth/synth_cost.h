@@ -21,6 +21,7 @@ struct MeshUse {
   bool gravity = false;
   bool labels = false;
   bool texture_coordinates = false;
+  bool even = false;
 };
 
 // What a format takes for each triangle and its half vertex, bytes.
@@ -56,6 +57,14 @@ struct ErosionCost {
 };
 // A mesh of a sixth of the cells is made and eroded.
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh);
+
+// What evening the triangles adds to a mesh.
+struct EvenCost {
+  double seconds = 0.0;         // of one processor
+  double recorded_bytes = 0.0;  // of the mesh, until it has been passed on
+  double table_bytes = 0.0;     // beside it, once the mesher is done
+};
+EvenCost even_cost(const MeshEstimate& mesh);
 
 // Seconds of one processor for the label and the elevation of each vertex. Labels some vertices of a coarse
 // mesh, in runs that are as wide as those of the mesh.

@@ -10,6 +10,7 @@
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/synth/synth_erosion.h"
+#include "apps/synth/synth_even.h"
 #include "apps/synth/synth_height_map.h"
 #include "apps/synth/synth_left_out.h"
 #include "apps/synth/synth_preview_maps.h"
@@ -68,6 +69,10 @@ void check_mesh_name(const MeshRequest& request, const fs::path& output) {
     require_extension(output, {".ply", ".ply.zst"});
   }
   if (request.texture_coordinates) require_extension(output, {".glb"});
+  if (request.even && output.extension() == ".icq") {
+    throw InputError(output.string() +
+                     ": has quadrilaterals of its own, which lie evenly; leave out --even, or write a .ply");
+  }
 }
 
 void check_mesh_outputs(const Program& program, const MeshRequest& request, const fs::path& output) {
@@ -212,13 +217,15 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   std::optional<TileRecord> tile;
   if (!request.tile.empty() && !request.points)
     sinks.add(tile.emplace(field, resolution, region.tile).sink());
-  const BodyMeshReport made = make_body_mesh(
-      {recipe, field, file, region, resolution, request.least_component,
-       chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu, may_be_empty(request, region, output)},
-      sinks, [&](const std::string& stage) { return program.progress(stage); });
+  const BodyMeshReport made =
+      make_body_mesh({recipe, field, file, region, resolution, request.least_component,
+                      chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu,
+                      may_be_empty(request, region, output), request.even},
+                     sinks, [&](const std::string& stage) { return program.progress(stage); });
   const ManifoldReport& report = made.manifold;
   if (tile) tile->finish(report.open_vertices);
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
+  if (made.even && report.triangles > 0) report_even(program, *made.even, recipe.length_unit);
   if (recipe.erosion) {
     erode_mesh(program, *recipe.erosion, result.collected());
     extent.measure(result.collected());
@@ -279,6 +286,11 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
           "then made twice")
       .check(in_range(0.0, 1.0))
       .default_text("0, all stay");
+  program.app.add_flag(
+      "--even", request.even,
+      "make the triangles more even: vertices move along the surface by about a quarter of a cell, and back "
+      "onto it, but for those at the cuts of tiles and patches. Keeps the mesh in memory, about 60 bytes for "
+      "each triangle");
   program.app
       .add_option(
           "--height-map", request.height_map,
@@ -322,7 +334,8 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
                     request.least_component > 0.0,
                     request.gravity.wanted(),
                     request.labels,
-                    request.texture_coordinates};
+                    request.texture_coordinates,
+                    request.even};
   const int resolution = choose_resolution(program, request.size, {field, recipe, region, output, use});
   check_height_map(request.height_map, region, recipe, resolution);
   report_layers_left_out(program, field, recipe, file, region.is_patch);

@@ -26,6 +26,7 @@ struct MeshRequest {
   bool points = false;
   bool labels = false;
   bool texture_coordinates = false;  // in a .glb
+  bool even = false;                 // triangles are made more even
   DeviceOption device;
 };
 

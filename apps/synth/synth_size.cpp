@@ -57,7 +57,9 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
   const double labels = mesh.use.labels ? label_seconds(mesh.field, mesh.recipe, mesh.region, estimate) : 0.0;
   const double gravity = mesh.use.gravity ? gravity_seconds(mesh.field, mesh.recipe, estimate) : 0.0;
-  const double working = std::max(meshing_bytes(estimate), erosion.bytes) +
+  const EvenCost even = mesh.use.even ? even_cost(estimate) : EvenCost{};
+  const double working = std::max({meshing_bytes(estimate), erosion.bytes, even.table_bytes}) +
+                         even.recorded_bytes +
                          more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(program)) +
                          output.memory * estimate.triangles;
   const double times = mesh.use.twice ? 2.0 : 1.0;
@@ -66,7 +68,7 @@ Prediction predict(const Program& program, int resolution, const PlannedMesh& me
   predicted.file_bytes = output.file * estimate.triangles;
   predicted.peak_bytes = std::max(peak_after, held + working);
   const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
-                          erosion.parallel_seconds + labels + gravity;
+                          erosion.parallel_seconds + labels + gravity + even.seconds;
   const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
   predicted.seconds = seconds_before + parallel / threads_of(program) + serial;
   predicted.own_evaluations = estimate.spent_evaluations;
@@ -78,12 +80,13 @@ void check_memory(const MeshSizeRequest& request, int resolution, const PlannedM
                   const Prediction& predicted) {
   const double limit = memory_limit(request.max_memory_gb);
   if (predicted.peak_bytes <= limit) return;
-  const bool collected = output_cost(mesh.output, mesh.use, predicted.triangles).memory > 0.0;
+  const bool collected =
+      mesh.use.even || output_cost(mesh.output, mesh.use, predicted.triangles).memory > 0.0;
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",
       mesh.output.string(), rounded_count(predicted.triangles), resolution, predicted.peak_bytes / 1e9,
-      limit / 1e9, collected ? ", or write .ply without --preview, which is streamed" : ""));
+      limit / 1e9, collected ? ", or write .ply without --preview and --even, which is streamed" : ""));
 }
 
 }  // namespace

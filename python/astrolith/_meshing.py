@@ -37,6 +37,7 @@ def mesh(
     seed: Optional[int] = None,
     min_component: float = 0.0,
     labels: bool = False,
+    even: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> Mesh:
@@ -60,6 +61,9 @@ def mesh(
         Leave out pieces and cavities of less volume than this share of the largest piece's; 0: all stay.
     labels
         Whether the mesh gets labels and elevations.
+    even
+        Make the triangles more even: vertices move along the surface and back onto it, but for those at cuts.
+        `figures.even` states quality and moves.
     threads
         Threads to use; 0: all. They do not change the result.
     progress
@@ -100,6 +104,7 @@ def mesh(
         slab,
         _arrays.number(min_component, "min_component", 0.0, 1.0),
         bool(labels),
+        bool(even),
         _options.threads(threads),
         progress,
     )

@@ -68,6 +68,7 @@ struct MeshArguments {
   std::optional<std::array<int, 2>> tile;
   double min_component = 0.0;
   bool labels = false;
+  bool even = false;
 
   Region region() const {
     if (patch) return patch_region({(*patch)[0], (*patch)[1], (*patch)[2]}, (*patch)[3]);
@@ -128,9 +129,9 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
                         ? resolution_for_triangles(field, recipe, region, arguments.triangles)
                         : arguments.resolution;
   const auto stage = [&](const std::string& name) { return state.progress(name); };
-  made.report = make_body_mesh(
-      {recipe, field, file, region, made.resolution, arguments.min_component, MeshingDevice::kCpu},
-      made.arrays, stage);
+  made.report = make_body_mesh({recipe, field, file, region, made.resolution, arguments.min_component,
+                                MeshingDevice::kCpu, false, arguments.even},
+                               made.arrays, stage);
   if (recipe.erosion) made.erosion = erode_arrays(*recipe.erosion, made.arrays, state.progress("erosion"));
   if (has_colors(recipe)) {
     made.colors = colors_of(made.arrays, SurfaceColors(recipe, arguments.name, field), region.center);
@@ -138,6 +139,25 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   if (labels) made.legend = labels->legend();
   made.left_out.assign(field.left_out().begin(), field.left_out().end());
   return made;
+}
+
+nb::dict figures_of(const QualityFigures& quality) {
+  nb::dict figures;
+  figures["first_percentile"] = quality.first_percentile;
+  figures["mean"] = quality.mean;
+  return figures;
+}
+
+nb::dict figures_of(const EvenStatistics& done) {
+  nb::dict even;
+  even["quality_before"] = figures_of(done.before);
+  even["quality_after"] = figures_of(done.after);
+  even["mean_move"] = done.mean_move;
+  even["largest_move"] = done.largest_move;
+  even["largest_value"] = done.largest_value;
+  even["moved_vertices"] = done.moved;
+  even["kept_vertices"] = done.kept;
+  return even;
 }
 
 nb::dict figures(const MadeMesh& made, const Region& region) {
@@ -154,6 +174,7 @@ nb::dict figures(const MadeMesh& made, const Region& region) {
   figures["evaluations"] = report.statistics.evaluations;
   figures["cell"] = report.statistics.step;
   if (region.is_patch) figures["origin"] = nb::make_tuple(region.center.x, region.center.y, region.center.z);
+  if (report.even) figures["even"] = figures_of(*report.even);
   if (made.erosion) {
     nb::dict erosion;
     erosion["settled"] = made.erosion->settled;
@@ -175,8 +196,8 @@ nb::dict figures(const MadeMesh& made, const Region& region) {
 
 Fields mesh(const std::string& json, const std::string& name, int resolution, double triangles,
             std::optional<std::array<double, 4>> patch, std::optional<std::array<int, 2>> tile,
-            double min_component, bool labels, int threads, nb::object progress) {
-  const MeshArguments arguments{json, name, resolution, triangles, patch, tile, min_component, labels};
+            double min_component, bool labels, bool even, int threads, nb::object progress) {
+  const MeshArguments arguments{json, name, resolution, triangles, patch, tile, min_component, labels, even};
   const Region region = arguments.region();
   MadeMesh made =
       run_job(std::move(progress), threads, [=](JobState& state) { return make_mesh(arguments, state); });
@@ -266,7 +287,7 @@ void write(const std::string& file, const Rows<double>& vertices, const Rows<std
 void bind_meshes(nb::module_& module) {
   module.def("mesh", &mesh, nb::arg("json"), nb::arg("name"), nb::arg("resolution"), nb::arg("triangles"),
              nb::arg("patch").none(), nb::arg("tile").none(), nb::arg("min_component"), nb::arg("labels"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("even"), nb::arg("threads"), nb::arg("progress").none());
   module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"), nb::arg("progress").none());
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),

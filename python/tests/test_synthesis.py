@@ -58,6 +58,19 @@ def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(4 / 3 * np.pi * 8, rel=0.01)
 
 
+def test_an_even_mesh_states_its_quality(ball):
+    even, plain = astrolith.mesh(ball, resolution=48, even=True), astrolith.mesh(ball, resolution=48)
+    np.testing.assert_array_equal(even.faces, plain.faces)
+    moves = np.linalg.norm(even.vertices - plain.vertices, axis=1)
+    stated = even.figures.even
+    assert stated["quality_before"]["first_percentile"] < 0.1 and stated["quality_after"]["first_percentile"] > 0.5
+    assert stated["mean_move"] == pytest.approx(moves.mean(), rel=1e-3)
+    assert stated["largest_move"] == pytest.approx(moves.max(), rel=1e-3)
+    radii = np.linalg.norm(even.vertices - [1, 0, 0], axis=1)
+    np.testing.assert_allclose(radii, 2.0, atol=2 * stated["largest_value"])
+    assert "even" not in plain.figures
+
+
 @pytest.mark.parametrize(
     "name, options, arguments",
     [
@@ -66,6 +79,7 @@ def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):
         ("boulders", {"triangles": 6000, "threads": 1}, ["--triangles", "6000"]),
         ("rubble_pile", {"resolution": 40, "seed": 7, "min_component": 0.01},
          ["--resolution", "40", "--seed", "7", "--min-component", "0.01"]),
+        ("boulders", {"resolution": 40, "even": True}, ["--resolution", "40", "--even"]),
         ("craters_power_law", {"resolution": 48, "tile": (2, 3)}, ["--resolution", "48", "--tile", "2/3"]),
         ("eroded_slopes", {"resolution": 32}, ["--resolution", "32"]),
     ],

@@ -27,6 +27,15 @@ MeshStatistics mesh_patch(const PatchField& field, double size, int resolution, 
   return mesh_patch<kBlockCells>(field, size, resolution, sink, progress);
 }
 
+EvenStatistics even_mesh(const ImplicitField& field, double step, RecordedMesh& mesh,
+                         const Progress& progress) {
+  return even_mesh<ImplicitField>(field, step, mesh, progress);
+}
+
+EvenStatistics even_mesh(const PatchField& field, double step, RecordedMesh& mesh, const Progress& progress) {
+  return even_mesh<PatchField>(field, step, mesh, progress);
+}
+
 MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int resolution, MeshTile tile,
                           const SampleSize& size) {
   return sample_field<kBlockCells>(field, bounds, resolution, tile, size);

@@ -5,6 +5,7 @@
 
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/field/patch_field.h"
+#include "synthesis/mesh/even_mesh.h"
 #include "synthesis/mesh/mesh_sample.h"
 #include "synthesis/mesh/mesher.h"
 #include "synthesis/mesh/surface_probes.h"
@@ -16,6 +17,12 @@ MeshStatistics mesh_field(const ImplicitField& field, const Box& bounds, int res
 
 MeshStatistics mesh_patch(const PatchField& field, double size, int resolution, MeshSink& sink,
                           const Progress& progress = {});
+
+// Makes the triangles of such a mesh, whose cells have this side, more even (synthesis/mesh/even_mesh.h).
+EvenStatistics even_mesh(const ImplicitField& field, double step, RecordedMesh& mesh,
+                         const Progress& progress = {});
+EvenStatistics even_mesh(const PatchField& field, double step, RecordedMesh& mesh,
+                         const Progress& progress = {});
 
 // The estimates of these meshes from samples of their blocks (synthesis/mesh/mesh_sample.h).
 MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int resolution, MeshTile tile,

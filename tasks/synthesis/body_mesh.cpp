@@ -38,6 +38,16 @@ MeshStatistics mesh_without_crumbs(const BodyMeshJob& job, MeshSink& sink, const
   return statistics;
 }
 
+// Meshes the region as above, makes its triangles more even, and passes them on in the same batches.
+void mesh_evenly(const BodyMeshJob& job, MeshSink& sink, const StageProgress& progress,
+                 BodyMeshReport& result) {
+  RecordedMesh mesh;
+  result.statistics = mesh_without_crumbs(job, mesh, progress, result.dropped_components);
+  result.even = even_region(job.field, job.region, result.statistics.step, mesh, progress("even"));
+  result.statistics.evaluations += result.even->evaluations;
+  mesh.replay(sink);
+}
+
 }  // namespace
 
 BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const StageProgress& progress) {
@@ -46,7 +56,11 @@ BodyMeshReport make_body_mesh(const BodyMeshJob& job, MeshSink& sink, const Stag
   sinks.add(check);
   sinks.add(sink);
   BodyMeshReport result;
-  result.statistics = mesh_without_crumbs(job, sinks, progress, result.dropped_components);
+  if (job.even) {
+    mesh_evenly(job, sinks, progress, result);
+  } else {
+    result.statistics = mesh_without_crumbs(job, sinks, progress, result.dropped_components);
+  }
   result.manifold = check.finish();
   if (result.manifold.triangles == 0) {
     if (job.may_be_empty) return result;

@@ -115,6 +115,12 @@ MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
 }
 
+EvenStatistics even_region(const ImplicitField& field, const Region& region, double step, RecordedMesh& mesh,
+                           const Progress& progress) {
+  return region.is_patch ? even_mesh(PatchField(field, region.center), step, mesh, progress)
+                         : even_mesh(field, step, mesh, progress);
+}
+
 std::string rounded_count(double count) {
   return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
 }

@@ -7,6 +7,7 @@
 
 #include "numerics/progress.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/even_mesh.h"
 #include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
@@ -41,6 +42,11 @@ enum class MeshingDevice { kCpu, kGpu };
 // by operations, and what mesh_field throws.
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
+
+// Makes the triangles of the region's mesh, whose cells have this side, more even. Throws WorkError where
+// progress asks to stop.
+EvenStatistics even_region(const ImplicitField& field, const Region& region, double step, RecordedMesh& mesh,
+                           const Progress& progress);
 
 // A count in three characters or so: "1.2 M", "340 k".
 std::string rounded_count(double count);

@@ -101,7 +101,7 @@ def runs(folder):
             write_ball(folder / name / f"{k}.obj", length + 0.1 * k)
     mesh = ["-o", folder / "mesh.ply", "--resolution", "16"]
     features = ["--feature-list", folder / "features.json"]
-    yield ["synth", body, *mesh, *features, "--min-component", "0.1"]
+    yield ["synth", body, *mesh, *features, "--min-component", "0.1", "--even"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
     yield ["synth", body, *mesh, "--gravity", "2000", "5"]
     for k in (1, 2):
