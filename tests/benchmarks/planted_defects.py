@@ -6,7 +6,7 @@
     planted_defects.py -o found.md        tries all; a second run goes on with those that found.md lacks
     planted_defects.py --only NAME        tries one
     planted_defects.py --by 'scripts/check.sh quick'      tries this one command instead of the search
-    planted_defects.py --near             leaves out the rooms that include a defect's room
+    planted_defects.py --near             leaves out the programs, and the rooms that include a defect's room
     planted_defects.py --in FOLDER        keeps the copy there, with all that is built in it
 
 The defects stand in planted_defects.toml. Each is tried with more and more effort: static checks, the release tests of its
@@ -150,10 +150,12 @@ def search(defect, near=False):
             own += [(preset, cases), (preset, ())]
     for preset, words in own:
         yield tests(preset, suite, tuple(words))
+    if near:
+        return
     if defect["file"].startswith(("numerics", "recipe", "geometry", "gravity", "descriptor", "synthesis", "cuda")):
         build = tests("ci", "apps").command.partition(" && ctest")[0]
         yield Check("C library", f"{build} && scripts/check_libm.sh build/ci")
-    for other in [] if near else suites_that_include(room_of(defect["file"])):
+    for other in suites_that_include(room_of(defect["file"])):
         yield tests("ci", other)
 
 
