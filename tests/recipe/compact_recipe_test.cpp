@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -90,6 +91,16 @@ TEST(CompactRecipe, SpendsNoBytesOnTheOrderOfMetaballs) {
 
 TEST(CompactRecipe, KnowsTheTextOfABareBody) {
   EXPECT_LT(recipe_to_compact(body_of({{{1, 2, 3}, 4}})).size(), 60u);
+}
+
+// The model of the text and the coder may not change while the version is 1.
+TEST(CompactRecipe, KeepsTheBytesOfItsVersion) {
+  const unsigned char bytes[] = {0x41, 0x53, 0x54, 0x01, 0x0c, 0xc6, 0x24, 0xd6, 0x29, 0x51, 0x58,
+                                 0x4f, 0xe6, 0x09, 0x0d, 0xc8, 0x18, 0x76, 0x83, 0x6f, 0x1e, 0x51,
+                                 0x76, 0xb2, 0xd6, 0xd7, 0x69, 0xa2, 0x0e, 0x7a, 0x1b, 0x46, 0xeb,
+                                 0x62, 0x1d, 0xd0, 0xb1, 0x89, 0xf0, 0xf1, 0x6a, 0x81, 0xdd, 0x61,
+                                 0xaa, 0x66, 0x86, 0xc2, 0xf0, 0xac, 0x00, 0x18, 0x75, 0x40};
+  EXPECT_EQ(recipe_to_compact(body_of({{{1, 2, 3}, 4}})), std::string(std::begin(bytes), std::end(bytes)));
 }
 
 TEST(CompactRecipe, IsAFileLikeOthers) {

@@ -36,6 +36,12 @@ TEST(SurfaceDistance, FiguresOfAKnownDistribution) {
   EXPECT_LE(r.max, 1);
 }
 
+// One of a hundred distances is larger.
+TEST(SurfaceDistance, ThePercentileIsANearestRank) {
+  const auto r = surface_distance(icosphere(2), torus(1, 0.3), 100, 2).from_a_to_b;
+  EXPECT_LT(r.p99, r.max);
+}
+
 TEST(SurfaceDistance, ScalesWithTheUnit) {
   const auto small = surface_distance(icosphere(3, 1e-3), torus(1e-3, 3e-4), 500, 2);
   const auto large = surface_distance(icosphere(3, 1e5), torus(1e5, 3e4), 500, 2);

@@ -190,5 +190,16 @@ TEST(ExemplarNoise, IsLeftOutWhereItsAnchorsAreTooMany) {
   EXPECT_LT(std::sqrt(square), 2.5e-4);
 }
 
+TEST(ExemplarNoise, AddsNothingToOtherLayersWhereItIsLeftOut) {
+  FractalLayer hill;
+  hill.amplitude = 0.1;
+  Recipe hills = sphere_recipe(1.0);
+  hills.layers = {hill};
+  Recipe both = hills;
+  both.layers.emplace_back(exemplar_layer(1e-4, 1e-4));
+  const Vec3d p{0.9, 0.3, 0.2};
+  EXPECT_EQ(ImplicitField(both).value(p), ImplicitField(hills).value(p));
+}
+
 }  // namespace
 }  // namespace astrolith

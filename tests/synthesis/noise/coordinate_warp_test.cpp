@@ -1,6 +1,7 @@
 #include "synthesis/noise/coordinate_warp.h"
 
 #include <cmath>
+#include <set>
 
 #include "tests/synthesis/noise_sampling.h"
 
@@ -46,6 +47,15 @@ TEST(CoordinateWarp, DisplacesEachAxisOnItsOwnWithinItsBound) {
   EXPECT_NEAR(std::sqrt(xx), 0.5 * 0.389 * std::sqrt(1 + 0.25 + 0.0625), 0.02);
   EXPECT_NEAR(xy / xx, 0.0, 0.1);
   EXPECT_NEAR(xz / xx, 0.0, 0.1);
+}
+
+TEST(CoordinateWarp, EveryOctaveOfEveryAxisHasASeedOfItsOwn) {
+  const LoneWarp warp({0.5, 1.5, 4, 0.5, 2.0}, 7u);
+  std::set<std::uint32_t> seeds;
+  for (const ArrayRange<NoiseOctave>& octaves : warp.tables.octaves) {
+    for (const NoiseOctave& o : warp.arrays.view().span(octaves)) seeds.insert(o.seed);
+  }
+  EXPECT_EQ(seeds.size(), 12u);
 }
 
 TEST(CoordinateWarp, ImagesOfBoxesHoldTheirPoints) {
