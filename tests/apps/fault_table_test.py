@@ -83,7 +83,8 @@ def wrong_files(run, output, kind, wanted, programs, ending):
             return f"{file.name} is not whole"
         if file.suffix in (".json", ".astro") and not is_recipe(programs, file):
             return f"{file.name} is no recipe"
-    if ending.status == DONE and not run.left_behind and not is_complete(run, wanted):
+    lost = run.left_behind or kind == "the folder vanishes" and makes_members(output)  # members make their folder again
+    if ending.status == DONE and not lost and not is_complete(run, wanted):
         return "status 0 without all outputs"
     if ending.status == STOPPED and output.files and not files and not makes_members(output):
         return f"status {STOPPED} without an output"
