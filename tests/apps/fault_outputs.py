@@ -74,7 +74,8 @@ OUTPUTS = {
     "packing": Output("fit_shape", [*FIT, "--packing-only", "-o", "out.csv"], ["out.csv"], True, True),
     "texture fit": Output(
         "fit_gabor", ["small.png", "-o", "out.json", "--spectrum", "out.npy"], ["out.json", "out.npy"], True, True),
-    "exemplar": Output("fit_gabor", ["large.png", "--model", "exemplar", "-o", "out.json"], ["out.json"], True),
+    "exemplar": Output(
+        "fit_gabor", ["small.png", "--model", "exemplar", "-o", "out.json"], ["out.json", "out_exemplar.png"], True),
     "long mesh": Output("synth", ["body.json", "-o", "out.ply", "--resolution", "2000"], ["out.ply"], False, True, span=4),
     "long fit": Output("fit_shape", ["fine.obj", "-o", "out.json", "--spheres", "300"], ["out.json"], True, True, span=8),
     "long texture fit": Output("fit_gabor", ["large.png", "-o", "out.json"], ["out.json"], True, True, span=2),
