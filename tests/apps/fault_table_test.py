@@ -158,13 +158,13 @@ class Table:
             return f"{name}, {kind} at {moment:.2f}: {wrong}: {ending.words.strip()[-300:]}" if wrong else ""
 
 
-def rows_of(names, faults, only, moments):
-    """The rows, with moments that are spread evenly over a run however many there are."""
+def rows_of(names, faults, only, moments, slowness):
+    """The rows, with moments that are spread evenly over a run however many there are. Slow programs get no more kills."""
     rows = []
     for name in names:
         for kind in faults:
             if bool(OUTPUTS[name].span) == (kind == IN_LONG_WORK) and (only in name or only in kind):
-                times = min(OUTPUTS[name].kills, MORE_MOMENTS.get(kind, 1))
+                times = min(OUTPUTS[name].kills, MORE_MOMENTS.get(kind, 1)) if slowness <= 1 else 1
                 count = moments * times if FAULTS[kind].moments else 1
                 rows += [(name, kind, (0.05 + k * 0.618 + 0.13 * len(rows)) % 1.0) for k in range(count)]
     return rows
@@ -187,7 +187,7 @@ def main():
         faults = [kind for kind in FAULTS if kind not in impossible]
         names = [name for name, output in OUTPUTS.items()
                  if (given.full or output.quick or given.only) and (programs / output.program).exists()]
-        rows = rows_of(names, faults, given.only, given.moments)
+        rows = rows_of(names, faults, given.only, given.moments, given.slowness)
         table = Table(pathlib.Path(scratch), programs, given.slowness)
         for name in dict.fromkeys(row[0] for row in rows):
             table.learn(name)
