@@ -7,6 +7,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -187,13 +188,17 @@ struct Tally {
 
 // Makes one member. False where it failed, which has been said then.
 bool make_or_report(Program& program, const MemberMaker& maker, std::uint64_t number) {
+  std::string reason;
   try {
     maker.make(number);
     return true;
+  } catch (const std::bad_alloc&) {
+    reason = "out of memory; try a smaller resolution";
   } catch (const std::exception& e) {
-    if (!Program::interrupted()) program.report_failure(fmt::format("member {}: {}", number, e.what()));
-    return false;
+    reason = e.what();
   }
+  if (!Program::interrupted()) program.report_failure(fmt::format("member {}: {}", number, reason));
+  return false;
 }
 
 Tally make_range(Program& program, const MemberMaker& maker, const MemberRange& range) {

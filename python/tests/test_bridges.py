@@ -69,10 +69,10 @@ def test_a_finished_set_is_read_member_by_member(program, tmp_path):
     family = {"fields": [{"field": "body.spheres[0].radius", "distribution": "uniform", "low": 1, "high": 2}]}
     recipe = {"format_version": 1, "length_unit": "m", "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1]]}}
     (tmp_path / "family.json").write_text(json.dumps({**recipe, "family": family}))
-    program("synth", "family.json", "--members", "0:3", "--resolution", "16", "-o", "set/{member}.ply.zst", "--preview",
-            "set/{member}.png", "--preview-maps", "set/{member}.npz", "--manifest", "set/m.jsonl")  # fmt: skip
+    program("synth", "family.json", "--members", "0:2", "--resolution", "16", "-o", "set/{member}.ply.zst", "--preview",
+            "set/{member}.png", "--view", 1, 0, 0, "--preview-maps", "set/{member}.npz", "--manifest", "set/m.jsonl")  # fmt: skip
     made = bridges.FinishedSet(tmp_path / "set/m.jsonl", check=True)
-    assert [item["member"] for item in made] == [0, 1, 2]
+    assert [item["member"] for item in made] == [0, 1]
     for item in made:
         radius = item["drawn"]["body.spheres[0].radius"]
         assert np.linalg.norm(item["vertices"], axis=1).max() == pytest.approx(radius, rel=0.05)
@@ -81,15 +81,15 @@ def test_a_finished_set_is_read_member_by_member(program, tmp_path):
     (tmp_path / "set/0000001.npz").write_bytes(b"damaged")
     with pytest.raises(ValueError, match="0000001.npz: is not the file"):
         made[1]
-    (tmp_path / "set/0000002.ply.zst").unlink()
+    (tmp_path / "set/0000000.ply.zst").unlink()
     with pytest.raises(ValueError, match="is missing"):
-        made[2]
+        made[0]
     with (tmp_path / "set/m.jsonl").open("a") as manifest:
         manifest.write('{"member": 7, "se')  # a run that was cut off, and another that goes on
-    assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 3
+    assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 2
     with (tmp_path / "set/m.jsonl").open("a") as manifest:
         manifest.write('\n{"member": 8, "seed": 1, "drawn": {}, "files": [5]}\n')
-    assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 3
+    assert len(bridges.FinishedSet(tmp_path / "set/m.jsonl")) == 2
     (tmp_path / "other.jsonl").write_text("{}\n")
     for wrong in ("none.jsonl", "other.jsonl"):
         with pytest.raises(ValueError, match=wrong):

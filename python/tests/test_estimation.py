@@ -9,25 +9,17 @@ import time
 import astrolith
 import numpy as np
 import pytest
+from conftest import FAST, WORM
 
 pytest.importorskip("astrolith._estimation")
 
-FAST = {"spheres": 12, "population": 4, "generations": 2, "seed": 3}
 FAST_OPTIONS = ["--spheres", "12", "--population", "4", "--generations", "2", "--seed", "3"]
 
 
-@pytest.fixture(scope="module")
-def peanut():
-    body = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[-0.8, 0, 0, 1.0], [0.8, 0, 0, 0.9]]}
-    return astrolith.mesh({"format_version": 1, "length_unit": "km", "body": body}, resolution=28)
-
-
-@pytest.mark.parametrize("base_only", [True, False])
-def test_a_fit_of_a_file_has_the_bytes_of_fit_shape(peanut, program, tmp_path, base_only):
-    astrolith.write_mesh(peanut, tmp_path / "peanut.ply")
-    base = ["--base-only"] if base_only else []
-    program("fit_shape", tmp_path / "peanut.ply", "-o", "program.json", "--device", "auto", *FAST_OPTIONS, *base)
-    fit = astrolith.fit_shape(tmp_path / "peanut.ply", base_only=base_only, **FAST)
+def test_a_fit_of_a_file_has_the_bytes_of_fit_shape(worm, program, tmp_path):
+    astrolith.write_mesh(worm, tmp_path / "worm.ply")
+    program("fit_shape", tmp_path / "worm.ply", "-o", "program.json", "--device", "auto", *FAST_OPTIONS)
+    fit = astrolith.fit_shape(tmp_path / "worm.ply", **FAST)
     fit.recipe.write(tmp_path / "package.json")
     written, wanted = (json.loads((tmp_path / f"{name}.json").read_text()) for name in ("package", "program"))
     wanted["provenance"]["options"].pop("device", None)
@@ -36,14 +28,13 @@ def test_a_fit_of_a_file_has_the_bytes_of_fit_shape(peanut, program, tmp_path, b
 
 
 @pytest.mark.parametrize("way", ["details", "auto", "photo"])
-def test_details_that_are_not_searched_have_the_bytes_of_fit_shape(peanut, example, program, tmp_path, way):
-    mesh = peanut
+def test_details_that_are_not_searched_have_the_bytes_of_fit_shape(worm, fit_of_metres, example, program, tmp_path, way):
+    mesh = worm
     if way == "auto":  # learns from what the metaballs leave
         hills = {"type": "simplex", "amplitude": 0.06, "frequency": 3, "octaves": 4}
-        body = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[-0.8, 0, 0, 1], [0.8, 0, 0, 0.9]]}
-        rough = {"format_version": 1, "length_unit": "km", "body": body, "layers": [hills]}
-        mesh = astrolith.mesh(rough, resolution=40)
-    astrolith.write_mesh(mesh, tmp_path / "peanut.ply")
+        body = {**WORM["body"], "spheres": [[-0.8, 0, 0, 1], [0.8, 0, 0, 0.9]]}
+        mesh = astrolith.mesh({**WORM, "body": body, "layers": [hills]}, resolution=40)
+    astrolith.write_mesh(mesh, tmp_path / "worm.ply")
     options = {
         "details": {"details": example("steins")},
         "auto": {"micro": "auto"},
@@ -53,64 +44,59 @@ def test_details_that_are_not_searched_have_the_bytes_of_fit_shape(peanut, examp
     for name, value in options.items():
         words += [f"--{name.replace('_', '-')}"] + ([] if value is True else [value])
     fast = {"spheres": 12, "population": 4, "seed": 3}
-    program("fit_shape", tmp_path / "peanut.ply", "-o", "program.json", "--spheres", "12", "--population", "4",
+    program("fit_shape", tmp_path / "worm.ply", "-o", "program.json", "--spheres", "12", "--population", "4",
             "--seed", "3", "--device", "cpu", *words)  # fmt: skip
-    fit = astrolith.fit_shape(tmp_path / "peanut.ply", device="cpu", **fast, **options)
+    fit = astrolith.fit_shape(tmp_path / "worm.ply", device="cpu", **fast, **options)
     fit.recipe.write(tmp_path / "package.json")
     assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
     assert fit.recipe.layers
+    if way == "photo":  # without a search; arrays give the body that their file gives
+        assert fit_of_metres.recipe.body == fit.recipe.body
+        assert fit_of_metres.recipe.provenance.get("input_name", "") == ""
 
 
-def test_a_time_limit_returns_the_best_so_far_and_a_report_shows_it(peanut, tmp_path):
+def test_a_time_limit_returns_the_best_so_far_and_a_report_shows_it(worm, tmp_path):
     # Without the limit the search would take hours.
-    fit = astrolith.fit_shape(peanut, spheres=12, generations=100000, time_limit=10.0, report=tmp_path / "report")
+    fit = astrolith.fit_shape(worm, spheres=12, generations=100000, time_limit=3.0, report=tmp_path / "report")
     assert fit.figures.stopped_early and fit.figures.mean_distance < 0.1
     assert {"index.html", "convergence.png"} <= {file.name for file in (tmp_path / "report").iterdir()}
     with pytest.raises(ValueError, match="^time_limit: reading and checking the mesh"):
-        astrolith.fit_shape(peanut, spheres=12, time_limit=1e-6)
+        astrolith.fit_shape(worm, spheres=12, time_limit=1e-6)
 
 
-def test_arrays_give_the_body_that_their_file_gives(peanut, tmp_path):
-    astrolith.write_mesh(peanut, tmp_path / "peanut.ply")
-    of_file = astrolith.fit_shape(str(tmp_path / "peanut.ply"), base_only=True, **FAST)
-    of_arrays = astrolith.fit_shape(peanut.vertices, peanut.faces, base_only=True, threads=1, **FAST)
-    assert of_arrays.recipe.body == of_file.recipe.body
-    assert of_arrays.recipe.provenance.get("input_name", "") == ""
-
-
-@pytest.mark.parametrize("spheres", [None, 12])
-def test_a_fit_in_few_bytes_has_the_bytes_of_fit_shape(peanut, program, tmp_path, spheres):
-    astrolith.write_mesh(peanut, tmp_path / "peanut.ply")
-    words = [] if spheres is None else ["--spheres", spheres]
-    program("fit_shape", "peanut.ply", "-o", "program.astro", "--base-only", "--bytes", 150, "--unit", "m",
-            "--population", 4, "--seed", 3, *words)  # fmt: skip
-    fit = astrolith.fit_shape(tmp_path / "peanut.ply", base_only=True, bytes=150, unit="m", population=4, seed=3, spheres=spheres)
+def test_a_fit_in_few_bytes_has_the_bytes_of_fit_shape(worm, program, tmp_path):
+    astrolith.write_mesh(worm, tmp_path / "worm.ply")
+    program("fit_shape", "worm.ply", "-o", "program.astro", "--base-only", "--bytes", 150, "--unit", "m",
+            "--population", 4, "--seed", 3)  # fmt: skip
+    options = {"base_only": True, "bytes": 150, "unit": "m", "population": 4, "seed": 3}
+    fit = astrolith.fit_shape(tmp_path / "worm.ply", **options)
     fit.recipe.write(tmp_path / "package.astro")
     written = (tmp_path / "package.astro").read_bytes()
     assert written == (tmp_path / "program.astro").read_bytes() and len(written) <= 150
     assert fit.recipe.provenance.get("tool", "") == ""
+    of_few = astrolith.fit_shape(tmp_path / "worm.ply", spheres=12, **options)
+    assert len(of_few.recipe.body.spheres) <= 12 < len(fit.recipe.body.spheres)
 
 
-def test_bytes_are_those_of_a_bare_body(peanut, example):
+def test_bytes_are_those_of_a_bare_body(worm, example):
     for more in ({}, {"base_only": True, "micro": example("rubble_pile")}):
         with pytest.raises(ValueError, match="^bytes: are those of a bare body; pass base_only=True"):
-            astrolith.fit_shape(peanut, bytes=150, **more)
+            astrolith.fit_shape(worm, bytes=150, **more)
     with pytest.raises(ValueError, match="^bytes: must be from 100"):
-        astrolith.fit_shape(peanut, bytes=99, base_only=True)
+        astrolith.fit_shape(worm, bytes=99, base_only=True)
 
 
-def test_a_fit_takes_the_unit_that_a_mesh_states(peanut):
-    fast = {**FAST, "base_only": True, "points": 500}
-    in_metres = astrolith.Mesh(peanut.vertices, peanut.faces, length_unit="m")
-    assert astrolith.fit_shape(in_metres, **fast).recipe.length_unit == "m"
+def test_a_fit_takes_the_unit_that_a_mesh_states(worm, fit_of_metres):
+    assert fit_of_metres.recipe.length_unit == "m"
+    in_metres = astrolith.Mesh(worm.vertices, worm.faces, length_unit="m")
     with pytest.raises(ValueError, match="^unit: the mesh states m; leave the argument out"):
-        astrolith.fit_shape(in_metres, unit="km", **fast)
-    in_inches = astrolith.Mesh(peanut.vertices, peanut.faces, length_unit="in")
+        astrolith.fit_shape(in_metres, unit="km")
+    in_inches = astrolith.Mesh(worm.vertices, worm.faces, length_unit="in")
     with pytest.raises(ValueError, match="^unit: is missing; the mesh states in, which is none of km, m"):
-        astrolith.fit_shape(in_inches, **fast)
+        astrolith.fit_shape(in_inches)
 
 
-def test_ctrl_c_in_a_fit_is_quick_and_leaves_a_checkpoint_that_goes_on(peanut, tmp_path):
+def test_ctrl_c_in_a_fit_is_quick_and_leaves_a_checkpoint_that_goes_on(worm, tmp_path):
     checkpoint = tmp_path / "checkpoint.json"
     options = {**FAST, "generations": 4000}
     pressed = []
@@ -124,12 +110,12 @@ def test_ctrl_c_in_a_fit_is_quick_and_leaves_a_checkpoint_that_goes_on(peanut, t
     thread = threading.Thread(target=press)
     thread.start()
     with pytest.raises(KeyboardInterrupt):
-        astrolith.fit_shape(peanut, checkpoint=checkpoint, **options)
+        astrolith.fit_shape(worm.vertices, worm.faces, checkpoint=checkpoint, **options)
     assert time.monotonic() - pressed[0] < 1.0
     thread.join()
     assert "base" in json.loads(checkpoint.read_text())
     calls = []
-    fit = astrolith.fit_shape(peanut, checkpoint=checkpoint, progress=lambda d, w: calls.append(w) or False, **options)
+    fit = astrolith.fit_shape(worm, checkpoint=checkpoint, progress=lambda d, w: calls.append(w) or False, **options)
     assert fit.figures.stopped_early and calls[0].startswith("details")
 
 
@@ -241,19 +227,19 @@ def test_wrong_images(image):
     assert "\n" not in str(raised.value)
 
 
-def test_wrong_meshes(peanut):
+def test_wrong_meshes(worm):
     with pytest.raises(ValueError, match="^mesh: .*open"):
-        astrolith.fit_shape(peanut.vertices, peanut.faces[1:], base_only=True)
+        astrolith.fit_shape(worm.vertices, worm.faces[1:], base_only=True)
     with pytest.raises(ValueError, match=r"^mesh\.faces: "):
-        astrolith.fit_shape(peanut.vertices, peanut.faces.astype(np.int64) - 1)
+        astrolith.fit_shape(worm.vertices, worm.faces.astype(np.int64) - 1)
     with pytest.raises(ValueError, match="^spheres: "):
-        astrolith.fit_shape(peanut, spheres=0)
+        astrolith.fit_shape(worm, spheres=0)
 
 
-def test_options_of_another_search_for_details_are_refused(peanut):
+def test_options_of_another_search_for_details_are_refused(worm):
     with pytest.raises(ValueError, match="generations"):
-        astrolith.fit_shape(peanut, details="learnt", generations=3)
+        astrolith.fit_shape(worm, details="learnt", generations=3)
     with pytest.raises(ValueError, match="everywhere"):
-        astrolith.fit_shape(peanut, everywhere=True)
+        astrolith.fit_shape(worm, everywhere=True)
     with pytest.raises(ValueError, match="base_only"):
-        astrolith.fit_shape(peanut, details="learnt", base_only=True)
+        astrolith.fit_shape(worm, details="learnt", base_only=True)

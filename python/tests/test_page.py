@@ -30,7 +30,7 @@ def test_examples_of_the_page(tmp_path, monkeypatch, capsys, example):
     for code in blocks():
         # Smaller than on the page.
         for large, small in (("triangles=1e6", "triangles=2e4"), ('unit="km")', 'unit="km", spheres=8, points=1000, base_only=True)'),
-                             ("resolution=1024", "resolution=48")):  # fmt: skip
+                             ("resolution=1024", "resolution=48"), ("views=[(1, 0, 0)])", "views=[(1, 0, 0)], width=64, height=48)")):  # fmt: skip
             code = code.replace(large, small)
         exec(compile(code, str(PAGE), "exec"), names)
     said = capsys.readouterr().out

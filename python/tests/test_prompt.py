@@ -24,25 +24,24 @@ def test_all_names_are_completed_before_the_fits_are_loaded():
     assert run.stdout == "set() False\n"
 
 
-def test_results_show_in_a_line(ball):
+def test_results_show_in_a_line(ball, varied):
     top = ball.vertices[ball.vertices[:, 2].argmax()]
     shown = [
         ball, astrolith.Field(BALL), astrolith.describe(ball, points=200), astrolith.gravity(ball, 2000.0, sample=0),
         astrolith.gravity(ball, 2000.0, sample=0, points=[[3.0, 0.0, 0.0]]), astrolith.texture(BALL, 64, 64),
-        astrolith.vary(BALL, 0.4), astrolith.height_map(BALL, (*top, 0.2), resolution=8), bridges.Bodies([BALL]),
+        varied, astrolith.height_map(BALL, (*top, 0.2), resolution=8), bridges.Bodies([BALL]),
     ]  # fmt: skip
     for result in shown:
         assert repr(result).startswith("<astrolith.") and len(repr(result)) < 250 and "\n" not in repr(result)
 
 
-def test_fits_show_in_a_line(ball):
+def test_fits_show_in_a_line(ball, fit_of_metres):
     pytest.importorskip("astrolith._estimation")
     rows, columns = np.indices((48, 48))
     image = (128 + 40 * np.sin(0.7 * columns + 0.2 * rows) + (rows * 7 + columns * 3) % 23).astype(np.uint8)
     assert repr(astrolith.fit_texture(image, lobes=3)) == "<astrolith.TextureFit: gabor, layers: 1>"
     assert repr(astrolith.pack_spheres(ball, spheres=2)).startswith("<astrolith.Packing: 2 spheres fill ")
-    fit = astrolith.fit_shape(ball, spheres=4, points=500, population=2, base_only=True)
-    assert repr(fit).startswith("<astrolith.ShapeFit: ") and len(repr(fit)) < 250
+    assert repr(fit_of_metres).startswith("<astrolith.ShapeFit: ") and len(repr(fit_of_metres)) < 250
 
 
 def said(call):

@@ -6,15 +6,14 @@
 Fields that are there and were written by no run are printed; they need options that these runs do not take.
 """
 import json
-import math
 import pathlib
 import re
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
+
+from made_inputs import write_ball, write_photo
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 LAYERS = """[{"type": "craters", "craters": [{"direction": [0, 0, 1], "diameter": 0.4}]},
@@ -44,54 +43,16 @@ def patterns(fields):
             yield path, re.compile(re.escape(whole).replace(r"\*", r"[^.\[]+") + "$")
 
 
-def write_ball(file, length=1.4, rings=8, around=12):
-    """A ball of meridians and parallels, stretched along x: a closed mesh of 168 facets."""
-    points = [(0.0, 0.0, 1.0)]
-    for i in range(1, rings):
-        for k in range(around):
-            a, b = math.pi * i / rings, 2 * math.pi * k / around
-            points.append((length * math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)))
-    points.append((0.0, 0.0, -1.0))
-    at = lambda i, k: 1 + (i - 1) * around + k % around
-    faces = []
-    for k in range(around):
-        faces.append((0, at(1, k), at(1, k + 1)))
-        for i in range(1, rings - 1):
-            faces += [(at(i, k), at(i + 1, k), at(i + 1, k + 1)), (at(i, k), at(i + 1, k + 1), at(i, k + 1))]
-        faces.append((len(points) - 1, at(rings - 1, k + 1), at(rings - 1, k)))
-    lines = ["v %r %r %r" % p for p in points] + ["f %d %d %d" % tuple(v + 1 for v in f) for f in faces]
-    file.write_text("\n".join(lines) + "\n")
-
-
-def write_photo(file, channels, side=64):
-    """A PNG of `side` x `side` pixels of waves with a little noise."""
-    state, rows = 1, b""
-    for y in range(side):
-        rows += b"\0"
-        for x in range(side):
-            for c in range(channels):
-                state = (1103515245 * state + 12345) % 2**31
-                wave = math.sin(0.9 * x + 0.4 * y + c) + math.sin(0.7 * y - 0.5 * x)
-                rows += bytes([int(128 + 30 * wave + state / 2**31 * 40)])
-    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-    header = struct.pack(">IIBBBBB", side, side, 8, 0 if channels == 1 else 2, 0, 0, 0)
-    file.write_bytes(
-        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-    )
-
-
 def runs(folder):
-    """The program, its inputs and options for each run."""
+    """The program, its inputs and options for each run. They are small, and few write the same fields."""
     body, plain, eroded = folder / "body.json", folder / "plain.json", folder / "eroded.json"
     body.write_text(BODY % (LAYERS, ""))
     plain.write_text(BODY % ("[]", ""))
     eroded.write_text(BODY % (LAYERS, ', "erosion": {"talus_angle": 30}'))
-    ball, other = folder / "ball.obj", folder / "other.obj"
+    ball, fine, finer = folder / "ball.obj", folder / "fine.obj", folder / "finer.obj"
     write_ball(ball)
-    write_ball(other, 1.5)
-    fine, finer = folder / "fine.obj", folder / "finer.obj"
-    write_ball(fine, 1.4, 30, 50)
-    write_ball(finer, 1.4, 40, 60)
+    write_ball(fine, 1.4, 24, 40)
+    write_ball(finer, 1.4, 30, 50)
     grey, color = folder / "grey.png", folder / "color.png"
     write_photo(grey, 1)
     write_photo(color, 3)
@@ -101,37 +62,33 @@ def runs(folder):
             write_ball(folder / name / f"{k}.obj", length + 0.1 * k)
     mesh = ["-o", folder / "mesh.ply", "--resolution", "16"]
     features = ["--feature-list", folder / "features.json"]
-    yield ["synth", body, *mesh, *features, "--min-component", "0.1", "--even"]
+    yield ["synth", eroded, *mesh, *features, "--min-component", "0.1", "--gravity", "2000", "5"]
+    yield ["synth", body, *mesh, "--even"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
-    yield ["synth", body, *mesh, "--gravity", "2000", "5"]
     for k in (1, 2):
         yield ["synth", body, *mesh[:-1], "32", "--tile", f"{k}/2"]
         shutil.copy(folder / "summary.json", folder / f"tile_{k}.json")
     yield ["check_tiles", folder / "tile_1.json", folder / "tile_2.json"]
     yield ["synth", body, "--predict", "--resolution", "16"]
     yield ["synth", plain, *mesh, "--vary", "0.3", "--seed", "2"]
-    yield ["synth", eroded, *mesh]
-    yield ["fit_gabor", grey, "-o", folder / "grey.json"]
-    yield ["fit_gabor", grey, "-o", folder / "either.json", "--model", "auto"]
+    yield ["fit_gabor", grey, "-o", folder / "grey.json", "--model", "auto"]
     yield ["fit_gabor", color, "-o", folder / "color.json", "--channels", "pca"]
-    yield ["synth", folder / "grey.json", "-o", folder / "grey_texture.png", "--texture", "64x64"]
+    yield ["synth", folder / "color.json", "-o", folder / "heights.png", "--texture", "64x64", "--texture-of", "height"]
     yield ["synth", folder / "color.json", "-o", folder / "color_texture.png", "--texture", "64x64"]
     material = ["--texture", "64x64", "--texture-of", "material"]
     yield ["synth", folder / "color.json", "-o", folder / "material.png", *material]
     painted = folder / "painted.json"
     yield ["fit_gabor", color, "-o", painted, "--model", "exemplar", "--channels", "pca", "--mm-per-px", "1e4", "--unit", "km"]
     yield ["synth", painted, "--base", plain, *mesh]
-    fit = ["fit_shape", ball, "--spheres", "6", "-o"]
-    yield [*fit, folder / "base.json", "--base-only"]
-    yield [*fit, folder / "fit.json", "--population", "4", "--generations", "2", "--variations", "1"]
-    yield [*fit, folder / "packing.csv", "--packing-only"]
-    yield ["fit_shape", fine, "--spheres", "6", "-o", folder / "judged.json", "--base-only"]
-    yield ["fit_shape", fine, "--spheres", "6", "-o", folder / "learnt.json", "--details", "learnt"]
+    fit = ["--spheres", "2", "--points", "200", "--population", "2", "-o"]
+    search = ["--generations", "1", "--variations", "1", "--delta", "1", "--noise-seeds", "0"]
+    yield ["fit_shape", ball, *fit, folder / "fit.json", *search]
+    yield ["fit_shape", fine, *fit, folder / "learnt.json", "--details", "learnt", "--noise-seeds", "1"]
+    yield ["fit_shape", ball, "--spheres", "6", "-o", folder / "packing.csv", "--packing-only"]
     yield ["describe", fine, "--surface", "-o", folder / "surface.json"]
-    yield ["compare", fine, finer, "--floor", "--realism", "-o", folder / "realism.json"]
-    yield ["describe", ball, "-o", folder / "description.npy"]
-    yield ["compare", ball, other, "--floor", "-o", folder / "comparison.json"]
-    yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3"]
+    yield ["describe", ball, "-o", folder / "description.npy", "--points", "1000"]
+    yield ["compare", fine, finer, "--floor", "--realism", "-o", folder / "realism.json", "--points", "1000"]
+    yield ["classify", "train", folder / "one", folder / "two", "-o", folder / "model.json", "--folds", "3", "--points", "500"]
     yield ["classify", "predict", folder / "model.json", ball]
     gravity = ["gravity", ball, "--density", "2000", "--period", "5", "-o", folder / "gravity.csv"]
     yield [*gravity, "--density-of", f"{ball}=2500"]
