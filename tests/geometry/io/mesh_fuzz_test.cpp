@@ -57,7 +57,7 @@ class MeshFuzz : public ::testing::TestWithParam<const char*> {
     TriangleMesh mesh = octahedron();
     if (name == "normals.ply") mesh.normals = mesh.vertices;
     write_mesh(mesh, folder / name, {"km", "body-fixed", ""});
-    return file_content(folder / name);
+    return text_of(folder / name);
   }
   // True when the file was read.
   bool survives(const std::string& content) {

@@ -205,21 +205,5 @@ TEST(BodyTables, GradientsAreUnitNormalsOnTheSurface) {
   EXPECT_LT(norm(Vec3d{gx, gy, gz} - Vec3d{0.6, -0.8, 0.0}), 2e-3);
 }
 
-TEST(BodyTables, BecomesClosedManifolds) {
-  CounterRandom random(77);
-  for (int k = 0; k < 6; ++k) {
-    SCOPED_TRACE(k);
-    const ImplicitField field(random_recipe(random, k));
-    if (field.bounds().empty()) continue;
-    for (const int resolution : {8, 13, 22}) {
-      MeshCollector collector;
-      mesh_field(field, field.bounds(), resolution, collector);
-      if (collector.mesh.triangles.empty()) continue;
-      const MeshTopology topology = analyze_topology(collector.mesh);
-      ASSERT_TRUE(topology.closed && topology.manifold && topology.oriented);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace astrolith

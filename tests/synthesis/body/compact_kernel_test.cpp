@@ -168,22 +168,5 @@ TEST(Kernels, IntervalsHoldEveryValue) {
   EXPECT_GT(steep, 30);
 }
 
-TEST(Kernels, BecomeClosedManifolds) {
-  for (const Kernel kernel : kKernels) {
-    SCOPED_TRACE(kernel_word(kernel));
-    Recipe recipe = testing::potato_recipe(40, 7, 2.0);
-    recipe.body->kernel = kernel;
-    recipe.layers = {testing::fractal_layer(0.01, 5.0, 4)};
-    const ImplicitField field(recipe);
-    for (const int resolution : {16, 31, 50}) {
-      MeshCollector collector;
-      mesh_field(field, field.bounds(), resolution, collector);
-      const MeshTopology topology = analyze_topology(collector.mesh);
-      EXPECT_TRUE(topology.closed && topology.manifold && topology.oriented);
-      EXPECT_GT(collector.mesh.triangles.size(), 500u);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace astrolith

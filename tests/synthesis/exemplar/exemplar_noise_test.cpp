@@ -66,28 +66,6 @@ TEST(ExemplarAnchors, WeightsAreBarycentric) {
   }
 }
 
-TEST(ExemplarNoise, HasTheBitsOfOnePointInABatch) {
-  for (const double pixel : {0.004, 0.05}) {
-    ExemplarLayer layer = exemplar_layer(pixel, 0.01);
-    layer.rotation = ExemplarRotation::kAny;
-    layer.exponent = 4;
-    const Ball ball(layer, 1.0);
-    CounterRandom random(7);
-    std::vector<float> x, y, z;
-    for (int i = 0; i < 777; ++i) {
-      const Vec3d p = i < 400 ? random_direction(random) : Vec3d{0.6, 0.8 + 1e-4 * i, 0.001 * i};
-      x.push_back(static_cast<float>(p.x)), y.push_back(static_cast<float>(p.y)),
-          z.push_back(static_cast<float>(p.z));
-    }
-    std::vector<float> heights(x.size());
-    evaluate_heights(ball.noise, ball.field.tables().arrays, static_cast<int>(x.size()), x.data(), y.data(),
-                     z.data(), heights.data());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      ASSERT_EQ(math::bits_of(heights[i]), math::bits_of(ball.at({x[i], y[i], z[i]}))) << i;
-    }
-  }
-}
-
 TEST(ExemplarNoise, StaysWithinItsBounds) {
   ExemplarLayer layer = exemplar_layer(0.01, 0.0);
   layer.height_range = -0.02;
@@ -149,21 +127,6 @@ TEST(ExemplarNoise, HasThePlanesValuesOnABall) {
     };
     EXPECT_NEAR(at(on_ball), at(on_plane), 0.06) << share;
   }
-}
-
-TEST(ExemplarNoise, MakesAClosedMeshOfTheSameBytesForAnyThreads) {
-  const Recipe recipe = Ball::recipe_of(exemplar_layer(0.02, 0.01), 1.0);
-  const auto meshed = [&](int threads) {
-    const ThreadLimit limit(threads);
-    const ImplicitField field(recipe);
-    MeshCollector collector;
-    mesh_field(field, field.bounds(), 60, collector);
-    return std::move(collector.mesh);
-  };
-  const TriangleMesh one = meshed(1), two = meshed(2);
-  ASSERT_FALSE(one.triangles.empty());
-  EXPECT_EQ(one.vertices, two.vertices);
-  EXPECT_EQ(one.triangles, two.triangles);
 }
 
 // A body more than 64 images wide has too many anchors. The layer is left out and reported; a patch has it.

@@ -173,32 +173,6 @@ TEST(ImplicitField, ABodyThatTheIsoValueErasesHasNoBounds) {
 
 TEST(ImplicitField, NeedsABody) { EXPECT_THROW(ImplicitField(Recipe{}), InputError); }
 
-TEST(FieldBlock, GivesTheBitsOfTheField) {
-  Recipe recipe = potato_recipe(80, 6);
-  recipe.layers = {fractal_layer(0.01, 5.0, 6)};
-  recipe.body->warp = Warp{0.05, 3.0, 2, 0.5, 2.0};
-  const ImplicitField field(recipe);
-  CounterRandom random(7);
-  for (int k = 0; k < 50; ++k) {
-    Box parent;
-    parent.extend(random_point(random, field.bounds()));
-    parent.extend(parent.min + Vec3d{0.3, 0.3, 0.3});
-    const Box child{parent.min + Vec3d{0.1, 0.0, 0.05}, parent.max - Vec3d{0.1, 0.2, 0.2}};
-    const FieldBlock block = field.gather(parent).restricted_to(child);
-    std::vector<float> x, y, z, value(600);
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      const Vec3d p = random_point(random, child);
-      x.push_back(static_cast<float>(p.x));
-      y.push_back(static_cast<float>(p.y));
-      z.push_back(static_cast<float>(p.z));
-    }
-    block.evaluate(x, y, z, value);
-    for (std::size_t i = 0; i < value.size(); i += 7) {
-      ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
-    }
-  }
-}
-
 TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
   Recipe recipe = potato_recipe(40, 6);
   recipe.layers = {fractal_layer(0.01, 5.0, 3), gabor_layer(0.02, 0.002)};
@@ -225,58 +199,6 @@ TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
     ASSERT_EQ(exact[i] > 0.0f, coarse[i] > 0.0f);
   }
   EXPECT_GT(different, 1000);
-}
-
-// No box that is called outside or inside holds a point of the other kind.
-TEST(FieldBlock, ContentIsNeverWrong) {
-  CounterRandom random(10);
-  int proved = 0;
-  for (int k = 0; k < 120; ++k) {
-    Recipe recipe = potato_recipe(1 + k % 90, static_cast<std::uint64_t>(k), random.uniform(0.7, 12.0));
-    recipe.body->cutoff_radii = random.uniform(1.2, 5.0);
-    if (k % 2) recipe.layers = {fractal_layer(std::pow(10.0, random.uniform(-3.0, -1.0)), 4.0, 1 + k % 8)};
-    if (k % 5 == 0) recipe.layers.push_back(gabor_layer(0.02, std::pow(10.0, random.uniform(-3.5, -2.0))));
-    if (k % 3 == 0) recipe.body->warp = Warp{random.uniform(-0.1, 0.1), random.uniform(1, 5), 2, 0.5, 2.0};
-    if (k % 6 == 2) {
-      SpotLayer spots;
-      spots.amplitude = random.uniform(-0.05, 0.05);
-      spots.size = random.uniform(0.02, 0.1);
-      spots.cell_size = 3 * spots.size;
-      spots.kappa = -0.6;
-      spots.layers = 3;
-      recipe.layers.push_back(spots);
-    }
-    if (k % 4 == 1) {
-      FractalLayer layer =
-          fractal_layer(std::pow(10.0, random.uniform(-3.0, -0.5)), random.uniform(0.3, 6), 3);
-      layer.noise = k % 8 == 1 ? Noise::kWorleyF2MinusF1 : Noise::kPerlin;
-      layer.gradient_modulation = k % 8 == 1 ? 0.0 : 0.2;
-      layer.warp = Warp{0.1, 2.0, 2, 0.5, 2.0};
-      recipe.layers.push_back(layer);
-    }
-    const ImplicitField field(recipe);
-    if (field.bounds().empty()) continue;
-    for (int b = 0; b < 40; ++b) {
-      Box box;
-      const Vec3d corner = random_point(random, field.bounds());
-      const double size = std::pow(10.0, random.uniform(-2.5, -0.7));
-      box.extend(corner);
-      box.extend(corner + Vec3d{size, size, size});
-      const FieldBlock block = field.gather(box);
-      if (block.content() == BlockContent::kMixed) continue;
-      ++proved;
-      std::vector<float> x, y, z, value(256);
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        const Vec3d p = random_point(random, box);
-        x.push_back(static_cast<float>(p.x));
-        y.push_back(static_cast<float>(p.y));
-        z.push_back(static_cast<float>(p.z));
-      }
-      block.evaluate(x, y, z, value);
-      for (const float f : value) ASSERT_EQ(f > 0.0f, block.content() == BlockContent::kInside);
-    }
-  }
-  EXPECT_GT(proved, 1500);
 }
 
 // The number of blocks of 8^3 cells that are called mixed, over the number of blocks that hold both signs, in

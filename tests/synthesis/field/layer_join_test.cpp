@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"
-#include "tests/synthesis/mesh_checks.h"
 
 namespace astrolith {
 namespace {
@@ -205,44 +205,6 @@ Recipe joined_in_all_ways() {
   spots.size = 0.05;
   spots.cell_size = 0.2;
   return with_layers({hills, warp, mask, spots, rocks, dust});
-}
-
-TEST(LayerJoin, MeshesAreClosedManifoldsForAnyThreads) {
-  testing::expect_closed_manifold_for_any_threads(joined_in_all_ways());
-}
-
-TEST(LayerJoin, NoBoxIsProvedEmptyThatIsNot) {
-  const ImplicitField field(joined_in_all_ways());
-  CounterRandom random(11);
-  int proved = 0;
-  for (int k = 0; k < 600; ++k) {
-    const Vec3d corner{random.uniform(-0.7, 0.6), random.uniform(-0.5, 0.4), random.uniform(-0.5, 0.4)};
-    const double size = std::pow(10.0, random.uniform(-3.0, -1.0));
-    const FieldBlock block = field.gather({corner, corner + Vec3d{size, size, size}});
-    const BlockContent content = block.content();
-    if (content == BlockContent::kMixed) continue;
-    ++proved;
-    for (int i = 0; i < 30; ++i) {
-      const Vec3d p = corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()};
-      ASSERT_EQ(field.inside(p), content == BlockContent::kInside);
-    }
-  }
-  EXPECT_GT(proved, 200);
-}
-
-// Blocks of any box have the bits of single points.
-TEST(LayerJoin, BlocksHaveTheBitsOfPoints) {
-  const ImplicitField field(joined_in_all_ways());
-  CounterRandom random(5);
-  for (int k = 0; k < 100; ++k) {
-    const Vec3d corner{random.uniform(-0.5, 0.4), random.uniform(-0.4, 0.3), random.uniform(-0.3, 0.2)};
-    const FieldBlock block = field.gather({corner, corner + Vec3d{0.1, 0.1, 0.1}});
-    const Vec3d p = corner + Vec3d{random.uniform(0.01, 0.09), random.uniform(0.01, 0.09), 0.05};
-    const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-    float value = 0.0f;
-    block.evaluate({&x, 1}, {&y, 1}, {&z, 1}, {&value, 1});
-    EXPECT_EQ(static_cast<double>(value), field.value(p));
-  }
 }
 
 // Layers also join in coordinates local to an origin, where noise has the digits of local coordinates.

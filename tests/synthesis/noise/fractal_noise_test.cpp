@@ -139,18 +139,5 @@ TEST(FractalNoise, BoundsOverBoxesAreNeverWrong) {
   EXPECT_GT(tight, 800);
 }
 
-TEST(FractalNoise, ChunksDoNotMatter) {
-  CounterRandom random(8);
-  for (int k = 0; k < 20; ++k) {
-    const LoneNoise<FractalNoise> noise(random_layer(random), 3, 1, kFractalDomain);
-    const Heights h(noise, kFractalDomain, 700, 5);
-    for (std::size_t i = 0; i < h.x.size(); i += 13) {
-      float alone = 0.0f;
-      noise.evaluate(1, &h.x[i], &h.y[i], &h.z[i], &alone);
-      ASSERT_EQ(alone, h.height[i]);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace astrolith

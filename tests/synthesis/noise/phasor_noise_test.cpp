@@ -115,17 +115,5 @@ TEST(PhasorNoise, ContrastNeverFades) {
   EXPECT_GT(full, stretches * 8 / 10);
 }
 
-TEST(PhasorNoise, BitsDependOnThePointAlone) {
-  const LoneNoise<PhasorNoise> noise(phasor_layer(PhasorProfile::kTriangle), 9, 1, kPhasorDomain);
-  const Points p = scattered(301);
-  std::vector<float> together(p.x.size());
-  noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), together.data());
-  for (std::size_t i = 0; i < together.size(); ++i) {
-    float alone = 0.0f;
-    noise.evaluate(1, &p.x[i], &p.y[i], &p.z[i], &alone);
-    ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
-  }
-}
-
 }  // namespace
 }  // namespace astrolith

@@ -218,23 +218,6 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
   EXPECT_GT(tight, 200);
 }
 
-// A point has the same bits alone and in a group of any size.
-TEST(SpotNoise, GroupsDoNotMatter) {
-  CounterRandom random(9);
-  for (int k = 0; k < 20; ++k) {
-    const LoneNoise<SpotNoise> noise(random_layer(random), 4, 0, kSpotDomain);
-    const double spread = std::pow(10.0, random.uniform(-1.0, 1.5));
-    std::vector<float> x, y, z, h(300);
-    for (std::size_t i = 0; i < h.size(); ++i) {
-      x.push_back(static_cast<float>(random.uniform(-spread, spread)));
-      y.push_back(static_cast<float>(random.uniform(-spread, spread)));
-      z.push_back(static_cast<float>(random.uniform(-spread, spread)));
-    }
-    noise.evaluate(300, x.data(), y.data(), z.data(), h.data());
-    for (std::size_t i = 0; i < h.size(); i += 3) ASSERT_EQ(h[i], height_at(noise, x[i], y[i], z[i]));
-  }
-}
-
 // One impulse: each of its parts is the kernel, moved, scaled and rotated.
 TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
   SpotLayer layer = small_spots(0.02);
