@@ -1,5 +1,4 @@
 // check_tiles, run as a user runs it, on tiles that synth makes; and the borders that it compares.
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <random>

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith::testing {
@@ -65,12 +66,6 @@ inline std::vector<std::string> words_of(const std::string& line) {
   std::istringstream text(line);
   for (std::string word; text >> std::quoted(word);) words.push_back(word);
   return words;
-}
-
-inline ::testing::AssertionResult has(const std::string& text, const std::string& words) {
-  const bool found = text.find(words) != std::string::npos;
-  return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-         << "\"" << words << "\" is " << (found ? "in: " : "not in: ") << text;
 }
 
 // Checks the promise about bad input: status 2, one line that names `culprit` and a remedy, and no file left

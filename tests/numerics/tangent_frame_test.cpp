@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "numerics/hash_random.h"
 
 namespace astrolith {

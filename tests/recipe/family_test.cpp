@@ -2,6 +2,7 @@
 
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tests/support/refusal.h"
 
 namespace astrolith {
 namespace {
@@ -15,12 +16,7 @@ const std::string kBall = R"({"format_version": 1, "length_unit": "m", "seed": 3
 Recipe recipe_with(const std::string& family) { return parse_recipe(kBall + family + "}", "f.json"); }
 
 std::string refusal_of(const std::string& family) {
-  try {
-    recipe_with(family);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
+  return testing::refusal_of([&] { recipe_with(family); });
 }
 
 std::string refusal_of_field(const std::string& rest) {

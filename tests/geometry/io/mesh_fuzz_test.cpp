@@ -1,5 +1,4 @@
 // A damaged file of any format gives a valid mesh or an InputError, and nothing else.
-#include <algorithm>
 
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"

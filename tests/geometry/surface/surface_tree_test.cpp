@@ -100,16 +100,6 @@ TEST(SurfaceTree, SignAtSharpEdges) {
   }
 }
 
-TEST(SurfaceTree, SphereAndSeveralComponents) {
-  const SurfaceTree sphere(icosphere(5));
-  EXPECT_NEAR(sphere.signed_distance({0, 0, 0}), 1, 1e-3);
-  EXPECT_NEAR(sphere.signed_distance({0, 3, 0}), -2, 1e-3);
-  const SurfaceTree pair(two_spheres(4, 1, 3));
-  EXPECT_NEAR(pair.signed_distance({-1.5, 0, 0}), 1, 5e-3);
-  EXPECT_NEAR(pair.signed_distance({1.5, 0.5, 0}), 0.5, 5e-3);
-  EXPECT_NEAR(pair.signed_distance({0, 0, 0}), -0.5, 5e-3);
-}
-
 // The lobes of a contact binary reach into one another; a pebble lies wholly inside the second.
 TEST(SurfaceTree, OverlappingComponentsCountAsTheirUnion) {
   const TriangleMesh mesh = joined(two_spheres(4, 1, 1.4), icosphere(3, 0.2, {1, 0.2, 0}));
@@ -129,12 +119,6 @@ TEST(SurfaceTree, HollowBody) {
   EXPECT_NEAR(tree.signed_distance({0, 0, 0}), -0.5, 5e-3);
   EXPECT_NEAR(tree.signed_distance({0, 0.6, 0}), 0.1, 5e-3);
   EXPECT_NEAR(tree.signed_distance({0, 0, 1.5}), -0.5, 5e-3);
-}
-
-TEST(SurfaceTree, NormalPointsOutwards) {
-  const SurfaceTree tree(icosphere(4));
-  const Vec3d p{0.3, 0.4, 0.5};
-  EXPECT_NEAR(norm(tree.closest(p).normal - normalized(p)), 0, 0.05);
 }
 
 TEST(SurfaceTree, ManyThreadsAskAtOnce) {

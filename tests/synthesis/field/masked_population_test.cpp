@@ -14,6 +14,7 @@
 #include "synthesis/landforms/boulder_field.h"
 #include "synthesis/landforms/crater_relief.h"
 #include "synthesis/mesh/manifold_check.h"
+#include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -119,13 +120,8 @@ TEST(MaskedPopulation, LayersWithoutAHeightMaskNothing) {
   GaborLayer flat = testing::gabor_layer(0.1, 0.0);
   flat.name = "where";
   recipe.layers = {flat, masked_craters(5)};
-  try {
-    const ImplicitField field(recipe, "r");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_EQ(std::string(e.what()).find("r: layers[1].population.mask.layer: \"where\" has no height"), 0u)
-        << e.what();
-  }
+  EXPECT_TRUE(testing::has(testing::refusal_of([&] { const ImplicitField field(recipe, "r"); }),
+                           "r: layers[1].population.mask.layer: \"where\" has no height"));
 }
 
 // A body of 500 m with craters of metres and boulders of half a metre and more, ruled by a mask.

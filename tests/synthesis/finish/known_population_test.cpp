@@ -7,6 +7,7 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/landforms/boulder_field.h"
 #include "synthesis/landforms/population.h"
+#include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -19,12 +20,7 @@ Recipe ball(double radius, const std::string& unit) {
 }
 
 std::string refusal(const Recipe& recipe, const FinishRequest& request) {
-  try {
-    finish_recipe(recipe, "r.json", request);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
+  return testing::refusal_of([&] { finish_recipe(recipe, "r.json", request); });
 }
 
 TEST(KnownPopulation, HasThePublishedNumbers) {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "numerics/parallel_for.h"
 #include "recipe/recipe_json.h"
 #include "tests/estimation/shape/details/known_details.h"
