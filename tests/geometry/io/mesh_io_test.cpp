@@ -122,13 +122,5 @@ TEST(MeshIo, BodiesOfOpenUniverseAreClosed) {
   EXPECT_NEAR(std::cbrt(volume(read_mesh(package_file("vesta.bmf"))) * 3 / (4 * std::numbers::pi)), 262, 10);
 }
 
-TEST(MeshIo, RealShapeModelsRead) {
-  ASTROLITH_SKIP_WITHOUT(shared_shape("itokawa_gaskell_49k.ply"));
-  const TriangleMesh mesh = read_mesh(shared_shape("itokawa_gaskell_49k.ply"));
-  EXPECT_EQ(mesh.vertices.size(), 24578u);
-  EXPECT_EQ(mesh.triangles.size(), 49152u);
-  EXPECT_TRUE(analyze_topology(mesh).closed);
-}
-
 }  // namespace
 }  // namespace astrolith

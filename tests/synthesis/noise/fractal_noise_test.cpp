@@ -91,17 +91,6 @@ TEST(FractalNoise, IsTheSumOfItsOctaves) {
   }
 }
 
-TEST(FractalNoise, VariancesOfOctavesAddUp) {
-  FractalLayer layer = testing::fractal_layer(2.0, 3.0, 4);
-  layer.noise = Noise::kPerlin;
-  layer.bias = {0.3, 0.7, 0.1};
-  const Heights h(LoneNoise<FractalNoise>(layer, 9, 0, kFractalDomain), kFractalDomain, 200000, 3);
-  double squares = 0.0, expected = 0.0;
-  for (const float v : h.height) squares += static_cast<double>(v * v);
-  for (int o = 0; o < 4; ++o) expected += std::pow(2.0 * 0.2605 * std::pow(0.5, o), 2);
-  EXPECT_NEAR(squares / 200000 / expected, 1.0, 0.02);
-}
-
 TEST(FractalNoise, ModulationSubduesSteepPlaces) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, 6);
   const Heights plain(LoneNoise<FractalNoise>(layer, 1, 0, kFractalDomain), kFractalDomain, 5000, 4);
