@@ -84,7 +84,7 @@ void write_file(const fs::path& target, OutputFile::Start start = OutputFile::St
 
 TEST_F(OutputFileTest, AKilledProgramLeavesWholeFilesOnly) {
   if (!knows_nameless_files(folder)) GTEST_SKIP() << "no nameless files in " << folder;
-  for (int moment = 0; moment < 60; ++moment) {
+  for (int moment = 0; moment < 30; ++moment) {
     const fs::path own = folder / std::to_string(moment);
     fs::create_directories(own);
     const auto work = [&] {
