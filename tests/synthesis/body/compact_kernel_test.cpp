@@ -4,6 +4,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/body/metaball_body.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/point_value.h"
 
@@ -146,8 +147,7 @@ TEST(Kernels, IntervalsHoldEveryValue) {
     proved += bound.level_max < 0.0 || bound.level_min > 0.0;
     steep += least > 0.3 * bound.gradient_max;
     for (int i = 0; i < 30; ++i) {
-      const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
-                    random.uniform(box.min.z, box.max.z)};
+      const Vec3d p = testing::random_point(random, box);
       const PointValue v = evaluate_one(metaballs, p);
       ASSERT_EQ(math::bits_of(v.distance), math::bits_of(evaluate_one(reaching, p).distance));
       const double divisor = std::sqrt(squared_norm(Vec3d{v.gx, v.gy, v.gz}) +

@@ -1,5 +1,6 @@
 #include "synthesis/body/metaball_body.h"
 
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/point_value.h"
 
@@ -113,8 +114,7 @@ TEST(MetaballBody, SpheresBeyondTheirSupportChangeNoBit) {
     const PreparedMetaballs reaching = metaballs_reaching(all, box);
     dropped += all.spheres.size() - reaching.spheres.size();
     for (int i = 0; i < 20; ++i) {
-      const Vec3d p{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
-                    random.uniform(box.min.z, box.max.z)};
+      const Vec3d p = testing::random_point(random, box);
       const PointValue a = evaluate_one(all, p), b = evaluate_one(reaching, p);
       ASSERT_EQ(math::bits_of(a.distance), math::bits_of(b.distance));
       ASSERT_EQ(math::bits_of(a.gx), math::bits_of(b.gx));

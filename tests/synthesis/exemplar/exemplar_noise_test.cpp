@@ -8,6 +8,7 @@
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_model_internal.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/exemplars.h"
 
@@ -15,6 +16,7 @@ namespace astrolith {
 namespace {
 
 using testing::exemplar_layer;
+using testing::random_direction;
 using testing::sphere_recipe;
 
 // A ball under an exemplar layer, and the noise of that layer.
@@ -32,18 +34,13 @@ struct Ball {
   float at(const Vec3f& p) const { return height_at(noise, field.tables().arrays, p); }
 };
 
-Vec3d random_direction(CounterRandom& random) {
-  return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
-}
-
 // The corners of a point's tetrahedron, weighted, give the point back, and every corner is an anchor's place.
 TEST(ExemplarAnchors, WeightsAreBarycentric) {
   const ExemplarCells cells = exemplar_cells(Box{{-3, -4, -5}, {5, 4, 3}}, {0.7, 0.7, 0.7});
   ASSERT_LE(cells.anchors, kMostExemplarAnchors);
   CounterRandom random(3);
   for (int i = 0; i < 2000; ++i) {
-    const Vec3f p{static_cast<float>(random.uniform(-3, 5)), static_cast<float>(random.uniform(-4, 4)),
-                  static_cast<float>(random.uniform(-5, 3))};
+    const Vec3f p = to_float(testing::random_point(random, {{-3, -4, -5}, {5, 4, 3}}));
     const ExemplarPlace place = exemplar_place(cells.lattice, p.x, p.y, p.z);
     double sum = 0.0, x = 0.0, y = 0.0, z = 0.0;
     for (int c = 0; c < 4; ++c) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "numerics/errors.h"
+#include "tests/support/points.h"
 #include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 
@@ -14,12 +15,8 @@ namespace {
 using testing::fractal_layer;
 using testing::gabor_layer;
 using testing::potato_recipe;
+using testing::random_point;
 using testing::sphere_recipe;
-
-Vec3d random_point(CounterRandom& random, const Box& box) {
-  return {random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
-          random.uniform(box.min.z, box.max.z)};
-}
 
 TEST(ImplicitField, OneMetaballIsASphereOfItsRadius) {
   const Vec3d center{1.0, -2.0, 0.5};
@@ -142,7 +139,7 @@ TEST(ImplicitField, AWarpedBodyIsTheBodyAtWarpedCoordinates) {
   CounterRandom random(4);
   int inside = 0, warped_out = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Vec3d p = random_point(random, {{-2, -2, -2}, {2, 2, 2}});
+    const Vec3d p = random_point(random, testing::cube_about_origin(2));
     if (!field.inside(p)) {
       warped_out += norm(p) < 1.0;
       continue;
@@ -176,13 +173,8 @@ TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
   const Box box = field.bounds();
   const FieldBlock block = field.gather(box);
   CounterRandom random(8);
-  std::vector<float> x, y, z, exact(3000), coarse(3000);
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    const Vec3d p = random_point(random, box);
-    x.push_back(static_cast<float>(p.x));
-    y.push_back(static_cast<float>(p.y));
-    z.push_back(static_cast<float>(p.z));
-  }
+  std::vector<float> exact(3000), coarse(3000);
+  const auto [x, y, z] = testing::FloatPoints(random, box, exact.size());
   constexpr float kBand = 0.01f;
   block.evaluate(x, y, z, exact);
   block.evaluate(x, y, z, coarse, kBand);
@@ -212,13 +204,10 @@ double mixed_over_active(const Recipe& recipe) {
     const FieldBlock block = field.gather(box);
     if (block.content() != BlockContent::kMixed) continue;
     ++mixed;
-    std::vector<float> x, y, z, value(9 * 9 * 9);
-    for (int i = 0; i < 729; ++i) {
-      x.push_back(static_cast<float>(corner.x + h * (i % 9)));
-      y.push_back(static_cast<float>(corner.y + h * (i / 9 % 9)));
-      z.push_back(static_cast<float>(corner.z + h * (i / 81)));
-    }
-    block.evaluate(x, y, z, value);
+    std::vector<float> value(9 * 9 * 9);
+    testing::FloatPoints p;
+    for (int i = 0; i < 729; ++i) p.add(corner + h * Vec3d{double(i % 9), double(i / 9 % 9), double(i / 81)});
+    block.evaluate(p.x, p.y, p.z, value);
     const auto positive = std::count_if(value.begin(), value.end(), [](float f) { return f > 0; });
     active += positive > 0 && positive < 729;
   }

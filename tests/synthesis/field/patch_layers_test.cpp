@@ -5,9 +5,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "numerics/hash_random.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/gabor/gabor_bands.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -89,16 +89,12 @@ std::vector<Vec3d> surface_grid(const Vec3d& center, int side, double step) {
 // F at points relative to the centre of the patch.
 std::vector<float> values_at(const ImplicitField& field, const Vec3d& center,
                              const std::vector<Vec3d>& points) {
-  std::vector<float> x, y, z, value(points.size());
+  std::vector<float> value(points.size());
+  testing::FloatPoints all;
   Box box;
-  for (const Vec3d& p : points) {
-    x.push_back(static_cast<float>(p.x));
-    y.push_back(static_cast<float>(p.y));
-    z.push_back(static_cast<float>(p.z));
-    box.extend(p);
-  }
+  for (const Vec3d& p : points) all.add(p), box.extend(p);
   const FieldBlock block = field.gather(PatchBlock::in_body(box, center));
-  block.evaluate_local(center, x, y, z, value, kExactEverywhere);
+  block.evaluate_local(center, all.x, all.y, all.z, value, kExactEverywhere);
   return value;
 }
 

@@ -6,16 +6,12 @@
 #include "numerics/parallel_for.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
+#include "tests/support/points.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/random_recipes.h"
 
 namespace astrolith {
 namespace {
-
-Vec3d point_within(const Box& box, CounterRandom& random) {
-  return {random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
-          random.uniform(box.min.z, box.max.z)};
-}
 
 struct Proofs {
   int boxes = 0, signs = 0;
@@ -28,7 +24,7 @@ void check_box(const ImplicitField& field, const Box& box, CounterRandom& random
   constexpr std::size_t kPoints = 60;
   std::vector<float> x(kPoints), y(kPoints), z(kPoints), value(kPoints), restricted(kPoints);
   for (std::size_t i = 0; i < kPoints; ++i) {
-    const Vec3d p = point_within(box, random);
+    const Vec3d p = testing::random_point(random, box);
     x[i] = static_cast<float>(p.x), y[i] = static_cast<float>(p.y), z[i] = static_cast<float>(p.z);
   }
   block.evaluate(x, y, z, value, kExactEverywhere);
@@ -59,7 +55,7 @@ TEST(RandomFields, BoxesAndSignsAreNeverWrongAndBitsAreThoseOfPoints) {
     if (field.bounds().empty()) continue;
     CounterRandom random(seed, 4);
     for (int b = 0; b < 40; ++b) {
-      const Vec3d corner = point_within(field.bounds(), random);
+      const Vec3d corner = testing::random_point(random, field.bounds());
       const double size = std::pow(10.0, random.uniform(-3.0, -0.7));
       check_box(field, {corner, corner + Vec3d{size, size, size}}, random, proofs);
       if (HasFatalFailure()) return;

@@ -8,6 +8,7 @@
 #include "synthesis/noise/perlin_noise.h"
 #include "synthesis/noise/simplex_noise.h"
 #include "synthesis/noise/worley_noise.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/noise_sampling.h"
 
@@ -18,19 +19,15 @@ constexpr Noise kNoises[] = {Noise::kSimplex, Noise::kPerlin, Noise::kWorleyF1, 
                              Noise::kWorleyF2MinusF1};
 const Box kFractalDomain{{-10, -10, -10}, {10, 10, 10}};
 
-struct Heights {
-  std::vector<float> x, y, z, height;
-
-  Heights(const LoneNoise<FractalNoise>& noise, const Box& box, int n, std::uint64_t seed) {
+struct Heights : testing::FloatPoints {
+  Heights(const LoneNoise<FractalNoise>& noise, const Box& box, int n, std::uint64_t seed)
+      : height(static_cast<std::size_t>(n)) {
     CounterRandom random(seed);
-    for (int i = 0; i < n; ++i) {
-      x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
-      y.push_back(static_cast<float>(random.uniform(box.min.y, box.max.y)));
-      z.push_back(static_cast<float>(random.uniform(box.min.z, box.max.z)));
-    }
-    height.resize(x.size());
+    for (int i = 0; i < n; ++i) add(testing::random_point(random, box));
     noise.evaluate(n, x.data(), y.data(), z.data(), height.data());
   }
+
+  std::vector<float> height;
 };
 
 FractalLayer random_layer(CounterRandom& random) {
