@@ -99,18 +99,12 @@ MetaballBody random_body(CounterRandom& random, int spheres, bool gaussian = fal
 
 TEST(Kernels, DistanceGradientIsTheDerivativeOfTheDistance) {
   CounterRandom random(5);
-  const double h = 1e-3;
   int checked = 0;
   for (int k = 0; k < 600; ++k) {
     const PreparedMetaballs metaballs = prepare_metaballs(random_body(random, 1 + k % 40));
-    const Vec3d p{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
+    const Vec3d p = testing::random_point(random, {{-0.6, -0.4, -0.4}, {0.6, 0.4, 0.4}});
     if (std::fabs(evaluate_one(metaballs, p).distance) > 0.05f) continue;
-    const auto slope = [&](const Vec3d& d) {
-      return (static_cast<double>(evaluate_one(metaballs, p + d).distance) -
-              static_cast<double>(evaluate_one(metaballs, p - d).distance)) /
-             (2 * h);
-    };
-    const Vec3d expected{slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
+    const Vec3d expected = testing::measured_gradient(metaballs, p, 1e-3);
     // The curvature jumps at the knee of the metaball kernel and at the ends of supports.
     checked += norm(distance_gradient(metaballs, p) - expected) < 0.05 * norm(expected);
     ASSERT_LT(norm(distance_gradient(metaballs, p) - expected), 0.5 * (1.0 + norm(expected))) << k;

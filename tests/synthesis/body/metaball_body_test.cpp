@@ -81,16 +81,10 @@ class DistanceGradient : public ::testing::TestWithParam<bool> {};
 TEST_P(DistanceGradient, IsTheDerivativeOfTheDistance) {
   const PreparedMetaballs metaballs = prepare_metaballs(potato(60, 3, 3.0, GetParam()));
   CounterRandom random(5);
-  const double h = 2e-3;
   for (int i = 0; i < 200; ++i) {
-    const Vec3d p{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
+    const Vec3d p = testing::random_point(random, {{-0.6, -0.4, -0.4}, {0.6, 0.4, 0.4}});
     if (std::fabs(evaluate_one(metaballs, p).distance) > 0.05f) continue;
-    const auto slope = [&](const Vec3d& d) {
-      return (static_cast<double>(evaluate_one(metaballs, p + d).distance) -
-              static_cast<double>(evaluate_one(metaballs, p - d).distance)) /
-             (2 * h);
-    };
-    const Vec3d expected{slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
+    const Vec3d expected = testing::measured_gradient(metaballs, p, 2e-3);
     const Vec3d actual = distance_gradient(metaballs, p);
     EXPECT_LT(norm(actual - expected), 0.02) << i;
     if (!GetParam() || std::fabs(evaluate_one(metaballs, p).distance) < 0.02f) {
