@@ -1,30 +1,26 @@
 // asteroid_experiment on three small bodies: what it writes, and that it knows them again.
-#include <nlohmann/json.hpp>
-
 #include "tests/apps/labelled_shapes.h"
 
 namespace astrolith {
 namespace {
 
-using testing::LabelledShapes;
-using testing::run_program;
+class AsteroidExperiment : public testing::LabelledShapesTest {
+ protected:
+  AsteroidExperiment() : LabelledShapesTest(ASTROLITH_ASTEROID_EXPERIMENT) {}
+};
 
-const std::string kExperiment = ASTROLITH_ASTEROID_EXPERIMENT;
-
-TEST(AsteroidExperiment, StatesItsProtocolAndKnowsBodiesAgain) {
-  const LabelledShapes shapes;
-  std::filesystem::copy(shapes.at("shapes/ring/0.ply"), shapes.at("ring_b.ply"));
+TEST_F(AsteroidExperiment, StatesItsProtocolAndKnowsBodiesAgain) {
+  std::filesystem::copy(folder_ / "shapes/ring/0.ply", folder_ / "ring_b.ply");
   std::string texts[2];
   for (const int threads : {1, 2}) {
-    const testing::Outcome outcome = run_program(
-        kExperiment, {shapes.at("ball.obj"), shapes.at("box.obj"), shapes.at("ring.obj"), "-o",
-                      shapes.at("r.json"), "--resamplings", "4", "--noise", "0.002", "0.02", "--trees", "20",
-                      "--others", shapes.at("ring_b.ply"), "--threads", std::to_string(threads)});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
-    texts[threads - 1] = testing::text_of(shapes.folder / "r.json");
+    succeed(
+        "ball.obj box.obj ring.obj -o r.json --resamplings 4 --noise 0.002 0.02 --trees 20 --others "
+        "ring_b.ply --threads " +
+        std::to_string(threads));
+    texts[threads - 1] = text("r.json");
   }
   EXPECT_EQ(texts[0], texts[1]);
-  const auto result = nlohmann::json::parse(texts[0]);
+  const auto result = json("r.json");
   EXPECT_EQ(result["protocol"]["bodies"].size(), 3u);
   EXPECT_EQ(result["protocol"]["bodies"][2]["body"], "ring");
   ASSERT_EQ(result["descriptors"].size(), 4u);
@@ -39,16 +35,11 @@ TEST(AsteroidExperiment, StatesItsProtocolAndKnowsBodiesAgain) {
   }
 }
 
-TEST(AsteroidExperiment, RefusesByName) {
-  const LabelledShapes shapes;
-  const auto refused = [&](const std::vector<std::string>& given, const std::string& culprit) {
-    testing::expect_refusal(shapes.folder, kExperiment, given, culprit);
-  };
-  refused({shapes.at("ball.obj"), shapes.at("ball.obj"), "-o", shapes.at("r.json")}, "second model of ball");
-  refused({shapes.at("absent.obj"), "-o", shapes.at("r.json")}, "absent.obj");
-  refused({shapes.at("ball.obj"), "-o", shapes.at("r.json"), "--others", shapes.at("ring.obj")},
-          "no model of ring");
-  refused({shapes.at("ball.obj"), "-o", shapes.at("r.json"), "--noise", "2"}, "--noise");
+TEST_F(AsteroidExperiment, RefusesByName) {
+  refuse("ball.obj ball.obj -o r.json", "second model of ball");
+  refuse("absent.obj -o r.json", "absent.obj");
+  refuse("ball.obj -o r.json --others ring.obj", "no model of ring");
+  refuse("ball.obj -o r.json --noise 2", "--noise");
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // check_tiles, run as a user runs it, on tiles that synth makes; and the borders that it compares.
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "geometry/io/mesh_io.h"
@@ -10,73 +8,63 @@
 #include "recipe/sha256.h"
 #include "tasks/synthesis/tile_border.h"
 #include "tests/apps/synth_runner.h"
+#include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
 
-using testing::expect_refusal;
-using testing::Outcome;
-using testing::run_program;
-using testing::text_of;
-using Json = nlohmann::ordered_json;
-
 const std::string kCheckTiles = ASTROLITH_CHECK_TILES;
-const std::vector<std::string> kFine{"--resolution", "96"};
+
+using testing::has;
+using testing::Outcome;
+using Json = nlohmann::ordered_json;
 
 constexpr int kTiles = 8;
 
-class CheckTiles : public ::testing::Test {
+class CheckTiles : public SynthTest {
  protected:
   static std::string mesh_name(int number) { return "tile_" + std::to_string(number) + ".ply"; }
-  std::string summary(int number) const {
-    return (folder_ / ("tile_" + std::to_string(number) + ".json")).string();
-  }
-  std::vector<std::string> summaries() const {
-    std::vector<std::string> names;
-    for (int i = 1; i <= kTiles; ++i) names.push_back(summary(i));
+  static std::string summary(int number) { return "tile_" + std::to_string(number) + ".json"; }
+  static std::string summaries() {
+    std::string names;
+    for (int i = 1; i <= kTiles; ++i) names += summary(i) + " ";
     return names;
   }
 
-  void make_tile(int number, const std::vector<std::string>& more = kFine,
-                 const std::string& recipe = kTwoSpheres) {
-    const std::string output = (folder_ / mesh_name(number)).string();
-    const std::string tile = std::to_string(number) + "/" + std::to_string(kTiles);
-    std::vector<std::string> arguments{folder_.write("r.json", recipe), "-o", output};
-    arguments.insert(arguments.end(), {"--device", "cpu", "--tile", tile, "--summary", summary(number)});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = run_program(kSynth, arguments);
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  void make_tile(int number, const std::string& more = "--resolution 96") {
+    succeed("r.json -o " + mesh_name(number) + " --device cpu --tile " + std::to_string(number) + "/" +
+            std::to_string(kTiles) + " --summary " + summary(number) + " " + more);
   }
-  void make_tiles(const std::string& recipe = kTwoSpheres) {
-    for (int i = 1; i <= kTiles; ++i) make_tile(i, kFine, recipe);
+  void make_tiles() {
+    for (int i = 1; i <= kTiles; ++i) make_tile(i);
   }
 
-  static Outcome check(std::vector<std::string> arguments) { return run_program(kCheckTiles, arguments); }
-  Outcome check_with_meshes() const {
-    std::vector<std::string> arguments = summaries();
-    arguments.insert(arguments.end(), {"--meshes", (folder_ / "").string()});
-    return check(arguments);
+  Outcome check(const std::string& line) const {
+    return testing::run_program(kCheckTiles, testing::words_of(line), folder_.path());
+  }
+  Outcome check_with_meshes() const { return check(summaries() + "--meshes ."); }
+  void refuse_tiles(const std::string& line, const std::string& culprit) const {
+    testing::expect_refusal(folder_, kCheckTiles, testing::words_of(line), culprit);
   }
   static void expect_failure(const Outcome& outcome, const std::string& words) {
     EXPECT_EQ(outcome.status, 1) << outcome.errors;
-    EXPECT_NE(outcome.errors.find(words), std::string::npos) << words << " is not in: " << outcome.errors;
-    EXPECT_EQ(outcome.errors.find("closed, manifold"), std::string::npos) << outcome.errors;
+    EXPECT_TRUE(has(outcome.errors, words));
+    EXPECT_FALSE(has(outcome.errors, "closed, manifold"));
   }
 
+  Json certificate(int number) const { return Json::parse(text(summary(number))); }
   // Changes a certificate as a forger would, checksum and all.
   void forge(int number, const std::function<void(Json&)>& change) const {
-    Json document = Json::parse(text_of(summary(number)));
+    Json document = certificate(number);
     Json& tile = document["tile"];
     tile.erase("checksum");
     change(tile);
     Sha256 hash;
-    const std::string text = tile.dump();
-    hash.update(text.data(), text.size());
+    const std::string bytes = tile.dump();
+    hash.update(bytes.data(), bytes.size());
     tile["checksum"] = hash.hex();
-    folder_.write("tile_" + std::to_string(number) + ".json", document.dump());
+    write(summary(number), document.dump());
   }
-
-  testing::WorkFolder folder_;
 };
 
 // The corners of all triangles, each triangle from its least corner on, sorted.
@@ -102,101 +90,84 @@ bool same_places(const std::vector<std::array<Vec3d, 3>>& a, const std::vector<s
 
 TEST_F(CheckTiles, TilesThatJoinAreTheWholeMesh) {
   make_tiles();
-  const std::string whole = (folder_ / "whole.ply").string(), figures = (folder_ / "w.json").string();
-  ASSERT_EQ(run_program(kSynth, {folder_.write("r.json", kTwoSpheres), "-o", whole, "--resolution", "96",
-                                 "--device", "cpu", "--summary", figures})
-                .status,
-            0);
-  const Json made = Json::parse(text_of(figures));
+  const auto made = figures("r.json -o whole.ply --resolution 96 --device cpu");
   TriangleMesh all;
-  for (int i = 1; i <= kTiles; ++i) {
-    const TriangleMesh tile = read_mesh(folder_ / mesh_name(i));
-    const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), tile.vertices.begin(), tile.vertices.end());
-    for (const Triangle& t : tile.triangles) {
-      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    }
-  }
-  const TriangleMesh mesh = read_mesh(whole);
+  for (int i = 1; i <= kTiles; ++i) all = testing::joined(all, read_mesh(folder_ / mesh_name(i)));
+  const TriangleMesh mesh = read_mesh(folder_ / "whole.ply");
   EXPECT_TRUE(same_places(corners_of(all), corners_of(mesh)));
 
-  std::vector<std::string> arguments = summaries();
-  std::shuffle(arguments.begin(), arguments.end(), std::mt19937(7));
-  const std::string report = (folder_ / "report.json").string();
+  std::vector<std::string> names = testing::words_of(summaries());
+  std::shuffle(names.begin(), names.end(), std::mt19937(7));
+  std::string shuffled;
+  for (const std::string& name : names) shuffled += name + " ";
   for (const bool meshes : {false, true}) {
-    arguments.insert(arguments.end(), {"--summary", report});
-    if (meshes) arguments.insert(arguments.end(), {"--meshes", (folder_ / "").string()});
-    const Outcome outcome = check(arguments);
+    const Outcome outcome = check(shuffled + "--summary report.json" + (meshes ? " --meshes ." : ""));
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    EXPECT_NE(outcome.errors.find("complete, closed, manifold; 7 of 7 seams"), std::string::npos)
-        << outcome.errors;
-    const Json found = Json::parse(text_of(report));
-    EXPECT_TRUE(found["closed_manifold"].get<bool>());
+    EXPECT_TRUE(has(outcome.errors, "complete, closed, manifold; 7 of 7 seams"));
+    const auto found = json("report.json");
+    EXPECT_TRUE(found["closed_manifold"]);
     EXPECT_EQ(found["meshes_read"], meshes);
     EXPECT_EQ(found["triangles"], made["triangles"]);
     EXPECT_EQ(found["vertices"], made["vertices"]);
-    EXPECT_EQ(found["euler_characteristic"].get<int>(),
-              2 * (made["components"].get<int>() - made["genus"].get<int>()));
-    EXPECT_NEAR(found["volume"].get<double>(), volume(mesh), 1e-12 * volume(mesh));
-    arguments = summaries();
+    EXPECT_EQ(found["euler_characteristic"], 2 * (made["components"].get<int>() - made["genus"].get<int>()));
+    EXPECT_NEAR(found["volume"], volume(mesh), 1e-12 * volume(mesh));
   }
 }
 
 TEST_F(CheckTiles, TilesWithoutSurfaceCount) {
-  make_tiles(R"({"format_version": 1, "length_unit": "km",
-    "body": {"type": "metaballs", "spheres": [[0, 0, 0, 1], [0, 0, 8, 0.75]]}})");
-  EXPECT_TRUE(std::filesystem::exists(folder_ / mesh_name(4)));
+  write("r.json", replaced(ball_recipe("km", 1), "]]", "], [0, 0, 8, 0.75]]"));
+  make_tiles();
+  EXPECT_TRUE(exists(mesh_name(4)));
   const Outcome outcome = check_with_meshes();
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_NE(outcome.errors.find("Euler characteristic 4,"), std::string::npos) << outcome.errors;
+  EXPECT_TRUE(has(outcome.errors, "Euler characteristic 4,"));
 }
 
 // Points hold no faces, which could join.
 TEST_F(CheckTiles, PointsAreNotCertified) {
-  make_tile(2, {"--resolution", "96", "--points"});
-  EXPECT_FALSE(Json::parse(text_of(summary(2))).contains("tile"));
+  make_tile(2, "--resolution 96 --points");
+  EXPECT_FALSE(certificate(2).contains("tile"));
 }
 
 TEST_F(CheckTiles, MissingTilesAreNamedAndSeamsBetweenTheOthersCertified) {
   make_tiles();
-  const std::string report = (folder_ / "report.json").string();
-  const Outcome outcome = check({summary(1), summary(2), summary(3), summary(5), "--summary", report});
+  const Outcome outcome = check("tile_1.json tile_2.json tile_3.json tile_5.json --summary report.json");
   expect_failure(outcome, "4 tiles of 8: 2 of 7 seams certified");
   expect_failure(outcome, "make the missing ones: 4, 6-8");
-  const Json found = Json::parse(text_of(report));
-  EXPECT_FALSE(found["complete"].get<bool>());
-  EXPECT_FALSE(found["closed_manifold"].get<bool>());
+  const auto found = json("report.json");
+  EXPECT_FALSE(found["complete"]);
+  EXPECT_FALSE(found["closed_manifold"]);
   EXPECT_EQ(found["seams_certified"], 2);
 }
 
 TEST_F(CheckTiles, TilesOfOtherSetsAreRefused) {
   make_tiles();
-  expect_refusal(folder_, kCheckTiles, {summary(1), summary(2), summary(1)}, "is tile 1, as");
-  make_tile(3, {"--resolution", "96", "--seed", "9"});
-  expect_refusal(folder_, kCheckTiles, summaries(), "tile_3.json: is of another recipe or seed than");
-  make_tile(3, {"--resolution", "100"});
-  expect_refusal(folder_, kCheckTiles, summaries(), "tile_3.json: is of resolution 100, not 96");
+  refuse_tiles("tile_1.json tile_2.json tile_1.json", "is tile 1, as");
+  make_tile(3, "--resolution 96 --seed 9");
+  refuse_tiles(summaries(), "tile_3.json: is of another recipe or seed than");
+  make_tile(3, "--resolution 100");
+  refuse_tiles(summaries(), "tile_3.json: is of resolution 100, not 96");
 }
 
 TEST_F(CheckTiles, SidesThatDifferDoNotFit) {
   make_tiles();
-  const std::string good = text_of(summary(3));
+  const std::string good = text(summary(3));
   forge(3, [](Json& tile) { tile["upper"]["sha256"] = tile["lower"]["sha256"]; });
   expect_failure(check(summaries()), "tile_4.json: do not fit: their vertices lie at other places");
   expect_failure(check_with_meshes(), "tile_3.json certifies: its upper side has other edges");
-  folder_.write("tile_3.json", good);
+  write("tile_3.json", good);
   forge(3, [](Json& tile) {
     tile["lower"]["vertices"] = tile["lower"]["vertices"].get<int>() + 2;
     tile["euler_characteristic"] = tile["euler_characteristic"].get<int>() - 1;
   });
   expect_failure(check(summaries()), "vertices on 1 loop meet");
-  folder_.write("tile_3.json", good);
+  write("tile_3.json", good);
   forge(3, [](Json& tile) { tile["lower"]["z"] = tile["lower"]["z"].get<double>() - 0.125; });
   expect_failure(check(summaries()), "do not fit: they are cut at");
   // A tile of another seed whose certificate names this recipe.
-  folder_.write("tile_3.json", good);
+  write("tile_3.json", good);
   const Json honest = Json::parse(good);
-  make_tile(3, {"--resolution", "96", "--seed", "9"});
+  make_tile(3, "--resolution 96 --seed 9");
   forge(3, [&](Json& tile) { tile["recipe_sha256"] = honest["tile"]["recipe_sha256"]; });
   expect_failure(check_with_meshes(), "do not fit");
 }
@@ -207,7 +178,7 @@ float next_float(float value) { return std::nextafter(value, value < 0.0f ? -10.
 // Moves a coordinate of one vertex in the plane z by one step of a float.
 void move_a_vertex(const std::filesystem::path& mesh, float z, std::size_t axis) {
   constexpr std::size_t kVertexBytes = 24;
-  std::string bytes = text_of(mesh);
+  std::string bytes = testing::text_of(mesh);
   std::size_t at = bytes.find("end_header\n") + 11;
   std::array<float, 3> p{};
   for (;; at += kVertexBytes) {
@@ -222,13 +193,13 @@ void move_a_vertex(const std::filesystem::path& mesh, float z, std::size_t axis)
 
 TEST_F(CheckTiles, AVertexOfABorderThatMovedByOneStepIsSeen) {
   make_tiles();
-  const std::string summary_3 = text_of(summary(3)), mesh_3 = text_of(folder_ / mesh_name(3));
-  const float z = Json::parse(summary_3)["tile"]["upper"]["z"].get<float>();
+  const std::string summary_3 = text(summary(3)), mesh_3 = text(mesh_name(3));
+  const float z = certificate(3)["tile"]["upper"]["z"];
   const char* words[] = {"its upper side has other edges", "its upper side has other edges",
                          "it is open elsewhere than at its sides"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    folder_.write("tile_3.json", summary_3);
-    folder_.write(mesh_name(3), mesh_3);
+    write("tile_3.json", summary_3);
+    write(mesh_name(3), mesh_3);
     move_a_vertex(folder_ / mesh_name(3), z, axis);
     expect_failure(check_with_meshes(), "its bytes have another SHA-256");
     EXPECT_EQ(check(summaries()).status, 0) << "certificates alone cannot know";
@@ -243,20 +214,20 @@ TEST_F(CheckTiles, DamagedMeshesAreNamed) {
     forge(2, [&](Json& tile) { tile["file_sha256"] = sha256_of_file(folder_ / mesh_name(2)); });
     const Outcome outcome = check_with_meshes();
     EXPECT_NE(outcome.status, 0);
-    EXPECT_NE(outcome.errors.find(words), std::string::npos) << outcome.errors;
+    EXPECT_TRUE(has(outcome.errors, words));
   };
-  const std::string good = text_of(folder_ / mesh_name(2));
-  folder_.write(mesh_name(2), good.substr(0, good.size() - 1));
+  const std::string good = text(mesh_name(2));
+  write(mesh_name(2), good.substr(0, good.size() - 1));
   expect("its size does not agree with the counts in its header");
   std::string bad = good;
   std::fill(bad.end() - 12, bad.end(), '\xff');
-  folder_.write(mesh_name(2), bad);
+  write(mesh_name(2), bad);
   expect("is no triangle of the file's vertices");
   bad = good;
   std::copy_n(good.end() - 26, 13, bad.end() - 13);  // the last triangle is the one before
-  folder_.write(mesh_name(2), bad);
+  write(mesh_name(2), bad);
   expect("it is not manifold");
-  folder_.write(mesh_name(2), text_of(folder_ / mesh_name(3)));
+  write(mesh_name(2), text(mesh_name(3)));
   expect("tile_2.json certifies: it");
   std::filesystem::remove(folder_ / mesh_name(2));
   EXPECT_EQ(check_with_meshes().status, 2);
@@ -264,21 +235,13 @@ TEST_F(CheckTiles, DamagedMeshesAreNamed) {
 
 TEST_F(CheckTiles, BadCertificatesAreRefused) {
   make_tile(2);
-  const std::string good = text_of(summary(2));
-  const auto refuse = [&](const std::string& text, const std::string& culprit) {
-    expect_refusal(folder_, kCheckTiles, {folder_.write("tile_2.json", text)}, culprit);
+  const std::string good = text(summary(2));
+  const auto refuse = [&](const std::string& content, const std::string& culprit) {
+    refuse_tiles(write("tile_2.json", content), culprit);
   };
-  Json edited = Json::parse(good);
-  edited["tile"]["triangles"] = edited["tile"]["triangles"].get<int>() + 2;
-  refuse(edited.dump(), "tile: was changed since synth wrote it");
-  edited = Json::parse(good);
-  edited["tile"]["length_unit"] = "mm";
-  refuse(edited.dump(), "tile: was changed since synth wrote it");
   refuse(good.substr(0, good.size() / 2), "is no whole JSON object");
-  refuse(std::string(30, '['), "is no whole JSON object");
   refuse(std::string(60000, '['), "is nested too deeply");
   refuse(std::string((1 << 16) + 1, ' '), "is larger than 64 kB");
-  refuse(std::string(500, '[') + std::string(500, ']'), "is nested too deeply");
   refuse("{}", "tile: is missing");
   refuse(R"({"tile": 3})", "tile: is no object");
   refuse(R"({"tile": {}})", "is missing");
@@ -287,6 +250,8 @@ TEST_F(CheckTiles, BadCertificatesAreRefused) {
     changed["tile"][name] = value;
     refuse(changed.dump(), culprit);
   };
+  refuse_field("length_unit", "mm", "tile: was changed since synth wrote it");
+  refuse_field("triangles", Json::parse(good)["tile"]["triangles"].get<int>() + 2, "tile: was changed");
   refuse_field("count", 1e300, "tile.count: is no whole number");
   refuse_field("count", std::uint64_t{1} << 63, "tile.count: is no whole number");
   refuse_field("count", 2000000000, "tile.count: is out of range");
@@ -298,8 +263,8 @@ TEST_F(CheckTiles, BadCertificatesAreRefused) {
   refuse_field("file_sha256", "abc", "tile.file_sha256: is no SHA-256");
   refuse_field("lower", Json::array(), "tile.lower: is no object");
   refuse_field("lower", {{"z", 1e300}, {"vertices", 0}, {"loops", 0}, {"sha256", ""}}, "tile_2.json: ");
-  expect_refusal(folder_, kCheckTiles, {}, "summaries");
-  expect_refusal(folder_, kCheckTiles, {summary(7)}, "tile_7.json: ");
+  refuse_tiles("", "summaries");
+  refuse_tiles(summary(7), "tile_7.json: ");
 }
 
 // An open pyramid over the square around the origin; below the plane z = 0 or above it.

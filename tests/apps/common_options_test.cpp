@@ -55,7 +55,7 @@ TEST_P(EveryProgram, VersionIsOneLine) {
 }
 
 TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
-  const testing::WorkFolder folder;
+  const testing::ScratchFolder folder;
   const std::string output = (folder / "out").string();
   testing::expect_refusal(folder, GetParam(), {}, "required");
   const auto refuse = [&](std::vector<std::string> more, const std::string& culprit) {
@@ -70,7 +70,7 @@ TEST_P(EveryProgram, WrongCommandLinesAreRefused) {
 }
 
 TEST_P(EveryProgram, OutputsWithAWrongEndingAreRefusedBeforeAnyWork) {
-  const testing::WorkFolder folder;
+  const testing::ScratchFolder folder;
   std::vector<std::string> arguments{"in", "-o", (folder / "out.docx").string()};
   if (name() == "compare") arguments.push_back("other_in");
   if (name() == "gravity") arguments.insert(arguments.end(), {"--density", "2000"});

@@ -15,8 +15,11 @@
 
 namespace astrolith::testing {
 
-inline const std::string kTetrahedron =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+inline const std::string kTetrahedronVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+inline const std::string kTetrahedron = kTetrahedronVertices + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+inline const std::string kInsideOut = kTetrahedronVertices + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+// A triangle without area.
+inline const std::string kFlatObj = "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
 
 // An ellipsoid of half axes a, b, c as rings of quadrilaterals between two poles: closed, 2 x rings x sides
 // triangles.

@@ -30,23 +30,20 @@ inline TriangleMesh shape_of(const std::string& kind) {
   return box;
 }
 
-// Six meshes each in shapes/ball, shapes/box and shapes/ring, and one fresh mesh of each class.
-struct LabelledShapes {
-  WorkFolder folder;
-  std::string all = (folder / "shapes").string();
-
-  LabelledShapes() {
+// A test with six meshes each in shapes/ball, shapes/box and shapes/ring, and one fresh mesh of each class.
+class LabelledShapesTest : public ProgramTest {
+ protected:
+  explicit LabelledShapesTest(std::string program) : ProgramTest(std::move(program)) {
     std::uint64_t seed = 0;
     for (const std::string kind : {"ball", "box", "ring"}) {
-      std::filesystem::create_directories(folder / ("shapes/" + kind));
+      std::filesystem::create_directories(folder_ / ("shapes/" + kind));
       for (int i = 0; i < 6; ++i) {
         write_mesh(varied(shape_of(kind), ++seed),
-                   folder / ("shapes/" + kind + "/" + std::to_string(i) + ".ply"), {});
+                   folder_ / ("shapes/" + kind + "/" + std::to_string(i) + ".ply"), {});
       }
-      write_mesh(varied(shape_of(kind), ++seed), folder / (kind + ".obj"), {});
+      write_mesh(varied(shape_of(kind), ++seed), folder_ / (kind + ".obj"), {});
     }
   }
-  std::string at(const std::string& name) const { return (folder / name).string(); }
 };
 
 }  // namespace astrolith::testing

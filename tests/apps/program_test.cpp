@@ -11,6 +11,7 @@
 #include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
@@ -32,10 +33,6 @@ Outcome run(const std::vector<std::string>& arguments, const std::function<void(
   ::testing::internal::CaptureStderr();
   const int status = status_of(arguments, work);
   return {status, ::testing::internal::GetCapturedStderr()};
-}
-
-std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::temp_directory_path() / (name + std::to_string(::getpid()) + ".json");
 }
 
 TEST(Program, StatusSaysWhoseFaultItWas) {
@@ -129,16 +126,16 @@ TEST(Program, NothingIsDrawnInAPipe) {
 }
 
 TEST(Program, SummaryIsWrittenWhenTheWorkIsDone) {
-  const auto file = temporary("astrolith_summary_");
+  const testing::ScratchFolder folder;
+  const std::string file = folder / "s.json";
   const auto fill = [](Program& p) { p.summary["name"] = "caf\xe9.png"; };  // Latin-1, not UTF-8
-  EXPECT_EQ(run({"--summary", file.string()}, fill).status, 0);
+  EXPECT_EQ(run({"--summary", file}, fill).status, 0);
   const auto summary = nlohmann::json::parse(std::ifstream(file));
   EXPECT_EQ(summary.at("name"), "caf\xef\xbf\xbd.png");
   EXPECT_GE(summary.at("seconds").get<double>(), 0.0);
   EXPECT_FALSE(summary.contains("interrupted"));
-  std::filesystem::remove(file);
 
-  EXPECT_EQ(run({"--summary", file.string()}, [](Program&) { throw WorkError("no"); }).status, 1);
+  EXPECT_EQ(run({"--summary", file}, [](Program&) { throw WorkError("no"); }).status, 1);
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
@@ -160,16 +157,16 @@ TEST(Program, GivenOptionsAreThoseThatChangeTheResult) {
 
 // The work runs in a child process, since a signal marks the process for good.
 TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
-  const auto file = temporary("astrolith_interrupted_");
+  const testing::ScratchFolder folder;
+  const std::string file = folder / "s.json";
   const auto work = [](Program& p) {
     const Progress progress = p.progress("fit");
     if (!progress(0.1, "")) std::exit(10);
     std::raise(SIGINT);
     if (progress(0.2, "")) std::exit(11);
   };
-  EXPECT_EXIT(std::exit(status_of({"--summary", file.string()}, work)), ::testing::ExitedWithCode(3), "");
+  EXPECT_EXIT(std::exit(status_of({"--summary", file}, work)), ::testing::ExitedWithCode(3), "");
   EXPECT_TRUE(nlohmann::json::parse(std::ifstream(file)).at("interrupted").get<bool>());
-  std::filesystem::remove(file);
 }
 
 TEST(ProgramDeathTest, ASignalIsCalledByItsName) {
@@ -192,21 +189,18 @@ TEST(ProgramDeathTest, ASecondCtrlCEndsAtOnce) {
 }
 
 TEST(ProgramDeathTest, ASecondCtrlCLeavesNoTemporaryFile) {
-  const auto folder = temporary("astrolith_second_");
-  std::filesystem::create_directory(folder);
+  const testing::ScratchFolder folder;
   const auto work = [&](Program&) {
     const OutputFile unfinished(folder / "mesh.ply");
     std::raise(SIGINT);
     std::raise(SIGINT);
   };
   EXPECT_EXIT(status_of({}, work), ::testing::KilledBySignal(SIGINT), "");
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
-  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(ProgramDeathTest, AFullQuotaIsAnErrorOfWriting) {
-  const auto folder = temporary("astrolith_quota_");
-  std::filesystem::create_directory(folder);
+  const testing::ScratchFolder folder;
   const auto work = [&](Program&) {
     const rlimit limit{1000, 1000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
@@ -216,8 +210,7 @@ TEST(ProgramDeathTest, AFullQuotaIsAnErrorOfWriting) {
     file.commit();
   };
   EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(1), "writing failed");
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
-  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(ProgramDeathTest, AClosedStderrIsNoReasonToCrash) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tests/apps/program_runner.h"
 
@@ -17,30 +16,35 @@ inline const std::string kTwoSpheres = R"({"format_version": 1, "length_unit": "
 inline const std::string kTexture = R"({"format_version": 1, "length_unit": "m",
   "layers": [{"type": "gabor", "pixel_size": 0.01, "height_rms": 0.002, "lobes": [[4, 0.125, -0.25, 1]]}]})";
 
+// A ball of one unit, with further fields of the recipe.
+inline std::string ball_recipe(const std::string& unit, double radius, const std::string& more = "") {
+  return R"({"format_version": 1, "length_unit": ")" + unit +
+         R"(", "body": {"type": "metaballs", "spheres": [[0, 0, 0, )" + std::to_string(radius) + "]]}" +
+         more + "}";
+}
+
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
-class SynthTest : public ::testing::Test {
+// r.json is the recipe of two spheres.
+class SynthTest : public testing::ProgramTest {
  protected:
-  // Runs with --resolution 32 and returns the bytes of the output.
-  std::string synthesise(const std::string& output, std::vector<std::string> more) {
-    const std::string file = (folder_ / output).string();
-    std::vector<std::string> arguments{folder_.write("r.json", kTwoSpheres), "-o", file, "--resolution",
-                                       "32"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const testing::Outcome outcome = testing::run_program(kSynth, arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    return testing::text_of(file);
-  }
-  void expect_recipe_refused(const std::string& recipe, const std::string& culprit) {
-    const std::string file = folder_.write("bad.json", recipe);
-    testing::expect_refusal(folder_, kSynth,
-                            {file, "-o", (folder_ / "out.ply").string(), "--resolution", "16"},
-                            "bad.json: " + culprit);
-  }
+  SynthTest() : ProgramTest(kSynth) { write("r.json", kTwoSpheres); }
 
-  testing::WorkFolder folder_;
+  // Meshes r.json with --resolution 32 and returns the bytes of the output.
+  std::string synthesise(const std::string& output, const std::string& more = "") const {
+    succeed("r.json -o " + output + " --resolution 32 " + more);
+    return text(output);
+  }
+  // The summary of a run of the command line.
+  nlohmann::json figures(const std::string& line) const {
+    succeed(line + " --summary s.json");
+    return json("s.json");
+  }
+  void expect_recipe_refused(const std::string& recipe, const std::string& culprit) const {
+    refuse(write("bad.json", recipe) + " -o out.ply --resolution 16", "bad.json: " + culprit);
+  }
 };
 
 }  // namespace astrolith

@@ -1,7 +1,6 @@
 // Measures Gabor noise of one band with 32 impulses under a kernel on one thread, beside the evaluation of
 // Lagae et al. 2009 (lagae_gabor_noise.h). Prints one row of JSON for each bandwidth: pixels a second of a
 // texture, and points a second on the surface of a sphere, in blocks as a mesher asks for them.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>

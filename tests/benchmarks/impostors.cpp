@@ -1,5 +1,6 @@
 #include "tests/benchmarks/impostors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -13,8 +14,8 @@
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "tests/benchmarks/spherical_harmonics.h"
-#include "tests/benchmarks/volume/volume_mesher.h"
 #include "tests/support/meshes.h"
+#include "tests/synthesis/analytic_field.h"
 
 namespace astrolith {
 namespace {
@@ -132,27 +133,16 @@ TriangleMesh harmonics_impostor(const TriangleMesh& body) {
 TriangleMesh remeshed(const TriangleMesh& body, double triangles) {
   // Marching cubes make about 3 triangles for each squared cell of area.
   const double cell = std::sqrt(3 * surface_area(body) / triangles);
-  const Box box = body.bounds();
-  const Vec3d extent = box.extent();
-  const auto cells = [&](double length) { return static_cast<int>(std::ceil(length / cell)) + 4; };
   // The lattice is turned off the coordinate planes by a part of a cell only: bodies are not aligned to it.
-  const SampleGrid grid{
-      box.min - cell * Vec3d{1.71, 1.53, 1.37}, cell, {cells(extent.x), cells(extent.y), cells(extent.z)}};
-  const int nx = grid.cells[0] + 1, ny = grid.cells[1] + 1, nz = grid.cells[2] + 1;
-  std::vector<float> values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) *
-                            static_cast<std::size_t>(nz));
+  Box bounds = body.bounds();
+  bounds.min -= cell * Vec3d{1.71, 1.53, 1.37};
+  bounds.max += 2 * cell * Vec3d{1, 1, 1};
+  const Vec3d extent = bounds.extent();
   const SurfaceTree tree(body);
-  parallel_for(0, nz, [&](std::int64_t z) {
-    float* value = values.data() + z * ny * nx;
-    for (int y = 0; y < ny; ++y) {
-      for (int x = 0; x < nx; ++x) {
-        *value++ = static_cast<float>(
-            tree.signed_distance({grid.x(x), grid.y(y), grid.z(static_cast<int>(z))}) / cell);
-      }
-    }
-  });
+  const testing::AnalyticField depth([&](const Vec3d& p) { return tree.signed_distance(p); }, 1.0);
   MeshCollector collector;
-  mesh_volume(grid, values, collector);
+  testing::mesh_field(depth, bounds,
+                      static_cast<int>(std::ceil(std::max({extent.x, extent.y, extent.z}) / cell)), collector);
   return std::move(collector.mesh);
 }
 

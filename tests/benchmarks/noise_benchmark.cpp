@@ -1,8 +1,6 @@
 // Measures noise on a grid of 256^3 points on one thread, in rows and in the blocks of 9^3 samples that a
 // mesher asks for. Prints Mpoints a second as JSON. noise_peers.py runs FastNoise2 on a grid of the same
 // size.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <vector>
 

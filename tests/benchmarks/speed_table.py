@@ -105,21 +105,6 @@ class Benchmark:
                 table.row(f"{kind}, {row['bandwidth']}", [turn[i][rate] for turn in turns],
                           [turn[i]["peer_" + kind] for turn in turns])
 
-    def isosurface(self):
-        field = self.folder / "field.raw"
-        ours, plain, normals = [], [], []
-        for _ in range(self.turns):
-            ours += [row["mtriangles_per_s"] for row in Run(self.tools / "isosurface_benchmark", 512, field).rows()]
-            made = peer_rows("VTK", sys.executable, HERE / "isosurface_peers.py", field) if plain is not None else None
-            plain = None if made is None else plain + [made[0]["flying_edges"]["mtriangles_per_s"]]
-            normals = None if made is None else normals + [made[0]["flying_edges_with_normals"]]
-        # Every sample must be read once.
-        seconds = 4 * 512**3 / self.limits["read_bytes"]
-        limit = normals[0]["triangles"] / seconds / 1e6 if normals else None
-        table = Table("Mesh of a precomputed field of 512^3 samples, Mtriangle/s", "the peer", "VTK flying edges")
-        table.row("without normals", ours, plain, limit)
-        table.row("with normals", ours, [row["mtriangles_per_s"] for row in normals] if normals else None, limit)
-
     def together(self):
         field, recipe = self.folder / "field.raw", self.folder / "bare.json"
         Run(self.tools / "asteroid_recipe", recipe, "bare")
@@ -205,7 +190,7 @@ def main():
     parser.add_argument("--fastnoise2", type=pathlib.Path, metavar="SOURCES")
     parser.add_argument("--turns", type=int, default=5)
     parser.add_argument("--full", action="store_true")
-    sections = ("noise", "gabor", "isosurface", "together", "terrain", "erosion", "pursuit", "asteroid")
+    sections = ("noise", "gabor", "together", "terrain", "erosion", "pursuit", "asteroid")
     parser.add_argument("--only", nargs="+", choices=sections, default=sections, metavar="SECTION",
                         help="some of: " + ", ".join(sections))
     arguments = parser.parse_args()

@@ -6,14 +6,10 @@
 #include <vector>
 
 #include "geometry/surface/mesh_sampling.h"
-#include "numerics/hash_random.h"
 #include "tests/support/meshes.h"
+#include "tests/support/points.h"
 
 namespace astrolith::testing {
-
-inline Vec3d random_direction(CounterRandom& random) {
-  return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
-}
 
 // Random surflets: positions in a unit cube and normals in all directions, which fill all bins.
 inline SurfaceSamples random_surflets(int n, std::uint64_t seed) {

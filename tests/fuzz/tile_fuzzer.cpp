@@ -1,5 +1,4 @@
 // What check_tiles reads: the certificate of a tile, and its mesh. The content tells which.
-#include <stdexcept>
 
 #include "fuzzed_reader.h"
 #include "geometry/io/ply_stream_reader.h"

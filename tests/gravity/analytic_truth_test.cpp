@@ -2,7 +2,6 @@
 // tetrahedron, and balls and ellipsoids as limits of polyhedra.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>

@@ -2,16 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "numerics/hash_random.h"
+#include "tests/support/points.h"
 
 namespace astrolith {
 namespace {
-
-Vec3d random_unit_vector(CounterRandom& random) {
-  return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
-}
 
 template <typename T>
 void expect_right_handed_frame(const Tangents<T>& t, const Vec3<T>& n, T tolerance) {
@@ -24,7 +18,7 @@ void expect_right_handed_frame(const Tangents<T>& t, const Vec3<T>& n, T toleran
 TEST(TangentFrame, IsRightHandedAboutAnyNormal) {
   CounterRandom random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3d n = random_unit_vector(random);
+    const Vec3d n = testing::random_direction(random);
     const Vec3f f = to_float(n);
     const float sign = f.z < 0.0f ? -1.0f : 1.0f;
     expect_right_handed_frame(duff_tangents<SumRounding::kFused>(f, sign), f, 1e-6f);

@@ -4,13 +4,14 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
-#include <numeric>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "recipe/compact/number_table.h"
 #include "recipe/recipe_json.h"
 #include "tests/recipe/recipe_examples.h"
+#include "tests/support/refusal.h"
+#include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
@@ -49,12 +50,7 @@ Recipe body_on_grid(double step) {
 }
 
 std::string error_of_bytes(const std::string& bytes) {
-  try {
-    parse_recipe(bytes, "r.astro");
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
+  return testing::refusal_of([&] { parse_recipe(bytes, "r.astro"); });
 }
 
 TEST(CompactRecipe, HoldsEveryField) {
@@ -104,13 +100,11 @@ TEST(CompactRecipe, KeepsTheBytesOfItsVersion) {
 }
 
 TEST(CompactRecipe, IsAFileLikeOthers) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "astrolith_compact_recipe";
-  std::filesystem::create_directories(folder);
+  const testing::ScratchFolder folder;
   const Recipe recipe = body_on_grid(0.25);
   write_recipe(recipe, folder / "r.astro");
   EXPECT_LT(std::filesystem::file_size(folder / "r.astro"), 1300u);
   EXPECT_EQ(recipe_to_json(read_recipe(folder / "r.astro")), recipe_to_json(recipe));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(CompactRecipe, OtherVersionIsRefused) {

@@ -16,4 +16,14 @@ inline PointValue evaluate_one(const PreparedMetaballs& metaballs, const Vec3d& 
   return v;
 }
 
+// The gradient of the distance by central differences of steps h.
+inline Vec3d measured_gradient(const PreparedMetaballs& metaballs, const Vec3d& p, double h) {
+  const auto slope = [&](const Vec3d& d) {
+    return (double{evaluate_one(metaballs, p + d).distance} -
+            double{evaluate_one(metaballs, p - d).distance}) /
+           (2 * h);
+  };
+  return {slope({h, 0, 0}), slope({0, h, 0}), slope({0, 0, h})};
+}
+
 }  // namespace astrolith::testing

@@ -84,20 +84,11 @@ inline BoulderLayer random_boulders(CounterRandom& random) {
   return layer;
 }
 
-// A Gabor layer by impulses, one by tiles and impulses, or an exemplar layer.
-inline Layer random_texture(CounterRandom& random) {
-  const auto kind = random.below(3);
-  if (kind == 0) return exemplar_layer(0.01, 0.01);
-  GaborLayer layer = gabor_layer(0.03, 0.005);
-  if (kind == 1) {
-    layer.evaluation = GaborEvaluation::kTiles;
-    layer.lobes.push_back({8, 0.5, 0.0, 1.0});
-  }
-  return layer;
-}
+constexpr std::uint64_t kLayerKinds = 10;
 
-inline Layer random_layer(CounterRandom& random) {
-  switch (random.below(9)) {
+// A layer of a kind: the last kinds are exemplars, Gabor noise by tiles and impulses, by impulses, fractals.
+inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
+  switch (kind) {
     case 0:
       return random_spots(random);
     case 1:
@@ -111,10 +102,23 @@ inline Layer random_layer(CounterRandom& random) {
     case 5:
       return random_boulders(random);
     case 6:
-      return random_texture(random);
+      return exemplar_layer(0.01, 0.01);
+    case 7: {
+      GaborLayer layer = gabor_layer(0.03, 0.005);
+      layer.evaluation = GaborEvaluation::kTiles;
+      layer.lobes.push_back({8, 0.5, 0.0, 1.0});
+      return layer;
+    }
+    case 8:
+      return gabor_layer(0.03, 0.005);
     default:
       return random_fractal(random);
   }
+}
+
+inline Layer random_layer(CounterRandom& random) {
+  const auto kind = random.below(9);
+  return layer_of_kind(kind < 6 ? kind : kind == 6 ? 6 + random.below(3) : 9, random);
 }
 
 // A body made by operations on others: one of these has a warp, and one has operations of its own.
@@ -153,6 +157,20 @@ inline void use_somehow(LayerUse& use, int number, bool first_has_height, Counte
   if (first_has_height && random.below(2) == 0) use.mask = LayerMask{.layer = "0", .from = -0.01, .to = 0.01};
 }
 
+// Adds a layer that is used somehow.
+inline void add_layer(Recipe& recipe, Layer layer, CounterRandom& random) {
+  const int number = static_cast<int>(recipe.layers.size());
+  std::visit(
+      [&](auto& l) {
+        l.name = std::to_string(number);
+        if constexpr (requires { l.use; }) {
+          use_somehow(l.use, number, number > 0 && use_of(recipe.layers[0]) != nullptr, random);
+        }
+      },
+      layer);
+  recipe.layers.push_back(std::move(layer));
+}
+
 // Gives some populations a weight that varies over the body, clusters, or sizes by Weibull's law.
 inline void place_somehow(Recipe& recipe, CounterRandom random) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
@@ -176,19 +194,37 @@ inline Recipe random_recipe(std::uint64_t seed) {
   if (random.below(4) == 0) add_operations(*recipe.body, random);
   CounterRandom dents(seed, 1);
   if (dents.below(2) == 0) add_dents(*recipe.body, 1 + static_cast<int>(dents.below(20)), dents);
-  const int layers = static_cast<int>(random.below(5));
-  for (int i = 0; i < layers; ++i) {
-    Layer layer = random_layer(random);
-    std::visit(
-        [&](auto& l) {
-          l.name = std::to_string(i);
-          if constexpr (requires { l.use; })
-            use_somehow(l.use, i, i > 0 && use_of(recipe.layers[0]) != nullptr, random);
-        },
-        layer);
-    recipe.layers.push_back(layer);
+  for (auto layers = random.below(5); layers > 0; --layers) {
+    add_layer(recipe, random_layer(random), random);
   }
   place_somehow(recipe, CounterRandom(seed, 2));
+  return recipe;
+}
+
+// A random recipe on a body of any sharpness, tension and cut-off, whose layers have any height and shape.
+// On top lies a layer of each kind in turn.
+inline Recipe wild_recipe(std::uint64_t seed) {
+  Recipe recipe = random_recipe(seed);
+  CounterRandom random(seed, 3);
+  MetaballBody& body = *recipe.body;
+  body.cutoff_radii = random.uniform(1.2, 5.0);
+  body.blend_exponent = random.uniform(0.7, 12.0);
+  if (body.kernel != Kernel::kGaussian) {
+    body.blend_exponent = std::max(1.0, body.blend_exponent);
+    body.a = body.b = std::max(random.uniform(0.3, 3.0), least_tension(body) + 0.01);
+  }
+  add_layer(recipe, layer_of_kind(seed % kLayerKinds, random), random);
+  for (Layer& layer : recipe.layers) {
+    if (auto* fractal = std::get_if<FractalLayer>(&layer)) {
+      fractal->amplitude *= std::pow(10.0, random.uniform(-1.0, 0.7));
+    } else if (auto* spots = std::get_if<SpotLayer>(&layer)) {
+      spots->sigma = random.uniform(0.5, 5.0);
+      spots->even = random.below(2) == 0;
+      spots->reach = random.uniform(-0.5, 0.5);
+    } else if (auto* exemplar = std::get_if<ExemplarLayer>(&layer)) {
+      exemplar->rotation = random.below(2) == 0 ? ExemplarRotation::kAny : ExemplarRotation::kNone;
+    }
+  }
   return recipe;
 }
 

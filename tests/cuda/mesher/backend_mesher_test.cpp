@@ -88,32 +88,20 @@ TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
 }
 
-TEST(BackendMesher, MakesTheExemplarsOfTheCpu) {
-  Recipe recipe = potato_recipe(10, 8);
-  recipe.layers = {testing::exemplar_layer(0.01, 0.01)};
-  const ImplicitField field(recipe);
-  ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
-  expect_same(on_twin(field, 40), on_cpu(field, 40));
-}
-
-TEST(BackendMesher, MakesAnExemplarOnLayersOfTheCpu) {
-  Recipe recipe = potato_recipe(10, 8);
-  recipe.layers = {fractal_layer(0.1, 4.0, 2), testing::exemplar_layer(0.01, 0.01)};
-  const ImplicitField field(recipe);
-  ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
-  expect_same(on_twin(field, 40), on_cpu(field, 40));
-}
-
-TEST(BackendMesher, MakesTheGaborTilesOfTheCpu) {
-  Recipe recipe = potato_recipe(10, 8);
-  GaborLayer layer = testing::gabor_layer(0.05, 0.01);
-  layer.evaluation = GaborEvaluation::kTiles;
-  layer.lobes.push_back({6, 0.5, 0.0, 1.0});  // too narrow for a tile
-  recipe.layers = {layer};
-  const ImplicitField field(recipe);
-  ASSERT_EQ(field.tables().gabor_lists.count, 1u);
-  ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
-  expect_same(on_twin(field, 40), on_cpu(field, 40));
+// An exemplar, an exemplar on layers, and Gabor noise of which one lobe is too narrow for a tile.
+TEST(BackendMesher, MakesTheExemplarsAndTilesOfTheCpu) {
+  GaborLayer tiled = testing::gabor_layer(0.05, 0.01);
+  tiled.evaluation = GaborEvaluation::kTiles;
+  tiled.lobes.push_back({6, 0.5, 0.0, 1.0});
+  const ExemplarLayer exemplar = testing::exemplar_layer(0.01, 0.01);
+  for (const std::vector<Layer>& layers :
+       {std::vector<Layer>{exemplar}, {fractal_layer(0.1, 4.0, 2), exemplar}, {tiled}}) {
+    Recipe recipe = potato_recipe(10, 8);
+    recipe.layers = layers;
+    const ImplicitField field(recipe);
+    ASSERT_EQ(obstacle_on_gpu(field.tables(), block_side(field.bounds(), 40)), "");
+    expect_same(on_twin(field, 40), on_cpu(field, 40));
+  }
 }
 
 // The field is exactly zero at some samples, and some cells have many such samples.

@@ -1,6 +1,8 @@
 #include "descriptor/surface/realism.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 #include "numerics/errors.h"
 #include "tests/descriptor/surface/rough_spheres.h"
@@ -17,13 +19,19 @@ constexpr double kSphereEdge = 0.0376;
 template <typename Heights>
 SurfaceStatistics measured(const Heights& height, std::uint64_t seed = 1) {
   SurfaceStatisticsOptions options;
-  options.places = 1500;
+  options.places = 900;
   options.seed = seed;
   return surface_statistics(rough_sphere(height), options);
 }
-SurfaceStatistics waves(double amplitude, std::uint64_t noise_seed, std::uint64_t seed = 1) {
-  const WaveHeights height(6 * kSphereEdge, noise_seed);
-  return measured([&](const Vec3d& p) { return amplitude * height(p); }, seed);
+// Each surface is measured once, however many tests ask for it.
+const SurfaceStatistics& waves(double amplitude, std::uint64_t noise_seed, std::uint64_t seed = 1) {
+  static std::map<std::tuple<double, std::uint64_t, std::uint64_t>, SurfaceStatistics> known;
+  const auto [it, is_new] = known.try_emplace({amplitude, noise_seed, seed});
+  if (is_new) {
+    const WaveHeights height(6 * kSphereEdge, noise_seed);
+    it->second = measured([&](const Vec3d& p) { return amplitude * height(p); }, seed);
+  }
+  return it->second;
 }
 
 bool says(const RealismVerdict& verdict, const std::string& beginning) {
@@ -59,7 +67,7 @@ TEST(Realism, MissingBouldersAndCratersAreNamed) {
   const auto with = [&](double height) {
     return measured([&](const Vec3d& p) { return 0.004 * ground(p) + height * bumps(p); });
   };
-  const SurfaceStatistics none = waves(0.008, 4), boulders = with(0.03), craters = with(-0.03);
+  const SurfaceStatistics &none = waves(0.008, 4), &boulders = with(0.03), &craters = with(-0.03);
   EXPECT_TRUE(says(judge_realism(boulders, none, {}), "no boulders"));
   EXPECT_TRUE(says(judge_realism(craters, none, {}), "no craters"));
   EXPECT_TRUE(says(judge_realism(none, boulders, {}), "too many boulders"));
@@ -128,7 +136,7 @@ TEST(Realism, FlatFacetsOfACoarserMeshAreSeen) {
 }
 
 TEST(Realism, DistancesAloneAreThoseOfTheVerdict) {
-  const SurfaceStatistics a = waves(0.01, 1), b = waves(0.008, 2);
+  const SurfaceStatistics &a = waves(0.01, 1), &b = waves(0.008, 4);
   const RealismVerdict verdict = judge_realism(a, b, {});
   const auto alone = statistic_distances(a, b);
   ASSERT_EQ(alone.size(), verdict.statistics.size());

@@ -7,14 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "numerics/hash_random.h"
 #include "tests/support/meshes.h"
+#include "tests/support/points.h"
 
 namespace astrolith::testing {
-
-inline Vec3d random_unit_vector(CounterRandom& random) {
-  return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
-}
 
 // Homogeneous, nearly Gaussian heights of rms 1: 60 plane waves with lengths of `wave` to 2 `wave`.
 class WaveHeights {
@@ -23,7 +19,7 @@ class WaveHeights {
     for (std::uint64_t k = 0; k < kWaves; ++k) {
       CounterRandom random(seed, k);
       const double length = wave * (1 + random.uniform());
-      waves_.push_back({2 * std::numbers::pi / length * random_unit_vector(random), 7 * random.uniform()});
+      waves_.push_back({2 * std::numbers::pi / length * random_direction(random), 7 * random.uniform()});
     }
   }
   double operator()(const Vec3d& p) const {
@@ -47,7 +43,7 @@ class BumpHeights {
   BumpHeights(int count, double size, std::uint64_t seed) : size_(size) {
     for (int k = 0; k < count; ++k) {
       CounterRandom random(seed, static_cast<std::uint64_t>(k));
-      centers_.push_back(random_unit_vector(random));
+      centers_.push_back(random_direction(random));
     }
   }
   double operator()(const Vec3d& p) const {

@@ -75,22 +75,6 @@ TEST(GaborFit, ScalesWithTheExemplar) {
   }
 }
 
-TEST(GaborFit, BothSolversFindTheSameSpectrum) {
-  const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 11);
-  GreyImage small{48, 40, {}};
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 48; ++x) small.values.push_back(exemplar.at(x, y));
-  }
-  GaborFitOptions options;
-  options.relative_gap = 1e-5;
-  const GaborFit a = fit_gabor_lobes(small, "small", options);
-  options.solver = PursuitSolver::kFista;
-  const GaborFit b = fit_gabor_lobes(small, "small", options);
-  EXPECT_NEAR(a.pursuit.primal, b.pursuit.primal, 2e-5 * a.pursuit.primal);
-  // The two are far nearer to each other than either can be to the truth.
-  EXPECT_LT(optimal_transport_distance(a.fitted, b.fitted), 0.2 * a.estimate.standard_error);
-}
-
 TEST(GaborFit, ThreadsDoNotChangeABit) {
   const GreyImage exemplar = testing::realisation_of(testing::four_lobe_spectrum(), 12);
   const auto fit_with = [&](int threads) {

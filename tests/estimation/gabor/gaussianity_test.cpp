@@ -77,10 +77,11 @@ TEST(Gaussianity, SeesEdgesUnderAGaussianMarginal) {
 GreyImage large_texture(std::uint64_t seed) {
   constexpr int kSide = 1024, kTile = 128;
   GreyImage image{kSide, kSide, std::vector<double>(kSide * kSide)};
+  const PowerSpectrum spectrum = testing::broad_spectrum();
   for (int ty = 0; ty < kSide / kTile; ++ty) {
     for (int tx = 0; tx < kSide / kTile; ++tx) {
-      const GreyImage tile = testing::realisation_of(
-          testing::broad_spectrum(), 1000 * seed + static_cast<std::uint64_t>(ty * kSide + tx));
+      const GreyImage tile =
+          testing::realisation_of(spectrum, 1000 * seed + static_cast<std::uint64_t>(ty * kSide + tx));
       for (int y = 0; y < kTile; ++y) {
         for (int x = 0; x < kTile; ++x)
           image.values[static_cast<std::size_t>((ty * kTile + y) * kSide + tx * kTile + x)] = tile.at(x, y);

@@ -1,11 +1,11 @@
 // Error messages about files that readers refuse: one line with the file, the place, what is wrong and what
 // to do.
-#include <limits>
 
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "tests/support/meshes.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith {
@@ -17,12 +17,7 @@ class MeshErrors : public ::testing::Test {
  protected:
   // The message of the InputError that reading the file gives; empty when it gives none.
   std::string complaint(const std::filesystem::path& file) {
-    try {
-      read_mesh(file);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return testing::refusal_of([&] { read_mesh(file); });
   }
   // Expects that a file of this content gives a message with the file's name and the fragment.
   void expect(const std::string& name, const std::string& content, const std::string& fragment) {

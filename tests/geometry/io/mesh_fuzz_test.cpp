@@ -1,11 +1,8 @@
 // A damaged file of any format gives a valid mesh or an InputError, and nothing else.
-#include <algorithm>
 
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
-#include "tests/support/data.h"
-#include "tests/support/meshes.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith {
@@ -13,55 +10,13 @@ namespace {
 
 using namespace testing;
 
-const char* const kPlyAscii =
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
-    "face 4\n"
-    "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 "
-    "3\n3 0 3 2\n";
-const char* const kOff = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
-const char* const kPlate = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n4\n1 1 3 2\n2 1 2 4\n3 2 3 4\n4 1 4 3\n";
-const char* const kStl =
-    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
-    "0\nendloop\nendfacet\nendsolid a\n";
-// A cube as an ICQ: Q = 1, faces in Gaskell's order.
-const char* const kIcq =
-    "1\n-1 -1 1\n-1 1 1\n1 -1 1\n1 1 1\n1 -1 1\n1 1 1\n1 -1 -1\n1 1 -1\n-1 -1 1\n1 -1 1\n-1 -1 -1\n1 -1 -1\n"
-    "-1 1 1\n-1 -1 1\n-1 1 -1\n-1 -1 -1\n1 1 1\n-1 1 1\n1 1 -1\n-1 1 -1\n1 -1 -1\n1 1 -1\n-1 -1 -1\n-1 1 "
-    "-1\n";
-
-std::string tiny_bmf() {
-  const auto u16 = [](int value) {
-    return std::string{static_cast<char>(value), static_cast<char>(value >> 8)};
-  };
-  std::string bytes = u16(1) + u16(0) + u16(2) + std::string("T\0", 2) + std::string(48, '\0') + u16(4);
-  for (int corner = 0; corner < 4; ++corner) {
-    for (int number = 0; number < 8; ++number) {
-      bytes += number == 4 + corner ? std::string("\0\0\x80\x3f", 4) : std::string(4, '\0');
-    }
-  }
-  bytes += u16(4);
-  for (const int index : {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}) bytes += u16(index);
-  return bytes;
-}
-
 class MeshFuzz : public ::testing::TestWithParam<const char*> {
  protected:
-  std::string valid_file() {
-    const std::string name = GetParam();
-    if (name == "ascii.ply") return kPlyAscii;
-    if (name == "a.off") return kOff;
-    if (name == "a.tab") return kPlate;
-    if (name == "ascii.stl") return kStl;
-    if (name == "a.icq") return kIcq;
-    if (name == "a.bmf") return tiny_bmf();
-    TriangleMesh mesh = octahedron();
-    if (name == "normals.ply") mesh.normals = mesh.vertices;
-    write_mesh(mesh, folder / name, {"km", "body-fixed", ""});
-    return file_content(folder / name);
-  }
+  // A valid file, with which the fuzzer of the format begins too.
+  std::string valid_file() { return text_of(std::filesystem::path(ASTROLITH_FUZZ_SEEDS) / GetParam()); }
   // True when the file was read.
   bool survives(const std::string& content) {
-    const std::filesystem::path file = folder.write(GetParam(), content);
+    const std::filesystem::path file = folder.write(std::filesystem::path(GetParam()).filename(), content);
     try {
       check(read_mesh(file));
       return true;
@@ -119,8 +74,10 @@ TEST_P(MeshFuzz, PiecesRepeatedAndRemoved) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryFormat, MeshFuzz,
-                         ::testing::Values("a.obj", "a.ply", "normals.ply", "ascii.ply", "a.stl", "ascii.stl",
-                                           "a.off", "a.tab", "a.icq", "a.bmf"));
+                         ::testing::Values("obj/tetrahedron.obj", "obj/polygons.obj", "ply/ascii.ply",
+                                           "ply/little.ply", "ply/big.ply", "stl_binary/binary.stl",
+                                           "stl_ascii/ascii.stl", "off/plain.off", "plate/one_count.tab",
+                                           "icq/cube_1.icq", "bmf/tetrahedron.bmf"));
 
 }  // namespace
 }  // namespace astrolith

@@ -83,7 +83,7 @@ TEST(PlyStreamReader, DamagedAndOtherFilesAreRefused) {
   const ScratchFolder folder;
   TriangleMesh mesh = torus(2, 0.7);
   write_mesh(mesh, folder / "a.ply", {});
-  const std::string good = file_content(folder / "a.ply");
+  const std::string good = text_of(folder / "a.ply");
   const auto refuse = [&](const std::string& bytes) {
     const auto file = folder.write("bad.ply", bytes);
     EXPECT_THROW(

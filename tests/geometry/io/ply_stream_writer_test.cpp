@@ -65,8 +65,8 @@ TEST(PlyStreamWriter, StreamedColoursAreThoseOfWriteMesh) {
   PlyStreamWriter writer(folder / "streamed.ply", info, {}, paint);
   stream(mesh, 7, writer);
   writer.finish();
-  const std::string bytes = file_content(folder / "whole.ply");
-  EXPECT_TRUE(file_content(folder / "streamed.ply") == bytes);
+  const std::string bytes = text_of(folder / "whole.ply");
+  EXPECT_TRUE(text_of(folder / "streamed.ply") == bytes);
   EXPECT_NE(bytes.find("property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"),
             std::string::npos);
   const std::size_t first = bytes.find("end_header\n") + 11 + 6 * sizeof(float);
@@ -87,7 +87,7 @@ TEST(PlyStreamWriter, BytesDoNotDependOnPortionsAndEqualThoseOfWriteMesh) {
     writer.finish();
     EXPECT_EQ(writer.num_vertices(), mesh.vertices.size());
     EXPECT_EQ(writer.num_triangles(), mesh.triangles.size());
-    EXPECT_TRUE(file_content(folder / "streamed.ply") == file_content(folder / "whole.ply"));
+    EXPECT_TRUE(text_of(folder / "streamed.ply") == text_of(folder / "whole.ply"));
   }
 }
 

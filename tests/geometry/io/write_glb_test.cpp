@@ -27,7 +27,11 @@ class WriteGlb : public ::testing::Test {
   WriteGlb() {
     mesh = icosphere(2, 0.5, {0, 0, 1});
     mesh.normals = vertex_normals(mesh);
-    write_mesh(mesh, folder / "a.glb", {"km", "body-fixed", "said \"so\"\n\xff"});
+    write_and_load({"km", "body-fixed", "said \"so\"\n\xff"});
+  }
+  void write_and_load(const MeshFileInfo& info) {
+    write_mesh(mesh, folder / "a.glb", info);
+    model = {};
     tinygltf::TinyGLTF loader;
     std::string error, warning;
     EXPECT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "a.glb").string())) << error;
@@ -69,12 +73,7 @@ TEST_F(WriteGlb, ArraysComeBack) {
 // Colours are sRGB in the mesh and linear light in the file, where the material must not darken them.
 TEST_F(WriteGlb, ColoursAreLinearLight) {
   mesh.colors.assign(mesh.vertices.size(), {0, 188, 255});
-  write_mesh(mesh, folder / "c.glb", {"km", "body-fixed", ""});
-  model = {};
-  tinygltf::TinyGLTF loader;
-  std::string error, warning;
-  ASSERT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "c.glb").string())) << error;
-  EXPECT_EQ(error + warning, "");
+  write_and_load({"km", "body-fixed", ""});
   const int number = model.meshes.at(0).primitives.at(0).attributes.at("COLOR_0");
   const auto& accessor = model.accessors.at(static_cast<std::size_t>(number));
   EXPECT_EQ(accessor.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
@@ -100,12 +99,7 @@ TEST_F(WriteGlb, TextureCoordinatesAreLongitudeAndLatitude) {
   mesh.colors.assign(mesh.vertices.size(), {1, 2, 3});
   MeshFileInfo info{"km", "body-fixed", "", Vec3d{0, 0, 1}};
   info.texture_coordinates = true;
-  write_mesh(mesh, folder / "uv.glb", info);
-  model = {};
-  tinygltf::TinyGLTF loader;
-  std::string error, warning;
-  ASSERT_TRUE(loader.LoadBinaryFromFile(&model, &error, &warning, (folder / "uv.glb").string())) << error;
-  EXPECT_EQ(error + warning, "");
+  write_and_load(info);
   const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
   const auto positions = array<Vec3f>(primitive.attributes.at("POSITION"));
   const auto normals = array<Vec3f>(primitive.attributes.at("NORMAL"));

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <numbers>
-#include <sstream>
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"

@@ -7,18 +7,18 @@
 namespace astrolith {
 namespace {
 
-const Vec3d a{0, 0, 0}, b{4, 0, 0}, c{0, 3, 0};
+const Vec3d kA{0, 0, 0}, kB{4, 0, 0}, kC{0, 3, 0};
 
 TEST(ClosestOnTriangle, EachFeature) {
   using F = TriangleFeature;
-  EXPECT_EQ(closest_on_triangle({1, 1, 5}, a, b, c).feature, F::face);
-  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 1, 5}, a, b, c).squared_distance, 25);
-  EXPECT_EQ(closest_on_triangle({-1, -1, 2}, a, b, c).feature, F::corner_a);
-  EXPECT_EQ(closest_on_triangle({9, -1, 2}, a, b, c).feature, F::corner_b);
-  EXPECT_EQ(closest_on_triangle({-1, 9, 2}, a, b, c).feature, F::corner_c);
-  EXPECT_EQ(closest_on_triangle({1, -2, 0}, a, b, c).feature, F::side_ab);
-  EXPECT_EQ(closest_on_triangle({3, 4, 1}, a, b, c).feature, F::side_bc);
-  EXPECT_EQ(closest_on_triangle({-1, 1, 0}, a, b, c).feature, F::side_ca);
+  EXPECT_EQ(closest_on_triangle({1, 1, 5}, kA, kB, kC).feature, F::face);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 1, 5}, kA, kB, kC).squared_distance, 25);
+  EXPECT_EQ(closest_on_triangle({-1, -1, 2}, kA, kB, kC).feature, F::corner_a);
+  EXPECT_EQ(closest_on_triangle({9, -1, 2}, kA, kB, kC).feature, F::corner_b);
+  EXPECT_EQ(closest_on_triangle({-1, 9, 2}, kA, kB, kC).feature, F::corner_c);
+  EXPECT_EQ(closest_on_triangle({1, -2, 0}, kA, kB, kC).feature, F::side_ab);
+  EXPECT_EQ(closest_on_triangle({3, 4, 1}, kA, kB, kC).feature, F::side_bc);
+  EXPECT_EQ(closest_on_triangle({-1, 1, 0}, kA, kB, kC).feature, F::side_ca);
 }
 
 // At an obtuse corner, a test by the two sides of the corner alone goes wrong.
@@ -41,9 +41,9 @@ TEST(ClosestOnTriangle, BeatsADenseSearch) {
 }
 
 TEST(ClosestOnTriangle, SegmentsAndPoints) {
-  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 0}, a, b, {2, 0, 0}).squared_distance, 4);
-  EXPECT_DOUBLE_EQ(closest_on_triangle({5, 0, 0}, a, {2, 0, 0}, b).squared_distance, 1);
-  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 2}, a, a, a).squared_distance, 9);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 0}, kA, kB, {2, 0, 0}).squared_distance, 4);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({5, 0, 0}, kA, {2, 0, 0}, kB).squared_distance, 1);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 2}, kA, kA, kA).squared_distance, 9);
 }
 
 }  // namespace

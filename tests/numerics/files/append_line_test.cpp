@@ -13,20 +13,20 @@
 namespace astrolith {
 namespace {
 
-using testing::file_content;
+using testing::text_of;
 
 TEST(AppendLine, MakesAndExtendsTheFile) {
   const testing::ScratchFolder folder;
   append_line(folder / "m.jsonl", "one");
   append_line(folder / "m.jsonl", "two");
-  EXPECT_EQ(file_content(folder / "m.jsonl"), "one\ntwo\n");
+  EXPECT_EQ(text_of(folder / "m.jsonl"), "one\ntwo\n");
 }
 
 TEST(AppendLine, LeavesALineThatWasCutShortAlone) {
   const testing::ScratchFolder folder;
   std::ofstream(folder / "m.jsonl") << "one\n{\"mem";
   append_line(folder / "m.jsonl", "two");
-  EXPECT_EQ(file_content(folder / "m.jsonl"), "one\n{\"mem\ntwo\n");
+  EXPECT_EQ(text_of(folder / "m.jsonl"), "one\n{\"mem\ntwo\n");
 }
 
 TEST(AppendLine, KeepsTheLinesOfTwoProcessesWhole) {

@@ -10,14 +10,14 @@
 namespace astrolith {
 namespace {
 
-using testing::file_content;
+using testing::text_of;
 
 TEST(NpyFile, HasTheHeaderAndTheBytes) {
   const testing::ScratchFolder folder;
   const auto file = folder / "a.npy";
   const std::vector<double> values{1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
   write_npy(values, std::vector<int>{2, 3}, file);
-  const std::string bytes = file_content(file);
+  const std::string bytes = text_of(file);
   EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
   const std::size_t start = bytes.size() - 6 * sizeof(double);
   EXPECT_EQ(start % 64, 0u);
@@ -31,7 +31,7 @@ TEST(NpyFile, OneAxisAndWrongShapes) {
   const testing::ScratchFolder folder;
   const std::vector<double> values{1.0, 2.0};
   write_npy(values, std::vector<int>{2}, folder / "a.npy");
-  EXPECT_NE(file_content(folder / "a.npy").find("'shape': (2, ), }"), std::string::npos);
+  EXPECT_NE(text_of(folder / "a.npy").find("'shape': (2, ), }"), std::string::npos);
   EXPECT_THROW(write_npy(values, std::vector<int>{2, 2}, folder / "b.npy"), WorkError);
   EXPECT_FALSE(std::filesystem::exists(folder / "b.npy"));
 }

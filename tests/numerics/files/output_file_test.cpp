@@ -29,7 +29,7 @@ TEST_F(OutputFileTest, AppearsWholeAtCommit) {
   file.write("hello", 5);
   EXPECT_FALSE(fs::exists(folder / "a.txt"));
   file.commit();
-  EXPECT_EQ(testing::file_content(folder / "a.txt"), "hello");
+  EXPECT_EQ(testing::text_of(folder / "a.txt"), "hello");
 }
 
 TEST_F(OutputFileTest, LeavesNothingWithoutCommit) {
@@ -84,7 +84,7 @@ void write_file(const fs::path& target, OutputFile::Start start = OutputFile::St
 
 TEST_F(OutputFileTest, AKilledProgramLeavesWholeFilesOnly) {
   if (!knows_nameless_files(folder)) GTEST_SKIP() << "no nameless files in " << folder;
-  for (int moment = 0; moment < 60; ++moment) {
+  for (int moment = 0; moment < 30; ++moment) {
     const fs::path own = folder / std::to_string(moment);
     fs::create_directories(own);
     const auto work = [&] {
@@ -111,7 +111,7 @@ TEST_F(OutputFileTest, AKilledProgramLeavesNoPartWhereItReplacesAFile) {
           for (;;) write_file(target);
         },
         std::chrono::microseconds(500 + 311 * moment));
-    const std::string after = testing::file_content(target);
+    const std::string after = testing::text_of(target);
     EXPECT_TRUE(after == before || after == kContent);
     for (const std::string& name : names_in(folder)) {
       EXPECT_TRUE(name == "file" || fs::file_size(folder / name) == kContent.size()) << name << " was left";
@@ -127,14 +127,14 @@ TEST_F(OutputFileTest, ReplacesAFileWholeOrNotAtAll) {
     {
       OutputFile file(target, start);
       file.write("new", 3);
-      EXPECT_EQ(testing::file_content(target), kContent);
+      EXPECT_EQ(testing::text_of(target), kContent);
       file.commit();
     }
-    EXPECT_EQ(testing::file_content(target), "new");
-    EXPECT_EQ(testing::file_content(other_name), kContent);
+    EXPECT_EQ(testing::text_of(target), "new");
+    EXPECT_EQ(testing::text_of(other_name), kContent);
     EXPECT_EQ(names_in(folder).size(), 2u);
     { OutputFile(target, start).write("never", 5); }
-    EXPECT_EQ(testing::file_content(target), "new");
+    EXPECT_EQ(testing::text_of(target), "new");
     EXPECT_EQ(names_in(folder).size(), 2u);
     fs::remove(other_name);
     fs::remove(target);
@@ -174,7 +174,7 @@ TEST_F(OutputFileTest, ADuplicateDescriptorWritesTheSameFile) {
   ASSERT_EQ(::write(descriptor, "two", 3), 3);
   ::close(descriptor);
   file.commit();
-  EXPECT_EQ(testing::file_content(folder / "file"), "one two");
+  EXPECT_EQ(testing::text_of(folder / "file"), "one two");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/lone_body.h"
 
@@ -164,20 +165,15 @@ TEST(BodyTables, BoundsAreNeverWrong) {
     if (field.bounds().empty()) continue;
     for (int b = 0; b < 20; ++b) {
       const Box all = field.bounds();
-      const Vec3d corner{random.uniform(all.min.x, all.max.x), random.uniform(all.min.y, all.max.y),
-                         random.uniform(all.min.z, all.max.z)};
+      const Vec3d corner = testing::random_point(random, all);
       const double size = std::pow(10.0, random.uniform(-2.5, -0.7));
       const Box box{corner, corner + Vec3d{size, size, size}};
       const Interval bound = body.bound(box, 0.3 * size);
       const FieldBlock block = field.gather(box);
       const BlockContent content = block.content();
       proved += content != BlockContent::kMixed;
-      std::vector<float> x, y, z, value(60), s(60), gx(60), gy(60), gz(60);
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        x.push_back(static_cast<float>(corner.x + size * random.uniform()));
-        y.push_back(static_cast<float>(corner.y + size * random.uniform()));
-        z.push_back(static_cast<float>(corner.z + size * random.uniform()));
-      }
+      std::vector<float> value(60), s(60), gx(60), gy(60), gz(60);
+      const auto [x, y, z] = testing::FloatPoints(random, box, value.size());
       block.evaluate(x, y, z, value);
       body.evaluate(60, x.data(), y.data(), z.data(), s.data(), gx.data(), gy.data(), gz.data());
       for (std::size_t i = 0; i < value.size(); ++i) {
@@ -203,22 +199,6 @@ TEST(BodyTables, GradientsAreUnitNormalsOnTheSurface) {
   body.evaluate(1, &x, &y, &z, &s, &gx, &gy, &gz);
   EXPECT_NEAR(s, 0.0, 1e-5);
   EXPECT_LT(norm(Vec3d{gx, gy, gz} - Vec3d{0.6, -0.8, 0.0}), 2e-3);
-}
-
-TEST(BodyTables, BecomesClosedManifolds) {
-  CounterRandom random(77);
-  for (int k = 0; k < 6; ++k) {
-    SCOPED_TRACE(k);
-    const ImplicitField field(random_recipe(random, k));
-    if (field.bounds().empty()) continue;
-    for (const int resolution : {8, 13, 22}) {
-      MeshCollector collector;
-      mesh_field(field, field.bounds(), resolution, collector);
-      if (collector.mesh.triangles.empty()) continue;
-      const MeshTopology topology = analyze_topology(collector.mesh);
-      ASSERT_TRUE(topology.closed && topology.manifold && topology.oriented);
-    }
-  }
 }
 
 }  // namespace

@@ -97,29 +97,6 @@ TEST(LayeredGround, DoesNotSquashStonesInSteepDips) {
   EXPECT_LT(down / across, 1.15);
 }
 
-// The function that a GPU runs for each point gives the bits of the vectorised loops.
-TEST(LayeredGround, HasTheBitsOfOnePointInABatch) {
-  const ImplicitField field(Dips::recipe_of(true));
-  const FieldView& tables = field.tables();
-  const ReachingMetaballs metaballs = all_metaballs(tables.body, tables.arrays);
-  const std::uint32_t no_landforms[] = {0, 0}, no_impulses[] = {0};
-  const BlockLists lists{metaballs.lists(), nullptr, no_impulses, nullptr,
-                         no_impulses,       nullptr, no_landforms};
-  CounterRandom random(31);
-  std::vector<float> x(700), y(700), z(700), value(700);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3f p = to_float(random.uniform(0.9, 1.1) *
-                             normalized(Vec3d{random.normal(), random.normal(), random.normal()}));
-    x[i] = p.x, y[i] = p.y, z[i] = p.z;
-  }
-  field.gather(Box{{-2, -2, -2}, {2, 2, 2}}).evaluate(x, y, z, value);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    ASSERT_EQ(math::bits_of(field_at(tables, lists, {x[i], y[i], z[i]}, kExactEverywhere)),
-              math::bits_of(value[i]))
-        << i;
-  }
-}
-
 // The exemplar of a patch stands on the same ground as that of the whole body.
 TEST(LayeredGround, IsTheSameInAPatch) {
   Recipe recipe = Dips::recipe_of(true);

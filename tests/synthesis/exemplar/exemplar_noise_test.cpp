@@ -8,6 +8,7 @@
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_model_internal.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/exemplars.h"
 
@@ -15,6 +16,7 @@ namespace astrolith {
 namespace {
 
 using testing::exemplar_layer;
+using testing::random_direction;
 using testing::sphere_recipe;
 
 // A ball under an exemplar layer, and the noise of that layer.
@@ -32,18 +34,13 @@ struct Ball {
   float at(const Vec3f& p) const { return height_at(noise, field.tables().arrays, p); }
 };
 
-Vec3d random_direction(CounterRandom& random) {
-  return normalized(Vec3d{random.normal(), random.normal(), random.normal()});
-}
-
 // The corners of a point's tetrahedron, weighted, give the point back, and every corner is an anchor's place.
 TEST(ExemplarAnchors, WeightsAreBarycentric) {
   const ExemplarCells cells = exemplar_cells(Box{{-3, -4, -5}, {5, 4, 3}}, {0.7, 0.7, 0.7});
   ASSERT_LE(cells.anchors, kMostExemplarAnchors);
   CounterRandom random(3);
   for (int i = 0; i < 2000; ++i) {
-    const Vec3f p{static_cast<float>(random.uniform(-3, 5)), static_cast<float>(random.uniform(-4, 4)),
-                  static_cast<float>(random.uniform(-5, 3))};
+    const Vec3f p = to_float(testing::random_point(random, {{-3, -4, -5}, {5, 4, 3}}));
     const ExemplarPlace place = exemplar_place(cells.lattice, p.x, p.y, p.z);
     double sum = 0.0, x = 0.0, y = 0.0, z = 0.0;
     for (int c = 0; c < 4; ++c) {
@@ -63,28 +60,6 @@ TEST(ExemplarAnchors, WeightsAreBarycentric) {
     const ExemplarLattice& l = cells.lattice;
     const double ax = l.low[0] + cell % l.size[0] + 0.5 * (place.anchor & 1);
     EXPECT_NEAR(static_cast<double>(p.x) / 0.7, ax + static_cast<double>(place.x), 1e-4);
-  }
-}
-
-TEST(ExemplarNoise, HasTheBitsOfOnePointInABatch) {
-  for (const double pixel : {0.004, 0.05}) {
-    ExemplarLayer layer = exemplar_layer(pixel, 0.01);
-    layer.rotation = ExemplarRotation::kAny;
-    layer.exponent = 4;
-    const Ball ball(layer, 1.0);
-    CounterRandom random(7);
-    std::vector<float> x, y, z;
-    for (int i = 0; i < 777; ++i) {
-      const Vec3d p = i < 400 ? random_direction(random) : Vec3d{0.6, 0.8 + 1e-4 * i, 0.001 * i};
-      x.push_back(static_cast<float>(p.x)), y.push_back(static_cast<float>(p.y)),
-          z.push_back(static_cast<float>(p.z));
-    }
-    std::vector<float> heights(x.size());
-    evaluate_heights(ball.noise, ball.field.tables().arrays, static_cast<int>(x.size()), x.data(), y.data(),
-                     z.data(), heights.data());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      ASSERT_EQ(math::bits_of(heights[i]), math::bits_of(ball.at({x[i], y[i], z[i]}))) << i;
-    }
   }
 }
 
@@ -149,21 +124,6 @@ TEST(ExemplarNoise, HasThePlanesValuesOnABall) {
     };
     EXPECT_NEAR(at(on_ball), at(on_plane), 0.06) << share;
   }
-}
-
-TEST(ExemplarNoise, MakesAClosedMeshOfTheSameBytesForAnyThreads) {
-  const Recipe recipe = Ball::recipe_of(exemplar_layer(0.02, 0.01), 1.0);
-  const auto meshed = [&](int threads) {
-    const ThreadLimit limit(threads);
-    const ImplicitField field(recipe);
-    MeshCollector collector;
-    mesh_field(field, field.bounds(), 60, collector);
-    return std::move(collector.mesh);
-  };
-  const TriangleMesh one = meshed(1), two = meshed(2);
-  ASSERT_FALSE(one.triangles.empty());
-  EXPECT_EQ(one.vertices, two.vertices);
-  EXPECT_EQ(one.triangles, two.triangles);
 }
 
 // A body more than 64 images wide has too many anchors. The layer is left out and reported; a patch has it.

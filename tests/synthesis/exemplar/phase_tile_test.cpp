@@ -181,7 +181,8 @@ TEST(TiledGaborNoise, HasTheCovarianceOfItsLobesOnABall) {
   ASSERT_EQ(ball.noise.detail.left_out, 0.0);
   ASSERT_EQ(ball.noise.narrow.bands.count, 0u);
   CounterRandom random(9);
-  constexpr int kPairs = 400000;
+  constexpr int kPairs =
+      60000;  // a standard error of at most sqrt(2 / 60000) = .006, a fifth of what is allowed
   for (const double lag : {0.0, 2.0, 5.0, 10.0}) {
     double covariance = 0.0, expected = 0.0;
     for (int i = 0; i < kPairs; ++i) {
@@ -198,25 +199,6 @@ TEST(TiledGaborNoise, HasTheCovarianceOfItsLobesOnABall) {
                   std::cos(2 * std::numbers::pi * lobe.frequency_x * lag);
     }
     EXPECT_NEAR(covariance, expected, 0.03) << lag;
-  }
-}
-
-TEST(TiledGaborNoise, HasTheBitsOfOnePointInABatch) {
-  const TiledBall ball(photo_layer(0.002, false), 1.0);
-  CounterRandom random(11);
-  std::vector<float> x, y, z, heights(777);
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const Vec3d p = i < 400 ? drawn_direction(random) : Vec3d{0.6, 0.8, 1e-4 * static_cast<double>(i)};
-    x.push_back(static_cast<float>(p.x)), y.push_back(static_cast<float>(p.y)),
-        z.push_back(static_cast<float>(p.z));
-  }
-  const BodyTables& body = ball.field.tables().body;
-  const BodyGround ground{body, ball.field.tables().arrays, {}};
-  const int n = static_cast<int>(heights.size());
-  evaluate_heights(ball.noise, ground, nullptr, n, x.data(), y.data(), z.data(), heights.data());
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const float one = height_at(ball.noise, ground.arrays, nullptr, nullptr, {x[i], y[i], z[i]});
-    ASSERT_EQ(math::bits_of(one), math::bits_of(heights[i])) << i;
   }
 }
 
@@ -241,27 +223,6 @@ TEST(TiledGaborNoise, IsBoundedAndHasNoJumps) {
   for (const double step : {0.25, 0x1p-4, 0x1p-6}) {
     EXPECT_LT(largest_jump(step), 2.5 * step * whole + 5e-3) << step;
   }
-}
-
-// Wide and narrow lobes together: a closed mesh with the same bytes for any number of threads.
-TEST(TiledGaborNoise, MakesAClosedMeshOfTheSameBytesForAnyThreads) {
-  GaborLayer layer = photo_layer(0.02);
-  layer.height_rms = 0.01;
-  layer.lobes.back().bandwidth = 8;
-  layer.lobes.back().frequency_x = 0.5;
-  ASSERT_FALSE(plan_phase_tiles(layer.lobes).narrow.empty());
-  const Recipe recipe = TiledBall::recipe_of(layer, 1.0);
-  const auto meshed = [&](int threads) {
-    const ThreadLimit limit(threads);
-    const ImplicitField field(recipe);
-    MeshCollector collector;
-    mesh_field(field, field.bounds(), 40, collector);
-    return std::move(collector.mesh);
-  };
-  const TriangleMesh one = meshed(1), two = meshed(2);
-  ASSERT_FALSE(one.triangles.empty());
-  EXPECT_EQ(one.vertices, two.vertices);
-  EXPECT_EQ(one.triangles, two.triangles);
 }
 
 }  // namespace

@@ -20,10 +20,11 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
   const FieldView& tables = field.tables();
   CounterRandom random(seed, 1);
   const Box bounds = field.bounds();
-  for (int b = 0; b < 4; ++b) {
+  if (bounds.empty()) return;
+  for (int b = 0; b < 3; ++b) {
     const Vec3d center{random.uniform(bounds.min.x, bounds.max.x), random.uniform(bounds.min.y, bounds.max.y),
                        random.uniform(bounds.min.z, bounds.max.z)};
-    const double half = b < 3 ? 0.03 : 0.15;
+    const double half = b < 2 ? 0.03 : 0.15;
     const FieldBlock block = field.gather(box_about(center, half));
     BlockListStore blocks(tables);
     blocks.add(tables, box_about(center, 0.01));  // a block before the tested one
@@ -58,7 +59,9 @@ void expect_same_bits(const Recipe& recipe, std::uint64_t seed) {
 }
 
 TEST(FieldAtPoint, HasTheBitsOfTheField) {
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) expect_same_bits(testing::random_recipe(seed), seed);
+  for (std::uint64_t seed = 1; seed <= 3 * testing::kLayerKinds; ++seed) {
+    expect_same_bits(testing::wild_recipe(seed), seed);
+  }
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "numerics/errors.h"
+#include "tests/support/points.h"
+#include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -13,12 +15,8 @@ namespace {
 using testing::fractal_layer;
 using testing::gabor_layer;
 using testing::potato_recipe;
+using testing::random_point;
 using testing::sphere_recipe;
-
-Vec3d random_point(CounterRandom& random, const Box& box) {
-  return {random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
-          random.uniform(box.min.z, box.max.z)};
-}
 
 TEST(ImplicitField, OneMetaballIsASphereOfItsRadius) {
   const Vec3d center{1.0, -2.0, 0.5};
@@ -69,12 +67,7 @@ TEST(ImplicitField, GradientWithLayersIsTheDerivative) {
 }
 
 std::string refusal_of(const Recipe& recipe) {
-  try {
-    const ImplicitField field(recipe, "r.json");
-    return "";
-  } catch (const InputError& e) {
-    return e.what();
-  }
+  return testing::refusal_of([&] { const ImplicitField field(recipe, "r.json"); });
 }
 
 // Where no metaball reaches, s is a finite number. Greater heights would make all space matter.
@@ -104,7 +97,7 @@ TEST(ImplicitField, HeightsBelowTheLimitLeaveSpaceEmpty) {
       }
       recipe.layers = {fractal_layer(1e9, 1.0, 1)};
       const std::string refusal = refusal_of(recipe);
-      ASSERT_NE(refusal, "") << kernel_word(kernel);
+      ASSERT_NE(refusal, "no error") << kernel_word(kernel);
       const double limit = std::stod(refusal.substr(refusal.rfind(' ')));  // of three digits
       EXPECT_GT(limit, 100.0) << "radii";
       recipe.layers = {fractal_layer(0.99 * limit, 1.0, 1)};
@@ -146,7 +139,7 @@ TEST(ImplicitField, AWarpedBodyIsTheBodyAtWarpedCoordinates) {
   CounterRandom random(4);
   int inside = 0, warped_out = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Vec3d p = random_point(random, {{-2, -2, -2}, {2, 2, 2}});
+    const Vec3d p = random_point(random, testing::cube_about_origin(2));
     if (!field.inside(p)) {
       warped_out += norm(p) < 1.0;
       continue;
@@ -173,32 +166,6 @@ TEST(ImplicitField, ABodyThatTheIsoValueErasesHasNoBounds) {
 
 TEST(ImplicitField, NeedsABody) { EXPECT_THROW(ImplicitField(Recipe{}), InputError); }
 
-TEST(FieldBlock, GivesTheBitsOfTheField) {
-  Recipe recipe = potato_recipe(80, 6);
-  recipe.layers = {fractal_layer(0.01, 5.0, 6)};
-  recipe.body->warp = Warp{0.05, 3.0, 2, 0.5, 2.0};
-  const ImplicitField field(recipe);
-  CounterRandom random(7);
-  for (int k = 0; k < 50; ++k) {
-    Box parent;
-    parent.extend(random_point(random, field.bounds()));
-    parent.extend(parent.min + Vec3d{0.3, 0.3, 0.3});
-    const Box child{parent.min + Vec3d{0.1, 0.0, 0.05}, parent.max - Vec3d{0.1, 0.2, 0.2}};
-    const FieldBlock block = field.gather(parent).restricted_to(child);
-    std::vector<float> x, y, z, value(600);
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      const Vec3d p = random_point(random, child);
-      x.push_back(static_cast<float>(p.x));
-      y.push_back(static_cast<float>(p.y));
-      z.push_back(static_cast<float>(p.z));
-    }
-    block.evaluate(x, y, z, value);
-    for (std::size_t i = 0; i < value.size(); i += 7) {
-      ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
-    }
-  }
-}
-
 TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
   Recipe recipe = potato_recipe(40, 6);
   recipe.layers = {fractal_layer(0.01, 5.0, 3), gabor_layer(0.02, 0.002)};
@@ -206,13 +173,8 @@ TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
   const Box box = field.bounds();
   const FieldBlock block = field.gather(box);
   CounterRandom random(8);
-  std::vector<float> x, y, z, exact(3000), coarse(3000);
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    const Vec3d p = random_point(random, box);
-    x.push_back(static_cast<float>(p.x));
-    y.push_back(static_cast<float>(p.y));
-    z.push_back(static_cast<float>(p.z));
-  }
+  std::vector<float> exact(3000), coarse(3000);
+  const auto [x, y, z] = testing::FloatPoints(random, box, exact.size());
   constexpr float kBand = 0.01f;
   block.evaluate(x, y, z, exact);
   block.evaluate(x, y, z, coarse, kBand);
@@ -225,58 +187,6 @@ TEST(FieldBlock, OutsideTheBandOnlySignsAreKept) {
     ASSERT_EQ(exact[i] > 0.0f, coarse[i] > 0.0f);
   }
   EXPECT_GT(different, 1000);
-}
-
-// No box that is called outside or inside holds a point of the other kind.
-TEST(FieldBlock, ContentIsNeverWrong) {
-  CounterRandom random(10);
-  int proved = 0;
-  for (int k = 0; k < 120; ++k) {
-    Recipe recipe = potato_recipe(1 + k % 90, static_cast<std::uint64_t>(k), random.uniform(0.7, 12.0));
-    recipe.body->cutoff_radii = random.uniform(1.2, 5.0);
-    if (k % 2) recipe.layers = {fractal_layer(std::pow(10.0, random.uniform(-3.0, -1.0)), 4.0, 1 + k % 8)};
-    if (k % 5 == 0) recipe.layers.push_back(gabor_layer(0.02, std::pow(10.0, random.uniform(-3.5, -2.0))));
-    if (k % 3 == 0) recipe.body->warp = Warp{random.uniform(-0.1, 0.1), random.uniform(1, 5), 2, 0.5, 2.0};
-    if (k % 6 == 2) {
-      SpotLayer spots;
-      spots.amplitude = random.uniform(-0.05, 0.05);
-      spots.size = random.uniform(0.02, 0.1);
-      spots.cell_size = 3 * spots.size;
-      spots.kappa = -0.6;
-      spots.layers = 3;
-      recipe.layers.push_back(spots);
-    }
-    if (k % 4 == 1) {
-      FractalLayer layer =
-          fractal_layer(std::pow(10.0, random.uniform(-3.0, -0.5)), random.uniform(0.3, 6), 3);
-      layer.noise = k % 8 == 1 ? Noise::kWorleyF2MinusF1 : Noise::kPerlin;
-      layer.gradient_modulation = k % 8 == 1 ? 0.0 : 0.2;
-      layer.warp = Warp{0.1, 2.0, 2, 0.5, 2.0};
-      recipe.layers.push_back(layer);
-    }
-    const ImplicitField field(recipe);
-    if (field.bounds().empty()) continue;
-    for (int b = 0; b < 40; ++b) {
-      Box box;
-      const Vec3d corner = random_point(random, field.bounds());
-      const double size = std::pow(10.0, random.uniform(-2.5, -0.7));
-      box.extend(corner);
-      box.extend(corner + Vec3d{size, size, size});
-      const FieldBlock block = field.gather(box);
-      if (block.content() == BlockContent::kMixed) continue;
-      ++proved;
-      std::vector<float> x, y, z, value(256);
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        const Vec3d p = random_point(random, box);
-        x.push_back(static_cast<float>(p.x));
-        y.push_back(static_cast<float>(p.y));
-        z.push_back(static_cast<float>(p.z));
-      }
-      block.evaluate(x, y, z, value);
-      for (const float f : value) ASSERT_EQ(f > 0.0f, block.content() == BlockContent::kInside);
-    }
-  }
-  EXPECT_GT(proved, 1500);
 }
 
 // The number of blocks of 8^3 cells that are called mixed, over the number of blocks that hold both signs, in
@@ -294,13 +204,10 @@ double mixed_over_active(const Recipe& recipe) {
     const FieldBlock block = field.gather(box);
     if (block.content() != BlockContent::kMixed) continue;
     ++mixed;
-    std::vector<float> x, y, z, value(9 * 9 * 9);
-    for (int i = 0; i < 729; ++i) {
-      x.push_back(static_cast<float>(corner.x + h * (i % 9)));
-      y.push_back(static_cast<float>(corner.y + h * (i / 9 % 9)));
-      z.push_back(static_cast<float>(corner.z + h * (i / 81)));
-    }
-    block.evaluate(x, y, z, value);
+    std::vector<float> value(9 * 9 * 9);
+    testing::FloatPoints p;
+    for (int i = 0; i < 729; ++i) p.add(corner + h * Vec3d{double(i % 9), double(i / 9 % 9), double(i / 81)});
+    block.evaluate(p.x, p.y, p.z, value);
     const auto positive = std::count_if(value.begin(), value.end(), [](float f) { return f > 0; });
     active += positive > 0 && positive < 729;
   }

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "numerics/hash_random.h"
+#include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
-#include "tests/synthesis/mesh_checks.h"
 
 namespace astrolith {
 namespace {
@@ -19,15 +19,17 @@ std::vector<double> elevations(const Recipe& recipe) {
   CounterRandom random(7);
   std::vector<double> result;
   for (int i = 0; i < 300; ++i) {
-    const Vec3d p{random.uniform(-0.5, 0.5), random.uniform(-0.35, 0.35), random.uniform(-0.3, 0.3)};
+    const Vec3d p = testing::random_point(random, {{-0.5, -0.35, -0.3}, {0.5, 0.35, 0.3}});
     result.push_back(field.value(p) - body.value(p));
   }
   return result;
 }
 
-FractalLayer named(const char* name, double amplitude, double frequency) {
+FractalLayer named(const char* name, double amplitude, double frequency,
+                   std::optional<std::uint64_t> seed = std::nullopt) {
   FractalLayer layer = testing::fractal_layer(amplitude, frequency, 3);
   layer.name = name;
+  layer.seed = seed;
   return layer;
 }
 
@@ -38,9 +40,10 @@ Recipe with_layers(std::vector<Layer> layers) {
   return recipe;
 }
 
-Combination kind(Combine combine) {
+Combination kind(Combine combine, double width = Combination{}.width) {
   Combination how;
   how.kind = combine;
+  how.width = width;
   return how;
 }
 
@@ -53,18 +56,14 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 constexpr double kRounding = 1e-6;  // rounding of F on a body about 1 long
 
 TEST(LayerJoin, ReplacedIsTheLayerAlone) {
-  FractalLayer hills = named("hills", 0.05, 3.0), plains = named("plains", 0.01, 9.0);
+  FractalLayer hills = named("hills", 0.05, 3.0, 4), plains = named("plains", 0.01, 9.0, 5);
   plains.use.combination = kind(Combine::kReplace);
-  hills.seed = 4;
-  plains.seed = 5;
   EXPECT_LT(largest_difference(elevations(with_layers({hills, plains})), elevations(with_layers({plains}))),
             kRounding);
 }
 
 TEST(LayerJoin, ReplacedByLocalityIsEitherLayer) {
-  FractalLayer hills = named("hills", 0.05, 3.0), plains = named("plains", 0.01, 9.0);
-  hills.seed = 4;
-  plains.seed = 5;
+  FractalLayer hills = named("hills", 0.05, 3.0, 4), plains = named("plains", 0.01, 9.0, 5);
   const std::vector<double> before = elevations(with_layers({hills})),
                             alone = elevations(with_layers({plains}));
   plains.use.combination = kind(Combine::kReplace);
@@ -83,14 +82,10 @@ TEST(LayerJoin, ReplacedByLocalityIsEitherLayer) {
 }
 
 TEST(LayerJoin, ABlendIsSymmetricAndNeverBelowEither) {
-  FractalLayer a = named("a", 0.05, 3.0), b = named("b", 0.04, 5.0);
-  a.seed = 1;
-  b.seed = 2;
+  const FractalLayer a = named("a", 0.05, 3.0, 1), b = named("b", 0.04, 5.0, 2);
   const std::vector<double> of_a = elevations(with_layers({a})), of_b = elevations(with_layers({b}));
   const auto blended = [](FractalLayer first, FractalLayer second, double width) {
-    Combination& how = second.use.combination;
-    how = kind(Combine::kBlend);
-    how.width = width;
+    second.use.combination = kind(Combine::kBlend, width);
     first.use.combination = kind(Combine::kReplace);
     return elevations(with_layers({first, second}));
   };
@@ -113,8 +108,7 @@ TEST(LayerJoin, AnIntersectionIsTheUnionUpsideDown) {
     CounterRandom random(3);
     for (int i = 0; i < 50; ++i) {
       const float a = static_cast<float>(random.normal()), b = static_cast<float>(random.normal());
-      Combination how = kind(Combine::kBlend);
-      how.width = width;
+      Combination how = kind(Combine::kBlend, width);
       float above = a, height = b, below = -a, negative = -b;
       join_elevations(how, 1, nullptr, &height, &above);
       how.intersection = true;
@@ -125,8 +119,7 @@ TEST(LayerJoin, AnIntersectionIsTheUnionUpsideDown) {
 }
 
 TEST(LayerJoin, AWarpOfNothingIsNothing) {
-  FractalLayer hills = named("hills", 0.05, 3.0), warp = named("warp", 0.0, 2.0);
-  hills.seed = 4;
+  FractalLayer hills = named("hills", 0.05, 3.0, 4), warp = named("warp", 0.0, 2.0);
   warp.use.combination = kind(Combine::kWarp);
   warp.use.combination.direction = {1, 2, 3};
   EXPECT_EQ(elevations(with_layers({warp, hills})), elevations(with_layers({hills})));
@@ -137,8 +130,7 @@ TEST(LayerJoin, AWarpOfNothingIsNothing) {
 
 // A displacement by a constant height is a shift of the later noise.
 TEST(LayerJoin, AWarpMovesLaterLayers) {
-  FractalLayer hills = named("hills", 0.05, 3.0);
-  hills.seed = 4;
+  FractalLayer hills = named("hills", 0.05, 3.0, 4);
   SparseLayer constant;  // noise varies within a cell, so the cells are huge
   constant.cell_size = 1e6;
   constant.levels = 1;
@@ -155,9 +147,7 @@ TEST(LayerJoin, AWarpMovesLaterLayers) {
 }
 
 TEST(LayerJoin, AMaskCountsWhereItsLayerIsHigh) {
-  FractalLayer mask = named("where", 1.0, 3.0), hills = named("hills", 0.05, 6.0);
-  mask.seed = 4;
-  hills.seed = 5;
+  FractalLayer mask = named("where", 1.0, 3.0, 4), hills = named("hills", 0.05, 6.0, 5);
   const std::vector<double> heights = elevations(with_layers({mask})),
                             everywhere = elevations(with_layers({hills}));
   mask.use.combination = kind(Combine::kMask);
@@ -196,8 +186,7 @@ Recipe joined_in_all_ways() {
   warp.use.combination = kind(Combine::kWarp);
   warp.use.combination.direction = {1, -1, 0.5};
   mask.use.combination = kind(Combine::kMask);
-  rocks.use.combination = kind(Combine::kBlend);
-  rocks.use.combination.width = 0.01;
+  rocks.use.combination = kind(Combine::kBlend, 0.01);
   dust.use.combination = kind(Combine::kReplace);
   dust.use.mask = LayerMask{"m", 0.0, 0.1};
   SpotLayer spots;
@@ -207,50 +196,12 @@ Recipe joined_in_all_ways() {
   return with_layers({hills, warp, mask, spots, rocks, dust});
 }
 
-TEST(LayerJoin, MeshesAreClosedManifoldsForAnyThreads) {
-  testing::expect_closed_manifold_for_any_threads(joined_in_all_ways());
-}
-
-TEST(LayerJoin, NoBoxIsProvedEmptyThatIsNot) {
-  const ImplicitField field(joined_in_all_ways());
-  CounterRandom random(11);
-  int proved = 0;
-  for (int k = 0; k < 600; ++k) {
-    const Vec3d corner{random.uniform(-0.7, 0.6), random.uniform(-0.5, 0.4), random.uniform(-0.5, 0.4)};
-    const double size = std::pow(10.0, random.uniform(-3.0, -1.0));
-    const FieldBlock block = field.gather({corner, corner + Vec3d{size, size, size}});
-    const BlockContent content = block.content();
-    if (content == BlockContent::kMixed) continue;
-    ++proved;
-    for (int i = 0; i < 30; ++i) {
-      const Vec3d p = corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()};
-      ASSERT_EQ(field.inside(p), content == BlockContent::kInside);
-    }
-  }
-  EXPECT_GT(proved, 200);
-}
-
-// Blocks of any box have the bits of single points.
-TEST(LayerJoin, BlocksHaveTheBitsOfPoints) {
-  const ImplicitField field(joined_in_all_ways());
-  CounterRandom random(5);
-  for (int k = 0; k < 100; ++k) {
-    const Vec3d corner{random.uniform(-0.5, 0.4), random.uniform(-0.4, 0.3), random.uniform(-0.3, 0.2)};
-    const FieldBlock block = field.gather({corner, corner + Vec3d{0.1, 0.1, 0.1}});
-    const Vec3d p = corner + Vec3d{random.uniform(0.01, 0.09), random.uniform(0.01, 0.09), 0.05};
-    const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
-    float value = 0.0f;
-    block.evaluate({&x, 1}, {&y, 1}, {&z, 1}, {&value, 1});
-    EXPECT_EQ(static_cast<double>(value), field.value(p));
-  }
-}
-
 // Layers also join in coordinates local to an origin, where noise has the digits of local coordinates.
 TEST(LayerJoin, IsTheSameNearAnOrigin) {
   const ImplicitField field(joined_in_all_ways());
   CounterRandom random(6);
   for (int k = 0; k < 100; ++k) {
-    const Vec3d origin{random.uniform(-0.5, 0.4), random.uniform(-0.4, 0.3), random.uniform(-0.3, 0.2)};
+    const Vec3d origin = testing::random_point(random, {{-0.5, -0.4, -0.3}, {0.4, 0.3, 0.2}});
     const Vec3d p = origin + Vec3d{0.01, -0.02, 0.005};
     const float x = 0.01f, y = -0.02f, z = 0.005f;
     float value = 0.0f;

@@ -5,10 +5,13 @@
 #include "numerics/errors.h"
 #include "numerics/scalar_math.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
+
+using testing::FloatPoints;
 
 // A potato with two groups: its spheres left of x = 0, and all others.
 Recipe halves(int num_spheres, std::uint64_t seed) {
@@ -30,22 +33,27 @@ struct LoneWeight {
   LocalWeight tables;
 };
 
-std::vector<float> weights(const LoneWeight& weight, const std::vector<float>& x, const std::vector<float>& y,
-                           const std::vector<float>& z) {
-  std::vector<float> w(x.size(), 1.0f);
-  multiply_by_weight(weight.tables, weight.arrays.view(), static_cast<int>(x.size()), x.data(), y.data(),
-                     z.data(), w.data());
+std::vector<float> weights(const LoneWeight& weight, const FloatPoints& p) {
+  std::vector<float> w(p.x.size(), 1.0f);
+  multiply_by_weight(weight.tables, weight.arrays.view(), static_cast<int>(w.size()), p.x.data(), p.y.data(),
+                     p.z.data(), w.data());
   return w;
 }
+// The weight of a lone point.
+float weight_of(const LoneWeight& weight, const Vec3f& p) {
+  return weight_at(weight.tables, weight.arrays.view(), p);
+}
+Interval bound_of(const LoneWeight& weight, const Box& box) {
+  return bound_weight(weight.tables, weight.arrays.view(), box);
+}
 
-struct Points {
-  std::vector<float> x, y, z;
-  void add(const Vec3d& p) {
-    x.push_back(static_cast<float>(p.x));
-    y.push_back(static_cast<float>(p.y));
-    z.push_back(static_cast<float>(p.z));
-  }
-};
+const Box kAbout{{-0.6, -0.4, -0.4}, {0.6, 0.4, 0.4}};
+// A cube with its least corner about the potato, of a side between 10^low and 10^high.
+Box random_cube(CounterRandom& random, double low, double high) {
+  const Vec3d corner = testing::random_point(random, kAbout);
+  const double size = std::pow(10.0, random.uniform(low, high));
+  return {corner, corner + Vec3d{size, size, size}};
+}
 
 double nearest(const MetaballBody& body, const SphereGroup& group, const Vec3d& p) {
   double least = 1e300;
@@ -61,12 +69,8 @@ TEST(LocalWeight, IsTheFormulaAndAddsUpToOne) {
   const double width = 0.05;
   const LoneWeight left({"left", width}, body), right({"right", width}, body);
   CounterRandom random(1);
-  Points points;
-  for (int i = 0; i < 2000; ++i) {
-    points.add({random.uniform(-1, 1), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)});
-  }
-  const std::vector<float> l = weights(left, points.x, points.y, points.z),
-                           r = weights(right, points.x, points.y, points.z);
+  const FloatPoints points(random, {{-1, -0.5, -0.5}, {1, 0.5, 0.5}}, 2000);
+  const std::vector<float> l = weights(left, points), r = weights(right, points);
   int near_one = 0;
   for (std::size_t i = 0; i < l.size(); ++i) {
     const Vec3d p{points.x[i], points.y[i], points.z[i]};
@@ -83,17 +87,14 @@ TEST(LocalWeight, BitsDependOnThePointAlone) {
   const MetaballBody body = *halves(120, 5).body;
   const LoneWeight weight({"left", 0.02}, body);
   CounterRandom random(2);
-  Points points;
-  for (int i = 0; i < 700; ++i) {
-    points.add({random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)});
-  }
-  const std::vector<float> together = weights(weight, points.x, points.y, points.z);
+  const FloatPoints points(random, kAbout, 700);
+  const std::vector<float> together = weights(weight, points);
   for (std::size_t i = 0; i < together.size(); ++i) {
-    const float alone = weights(weight, {points.x[i]}, {points.y[i]}, {points.z[i]})[0];
-    ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
-    const float at_point =
-        weight_at(weight.tables, weight.arrays.view(), {points.x[i], points.y[i], points.z[i]});
-    ASSERT_EQ(math::bits_of(at_point), math::bits_of(together[i]));
+    const Vec3f p{points.x[i], points.y[i], points.z[i]};
+    FloatPoints alone;
+    alone.add({p.x, p.y, p.z});
+    ASSERT_EQ(math::bits_of(weights(weight, alone)[0]), math::bits_of(together[i]));
+    ASSERT_EQ(math::bits_of(weight_of(weight, p)), math::bits_of(together[i]));
   }
 }
 
@@ -103,19 +104,13 @@ TEST(LocalWeight, ManySpheresAreTheNearestOnes) {
   const LoneWeight weight({"left", 0.01}, body);
   CounterRandom random(7);
   for (int k = 0; k < 30; ++k) {
-    const Vec3d corner{random.uniform(-0.6, 0.6), random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4)};
-    const double size = std::pow(10.0, random.uniform(-3.0, 0.0));
-    Points points;
-    for (int i = 0; i < 300; ++i) {
-      points.add(corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()});
-    }
-    const std::vector<float> together = weights(weight, points.x, points.y, points.z);
-    const Interval bound =
-        bound_weight(weight.tables, weight.arrays.view(), {corner, corner + Vec3d{size, size, size}});
+    const Box box = random_cube(random, -3.0, 0.0);
+    const FloatPoints points(random, box, 300);
+    const std::vector<float> together = weights(weight, points);
+    const Interval bound = bound_of(weight, box);
     for (std::size_t i = 0; i < together.size(); ++i) {
-      const float at_point =
-          weight_at(weight.tables, weight.arrays.view(), {points.x[i], points.y[i], points.z[i]});
-      ASSERT_EQ(math::bits_of(at_point), math::bits_of(together[i]));
+      const float alone = weight_of(weight, {points.x[i], points.y[i], points.z[i]});
+      ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
       ASSERT_TRUE(together[i] >= bound.low && together[i] <= bound.high);
     }
   }
@@ -128,16 +123,10 @@ TEST(LocalWeight, BoundsHoldEveryValue) {
     const MetaballBody body = *halves(2 + k % 60, random.next()).body;
     if (body.groups[0].spheres.empty() || body.groups[1].spheres.empty()) continue;
     const LoneWeight weight({"left", std::pow(10.0, random.uniform(-3.0, -0.5))}, body);
-    const Vec3d corner{random.uniform(-0.7, 0.6), random.uniform(-0.5, 0.4), random.uniform(-0.5, 0.4)};
-    const double size = std::pow(10.0, random.uniform(-3.0, -0.5));
-    const Interval bound =
-        bound_weight(weight.tables, weight.arrays.view(), {corner, corner + Vec3d{size, size, size}});
+    const Box box = random_cube(random, -3.0, -0.5);
+    const Interval bound = bound_of(weight, box);
     narrow += bound.high - bound.low < 0.2;
-    Points points;
-    for (int i = 0; i < 50; ++i) {
-      points.add(corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()});
-    }
-    for (const float w : weights(weight, points.x, points.y, points.z)) {
+    for (const float w : weights(weight, FloatPoints(random, box, 50))) {
       ASSERT_GE(w, bound.low);
       ASSERT_LE(w, bound.high);
     }
@@ -148,9 +137,7 @@ TEST(LocalWeight, BoundsHoldEveryValue) {
 TEST(LocalWeight, AGroupOfAllSpheresIsEverywhere) {
   Recipe recipe = testing::potato_recipe(5, 1);
   recipe.body->groups = {{"all", {0, 1, 2, 3, 4}}};
-  Points points;
-  points.add({3, 0, 0});
-  EXPECT_EQ(weights(LoneWeight({"all", 1.0}, *recipe.body), points.x, points.y, points.z)[0], 1.0f);
+  EXPECT_EQ(weight_of(LoneWeight({"all", 1.0}, *recipe.body), {3, 0, 0}), 1.0f);
 }
 
 TEST(LocalWeight, NeedsItsGroup) {
@@ -170,13 +157,11 @@ TEST(LocalWeight, KeepsLayersWhereTheyBelong) {
   CounterRandom random(3);
   int proved = 0;
   for (int k = 0; k < 400; ++k) {
-    const Vec3d corner{random.uniform(-0.6, 0.5), random.uniform(-0.4, 0.3), random.uniform(-0.4, 0.3)};
-    const double size = std::pow(10.0, random.uniform(-2.5, -1.0));
-    const FieldBlock block = left.gather({corner, corner + Vec3d{size, size, size}});
-    const BlockContent content = block.content();
+    const Box box = random_cube(random, -2.5, -1.0);
+    const BlockContent content = left.gather(box).content();
     proved += content != BlockContent::kMixed;
     for (int i = 0; i < 40; ++i) {
-      const Vec3d p = corner + size * Vec3d{random.uniform(), random.uniform(), random.uniform()};
+      const Vec3d p = testing::random_point(random, box);
       if (content != BlockContent::kMixed) {
         ASSERT_EQ(left.inside(p), content == BlockContent::kInside);
       }

@@ -14,6 +14,8 @@
 #include "synthesis/landforms/boulder_field.h"
 #include "synthesis/landforms/crater_relief.h"
 #include "synthesis/mesh/manifold_check.h"
+#include "tests/support/points.h"
+#include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -119,13 +121,8 @@ TEST(MaskedPopulation, LayersWithoutAHeightMaskNothing) {
   GaborLayer flat = testing::gabor_layer(0.1, 0.0);
   flat.name = "where";
   recipe.layers = {flat, masked_craters(5)};
-  try {
-    const ImplicitField field(recipe, "r");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_EQ(std::string(e.what()).find("r: layers[1].population.mask.layer: \"where\" has no height"), 0u)
-        << e.what();
-  }
+  EXPECT_TRUE(testing::has(testing::refusal_of([&] { const ImplicitField field(recipe, "r"); }),
+                           "r: layers[1].population.mask.layer: \"where\" has no height"));
 }
 
 // A body of 500 m with craters of metres and boulders of half a metre and more, ruled by a mask.
@@ -159,15 +156,14 @@ PatchCube cube_about(const Vec3d& direction, double side) { return {250.0 * norm
 
 // F at points near the surface, as a patch evaluates it in the body's frame.
 std::vector<float> values_in(const ImplicitField& field, const std::vector<Vec3d>& points) {
-  std::vector<float> x, y, z, values(points.size());
+  std::vector<float> values(points.size());
+  testing::FloatPoints all;
   Box box;
   for (const Vec3d& p : points) {
-    x.push_back(static_cast<float>(p.x));
-    y.push_back(static_cast<float>(p.y));
-    z.push_back(static_cast<float>(p.z));
-    box.extend({double{x.back()}, double{y.back()}, double{z.back()}});
+    all.add(p);
+    box.extend({double{all.x.back()}, double{all.y.back()}, double{all.z.back()}});
   }
-  field.gather(box).evaluate(x, y, z, values);
+  field.gather(box).evaluate(all.x, all.y, all.z, values);
   return values;
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "geometry/mesh_sink.h"
-#include "geometry/surface/surface_tree.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "tests/synthesis/bodies.h"
@@ -133,59 +133,29 @@ TEST(PatchField, SpotsCratersBouldersAndGaborNoiseAreRoughByTheRoundingAlone) {
   }
 }
 
-TEST(PatchField, CentimetresOnABodyOf500Metres) {
-  const ImplicitField sphere(testing::sphere_recipe(250.0));
-  const Vec3d center = 250.0 * normalized(Vec3d{0.3, -0.7, 0.65});
-  MeshCollector patch;
-  ManifoldCheck check;
-  mesh_patch(PatchField(sphere, center), 1.28, 128, patch);
-  const MeshStatistics statistics = mesh_patch(PatchField(sphere, center), 1.28, 128, check);
-  const ManifoldReport report = check.finish();
-  EXPECT_EQ(report.open_vertices, statistics.cut_vertices);
-  EXPECT_TRUE(report.manifold());
-  EXPECT_EQ(report.components, 1);
-  for (std::size_t i = 0; i < patch.mesh.vertices.size(); ++i) {
-    const Vec3d p = center + patch.mesh.vertices[i];
-    ASSERT_NEAR(norm(p), 250.0, 1e-5);  // vertices keep a thousandth of a cell from samples
-    ASSERT_LT(norm(patch.mesh.normals[i] - normalized(p)), 2e-5);
-  }
-}
-
 // A combined body is evaluated at float coordinates, which are 2^-16 m apart at 250 m. This is well below a
 // cell of a centimetre.
-TEST(PatchField, CombinedBodiesInCellsOfACentimetre) {
-  Recipe recipe = testing::sphere_recipe(250.0);
-  BodyOperation& operation = recipe.body->operations.emplace_back();  // changes nothing
+TEST(PatchField, CentimetresOnABodyOf500Metres) {
+  Recipe lone = testing::sphere_recipe(250.0), combined = lone;
+  BodyOperation& operation = combined.body->operations.emplace_back();  // changes nothing
   operation.operand = {*testing::sphere_recipe(50.0).body};
-  const ImplicitField field(recipe);
   const Vec3d center = 250.0 * normalized(Vec3d{0.3, -0.7, 0.65});
-  MeshCollector patch;
-  ManifoldCheck check;
-  mesh_patch(PatchField(field, center), 1.28, 128, patch);
-  const MeshStatistics statistics = mesh_patch(PatchField(field, center), 1.28, 128, check);
-  const ManifoldReport report = check.finish();
-  EXPECT_EQ(report.open_vertices, statistics.cut_vertices);
-  EXPECT_TRUE(report.manifold());
-  EXPECT_EQ(report.components, 1);
-  double farthest = 0.0, tilt = 0.0;
-  for (std::size_t i = 0; i < patch.mesh.vertices.size(); ++i) {
-    const Vec3d p = center + patch.mesh.vertices[i];
-    farthest = std::max(farthest, std::abs(norm(p) - 250.0));
-    tilt = std::max(tilt, norm(patch.mesh.normals[i] - normalized(p)));
+  for (const auto& [recipe, metres, tilt] : {std::tuple{lone, 1e-5, 2e-5}, {combined, 5e-5, 0.01}}) {
+    const ImplicitField field(recipe);
+    MeshCollector patch;
+    ManifoldCheck check;
+    mesh_patch(PatchField(field, center), 1.28, 128, patch);
+    const MeshStatistics statistics = mesh_patch(PatchField(field, center), 1.28, 128, check);
+    const ManifoldReport report = check.finish();
+    EXPECT_EQ(report.open_vertices, statistics.cut_vertices);
+    EXPECT_TRUE(report.manifold());
+    EXPECT_EQ(report.components, 1);
+    for (std::size_t i = 0; i < patch.mesh.vertices.size(); ++i) {
+      const Vec3d p = center + patch.mesh.vertices[i];
+      ASSERT_NEAR(norm(p), 250.0, metres);  // vertices keep a thousandth of a cell from samples
+      ASSERT_LT(norm(patch.mesh.normals[i] - normalized(p)), tilt);
+    }
   }
-  EXPECT_LT(farthest, 5e-5);  // metres
-  EXPECT_LT(tilt, 0.01);
-}
-
-TEST(PatchField, AgreesWithACoarseMeshOfTheWhole) {
-  const ImplicitField field(layered_potato());
-  MeshCollector whole, patch;
-  const double step = mesh_field(field, field.bounds(), 80, whole).step;
-  const Vec3d center = whole.mesh.vertices[whole.mesh.vertices.size() / 2];
-  mesh_patch(PatchField(field, center), 10.0 * step, 40, patch);
-  for (Vec3d& p : patch.mesh.vertices) p += center;
-  const SurfaceTree tree(whole.mesh);
-  for (const Vec3d& p : patch.mesh.vertices) ASSERT_LT(tree.closest(p).distance, step);
 }
 
 }  // namespace

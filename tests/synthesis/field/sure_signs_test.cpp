@@ -85,39 +85,5 @@ TEST(SureSigns, BodiesAsFitsMakeThemNeedFewSamples) {
   }
 }
 
-// The sign is that of evaluate() wherever it is said to be sure.
-TEST(SureSigns, AreTheSignsOfTheField) {
-  CounterRandom random(8);
-  int sure = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const ImplicitField field(testing::random_recipe(seed));
-    if (field.bounds().empty()) continue;
-    for (int k = 0; k < 12; ++k) {
-      const Box bounds = field.bounds();
-      const auto within = [&](double low, double high) { return random.uniform(low, high); };
-      const Vec3d corner{within(bounds.min.x, bounds.max.x), within(bounds.min.y, bounds.max.y),
-                         within(bounds.min.z, bounds.max.z)};
-      const double size = std::pow(10.0, random.uniform(-3.0, -1.0));
-      const FieldBlock block = field.gather({corner, corner + Vec3d{size, size, size}});
-      std::vector<float> x, y, z;
-      for (int i = 0; i < 200; ++i) {
-        x.push_back(static_cast<float>(corner.x + size * random.uniform(0.01, 0.99)));
-        y.push_back(static_cast<float>(corner.y + size * random.uniform(0.01, 0.99)));
-        z.push_back(static_cast<float>(corner.z + size * random.uniform(0.01, 0.99)));
-      }
-      std::vector<float> value(x.size());
-      std::vector<std::int8_t> sign(x.size());
-      block.evaluate(x, y, z, value);
-      block.find_signs(x, y, z, static_cast<float>(0.03 * size), sign);
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        if (sign[i] == 0) continue;
-        ++sure;
-        ASSERT_EQ(sign[i] > 0, value[i] > 0.0f) << "recipe " << seed << " value " << value[i];
-      }
-    }
-  }
-  EXPECT_GT(sure, 2000);
-}
-
 }  // namespace
 }  // namespace astrolith

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "numerics/parallel_for.h"
 #include "synthesis/exemplar/exemplar_colors.h"
 #include "synthesis/field/block_lists.h"

@@ -56,55 +56,6 @@ TEST(SurfaceLabels, LocalLayersHaveTheirPlaces) {
   EXPECT_LT(wrong, static_cast<int>(vertices.size() / 50));
 }
 
-// The elevation of a label is the height above the bare body.
-TEST(SurfaceLabels, ElevationsAreAboveTheBareBody) {
-  Recipe recipe = testing::sphere_recipe(1.0);
-  recipe.layers = {testing::fractal_layer(0.1, 1.0, 1)};
-  const std::vector<MeshVertex> vertices = vertices_of(recipe);
-  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
-  double highest = 0.0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Vec3f& p = vertices[i].position;
-    const double r = std::sqrt(double{p.x} * p.x + double{p.y} * p.y + double{p.z} * p.z);
-    EXPECT_NEAR(labels[i].elevation, r - 1.0, 0.02);
-    highest = std::max(highest, std::fabs(r - 1.0));
-  }
-  EXPECT_GT(highest, 0.03);
-}
-
-TEST(SurfaceLabels, CratersBouldersAndNoiseAreTold) {
-  Recipe recipe = testing::sphere_recipe(1.0);
-  CraterLayer craters;
-  craters.name = "the pole's";
-  craters.craters.resize(1);
-  craters.craters[0].place = {{0, 0, 1}, true};
-  craters.craters[0].diameter = 0.8;
-  BoulderLayer boulders;
-  boulders.boulders.resize(1);
-  boulders.boulders[0].place = {{0, 0, -1}, true};
-  boulders.boulders[0].axes = {0.5, 0.4, 0.3};
-  FractalLayer grit = testing::fractal_layer(0.004, 3.0, 2);
-  recipe.layers = {boulders, craters, grit};
-  const std::vector<MeshVertex> vertices = vertices_of(recipe);
-  const std::vector<VertexLabel> labels = labels_of(recipe, vertices);
-  const auto label_near = [&](const Vec3f& p) {
-    std::size_t nearest = 0;
-    double least = 1e9;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const Vec3f d = vertices[i].position - p;
-      const double distance = double{d.x} * d.x + double{d.y} * d.y + double{d.z} * d.z;
-      if (distance < least) least = distance, nearest = i;
-    }
-    return labels[nearest].label;
-  };
-  EXPECT_EQ(label_near({0, 0, -1.2f}), 1);
-  EXPECT_EQ(label_near({0, 0, 0.9f}), 2);
-  EXPECT_EQ(label_near({1, 0, 0}), 3);
-  EXPECT_EQ(SurfaceLabels(recipe, ImplicitField(recipe)).legend(),
-            (std::vector<std::string>{"label 0: the bare body", "label 1: boulders",
-                                      "label 2: craters \"the pole's\"", "label 3: simplex"}));
-}
-
 // The label by its definition: from fields of the recipe with its layers up to each one. A place is kept by
 // boulders without a boulder, because the random numbers of other layers depend on their place.
 TEST(SurfaceLabels, AreThoseOfTheLayersOneAfterAnother) {
@@ -113,6 +64,7 @@ TEST(SurfaceLabels, AreThoseOfTheLayersOneAfterAnother) {
   craters.craters.resize(1);
   craters.craters[0].place = {{0, 0, 1}, true};
   craters.craters[0].diameter = 0.2;
+  craters.name = "the pole's";
   BoulderLayer boulders;
   boulders.boulders.resize(1);
   boulders.boulders[0].place = {{0, 0, -1}, true};
@@ -154,6 +106,10 @@ TEST(SurfaceLabels, AreThoseOfTheLayersOneAfterAnother) {
     seen.insert(label);
   }
   EXPECT_EQ(seen.size(), 4u);
+  EXPECT_EQ(
+      SurfaceLabels(recipe, stages.back()).legend(),
+      (std::vector<std::string>{"label 0: the bare body", "label 1: boulders", "label 2: simplex \"hills\"",
+                                "label 3: craters \"the pole's\"", "label 4: simplex"}));
 }
 
 TEST(SurfaceLabels, AnOriginIsAdded) {

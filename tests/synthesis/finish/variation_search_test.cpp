@@ -25,11 +25,17 @@ double mesh_diagonal(const Recipe& recipe) {
   return box.diagonal();
 }
 
-Recipe potato() { return testing::potato_recipe(12, 5); }
+// A slender body: meshes of a fixed number of cells along it have few triangles.
+Recipe rod() {
+  Recipe recipe = testing::sphere_recipe(0.09);
+  for (int i = 1; i < 8; ++i)
+    recipe.body->spheres.push_back({{0.1 * i, 0.02 * (i % 3), 0.0}, 0.07 + 0.01 * (i % 4)});
+  return recipe;
+}
 
 // A variation that is the same body again is refused, although it is as alike as can be.
 TEST(VariationSearch, AVariationDiffersMeasurably) {
-  const Recipe recipe = potato();
+  const Recipe recipe = rod();
   for (const double delta : {0.5, 0.05}) {
     const Variation found = find_variation(recipe, nearness_to(recipe), delta, 3);
     EXPECT_GE(found.similarity, 1.0 - delta);
@@ -43,7 +49,7 @@ TEST(VariationSearch, AVariationDiffersMeasurably) {
 }
 
 TEST(VariationSearch, ARefusalStatesTheLargestSimilarityThatCanBeHad) {
-  const Recipe recipe = potato();
+  const Recipe recipe = rod();
   const SimilarityMeasure measure = nearness_to(recipe);
   const auto largest_offered = [&](double delta) {
     try {
@@ -74,7 +80,7 @@ TEST(VariationSearch, CrumbsAreNoPieces) {
 }
 
 TEST(VariationSearch, StopsWhenAsked) {
-  const Recipe recipe = potato();
+  const Recipe recipe = rod();
   const auto stop = [](double, std::string_view) { return false; };
   EXPECT_THROW(find_variation(recipe, nearness_to(recipe), 0.2, 3, stop), WorkError);
 }

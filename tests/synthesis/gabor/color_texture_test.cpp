@@ -1,7 +1,6 @@
 #include "synthesis/gabor/color_texture.h"
 
 #include <array>
-#include <cmath>
 
 namespace astrolith {
 namespace {

@@ -90,29 +90,6 @@ TEST(GaborSurfaceNoise, FlatPatchHasTheVarianceAndTheSpectrumOfTheLobes) {
   EXPECT_NEAR(fourth / 3.0, 1.0, 0.05);
 }
 
-TEST(GaborSurfaceNoise, HowPointsAreGroupedChangesNoBit) {
-  Recipe recipe = potato_recipe(60, 5);
-  recipe.layers = {surface_layer({{2, 0.1, 0.2, 1.0}, {5, -0.02, 0.05, 2.0}}, 0.01, 0.004)};
-  const ImplicitField field(recipe);
-  CounterRandom random(3);
-  const Box bounds = field.bounds();
-  std::vector<float> x, y, z, value(400);
-  for (std::size_t i = 0; i < value.size(); ++i) {  // points all over the body form many groups
-    x.push_back(static_cast<float>(random.uniform(bounds.min.x, bounds.max.x)));
-    y.push_back(static_cast<float>(random.uniform(bounds.min.y, bounds.max.y)));
-    z.push_back(static_cast<float>(random.uniform(bounds.min.z, bounds.max.z)));
-  }
-  field.gather(bounds).evaluate(x, y, z, value);
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
-    Box small;
-    small.extend({x[i], y[i], z[i]});
-    std::array<float, 1> one{};
-    field.gather(small).evaluate({&x[i], 1}, {&y[i], 1}, {&z[i], 1}, one);
-    ASSERT_EQ(one[0], value[i]);
-  }
-}
-
 TEST(GaborSurfaceNoise, SmallAndLargeKernelsGiveTheBitsOfSinglePoints) {
   // Half of the points lie close together, so that many share an impulse. Kernels measure 1/400 to 1/10 of
   // the body.

@@ -1,7 +1,6 @@
 #include "synthesis/gabor/gabor_texture.h"
 
 #include <cmath>
-#include <complex>
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
@@ -32,17 +31,6 @@ Moments moments(const std::vector<float>& values) {
   second /= static_cast<double>(values.size());
   fourth /= static_cast<double>(values.size());
   return {mean, second, fourth / (second * second) - 3.0};
-}
-
-TEST(GaborTexture, HasTheStatedVarianceAndIsGaussian) {
-  for (const int impulses : {8, 32}) {
-    GaborLayer layer = texture_layer({{2, 0.1, 0.2, 1.0}, {3, -0.2, 0.05, 2.0}}, 2.5);
-    layer.impulses_per_kernel = impulses;
-    const Moments m = moments(synthesize_texture(layer, 1024, 1024, {3}));
-    EXPECT_NEAR(m.mean / 2.5, 0.0, 0.005);
-    EXPECT_NEAR(m.variance / (2.5 * 2.5), 1.0, 0.01) << impulses;
-    EXPECT_NEAR(m.excess_kurtosis, 0.0, 0.05) << impulses;
-  }
 }
 
 // A single band, since more bands or more impulses would bring the noise closer to a Gaussian.
@@ -95,40 +83,6 @@ TEST(GaborTexture, AutocovarianceIsTheLobes) {
       }
       EXPECT_NEAR(measured, expected, 0.012) << dx << " " << dy;
     }
-  }
-}
-
-// Compares the average periodogram at a coarse set of frequencies with the sum of Gaussians.
-TEST(GaborTexture, PeriodogramIsTheLobes) {
-  const std::vector<GaborLobe> lobes = {{3, 0.2, 0.1, 1.0}};
-  constexpr int n = 64, kRealisations = 300;
-  const auto power = [&](const std::vector<float>& t, double fx, double fy) {
-    std::complex<double> sum = 0;
-    for (int y = 0; y < n; ++y) {
-      std::complex<double> row = 0;
-      for (int x = 0; x < n; ++x) {
-        row +=
-            static_cast<double>(t[static_cast<std::size_t>(y * n + x)]) * std::polar(1.0, -2 * M_PI * fx * x);
-      }
-      sum += row * std::polar(1.0, -2 * M_PI * fy * y);
-    }
-    return std::norm(sum) / (n * n);
-  };
-  const double sigma = std::ldexp(1 / (2 * std::sqrt(2 * std::log(2.0))), -3);
-  const auto gaussian = [&](double dx, double dy) {
-    return std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma)) / (2 * M_PI * sigma * sigma);
-  };
-  std::vector<std::vector<float>> textures;
-  for (int r = 0; r < kRealisations; ++r) {
-    textures.push_back(synthesize_texture(texture_layer(lobes), n, n, {static_cast<std::uint64_t>(r)}));
-  }
-  for (const auto& [fx, fy] : {std::pair{0.2, 0.1}, {0.25, 0.1}, {0.2, 0.05}, {0.15, 0.15}, {-0.2, 0.1}}) {
-    double mean = 0.0;
-    for (const std::vector<float>& t : textures) mean += power(t, fx, fy) / kRealisations;
-    const double expected = 0.5 * (gaussian(fx - 0.2, fy - 0.1) + gaussian(fx + 0.2, fy + 0.1));
-    // An average of 300 exponential variates is within 18 % (three standard deviations); the window leaks a
-    // little into empty frequencies.
-    EXPECT_NEAR(mean, expected, 0.18 * expected + 0.5) << fx << " " << fy;
   }
 }
 

@@ -4,12 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
-#include "numerics/parallel_for.h"
-#include "synthesis/mesh/mesher.h"
+#include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"
-#include "tests/synthesis/mesh_checks.h"
 
 namespace astrolith {
 namespace {
@@ -183,68 +180,6 @@ TEST(BoulderField, UnionChangesNothingElsewhere) {
     if (norm(p - Vec3d{0, 0, 10}) > 1.0 * (1.0 + 0.7) + 0.01) {
       ASSERT_EQ(with.value(p), without.value(p));
     }
-  }
-}
-
-BoulderLayer random_boulders(CounterRandom& random) {
-  BoulderLayer layer;
-  layer.smoothing = random.uniform();
-  layer.roughness = random.uniform() < 0.5 ? 0.0 : random.uniform(0.0, 0.5);
-  BoulderPopulation& population = layer.population.emplace();
-  population.drawn.count = 1 + static_cast<int>(random.below(80));
-  population.drawn.least_diameter = 0.02;
-  population.drawn.greatest_diameter = 0.3;
-  population.greatest_tilt = 90.0 * random.uniform();
-  population.least_burial = 0.0;
-  population.greatest_burial = 1.0;
-  return layer;
-}
-
-Recipe random_boulder_body(std::uint64_t seed) {
-  CounterRandom random(seed);
-  Recipe recipe = testing::potato_recipe(20, seed, random.uniform(1.0, 8.0));
-  if (seed % 3 == 0) recipe.body->warp = Warp{0.1, 3.0, 2};
-  if (seed % 2 == 0) recipe.layers.emplace_back(testing::fractal_layer(0.03, 6.0, 4));
-  recipe.layers.emplace_back(random_boulders(random));
-  return recipe;
-}
-
-TEST(BoulderField, CulledBoxesHoldNoSurfaceAndBlocksGiveTheBitsOfTheField) {
-  int culled = 0;
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const ImplicitField field(random_boulder_body(seed));
-    CounterRandom random(seed + 100);
-    const Box bounds = field.bounds();
-    for (int b = 0; b < 300; ++b) {
-      const Vec3d e = bounds.extent();
-      const double size = std::pow(10.0, random.uniform(-2.0, -0.7)) * norm(e);
-      const Vec3d corner =
-          bounds.min + Vec3d{e.x * random.uniform(), e.y * random.uniform(), e.z * random.uniform()};
-      const Box box{corner, corner + Vec3d{size, size, size}};
-      const FieldBlock block = field.gather(box);
-      const BlockContent content = block.content();
-      std::vector<float> x, y, z, value(12);
-      for (int i = 0; i < 12; ++i) {
-        x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
-        y.push_back(static_cast<float>(random.uniform(box.min.y, box.max.y)));
-        z.push_back(static_cast<float>(random.uniform(box.min.z, box.max.z)));
-      }
-      block.evaluate(x, y, z, value);
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        ASSERT_EQ(static_cast<double>(value[i]), field.value({x[i], y[i], z[i]}));
-        if (content != BlockContent::kMixed) {
-          ASSERT_EQ(value[i] > 0.0f, content == BlockContent::kInside) << seed;
-        }
-      }
-      culled += content != BlockContent::kMixed;
-    }
-  }
-  EXPECT_GT(culled, 700);
-}
-
-TEST(BoulderField, MeshesAreClosedManifoldsAndTheSameForAnyThreads) {
-  for (std::uint64_t seed = 0; seed < 3; ++seed) {
-    testing::expect_closed_manifold_for_any_threads(random_boulder_body(seed));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "synthesis/field/bare_body.h"
 #include "synthesis/landforms/population.h"
 #include "synthesis/landforms/population_cells.h"
+#include "tests/support/refusal.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -105,14 +106,11 @@ TEST(PopulationPlaces, WeightsChangeNoSize) {
 TEST(PopulationPlaces, WeightsOfNothingAreRefused) {
   const BareSurface surface = unit_sphere();
   const auto nowhere = [](const Vec3d&) { return 0.0f; };
-  try {
-    draw_population(counted(5), surface, 1, 0, "recipe: layers[0].population", {nowhere});
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_EQ(std::string(e.what()).find("recipe: layers[0].population: 5 of its landforms found no place"),
-              0u)
-        << e.what();
-  }
+  EXPECT_TRUE(testing::has(testing::refusal_of([&] {
+                             draw_population(counted(5), surface, 1, 0, "recipe: layers[0].population",
+                                             {nowhere});
+                           }),
+                           "recipe: layers[0].population: 5 of its landforms found no place"));
 }
 
 TEST(PopulationPlaces, ProgressStopsTheSearch) {

@@ -1,6 +1,5 @@
 #include "synthesis/mesh/marching_cubes_table.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>

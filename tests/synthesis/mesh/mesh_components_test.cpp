@@ -1,7 +1,6 @@
 #include "synthesis/mesh/mesh_components.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"

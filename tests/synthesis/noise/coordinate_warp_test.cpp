@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "tests/support/points.h"
 #include "tests/synthesis/noise_sampling.h"
 
 namespace astrolith {
@@ -69,9 +70,7 @@ TEST(CoordinateWarp, ImagesOfBoxesHoldTheirPoints) {
     const Box box{corner, corner + Vec3d{size, size, size}};
     const Box image = warped_box(warp.tables, warp.arrays.view(), box);
     for (int i = 0; i < 50; ++i) {
-      const Vec3d p = warped(warp, {static_cast<float>(random.uniform(box.min.x, box.max.x)),
-                                    static_cast<float>(random.uniform(box.min.y, box.max.y)),
-                                    static_cast<float>(random.uniform(box.min.z, box.max.z))});
+      const Vec3d p = warped(warp, to_float(testing::random_point(random, box)));
       ASSERT_TRUE(p.x >= image.min.x && p.y >= image.min.y && p.z >= image.min.z);
       ASSERT_TRUE(p.x <= image.max.x && p.y <= image.max.y && p.z <= image.max.z);
     }

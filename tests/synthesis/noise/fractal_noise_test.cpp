@@ -8,6 +8,7 @@
 #include "synthesis/noise/perlin_noise.h"
 #include "synthesis/noise/simplex_noise.h"
 #include "synthesis/noise/worley_noise.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/noise_sampling.h"
 
@@ -18,19 +19,15 @@ constexpr Noise kNoises[] = {Noise::kSimplex, Noise::kPerlin, Noise::kWorleyF1, 
                              Noise::kWorleyF2MinusF1};
 const Box kFractalDomain{{-10, -10, -10}, {10, 10, 10}};
 
-struct Heights {
-  std::vector<float> x, y, z, height;
-
-  Heights(const LoneNoise<FractalNoise>& noise, const Box& box, int n, std::uint64_t seed) {
+struct Heights : testing::FloatPoints {
+  Heights(const LoneNoise<FractalNoise>& noise, const Box& box, int n, std::uint64_t seed)
+      : height(static_cast<std::size_t>(n)) {
     CounterRandom random(seed);
-    for (int i = 0; i < n; ++i) {
-      x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
-      y.push_back(static_cast<float>(random.uniform(box.min.y, box.max.y)));
-      z.push_back(static_cast<float>(random.uniform(box.min.z, box.max.z)));
-    }
-    height.resize(x.size());
+    for (int i = 0; i < n; ++i) add(testing::random_point(random, box));
     noise.evaluate(n, x.data(), y.data(), z.data(), height.data());
   }
+
+  std::vector<float> height;
 };
 
 FractalLayer random_layer(CounterRandom& random) {
@@ -91,17 +88,6 @@ TEST(FractalNoise, IsTheSumOfItsOctaves) {
   }
 }
 
-TEST(FractalNoise, VariancesOfOctavesAddUp) {
-  FractalLayer layer = testing::fractal_layer(2.0, 3.0, 4);
-  layer.noise = Noise::kPerlin;
-  layer.bias = {0.3, 0.7, 0.1};
-  const Heights h(LoneNoise<FractalNoise>(layer, 9, 0, kFractalDomain), kFractalDomain, 200000, 3);
-  double squares = 0.0, expected = 0.0;
-  for (const float v : h.height) squares += static_cast<double>(v * v);
-  for (int o = 0; o < 4; ++o) expected += std::pow(2.0 * 0.2605 * std::pow(0.5, o), 2);
-  EXPECT_NEAR(squares / 200000 / expected, 1.0, 0.02);
-}
-
 TEST(FractalNoise, ModulationSubduesSteepPlaces) {
   FractalLayer layer = testing::fractal_layer(1.0, 1.0, 6);
   const Heights plain(LoneNoise<FractalNoise>(layer, 1, 0, kFractalDomain), kFractalDomain, 5000, 4);
@@ -137,19 +123,6 @@ TEST(FractalNoise, BoundsOverBoxesAreNeverWrong) {
     tight += bound.high - bound.low < noise.height_bound();
   }
   EXPECT_GT(tight, 800);
-}
-
-TEST(FractalNoise, ChunksDoNotMatter) {
-  CounterRandom random(8);
-  for (int k = 0; k < 20; ++k) {
-    const LoneNoise<FractalNoise> noise(random_layer(random), 3, 1, kFractalDomain);
-    const Heights h(noise, kFractalDomain, 700, 5);
-    for (std::size_t i = 0; i < h.x.size(); i += 13) {
-      float alone = 0.0f;
-      noise.evaluate(1, &h.x[i], &h.y[i], &h.z[i], &alone);
-      ASSERT_EQ(alone, h.height[i]);
-    }
-  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "numerics/scalar_math.h"
+#include "tests/support/points.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -21,26 +22,16 @@ PhasorLayer phasor_layer(PhasorProfile profile) {
   return layer;
 }
 
-struct Points {
-  std::vector<float> x, y, z;
-  int size() const { return static_cast<int>(x.size()); }
-};
-
-Points scattered(int n) {
+testing::FloatPoints scattered(std::size_t n) {
   CounterRandom random(3);
-  Points p;
-  for (int i = 0; i < n; ++i) {
-    for (std::vector<float>* v : {&p.x, &p.y, &p.z})
-      v->push_back(static_cast<float>(random.uniform(-90, 90)));
-  }
-  return p;
+  return {random, testing::cube_about_origin(90), n};
 }
 
 TEST(PhasorNoise, PhasesAreUniform) {
-  const Points p = scattered(40000);
-  std::vector<float> turns(p.x.size());
+  const auto [x, y, z] = scattered(40000);
+  std::vector<float> turns(x.size());
   const LoneNoise<PhasorNoise> noise(phasor_layer(PhasorProfile::kSine), 1, 0, kPhasorDomain);
-  evaluate_phases(noise.noise(), p.size(), p.x.data(), p.y.data(), p.z.data(), turns.data());
+  evaluate_phases(noise.noise(), 40000, x.data(), y.data(), z.data(), turns.data());
   std::array<int, 16> count{};
   for (const float t : turns) {
     ASSERT_TRUE(t >= -0.5f && t <= 0.5f);
@@ -52,20 +43,20 @@ TEST(PhasorNoise, PhasesAreUniform) {
 }
 
 TEST(PhasorNoise, ProfilesHaveTheirMeanVarianceAndRange) {
-  const Points p = scattered(40000);
+  const auto [x, y, z] = scattered(40000);
   const double variances[] = {0.5, 1.0 / 3.0, 1.0 / 3.0, 1.0};
   for (const PhasorProfile profile : kPhasorProfiles) {
     const LoneNoise<PhasorNoise> noise(phasor_layer(profile), 2, 0, kPhasorDomain);
-    std::vector<float> height(p.x.size());
-    noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), height.data());
+    std::vector<float> height(x.size());
+    noise.evaluate(40000, x.data(), y.data(), z.data(), height.data());
     double sum = 0.0, squares = 0.0;
     for (const float h : height) {
       ASSERT_LE(std::fabs(double{h}), noise.height_bound());
       sum += double{h} / 2.0;
       squares += double{h} * double{h} / 4.0;
     }
-    EXPECT_NEAR(sum / p.size(), 0.0, 0.02) << profile_word(profile);
-    EXPECT_NEAR(squares / p.size(), variances[static_cast<int>(profile)], 0.015) << profile_word(profile);
+    EXPECT_NEAR(sum / 40000, 0.0, 0.02) << profile_word(profile);
+    EXPECT_NEAR(squares / 40000, variances[static_cast<int>(profile)], 0.015) << profile_word(profile);
   }
 }
 
@@ -78,7 +69,7 @@ TEST(PhasorNoise, OscillatesAtItsFrequencyAlongItsDirection) {
   const auto gain = [&](const Vec3d& u) {
     const double h = 0.01;
     double sum = 0.0;
-    const Points p = scattered(4000);
+    const testing::FloatPoints p = scattered(4000);
     for (std::size_t i = 0; i < p.x.size(); ++i) {
       std::array<float, 2> x, y, z, turns;
       for (std::size_t k = 0; k < 2; ++k) {
@@ -113,18 +104,6 @@ TEST(PhasorNoise, ContrastNeverFades) {
     full += highest > 1.9f && lowest < -1.9f;
   }
   EXPECT_GT(full, stretches * 8 / 10);
-}
-
-TEST(PhasorNoise, BitsDependOnThePointAlone) {
-  const LoneNoise<PhasorNoise> noise(phasor_layer(PhasorProfile::kTriangle), 9, 1, kPhasorDomain);
-  const Points p = scattered(301);
-  std::vector<float> together(p.x.size());
-  noise.evaluate(p.size(), p.x.data(), p.y.data(), p.z.data(), together.data());
-  for (std::size_t i = 0; i < together.size(); ++i) {
-    float alone = 0.0f;
-    noise.evaluate(1, &p.x[i], &p.y[i], &p.z[i], &alone);
-    ASSERT_EQ(math::bits_of(alone), math::bits_of(together[i]));
-  }
 }
 
 }  // namespace

@@ -134,20 +134,5 @@ TEST(RandomPhaseNoise, ExponentTiltsThePowerAndSpreadHoldsDirections) {
   EXPECT_NEAR(variance, 0.25, 1e-6);
 }
 
-TEST(RandomPhaseNoise, BitsDependOnThePointAlone) {
-  const LoneNoise<RandomPhaseNoise> noise(phase_layer(0.7), 9, 1, kPhaseDomain);
-  CounterRandom random(4);
-  std::vector<float> x, y, z, height(301);
-  for (std::size_t i = 0; i < height.size(); ++i) {
-    x.push_back(static_cast<float>(random.uniform(-120, 120)));
-    y.push_back(static_cast<float>(random.uniform(-20, 20)));
-    z.push_back(static_cast<float>(random.uniform(-20, 20)));
-  }
-  noise.evaluate(301, x.data(), y.data(), z.data(), height.data());
-  for (std::size_t i = 0; i < height.size(); ++i) {
-    ASSERT_EQ(math::bits_of(height[i]), math::bits_of(height_at(noise, {x[i], y[i], z[i]})));
-  }
-}
-
 }  // namespace
 }  // namespace astrolith

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "numerics/hash_random.h"
+#include "tests/support/points.h"
 
 namespace astrolith {
 namespace {
@@ -122,12 +122,8 @@ TEST(SparseNoise, BoundsOverBoxesAreNeverWrongAndGroupsDoNotMatter) {
     const Vec3d corner{random.uniform(-52, 50), random.uniform(-20, 20), random.uniform(-20, 20)};
     const Box box{corner, corner + Vec3d{size, size * random.uniform(0.2, 1.0), size}};
     const Interval bound = noise.bound_heights(box);
-    std::vector<float> x, y, z, h(64);
-    for (std::size_t i = 0; i < h.size(); ++i) {
-      x.push_back(static_cast<float>(random.uniform(box.min.x, box.max.x)));
-      y.push_back(static_cast<float>(random.uniform(box.min.y, box.max.y)));
-      z.push_back(static_cast<float>(random.uniform(box.min.z, box.max.z)));
-    }
+    std::vector<float> h(64);
+    const auto [x, y, z] = testing::FloatPoints(random, box, h.size());
     noise.evaluate(64, x.data(), y.data(), z.data(), h.data());
     for (std::size_t i = 0; i < h.size(); ++i) {
       ASSERT_GE(double{h[i]}, bound.low);

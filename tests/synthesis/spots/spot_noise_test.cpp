@@ -102,14 +102,29 @@ TEST(SpotNoise, ProbabilityThinsCellsAndReachSpreadsImpulses) {
   EXPECT_NEAR(weight / total, 0.75, 0.02);
 }
 
-// The height of one impulse equals the kernel of the thesis.
-TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
-  SpotLayer layer = small_spots(0.05);
+// Few spots that are wider, of the profile profile_at.
+SpotLayer wide_spots(double density) {
+  SpotLayer layer = small_spots(density);
   layer.size = 0.1;
   layer.amplitude = 2.0;
   layer.alpha = 1.5;
   layer.kappa = -0.4;
   layer.gamma = 0.5;
+  return layer;
+}
+double profile_at(double q2) {
+  return std::exp(-1.5 * q2) - 0.4 * std::exp(-10 * std::pow(std::log(0.5 * q2), 2));
+}
+
+// The height at q sizes from the centre of a spot.
+float height_beside(const LoneNoise<SpotNoise>& noise, const SpotImpulse& spot, const Vec3d& q) {
+  return height_at(noise, spot.x + 0.1f * static_cast<float>(q.x), spot.y + 0.1f * static_cast<float>(q.y),
+                   spot.z + 0.1f * static_cast<float>(q.z));
+}
+
+// The height of one impulse equals the kernel of the thesis.
+TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
+  SpotLayer layer = wide_spots(0.05);
   layer.variances = {1.0, 2.0, 0.5};
   layer.sigma = 6.0;
   const LoneNoise<SpotNoise> noise(layer, 8, 0, kSpotDomain);
@@ -120,14 +135,12 @@ TEST(SpotNoise, ASpotIsItsKernelAndNothingBeyondSigma) {
   int within = 0;
   for (int i = 0; i < 2000; ++i) {
     const Vec3d q{random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4)};
-    const float x = spot.x + 0.1f * static_cast<float>(q.x), y = spot.y + 0.1f * static_cast<float>(q.y),
-                z = spot.z + 0.1f * static_cast<float>(q.z);
-    const double cut = q.x * q.x + q.y * q.y / 2 + q.z * q.z / 0.5, q2 = squared_norm(q);
+    const double cut = q.x * q.x + q.y * q.y / 2 + q.z * q.z / 0.5;
     if (std::fabs(cut - 6.0) < 1e-3) continue;
-    const double kernel = std::exp(-1.5 * q2) - 0.4 * std::exp(-10 * std::pow(std::log(0.5 * q2), 2));
-    const double expected = cut <= 6.0 ? -2.0 * static_cast<double>(spot.weight) * kernel : 0.0;
-    ASSERT_NEAR(static_cast<double>(height_at(noise, x, y, z)), expected, 1e-4);
-    ASSERT_EQ(height_at(boulders, x, y, z), -height_at(noise, x, y, z));
+    const double expected = cut <= 6.0 ? -2.0 * double{spot.weight} * profile_at(squared_norm(q)) : 0.0;
+    const float height = height_beside(noise, spot, q);
+    ASSERT_NEAR(double{height}, expected, 1e-4);
+    ASSERT_EQ(height_beside(boulders, spot, q), -height);
     within += cut <= 6.0;
   }
   EXPECT_GT(within, 100);
@@ -218,31 +231,9 @@ TEST(SpotNoise, BoundsOverBoxesAreNeverWrong) {
   EXPECT_GT(tight, 200);
 }
 
-// A point has the same bits alone and in a group of any size.
-TEST(SpotNoise, GroupsDoNotMatter) {
-  CounterRandom random(9);
-  for (int k = 0; k < 20; ++k) {
-    const LoneNoise<SpotNoise> noise(random_layer(random), 4, 0, kSpotDomain);
-    const double spread = std::pow(10.0, random.uniform(-1.0, 1.5));
-    std::vector<float> x, y, z, h(300);
-    for (std::size_t i = 0; i < h.size(); ++i) {
-      x.push_back(static_cast<float>(random.uniform(-spread, spread)));
-      y.push_back(static_cast<float>(random.uniform(-spread, spread)));
-      z.push_back(static_cast<float>(random.uniform(-spread, spread)));
-    }
-    noise.evaluate(300, x.data(), y.data(), z.data(), h.data());
-    for (std::size_t i = 0; i < h.size(); i += 3) ASSERT_EQ(h[i], height_at(noise, x[i], y[i], z[i]));
-  }
-}
-
 // One impulse: each of its parts is the kernel, moved, scaled and rotated.
 TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
-  SpotLayer layer = small_spots(0.02);
-  layer.size = 0.1;
-  layer.amplitude = 2.0;
-  layer.alpha = 1.5;
-  layer.kappa = -0.4;
-  layer.gamma = 0.5;
+  SpotLayer layer = wide_spots(0.02);
   layer.parts = {{{1, 0, 0}, {2, 0.5, 1}, {0, 0, 30}, 0.75}, {{0, -2, 1}, {1, 1, 3}, {90, 0, 0}, -1.0}};
   const LoneNoise<SpotNoise> noise(layer, 8, 0, kSpotDomain);
   ASSERT_EQ(noise.noise().kinds.count, 2);
@@ -252,7 +243,7 @@ TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
       impulses_reaching(LoneNoise<SpotNoise>(plain, 8, 0, kSpotDomain), 0, {{0, 0, 0}, {20, 20, 20}}).front();
   const auto kernel = [](const Vec3d& q) {
     const double q2 = squared_norm(q);
-    return q2 <= 4.0 ? std::exp(-1.5 * q2) - 0.4 * std::exp(-10 * std::pow(std::log(0.5 * q2), 2)) : 0.0;
+    return q2 <= 4.0 ? profile_at(q2) : 0.0;
   };
   const double c = std::cos(std::acos(-1.0) / 6), s = 0.5;
   CounterRandom random(1);
@@ -262,9 +253,7 @@ TEST(SpotNoise, ASpotIsTheSumOfItsParts) {
     const Vec3d v{q.x, q.y + 2, q.z - 1}, second{v.x, v.z, -v.y / 3};  // z turned about x to -y
     if (std::fabs(squared_norm(first) - 4) < 1e-2 || std::fabs(squared_norm(second) - 4) < 1e-2) continue;
     const double expected = -2.0 * static_cast<double>(spot.weight) * (0.75 * kernel(first) - kernel(second));
-    const float x = spot.x + 0.1f * static_cast<float>(q.x), y = spot.y + 0.1f * static_cast<float>(q.y),
-                z = spot.z + 0.1f * static_cast<float>(q.z);
-    ASSERT_NEAR(static_cast<double>(height_at(noise, x, y, z)), expected, 2e-4);
+    ASSERT_NEAR(double{height_beside(noise, spot, q)}, expected, 2e-4);
   }
 }
 

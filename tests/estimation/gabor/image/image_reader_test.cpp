@@ -2,15 +2,15 @@
 
 #include <png.h>
 #include <tiffio.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "numerics/errors.h"
 #include "synthesis/picture/image_file.h"
 #include "tests/support/data.h"
+#include "tests/support/refusal.h"
+#include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
@@ -19,13 +19,6 @@ namespace fs = std::filesystem;
 
 class ImageReaderTest : public ::testing::Test {
  protected:
-  ImageReaderTest() { fs::create_directories(folder); }
-  ~ImageReaderTest() override { fs::remove_all(folder); }
-
-  fs::path write_text(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-    return folder / name;
-  }
   static void write_half_tiff(const fs::path& file, int width, int height, int channels,
                               std::vector<std::uint16_t> halves) {
     TIFF* tiff = TIFFOpen(file.c_str(), "w");
@@ -41,15 +34,10 @@ class ImageReaderTest : public ::testing::Test {
     TIFFClose(tiff);
   }
   static std::string error_of(const fs::path& file) {
-    try {
-      read_grey_image(file);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "";
+    return testing::refusal_of([&] { read_grey_image(file); });
   }
 
-  fs::path folder = fs::temp_directory_path() / ("astrolith_images_" + std::to_string(::getpid()));
+  testing::ScratchFolder folder;
 };
 
 TEST_F(ImageReaderTest, FullScaleOfIntegersIsOne) {
@@ -125,13 +113,12 @@ TEST_F(ImageReaderTest, AlphaIsIgnoredAndSaidWhereItHides) {
 
 TEST_F(ImageReaderTest, AnimationsAreSaid) {
   write_png8_grey(std::vector<std::uint8_t>{1, 2, 3, 4}, 2, 2, folder / "still.png");
-  std::ifstream in(folder / "still.png", std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  std::string bytes = testing::text_of(folder / "still.png");
   // An acTL chunk (8 bytes of data) between IHDR, which ends at byte 33, and IDAT.
   bytes.insert(33, std::string("\0\0\0\x08"
                                "acTL\0\0\0\x02\0\0\0\0\xf3\x8d\x93\x70",
                                20));
-  const ImageFile file = read_grey_image(write_text("animated.png", bytes));
+  const ImageFile file = read_grey_image(folder.write("animated.png", bytes));
   ASSERT_EQ(file.remarks.size(), 1u);
   EXPECT_NE(file.remarks[0].find("first frame"), std::string::npos);
 }
@@ -159,24 +146,24 @@ TEST_F(ImageReaderTest, ColoursBecomeLuma) {
 
 TEST_F(ImageReaderTest, NamesTheFileAndTheRemedy) {
   EXPECT_NE(error_of(folder / "missing.png").find("missing.png: cannot be read"), std::string::npos);
-  EXPECT_NE(error_of(folder).find("is a folder"), std::string::npos);
-  EXPECT_NE(error_of(write_text("text.png", "this is no picture, it is a line of text")).find("first bytes"),
-            std::string::npos);
-  EXPECT_NE(error_of(write_text("empty.png", "")).find("is empty"), std::string::npos);
+  EXPECT_NE(error_of(folder.path()).find("is a folder"), std::string::npos);
+  EXPECT_NE(
+      error_of(folder.write("text.png", "this is no picture, it is a line of text")).find("first bytes"),
+      std::string::npos);
+  EXPECT_NE(error_of(folder.write("empty.png", "")).find("is empty"), std::string::npos);
 }
 
 TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
   std::vector<std::uint8_t> grey(64 * 64);
   for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint8_t>(i * 37 % 251);
   write_png8_grey(grey, 64, 64, folder / "whole.png");
-  std::ifstream in(folder / "whole.png", std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-  EXPECT_NE(error_of(write_text("cut.png", bytes.substr(0, 60))).find("cut.png"), std::string::npos);
-  EXPECT_NE(
-      error_of(write_text("cut.jpg", std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10) + std::string(30, 'x')))
-          .find("cut.jpg"),
-      std::string::npos);
-  EXPECT_NE(error_of(write_text("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
+  const std::string bytes = testing::text_of(folder / "whole.png");
+  EXPECT_NE(error_of(folder.write("cut.png", bytes.substr(0, 60))).find("cut.png"), std::string::npos);
+  EXPECT_NE(error_of(folder.write("cut.jpg",
+                                  std::string("\xff\xd8\xff\xe0\x00\x10JFIF", 10) + std::string(30, 'x')))
+                .find("cut.jpg"),
+            std::string::npos);
+  EXPECT_NE(error_of(folder.write("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
                 .find("cut.tif"),
             std::string::npos);
 }
@@ -185,7 +172,7 @@ TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
 TEST_F(ImageReaderTest, HugeImagesAreRefusedBeforeDecoding) {
   const std::string header = std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) +
                              std::string("\0\0\x4e\x20\0\0\x4e\x20\x08\0\0\0\0", 13) + std::string(8, '\0');
-  const std::string error = error_of(write_text("huge.png", header));
+  const std::string error = error_of(folder.write("huge.png", header));
   EXPECT_NE(error.find("20000 x 20000"), std::string::npos) << error;
   EXPECT_NE(error.find("GB"), std::string::npos);
 }

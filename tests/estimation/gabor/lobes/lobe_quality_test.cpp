@@ -79,15 +79,14 @@ TEST(LobeQuality, MeasuresTheDistanceBehindTheSpeckle) {
 TEST(LobeQuality, FewLobesMakeAWeakFit) {
   int weak = 0, weak_with_few = 0, count = 0, above_the_old_limit = 0;
   for (const testing::NamedSpectrum& truth : testing::known_spectra()) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed, ++count) {
-      const GreyImage exemplar = testing::realisation_of(truth.spectrum, seed);
-      weak += fit_gabor_lobes(exemplar, "exemplar", {}).quality.weak();
-      GaborFitOptions few;
-      few.max_lobes = 1;
-      const GaborFit fit = fit_gabor_lobes(exemplar, "exemplar", few);
-      weak_with_few += fit.quality.weak();
-      above_the_old_limit += fit.spectrum_distance > 0.6;
-    }
+    const GreyImage exemplar = testing::realisation_of(truth.spectrum, 1);
+    weak += fit_gabor_lobes(exemplar, "exemplar", {}).quality.weak();
+    GaborFitOptions few;
+    few.max_lobes = 1;
+    const GaborFit fit = fit_gabor_lobes(exemplar, "exemplar", few);
+    weak_with_few += fit.quality.weak();
+    above_the_old_limit += fit.spectrum_distance > 0.6;
+    ++count;
   }
   EXPECT_EQ(weak, 0);
   EXPECT_EQ(weak_with_few, count);

@@ -1,7 +1,5 @@
 #include "estimation/gabor/lobes/lobe_selection.h"
 
-#include <cmath>
-
 #include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "tests/estimation/gabor/known_spectrum.h"
 

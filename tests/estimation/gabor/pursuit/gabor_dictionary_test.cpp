@@ -70,23 +70,6 @@ TEST_P(DictionarySizes, ColumnsAreUnitVectorsAndProductsAreTheirs) {
   }
 }
 
-TEST_P(DictionarySizes, TheTransposeIsTheTranspose) {
-  CounterRandom random(12);
-  std::vector<double> x(dictionary.size());
-  std::vector<double> r(dictionary.rows());
-  for (double& value : x) value = random.uniform();
-  for (double& value : r) value = random.normal();
-  std::vector<double> image(r.size());
-  std::vector<double> correlations(x.size());
-  dictionary.synthesize(x, image);
-  dictionary.analyze(r, correlations);
-  double left = 0.0;
-  double right = 0.0;
-  for (std::size_t i = 0; i < r.size(); ++i) left += image[i] * r[i];
-  for (std::size_t j = 0; j < x.size(); ++j) right += x[j] * correlations[j];
-  EXPECT_NEAR(left, right, 1e-10 * (1.0 + std::abs(left)));
-}
-
 INSTANTIATE_TEST_SUITE_P(Sizes, DictionarySizes,
                          ::testing::Values(std::pair{32, 32}, std::pair{40, 33}, std::pair{35, 64}));
 

@@ -1,7 +1,6 @@
 #include "estimation/gabor/pursuit/nonnegative_quadratic.h"
 
 #include <Eigen/Cholesky>
-#include <limits>
 
 #include "numerics/hash_random.h"
 

@@ -1,7 +1,5 @@
 #include "estimation/gabor/spectrum/periodic_component.h"
 
-#include <cmath>
-
 #include "numerics/hash_random.h"
 
 namespace astrolith {

@@ -1,7 +1,5 @@
 #include "estimation/shape/details/detail_parameters.h"
 
-#include <cmath>
-
 #include "recipe/recipe_json.h"
 
 namespace astrolith {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "cuda/host_backend.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/implicit_field.h"
@@ -56,22 +55,6 @@ TEST(DetailsFit, ASmoothBodyGetsNoDetailsThatShow) {
   double amplitude = 0.0;
   for (const FractalLayer& layer : fit.layers) amplitude += std::fabs(layer.amplitude * layer.weight);
   EXPECT_LT(amplitude, 1e-3);
-}
-
-TEST(DetailsFit, SameLayersByAnotherBackend) {
-  const TargetBody target = with_details({hills(Noise::kSimplex, 0.03, 4.0)}, 40);
-  const MetaballBody base = in_target_frame(target, three_spheres());
-  for (const auto optimizer : {OptimizerAlgorithm::pso, OptimizerAlgorithm::cmaes}) {
-    DetailsFitOptions options = quick(2);
-    options.optimizer = optimizer;
-    options.fitness.samples = 300;
-    const DetailsFitResult by_cpu = fit_details(target, base, options);
-    CandidateEvaluatorOn<HostBackend> twin{HostBackend()};
-    options.evaluator = &twin;
-    const DetailsFitResult by_twin = fit_details(target, base, options);
-    EXPECT_EQ(by_twin.optimization.x, by_cpu.optimization.x);
-    EXPECT_EQ(by_twin.optimization.history, by_cpu.optimization.history);
-  }
 }
 
 TEST(DetailsFit, SameLayersForOneAndTwoThreads) {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "estimation/shape/target/target_body.h"
-#include "numerics/hash_random.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/noise/fractal_noise.h"
 #include "synthesis/noise/lone_noise.h"
+#include "tests/support/points.h"
 
 namespace astrolith::testing {
 
@@ -46,12 +46,8 @@ inline MeasuredLayers measured(const std::vector<FractalLayer>& layers) {
   const int n = 20000;
   const float step = 1e-3f;
   CounterRandom random(5);
-  std::vector<float> x, y, z, at(n), beside(n), sum(n, 0.0f), sum_beside(n, 0.0f);
-  for (int i = 0; i < n; ++i) {
-    x.push_back(static_cast<float>(random.uniform(-2.0, 2.0)));
-    y.push_back(static_cast<float>(random.uniform(-2.0, 2.0)));
-    z.push_back(static_cast<float>(random.uniform(-2.0, 2.0)));
-  }
+  std::vector<float> at(n), beside(n), sum(n, 0.0f), sum_beside(n, 0.0f);
+  const auto [x, y, z] = FloatPoints(random, cube_about_origin(2.0), at.size());
   std::vector<float> shifted = x;
   for (float& v : shifted) v += step;
   for (std::size_t k = 0; k < layers.size(); ++k) {

@@ -1,7 +1,5 @@
 #include "estimation/shape/details/moved_mesh.h"
 
-#include <cmath>
-
 #include "descriptor/histogram_distance.h"
 #include "descriptor/surflet_histogram.h"
 #include "geometry/surface/sample_curvature.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "estimation/shape/fit/component_repair.h"
 #include "tests/support/meshes.h"
 

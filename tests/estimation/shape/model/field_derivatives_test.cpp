@@ -81,32 +81,24 @@ void check_derivatives(Function function, const MetaballModel& model, const Vec3
 
 class FieldDerivatives : public ::testing::TestWithParam<Kernel> {};
 
-TEST_P(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
-  for (const double sharpness : {0.7, 2.0, 9.0}) {
-    const MetaballModel model = random_model(3, 6, sharpness, GetParam());
-    CounterRandom random(11);
-    for (int k = 0; k < 20; ++k) {
-      const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
-                   z = random.uniform(-1.2, 1.2);
-      check_derivatives(level_with_derivatives, model, {x, y, z});
-      check_derivatives(distance_with_derivatives, model, {x, y, z});
-    }
+void check_at_random_points(const MetaballModel& model) {
+  CounterRandom random(11);
+  for (int k = 0; k < 20; ++k) {
+    const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2), z = random.uniform(-1.2, 1.2);
+    const double level =
+        level_with_derivatives(model, evaluation_parameters(model), all_of(model), {x, y, z}, {}, nullptr);
+    // The kernel floor dominates such a sum.
+    if (model.spheres[2].subtractive && model.sharpness * level < -8.0) continue;
+    check_derivatives(level_with_derivatives, model, {x, y, z});
+    check_derivatives(distance_with_derivatives, model, {x, y, z});
   }
 }
 
-TEST(FieldDerivativesWithSubtractive, DistanceAndLevelAgreeWithDifferences) {
+TEST_P(FieldDerivatives, DistanceAndLevelAgreeWithDifferences) {
   for (const double sharpness : {0.7, 2.0, 9.0}) {
-    const MetaballModel model = with_subtractive(random_model(3, 9, sharpness));
-    CounterRandom random(11);
-    for (int k = 0; k < 20; ++k) {
-      const double x = random.uniform(-1.2, 1.2), y = random.uniform(-1.2, 1.2),
-                   z = random.uniform(-1.2, 1.2);
-      const double level =
-          level_with_derivatives(model, evaluation_parameters(model), all_of(model), {x, y, z}, {}, nullptr);
-      if (sharpness * level < -8.0) continue;  // the kernel floor dominates such a sum
-      check_derivatives(level_with_derivatives, model, {x, y, z});
-      check_derivatives(distance_with_derivatives, model, {x, y, z});
-    }
+    check_at_random_points(random_model(3, 6, sharpness, GetParam()));
+    if (GetParam() != Kernel::kGaussian) continue;
+    check_at_random_points(with_subtractive(random_model(3, 9, sharpness)));
   }
 }
 

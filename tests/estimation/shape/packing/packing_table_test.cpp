@@ -1,7 +1,6 @@
 #include "estimation/shape/packing/packing_table.h"
 
 #include <fstream>
-#include <sstream>
 
 #include "tests/support/scratch_folder.h"
 
