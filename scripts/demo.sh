@@ -26,7 +26,7 @@ mkdir -p "$out"
 
 echo
 echo "1/3  A shape model becomes a recipe: fit_shape $shape"
-"$bin/fit_shape" "$shape" -o "$out/body.json" --spheres 200 --base-only \
+"$bin/fit_shape" "$shape" -o "$out/body.json" --spheres 80 --noise-seeds 0 \
   --report "$out/body_report" --summary "$out/body_summary.json"
 
 # The gravel becomes as large as boulders: a pixel is a thousandth of the body, and the relief is half a pixel.
@@ -50,6 +50,7 @@ cat <<EOF
 
 Done. Look at
   $out/body_report/index.html     the shape model, the fit and their differences
+  $out/body.relief.png            the measured surface over the metaballs, seen from six sides
   $out/gravel_report/index.html   the photo, noise with its spectrum, both spectra
   $out/asteroid.png       the finished asteroid: fit, craters, boulders and gravel
   $out/asteroid.ply       its watertight mesh, for Blender, MeshLab, CloudCompare or ParaView
