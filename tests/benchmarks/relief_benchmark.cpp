@@ -1,7 +1,7 @@
 // Error against bytes of reliefs: heights at several spacings and steps over one fitted base, as compact
 // recipes. Also the rate of one core at which the heights of a relief are evaluated.
 //
-//   relief_benchmark MESH... [--spheres 80] [--places 0.2 0.5 1 1.4 3] [--steps 3]
+//   relief_benchmark MESH... [--spheres 80] [--places 0.2 0.5 1 1.4 3] [--steps 4]
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ using namespace astrolith;
 struct Table {
   ShapeFitOptions fit;
   std::vector<double> places{0.2, 0.5, 1.0, 1.4, 3.0};  // for each vertex of the mesh
-  std::vector<double> steps{3.0};                       // in mean residuals of the finest relief
+  std::vector<double> steps{4.0};                       // in mean residuals of the finest relief
 };
 
 void print_rows(const std::string& file, const Table& table) {
@@ -47,8 +47,8 @@ void print_rows(const std::string& file, const Table& table) {
       ReliefFit relief;
       const double seconds =
           processor_seconds([&] { relief = fit_relief(surface, recipe, {.spacing = spacing}); });
-      if (step != 3.0) {
-        relief = fit_relief(surface, recipe, {.spacing = spacing, .step = step / 3.0 * relief.layer.step()});
+      if (step != 4.0) {
+        relief = fit_relief(surface, recipe, {.spacing = spacing, .step = step / 4.0 * relief.layer.step()});
       }
       Recipe whole = recipe;
       whole.layers = {relief.layer};
