@@ -118,9 +118,10 @@ MeshEstimate sample_region(const ImplicitField& field, const Region& region, int
 double take_surface(RegionProbes& probes, int resolution, double allowed, double spent) {
   probes.look_from(kCoarsest);
   spent += probes.coarse_seconds();
-  const double finer = kCoarsest * std::sqrt((allowed - spent) / std::max(probes.coarse_seconds(), 1e-5));
+  const double left = std::max(allowed - spent, 0.0);
+  const double finer = kCoarsest * std::sqrt(left / std::max(probes.coarse_seconds(), 1e-5));
   const int cells = std::min({int(std::min(finer, double(kFinest))), kFinest, resolution});
-  if (!(finer > 0.0) || cells < kCoarsest * 5 / 4) return spent;
+  if (cells < kCoarsest * 5 / 4) return spent;
   probes.look_from(cells);
   return spent + probes.coarse_seconds();
 }

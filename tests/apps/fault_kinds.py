@@ -202,7 +202,8 @@ def impossible_here(programs, folder):
         found |= dict.fromkeys(("the disk is full", "a folder to read only"), "nobody may mount here")
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (2**32, 2**32))
     if not succeeds([programs / "synth", "--version"], preexec_fn=limit):
-        found["little memory"] = "a sanitizer needs more address space than any limit leaves"
+        # It reserves terabytes of addresses, and finds out through a pipe what memory may be read.
+        found |= dict.fromkeys(("little memory", "few descriptors"), "a sanitizer needs them for itself")
     try:
         os.close(os.open(folder, os.O_TMPFILE | os.O_WRONLY, 0o600))
     except OSError:

@@ -55,17 +55,17 @@ OUTPUTS = {
         ["family.json", "--members", f"0:{MEMBERS}", "--resolution", "32", "-o", "out{member}.ply", "--write-recipe",
          "out{member}.json", "--manifest", "out.jsonl"],
         ["out.jsonl", *(f"out{k:07}.{kind}" for k in range(MEMBERS) for kind in ("ply", "json"))], quick=True, kills=4),
-    "histogram": Output("describe", ["fine.obj", "-o", "out.npy", "--points", "5000"], ["out.npy"], quick=True),
+    "histogram": Output("describe", ["fine.obj", "-o", "out.npy", "--points", "3000"], ["out.npy"], quick=True),
     "surface": Output("describe", ["fine.obj", "--surface", "-o", "out.json"], ["out.json"]),
     "comparison": Output("compare", ["fine.obj", "ball.obj", "--points", "4000", "-o", "out.json"], ["out.json"]),
-    "comparison on stdout": Output("compare", ["fine.obj", "ball.obj", "--points", "4000"], [], quick=True),
+    "comparison on stdout": Output("compare", ["fine.obj", "ball.obj", "--points", "2000"], [], quick=True),
     "gravity.csv": Output("gravity", ["fine.obj", "--density", "2000", "-o", "out.csv"], ["out.csv"], quick=True),
     "gravity.npy": Output("gravity", ["fine.obj", "--density", "2000", "-o", "out.npy"], ["out.npy"]),
     "gravity.ply": Output(
         "gravity", ["fine.obj", "--density", "2000", "--at", "vertices", "-o", "out.ply", "--preview", "out.png"],
         ["out.ply", "out.png"]),
     "classifier": Output(
-        "classify", ["train", "one", "two", "-o", "out.yml", "--points", "2000", "--trees", "100"], ["out.yml"], quick=True),
+        "classify", ["train", "one", "two", "-o", "out.yml", "--points", "700", "--trees", "100"], ["out.yml"], quick=True),
     "fit": Output("fit_shape", [*FIT, "--base-only", "-o", "out.json"], ["out.json"], True),
     "compact fit": Output("fit_shape", [*FIT, "--base-only", "-o", "out.astro"], ["out.astro"], True),
     "fit with details": Output(
