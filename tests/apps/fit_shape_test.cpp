@@ -19,7 +19,7 @@ class FitShape : public testing::ProgramTest {
     write("egg.obj", testing::ellipsoid_obj(2.5, 0.7, 0.6, 15, 24));
   }
   std::string fit(const std::string& output, const std::string& more) {
-    succeed("egg.obj -o " + output + " --spheres 12 --population 4 --generations 2 --points 400 " + more);
+    succeed("egg.obj -o " + output + " --spheres 12 --population 2 --generations 2 --points 400 " + more);
     return text(output);
   }
   // A recipe of the folder, and one to it.
@@ -94,22 +94,22 @@ TEST_F(FitShape, PackingOnlyWritesATableOfMascons) {
   refuse("egg.obj -o no.csv --packing-only --points 500", "excludes");
 }
 
-TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFit) {
+TEST_F(FitShape, SameBytesForAnyThreadCountAndAnotherSeedAnotherFitLong) {
   const std::string one = fit("one.json", "--threads 1 --seed 3");
   EXPECT_EQ(one, fit("two.json", "--threads 2 --seed 3"));
   fit("other.json", "--base-only --seed 4");
   EXPECT_NE(recipe("one.json").body->spheres.at(0).radius, recipe("other.json").body->spheres.at(0).radius);
 }
 
-TEST_F(FitShape, AResumedFitIsThatOfARunWithoutAStop) {
+TEST_F(FitShape, AResumedFitIsThatOfARunWithoutAStopLong) {
   const std::string whole = fit("whole.json", "--checkpoint stop.checkpoint");
   // The checkpoint of a run that stopped after the base and one candidate.
   auto checkpoint = nlohmann::ordered_json::parse(text("stop.checkpoint"));
-  ASSERT_EQ(checkpoint["evaluations"].size(), 8u);
+  ASSERT_EQ(checkpoint["evaluations"].size(), 4u);
   while (checkpoint["evaluations"].size() > 1) checkpoint["evaluations"].erase(1);
   write("stop.checkpoint", checkpoint.dump());
   EXPECT_EQ(fit("resumed.json", "--checkpoint stop.checkpoint"), whole);
-  EXPECT_EQ(json("stop.checkpoint")["evaluations"].size(), 8u);
+  EXPECT_EQ(json("stop.checkpoint")["evaluations"].size(), 4u);
 }
 
 TEST_F(FitShape, CheckpointsOfSomethingElseAndDamagedOnesAreRefused) {
@@ -118,7 +118,7 @@ TEST_F(FitShape, CheckpointsOfSomethingElseAndDamagedOnesAreRefused) {
   const auto refuse_checkpoint = [&](const std::string& content, const std::string& culprit) {
     write("stop.checkpoint", content);
     refuse(
-        "egg.obj -o no.json --spheres 12 --base-only --population 4 --points 400 --checkpoint "
+        "egg.obj -o no.json --spheres 12 --base-only --population 2 --points 400 --checkpoint "
         "stop.checkpoint",
         culprit);
   };

@@ -24,7 +24,7 @@ TEST_F(SynthVariation, VariationsAreAsAlikeAsAskedAndStayInOnePiece) {
 }
 
 // Two samplings of one body are less alike than 0.999, so that every other body is refused.
-TEST_F(SynthVariation, AVariationThatWouldBeTheSameBodyIsRefused) {
+TEST_F(SynthVariation, AVariationThatWouldBeTheSameBodyIsRefusedLong) {
   write("bare.json", kTwoSpheres.substr(0, kTwoSpheres.find(",\n  \"layers\"")) + "}");
   refuse("bare.json -o out.ply --vary 0.001", "variation 1: no other body with a similarity of 0.999");
 }

@@ -157,9 +157,15 @@ inline void use_somehow(LayerUse& use, int number, bool first_has_height, Counte
   if (first_has_height && random.below(2) == 0) use.mask = LayerMask{.layer = "0", .from = -0.01, .to = 0.01};
 }
 
-// Adds a layer that is used somehow.
+// Adds a layer that is used somehow. Layers that are bound to the surface cannot be warped.
 inline void add_layer(Recipe& recipe, Layer layer, CounterRandom& random) {
   const int number = static_cast<int>(recipe.layers.size());
+  if (std::holds_alternative<GaborLayer>(layer) || std::holds_alternative<ExemplarLayer>(layer)) {
+    for (Layer& before : recipe.layers) {
+      LayerUse* use = use_of(before);
+      if (use != nullptr && use->combination.kind == Combine::kWarp) use->combination.kind = Combine::kAdd;
+    }
+  }
   std::visit(
       [&](auto& l) {
         l.name = std::to_string(number);

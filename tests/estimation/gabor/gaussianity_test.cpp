@@ -93,7 +93,7 @@ GreyImage large_texture(std::uint64_t seed) {
 
 bool in_the_middle(int x, int y) { return std::max(std::abs(x - 512), std::abs(y - 512)) < 260; }
 
-TEST(Gaussianity, SeesEdgesOutsideTheMiddleOfALargePhoto) {
+TEST(Gaussianity, SeesEdgesOutsideTheMiddleOfALargePhotoLong) {
   GreyImage image = large_texture(1);
   EXPECT_TRUE(test_gaussianity(image, 1).plausible());
   for (int y = 0; y < image.height; ++y) {
@@ -110,7 +110,7 @@ TEST(Gaussianity, SeesEdgesOutsideTheMiddleOfALargePhoto) {
 }
 
 // The texture is Gaussian everywhere, and weak outside the middle.
-TEST(Gaussianity, SeesThatTheBorderOfALargePhotoIsWeaker) {
+TEST(Gaussianity, SeesThatTheBorderOfALargePhotoIsWeakerLong) {
   GreyImage image = large_texture(2);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {

@@ -30,9 +30,14 @@ ShapeFitOptions quick(int spheres) {
   return options;
 }
 
-TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
+// Bodies of each kernel, fitted with the kernel that they are made of.
+class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
+
+TEST_P(ShapeFitKernels, OneSphereBecomesOneMetaballOfItsRadius) {
   const TargetBody target = prepare_target(testing::icosphere(4, 2.0, {5, 6, 7}), "sphere");
-  const ShapeFitResult fit = fit_shape(target, quick(1));
+  ShapeFitOptions options = quick(1);
+  options.kernel = GetParam();
+  const ShapeFitResult fit = fit_shape(target, options);
   ASSERT_EQ(fit.body.spheres.size(), 1u);
   EXPECT_NEAR(fit.body.spheres[0].radius, 2.0, 0.01);
   EXPECT_NEAR(norm(fit.body.spheres[0].center - Vec3d{5, 6, 7}), 0.0, 0.01);
@@ -40,10 +45,7 @@ TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
   EXPECT_LT(fit.check.distance.mean, 2e-3);
 }
 
-// Bodies of each kernel, fitted with the kernel that they are made of.
-class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
-
-TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballs) {
+TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballsLong) {
   MetaballBody truth;
   truth.kernel = GetParam();
   if (truth.kernel == Kernel::kGaussian) {
