@@ -30,10 +30,10 @@ std::vector<std::uint16_t> codes_of(const ReliefLayer& layer, const std::vector<
     codes[i] = layer.code_of(value);
   }
   if (!same) {
-    throw InputError(
-        place +
-        ".image: holds the heights of another body or spacing than this recipe's; take the recipe's "
-        "own image, or fit the body again");
+    throw InputError(place +
+                     ".image: is of other metaballs or another spacing than this recipe's; a relief belongs "
+                     "to its body: take the recipe's "
+                     "own image, or leave the layer out");
   }
   return codes;
 }
