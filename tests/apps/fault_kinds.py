@@ -126,7 +126,7 @@ def cut_inputs(run, after):
 
 def limited_memory(run, after):
     """A limit of the address space, between what a program needs to begin and 4 GB."""
-    return run.limited(resource.RLIMIT_AS, int(2**26 * 64 ** run.share(after)))
+    return run.limited(resource.RLIMIT_AS, int(7.5e7 * 53 ** run.share(after)))
 
 
 def limited_files(run, after):
