@@ -126,7 +126,7 @@ def cut_inputs(run, after):
 
 def limited_memory(run, after):
     """A limit of the address space, between what a program needs to begin and 4 GB."""
-    return run.limited(resource.RLIMIT_AS, int(2**26 * 64 ** run.share(after)))
+    return run.limited(resource.RLIMIT_AS, int(7.5e7 * 53 ** run.share(after)))
 
 
 def limited_files(run, after):
@@ -167,8 +167,8 @@ def closed_reader(stream):
     return fault
 
 
-# What is done to a run, the statuses that it may end with, whether the moment matters, and a word that the line must
-# hold when the program fails or stops.
+# What is done to a run, the statuses that it may end with, whether the moment matters, and words (a regular expression)
+# one of which the line must hold when the program fails or stops.
 Fault = collections.namedtuple("Fault", "do statuses moments word", defaults=(True, ""))
 DONE, FAILED, WRONG, STOPPED = 0, 1, 2, 3
 MORE_MOMENTS = {"SIGKILL": 30, "killed and started again": 4}  # at most, for outputs that ask for them
@@ -183,7 +183,7 @@ FAULTS = {
     "inputs vanish": Fault(without("inputs"), {DONE, FAILED, WRONG}),
     "inputs are cut": Fault(cut_inputs, {DONE, FAILED, WRONG}),
     "the folder vanishes": Fault(without("out"), {DONE, FAILED, WRONG}),
-    "little memory": Fault(limited_memory, {DONE, FAILED, WRONG, 127}, word="memory"),
+    "little memory": Fault(limited_memory, {DONE, FAILED, WRONG, 127}, word="memory|Resource temporarily unavailable"),
     "files may not grow": Fault(limited_files, {DONE, FAILED, WRONG}),
     "few descriptors": Fault(few_descriptors, {DONE, FAILED, WRONG, 127}),
     "the disk is full": Fault(full_disk, {DONE, FAILED, WRONG}),

@@ -14,6 +14,7 @@ import concurrent.futures
 import hashlib
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -102,7 +103,7 @@ def wrong_words(run, output, kind, wanted, ending, slowness):
     if fault.word == "stopped" and ending.seconds > LATEST * slowness:
         return f"took {ending.seconds:.1f} s to end"
     stopped = ending.status == STOPPED and not (wanted and is_complete(run, wanted))  # else Ctrl-C came when all was done
-    if fault.word and (ending.status == FAILED or stopped) and fault.word not in ending.words:
+    if fault.word and (ending.status == FAILED or stopped) and not re.search(fault.word, ending.words):
         return f"does not speak of {fault.word}"
     if ending.status not in (FAILED, WRONG) or kind == "stderr is closed":
         return ""
