@@ -155,6 +155,8 @@ def search(defect, near=False):
     if defect["file"].startswith(("numerics", "recipe", "geometry", "gravity", "descriptor", "synthesis", "cuda")):
         build = tests("ci", "apps").command.partition(" && ctest")[0]
         yield Check("C library", f"{build} && scripts/check_libm.sh build/ci")
+    if "elsewhere" in defect:  # what the room's own tests leave to another suite
+        yield tests("ci", defect["elsewhere"], tuple(cases))
     for other in suites_that_include(room_of(defect["file"])):
         yield tests("ci", other)
 
