@@ -63,6 +63,20 @@ TEST(LayOnBase, GaborLayersKeepTheirShape) {
   EXPECT_DOUBLE_EQ(converted.height_rms, 2e-3);
 }
 
+TEST(LayOnBase, LengthsOfALayersUseAreConverted) {
+  Recipe details = bumps("m", 1.0);
+  LayerUse& use = *use_of(details.layers.front());
+  use.locality = Locality{"head", 3.0};
+  use.mask = LayerMask{"hills", 1.0, 2.0};
+  use.combination.width = 4.0;
+  const Recipe result = lay_on_base(details, "bumps", ball("km", 1.0), "ball");
+  const LayerUse& converted = *use_of(result.layers.front());
+  EXPECT_DOUBLE_EQ(converted.locality->width, 3e-3);
+  EXPECT_DOUBLE_EQ(converted.mask->from, 1e-3);
+  EXPECT_DOUBLE_EQ(converted.mask->to, 2e-3);
+  EXPECT_DOUBLE_EQ(converted.combination.width, 4e-3);
+}
+
 TEST(LayOnBase, PixelsAndMissingBodiesAreErrorsThatNameTheFile) {
   try {
     lay_on_base(bumps("px", 1.0), "rock.json", ball("km", 1.0), "ball.json");
