@@ -6,7 +6,7 @@
     planted_defects.py -o found.md        tries all; a second run goes on with those that found.md lacks
     planted_defects.py --only NAME        tries one
     planted_defects.py --by 'scripts/check.sh quick'      tries this one command instead of the search
-    planted_defects.py --near             leaves out the programs, and the rooms that include a defect's room
+    planted_defects.py --near             leaves out other rooms, programs and a sanitizer's cases that the table does not name
     planted_defects.py --in FOLDER        keeps the copy there, with all that is built in it
 
 The defects stand in planted_defects.toml. Each is tried with more and more effort: static checks, the release tests of its
@@ -147,7 +147,7 @@ def search(defect, near=False):
     own = [("ci", cases), ("ci", ())] if cases else [("ci", ())]
     for kind, preset in (("memory", "asan"), ("races", "tsan")):
         if defect.get(kind):
-            own += [(preset, cases), (preset, ())]
+            own += [(preset, cases)] if near and cases else [(preset, cases), (preset, ())]
     for preset, words in own:
         yield tests(preset, suite, tuple(words))
     if near:

@@ -74,6 +74,15 @@ Recipe two_balls(const BodyOperation& operation) {
   return recipe;
 }
 
+TEST(BodyTables, TheSlopeIsBoundedByThatOfTheSteepestPart) {
+  MetaballBody steep = ball({1.1, 0, 0}, 0.8);
+  steep.warp = Warp{0.1, 5.0, 2, 0.5, 2.0};
+  MetaballBody both = *two_balls({}).body;
+  both.operations[0].operand = {steep};
+  EXPECT_GE(testing::LoneBody(both, 1).tables().lipschitz_bound,
+            testing::LoneBody(steep, 1).tables().lipschitz_bound);
+}
+
 TEST(BodyTables, RFunctionsAreBooleanOnTheBodies) {
   for (const double alpha : {-0.5, 0.0, 0.7, 1.0}) {
     BodyOperation operation;

@@ -38,6 +38,13 @@ TEST(GaborTiling, WideLobesKeepTheirVarianceAndNarrowOnesDependOnTheirFrequency)
   EXPECT_LT(tiled_variance(tiling_layer({{8, 4.5 / 64, 0.0, 1.0}}), 64, 256), 0.1);
 }
 
+// A period of 1.5 / a is longer than the reach of one kernel and shorter than that of two.
+TEST(GaborTiling, VarianceCountsKernelsThatOverlapTheirCopies) {
+  const double period = 64 * std::ldexp(std::sqrt(M_PI / (2.0 * std::log(2.0))), -6);
+  EXPECT_NEAR(tiled_variance(tiling_layer({{6, 4.0 / 64, 0.0, 1.0}}), 64, 4096),
+              1.0 + 2.0 * std::exp(-M_PI * period * period / 2), 0.02);
+}
+
 // Every pixel equals the one a period away. A texture of twice the period in each direction shows this for
 // any position of the inner tiles of 64 pixels.
 TEST(GaborTiling, TheTextureRepeatsExactly) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
+#include <cmath>
 
 #include "estimation/shape/refinement/normal_equations_internal.h"
 #include "numerics/hash_random.h"
@@ -63,6 +65,35 @@ TEST(NormalEquations, AgreeWithDenseLeastSquares) {
   EXPECT_LT((step - expected).norm(), 1e-8 * expected.norm());
   const double decrease = 0.5 * r.squaredNorm() - 0.5 * (r + j * step).squaredNorm();
   EXPECT_NEAR(equations.predicted_decrease(step), decrease, 1e-9 * decrease);
+}
+
+CenterCondition center_condition(const SurfaceTree& target, const ModelSphere& sphere) {
+  RefinementOptions options;
+  options.keep_centers_inside = &target;
+  const RefinementParameters parameters({4.0, {sphere}});
+  ResidualBlocks residuals({testing::icosphere(1).vertices, {}, {}}, options, parameters);
+  residuals.evaluate();
+  return residuals.center_conditions().front();
+}
+
+// By central differences, for a centre inside the target and one outside.
+TEST(CenterConditions, DerivativesAreThoseOfTheResidual) {
+  const SurfaceTree target(testing::icosphere(3));
+  for (const double x : {0.93, 1.1}) {
+    const ModelSphere sphere{{x, 0.2, 0.1}, 1.4};
+    const CenterCondition condition = center_condition(target, sphere);
+    ASSERT_GT(condition.residual, 0.0);
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::array<double, 2> residuals{};
+      for (const double step : {-1e-5, 1e-5}) {
+        ModelSphere moved = sphere;
+        const std::array<double*, 3> center{&moved.center.x, &moved.center.y, &moved.center.z};
+        k < 3 ? *center[k] += step : moved.radius *= std::exp(step);
+        residuals[step > 0.0 ? 1 : 0] = center_condition(target, moved).residual;
+      }
+      EXPECT_NEAR((residuals[1] - residuals[0]) / 2e-5, condition.derivatives[k], 1e-6);
+    }
+  }
 }
 
 }  // namespace
