@@ -141,8 +141,8 @@ TriangleMesh remeshed(const TriangleMesh& body, double triangles) {
   const SurfaceTree tree(body);
   const testing::AnalyticField depth([&](const Vec3d& p) { return tree.signed_distance(p); }, 1.0);
   MeshCollector collector;
-  testing::mesh_field(depth, bounds,
-                      static_cast<int>(std::ceil(std::max({extent.x, extent.y, extent.z}) / cell)), collector);
+  testing::mesh_field(
+      depth, bounds, static_cast<int>(std::ceil(std::max({extent.x, extent.y, extent.z}) / cell)), collector);
   return std::move(collector.mesh);
 }
 

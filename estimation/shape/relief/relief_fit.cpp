@@ -20,7 +20,7 @@ constexpr double kDefaultStep = 4.0;  // mean residuals: rounding adds a tenth t
 constexpr int kMostLevels = 65535;
 // Places for each vertex of the surface; models of few vertices get more, since their facets are what is to
 // be kept.
-constexpr double kPlacesOfVertex = 1.4, kMostPlacesOfVertex = 4.0, kPlacesOfSmallModel = 20000.0;
+constexpr double kPlacesOfVertex = 1.2, kMostPlacesOfVertex = 12.0, kPlacesOfSmallModel = 20000.0;
 
 double mean_of(const std::vector<double>& values) {
   return values.empty()

@@ -18,7 +18,7 @@ namespace astrolith {
 inline constexpr std::size_t kFewestReliefFacets = 1000;
 
 struct ReliefOptions {
-  double spacing = 0.0;  // length units; 0: some 1.4 to 4 places for each vertex
+  double spacing = 0.0;  // length units; 0: 1.2 to 12 places for each vertex, more on small models
   double step = 0.0;     // between two heights, length units; 0: kDefaultStep times the mean residual
 };
 
