@@ -135,8 +135,9 @@ TEST(Program, SummaryIsWrittenWhenTheWorkIsDone) {
   EXPECT_GE(summary.at("seconds").get<double>(), 0.0);
   EXPECT_FALSE(summary.contains("interrupted"));
 
-  EXPECT_EQ(run({"--summary", file}, [](Program&) { throw WorkError("no"); }).status, 1);
-  EXPECT_FALSE(std::filesystem::exists(file));
+  const std::string none = folder / "none.json";
+  EXPECT_EQ(run({"--summary", none}, [](Program&) { throw WorkError("no"); }).status, 1);
+  EXPECT_FALSE(std::filesystem::exists(none));
 }
 
 TEST(Program, AnUnwritableSummaryIsFoundOutBeforeTheWork) {
