@@ -238,7 +238,7 @@ TEST_F(FitShape, ATimeLimitBelowThePreparationIsRefusedWithTheTimeThatItNeeds) {
   refuse("large.obj -o out.json --time-limit 0.001", "--time-limit");
 }
 
-TEST_F(FitShape, VariationsAreAsAlikeAsAsked) {
+TEST_F(FitShape, VariationsAreAsAlikeAsAskedLong) {
   fit("egg.json", "--base-only --variations 2 --delta 0.8 --summary s.json");
   const auto figures = json("s.json")["variations"];
   ASSERT_EQ(figures.size(), 2u);

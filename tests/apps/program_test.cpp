@@ -135,9 +135,9 @@ TEST(Program, SummaryIsWrittenWhenTheWorkIsDone) {
   EXPECT_GE(summary.at("seconds").get<double>(), 0.0);
   EXPECT_FALSE(summary.contains("interrupted"));
 
-  const std::string other = folder / "of_a_failure.json";
-  EXPECT_EQ(run({"--summary", other}, [](Program&) { throw WorkError("no"); }).status, 1);
-  EXPECT_FALSE(std::filesystem::exists(other));
+  const std::string none = folder / "none.json";
+  EXPECT_EQ(run({"--summary", none}, [](Program&) { throw WorkError("no"); }).status, 1);
+  EXPECT_FALSE(std::filesystem::exists(none));
 }
 
 TEST(Program, AnUnwritableSummaryIsFoundOutBeforeTheWork) {
