@@ -20,12 +20,12 @@ std::string relief_text(const ReliefLayer& layer) {
 }
 
 std::shared_ptr<const ExemplarImage> relief_pixels(const ReliefLayer& layer, std::string_view text) {
-  constexpr std::size_t kMostPixels = std::size_t{1} << 26;
+  constexpr std::size_t kMostPixelsOfByte = 400;  // a body's picture has some ten
   const std::optional<std::string> bytes = base64_bytes(text);
   if (!bytes) return nullptr;
   try {
     RangeDecoder decoder(*bytes);
-    HeightPicture picture = decode(kMostPixels, decoder);
+    HeightPicture picture = decode(kMostPixelsOfByte * bytes->size(), decoder);
     for (std::uint16_t& value : picture.values) {
       if (value > layer.levels) return nullptr;
       if (value != 0) value = layer.value_of(static_cast<std::uint16_t>(value - 1));

@@ -231,7 +231,7 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
     made.count[a] = high[a] - made.low[a] + 1;
     cells *= made.count[a];
   }
-  if (cells > 0x1p27) throw InputError(where + ".spacing: too small for this body; make it larger");
+  if (cells > 0x1p24) throw InputError(where + ".spacing: too small for this body; make it larger");
   made.tiles.assign(3 * static_cast<std::size_t>(cells), 0);
 
   for (int axis = 0; axis < 3; ++axis) {

@@ -40,7 +40,7 @@ struct ReliefTiles {
 };
 
 // Expects places in the order of find_relief_places(). Throws InputError, which begins with `where`, where
-// the box of the places has more than 2^27 cells.
+// the box of the places has more than 2^24 cells.
 ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where);
 
 }  // namespace astrolith
