@@ -17,7 +17,7 @@ constexpr int kMostClasses = 64;          // sizes 2^64 apart
 constexpr double kLeastPerCell = 4.0;     // cells of rare landforms are made wider until they hold so many
 constexpr double kCellInDiameters = 4.0;  // the narrowest cells of a class, in its greatest diameter
 constexpr double kShellInCells = 0.25;    // half the thickness of the shell whose points are projected
-constexpr double kMostCells = 0x1p26;     // cells that one class looks through
+constexpr double kMostCellsOfClass = 0x1p26;     // cells that one class looks through
 constexpr std::int64_t kCellsAtOnce = 4096;
 
 // A class of sizes, upper / 2 .. upper, and its lattice. The last class may begin below the least diameter.
@@ -116,7 +116,7 @@ class CellDrawing {
     if (places_.region) box = common(box, widened(*places_.region, reach + size.shell()));
     if (!valid(box)) return;
     const CellRange cells(box, size.cell);
-    if (cells.total() > kMostCells) fail(where, "look through more cells than 6e7");
+    if (cells.total() > kMostCellsOfClass) fail(where, "look through more cells than 6e7");
     const auto total = static_cast<std::int64_t>(cells.total());
     std::vector<std::vector<DrawnLandform>> drawn(static_cast<std::size_t>(std::min(total, kCellsAtOnce)));
     for (std::int64_t first = 0; first < total; first += kCellsAtOnce) {
