@@ -17,7 +17,7 @@ constexpr int kMostClasses = 64;          // sizes 2^64 apart
 constexpr double kLeastPerCell = 4.0;     // cells of rare landforms are made wider until they hold so many
 constexpr double kCellInDiameters = 4.0;  // the narrowest cells of a class, in its greatest diameter
 constexpr double kShellInCells = 0.25;    // half the thickness of the shell whose points are projected
-constexpr double kMostCellsOfClass = 0x1p26;     // cells that one class looks through
+constexpr double kMostCellsOfClass = 0x1p26;  // cells that one class looks through
 constexpr std::int64_t kCellsAtOnce = 4096;
 
 // A class of sizes, upper / 2 .. upper, and its lattice. The last class may begin below the least diameter.
