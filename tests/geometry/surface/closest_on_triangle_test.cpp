@@ -7,10 +7,9 @@
 namespace astrolith {
 namespace {
 
-const Vec3d a{0, 0, 0}, b{4, 0, 0}, c{0, 3, 0};
-
 TEST(ClosestOnTriangle, EachFeature) {
   using F = TriangleFeature;
+  const Vec3d a{0, 0, 0}, b{4, 0, 0}, c{0, 3, 0};
   EXPECT_EQ(closest_on_triangle({1, 1, 5}, a, b, c).feature, F::face);
   EXPECT_DOUBLE_EQ(closest_on_triangle({1, 1, 5}, a, b, c).squared_distance, 25);
   EXPECT_EQ(closest_on_triangle({-1, -1, 2}, a, b, c).feature, F::corner_a);
@@ -41,6 +40,7 @@ TEST(ClosestOnTriangle, BeatsADenseSearch) {
 }
 
 TEST(ClosestOnTriangle, SegmentsAndPoints) {
+  const Vec3d a{0, 0, 0}, b{4, 0, 0};
   EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 0}, a, b, {2, 0, 0}).squared_distance, 4);
   EXPECT_DOUBLE_EQ(closest_on_triangle({5, 0, 0}, a, {2, 0, 0}, b).squared_distance, 1);
   EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 2}, a, a, a).squared_distance, 9);
