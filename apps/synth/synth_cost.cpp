@@ -215,8 +215,8 @@ EvenCost even_cost(const MeshEstimate& mesh) {
   constexpr double kShareOfMesh = 0.4;
   // Half a vertex with its normal, and a triangle; half of one array is copied as it grows.
   constexpr double kRecorded = 24.0 + 6.0;
-  // Neighbours, their ranges, and the places before and after a sweep.
-  constexpr double kTables = 30.0;
+  // Neighbours and their ranges, places before and after a sweep, and the vertices before and after a pass.
+  constexpr double kTables = 45.0;
   return {kShareOfMesh * mesh.seconds, kRecorded * mesh.triangles, kTables * mesh.triangles};
 }
 

@@ -289,7 +289,7 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
   program.app.add_flag(
       "--even", request.even,
       "make the triangles more even: vertices move along the surface by about a quarter of a cell, and back "
-      "onto it, but for those at the cuts of tiles and patches. Keeps the mesh in memory, about 60 bytes for "
+      "onto it, but for those at the cuts of tiles and patches. Keeps the mesh in memory, about 75 bytes for "
       "each triangle");
   program.app
       .add_option(

@@ -141,17 +141,17 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   return made;
 }
 
-nb::dict figures_of(const QualityFigures& quality) {
+nb::dict quality_figures(const QualityFigures& quality) {
   nb::dict figures;
   figures["first_percentile"] = quality.first_percentile;
   figures["mean"] = quality.mean;
   return figures;
 }
 
-nb::dict figures_of(const EvenStatistics& done) {
+nb::dict even_figures(const EvenStatistics& done) {
   nb::dict even;
-  even["quality_before"] = figures_of(done.before);
-  even["quality_after"] = figures_of(done.after);
+  even["quality_before"] = quality_figures(done.before);
+  even["quality_after"] = quality_figures(done.after);
   even["mean_move"] = done.mean_move;
   even["largest_move"] = done.largest_move;
   even["largest_value"] = done.largest_value;
@@ -174,7 +174,7 @@ nb::dict figures(const MadeMesh& made, const Region& region) {
   figures["evaluations"] = report.statistics.evaluations;
   figures["cell"] = report.statistics.step;
   if (region.is_patch) figures["origin"] = nb::make_tuple(region.center.x, region.center.y, region.center.z);
-  if (report.even) figures["even"] = figures_of(*report.even);
+  if (report.even) figures["even"] = even_figures(*report.even);
   if (made.erosion) {
     nb::dict erosion;
     erosion["settled"] = made.erosion->settled;

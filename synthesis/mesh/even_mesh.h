@@ -28,9 +28,12 @@ struct EvenStatistics {
 
 // A third sweep would add less than .02 to the first percentile, and move vertices further.
 inline constexpr int kEvenSweeps = 2;
+// Triangles below this quality are evened again, at most so many times.
+inline constexpr float kPoorQuality = 0.5f;
+inline constexpr int kMorePasses = 2;
 
 // Counts the vertices that have moved, and measures how far.
-inline void measure_moves(std::span<const MeshVertex> plain, const ReturnedVertices& even,
+inline void measure_moves(std::span<const MeshVertex> plain, const SurfaceVertices& even,
                           EvenStatistics& statistics) {
   for (std::size_t v = 0; v < plain.size(); ++v) {
     if (even.vertices[v].position == plain[v].position) continue;
@@ -38,10 +41,25 @@ inline void measure_moves(std::span<const MeshVertex> plain, const ReturnedVerti
     ++statistics.moved;
     statistics.mean_move += move;
     statistics.largest_move = std::max(statistics.largest_move, move);
-    statistics.largest_value = std::max(statistics.largest_value, double{even.distances[v]});
+    statistics.largest_value = std::max(statistics.largest_value, double{even.values[v]});
   }
   statistics.kept = static_cast<std::int64_t>(plain.size()) - statistics.moved;
   statistics.mean_move /= static_cast<double>(plain.size());
+}
+
+// Moves vertices to the surface from `places`, but for those whose triangles would turn over. Returns the
+// number of evaluations of F.
+template <BlockField Field>
+std::int64_t move_along_surface(const Field& field, double step, std::span<const Triangle> triangles,
+                                std::span<const Vec3f> places, SurfaceVertices& even,
+                                const Progress& progress) {
+  const SurfaceVertices before = even;
+  const std::int64_t evaluations = return_to_surface(field, step, places, even, progress);
+  put_back_turned(before.vertices, triangles, even.vertices);
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    if (even.vertices[v].position == before.vertices[v].position) even.values[v] = before.values[v];
+  }
+  return evaluations;
 }
 
 // Evens a mesh of the surface F = 0 with cells of side `step`, length units, as mesh_field() makes it. A
@@ -53,10 +71,15 @@ EvenStatistics even_mesh(const Field& field, double step, RecordedMesh& mesh, co
   EvenStatistics statistics;
   if (mesh.triangles.empty()) return statistics;
   statistics.before = quality_of(mesh.vertices, mesh.triangles);
-  ReturnedVertices even = return_to_surface(
-      field, step, mesh.vertices, relaxed_places(mesh.vertices, mesh.triangles, kEvenSweeps), progress);
-  put_back_turned(mesh.vertices, mesh.triangles, even.vertices);
-  statistics.evaluations = even.evaluations;
+  const MeshRelaxation relaxation(mesh.vertices.size(), mesh.triangles);
+  SurfaceVertices even{mesh.vertices, std::vector<float>(mesh.vertices.size())};
+  statistics.evaluations = move_along_surface(
+      field, step, mesh.triangles, relaxation.places_after(mesh.vertices, kEvenSweeps), even, progress);
+  for (int pass = 0; pass < kMorePasses; ++pass) {
+    statistics.evaluations +=
+        move_along_surface(field, step, mesh.triangles,
+                           relaxation.places_for_poor(even.vertices, mesh.triangles, kPoorQuality), even, {});
+  }
   measure_moves(mesh.vertices, even, statistics);
   mesh.vertices = std::move(even.vertices);
   statistics.after = quality_of(mesh.vertices, mesh.triangles);

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/mesh_sink.h"
@@ -32,11 +33,10 @@ struct ReturningVertex {
   Vec3f place() const { return start + out * along; }
 };
 
-// Vertices on the surface, with their normals.
-struct ReturnedVertices {
+// The vertices of a mesh, and |F| at those that have been brought back to the surface, 0 for the others.
+struct SurfaceVertices {
   std::vector<MeshVertex> vertices;
-  std::vector<float> distances;  // |F| at the vertices that have moved, 0 for the others
-  std::int64_t evaluations = 0;  // of F
+  std::vector<float> values;
 };
 
 // Limits of the way back, in steps of the grid: the |F| at which a vertex has arrived, the |F| that will do
@@ -50,8 +50,8 @@ inline constexpr int kReturnEvaluations = 8;
 template <FieldBlockLike Block>
 class VertexReturn {
  public:
-  VertexReturn(const Block& field, double step, ReturnedVertices& returned)
-      : field_(field), step_(static_cast<float>(step)), returned_(returned) {}
+  VertexReturn(const Block& field, double step, SurfaceVertices& surface)
+      : field_(field), step_(static_cast<float>(step)), surface_(surface) {}
 
   std::int64_t evaluations() const { return evaluations_; }
 
@@ -118,8 +118,8 @@ class VertexReturn {
   }
 
   void arrive(const ReturningVertex& v, float value) {
-    returned_.vertices[v.number] = {v.place(), v.out};
-    returned_.distances[v.number] = std::fabs(value);
+    surface_.vertices[v.number] = {v.place(), v.out};
+    surface_.values[v.number] = std::fabs(value);
   }
 
   // A step of Newton's with the slope at the start, then steps of the secant. No vertex goes on from F = 0,
@@ -133,7 +133,7 @@ class VertexReturn {
 
   const Block& field_;
   float step_;
-  ReturnedVertices& returned_;
+  SurfaceVertices& surface_;
   std::vector<ReturningVertex> vertices_;
   std::int64_t evaluations_ = 0;
 };
@@ -142,40 +142,39 @@ class VertexReturn {
 inline constexpr double kReturnBlock = 8.0;
 
 // Brings the vertices of a mesh with cells of side `step` back to the surface from `places`. A vertex whose
-// place is that of the mesh stays. Throws WorkError where progress asks to stop.
+// place is where it lies stays. Returns the number of evaluations of F. Throws WorkError where progress asks
+// to stop.
 template <BlockField Field>
-ReturnedVertices return_to_surface(const Field& field, double step, std::span<const MeshVertex> mesh,
-                                   const std::vector<Vec3f>& places, const Progress& progress) {
-  ReturnedVertices returned{{mesh.begin(), mesh.end()}, std::vector<float>(mesh.size())};
-  const VertexBlocks sorted = sort_into_blocks(places, kReturnBlock * step);
-  const auto box_of = [&](std::size_t begin, std::size_t end) {
-    return widened(box_around(places, std::span(sorted.numbers).subspan(begin, end - begin)),
-                   (double{kLongestReturn} + kProbeReach) * step);
+std::int64_t return_to_surface(const Field& field, double step, std::span<const Vec3f> places,
+                               SurfaceVertices& surface, const Progress& progress) {
+  std::vector<std::uint32_t> moving;
+  for (std::uint32_t v = 0; v < places.size(); ++v) {
+    if (!(places[v] == surface.vertices[v].position)) moving.push_back(v);
+  }
+  if (moving.empty()) return 0;
+  const VertexBlocks sorted = sort_into_blocks(places, std::move(moving), kReturnBlock * step);
+  const auto box_of = [&](std::span<const std::uint32_t> numbers) {
+    return widened(box_around(places, numbers), (double{kLongestReturn} + kProbeReach) * step);
   };
-  const auto whole = field.gather(box_of(0, places.size()));
+  const auto whole = field.gather(box_of(sorted.numbers));
   std::vector<std::optional<decltype(field.gather(Box{}))>> slabs(sorted.num_slabs());
   parallel_for(0, static_cast<std::int64_t>(slabs.size()), [&](std::int64_t i) {
     const auto s = static_cast<std::size_t>(i);
-    if (sorted.slabs[s] < sorted.slabs[s + 1])
-      slabs[s] = whole.restricted_to(box_of(sorted.slabs[s], sorted.slabs[s + 1]));
+    const auto numbers = sorted.numbers_of(sorted.slabs[s], sorted.slabs[s + 1]);
+    if (!numbers.empty()) slabs[s] = whole.restricted_to(box_of(numbers));
   });
   std::vector<std::int64_t> evaluations(sorted.blocks.size());
   const auto num_blocks = static_cast<std::int64_t>(sorted.blocks.size());
   reported_parallel_for({0, num_blocks, num_blocks}, progress, "even", [&](std::int64_t i) {
     const VertexBlock& block = sorted.blocks[static_cast<std::size_t>(i)];
-    std::vector<std::uint32_t> moving;
-    for (std::size_t k = block.begin; k < block.end; ++k) {
-      const std::uint32_t v = sorted.numbers[k];
-      if (!(places[v] == mesh[v].position)) moving.push_back(v);
-    }
-    const auto narrowed = slabs[block.slab]->restricted_to(box_of(block.begin, block.end));
-    VertexReturn way(narrowed, step, returned);
-    for (std::size_t k = 0; k < moving.size(); k += kVerticesPerBatch)
-      way.bring_back(std::span(moving).subspan(k, std::min(kVerticesPerBatch, moving.size() - k)), places);
+    const auto numbers = sorted.numbers_of(block.begin, block.end);
+    const auto narrowed = slabs[block.slab]->restricted_to(box_of(numbers));
+    VertexReturn way(narrowed, step, surface);
+    for (std::size_t k = 0; k < numbers.size(); k += kVerticesPerBatch)
+      way.bring_back(numbers.subspan(k, std::min(kVerticesPerBatch, numbers.size() - k)), places);
     evaluations[static_cast<std::size_t>(i)] = way.evaluations();
   });
-  returned.evaluations = std::accumulate(evaluations.begin(), evaluations.end(), std::int64_t{0});
-  return returned;
+  return std::accumulate(evaluations.begin(), evaluations.end(), std::int64_t{0});
 }
 
 }  // namespace astrolith

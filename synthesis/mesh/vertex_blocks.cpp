@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "numerics/parallel_for.h"
 
@@ -35,11 +36,11 @@ Box box_around(std::span<const Vec3f> places, std::span<const std::uint32_t> num
   return box;
 }
 
-VertexBlocks sort_into_blocks(std::span<const Vec3f> places, double side) {
+VertexBlocks sort_into_blocks(std::span<const Vec3f> places, std::vector<std::uint32_t> numbers,
+                              double side) {
   VertexBlocks sorted;
-  if (places.empty()) return sorted;
-  sorted.numbers.resize(places.size());
-  std::iota(sorted.numbers.begin(), sorted.numbers.end(), 0u);
+  if (numbers.empty()) return sorted;
+  sorted.numbers = std::move(numbers);
   const Box box = box_around(places, sorted.numbers);
   const auto blocks_along = [&](double extent) { return static_cast<std::size_t>(extent / side) + 1; };
   const std::size_t along_x = blocks_along(box.extent().x), along_y = blocks_along(box.extent().y);

@@ -19,13 +19,13 @@ namespace {
 using testing::AnalyticField;
 using testing::cube;
 
-AnalyticField field_of(double (*function)(const Vec3d&), double lipschitz) {
+AnalyticField even_test_field(double (*function)(const Vec3d&), double lipschitz) {
   return AnalyticField(function, lipschitz);
 }
 
-double unit_sphere(const Vec3d& p) { return 1.0 - norm(p); }
+double plain_ball(const Vec3d& p) { return 1.0 - norm(p); }
 
-double torus(const Vec3d& p) { return 0.25 - std::hypot(std::hypot(p.x, p.y) - 0.7, p.z); }
+double plain_ring(const Vec3d& p) { return 0.25 - std::hypot(std::hypot(p.x, p.y) - 0.7, p.z); }
 
 // A die whose edges are sharp, and askew to the grid.
 double die(const Vec3d& p) {
@@ -56,19 +56,19 @@ EvenedMesh evened(const AnalyticField& field, int resolution, MeshTile tile = {}
   return made;
 }
 
-TriangleMesh triangle_mesh(const RecordedMesh& recorded) {
+TriangleMesh collected(const RecordedMesh& recorded) {
   MeshCollector collector;
   recorded.replay(collector);
   return std::move(collector.mesh);
 }
 
-ManifoldReport report_of(const RecordedMesh& mesh) {
+ManifoldReport checked(const RecordedMesh& mesh) {
   ManifoldCheck check;
   mesh.replay(check);
   return check.finish();
 }
 
-bool same_bytes(const RecordedMesh& a, const RecordedMesh& b) {
+bool same_mesh(const RecordedMesh& a, const RecordedMesh& b) {
   return a.triangles == b.triangles && a.vertices.size() == b.vertices.size() &&
          std::memcmp(a.vertices.data(), b.vertices.data(), a.vertices.size() * sizeof(MeshVertex)) == 0;
 }
@@ -80,7 +80,7 @@ std::int64_t turned_over(const RecordedMesh& mesh) {
 }
 
 TEST(EvenMesh, ABallGetsEvenTrianglesOnItsSurface) {
-  const EvenedMesh ball = evened(field_of(unit_sphere, 1.0), 64);
+  const EvenedMesh ball = evened(even_test_field(plain_ball, 1.0), 64);
   const EvenStatistics& done = ball.statistics;
   EXPECT_LT(done.before.first_percentile, 0.1);
   EXPECT_GT(done.after.first_percentile, 0.55);
@@ -102,32 +102,31 @@ TEST(EvenMesh, ABallGetsEvenTrianglesOnItsSurface) {
   EXPECT_NEAR(done.largest_move, largest, 1e-6);
   EXPECT_NEAR(done.mean_move, sum / double(ball.even.vertices.size()), 1e-6);
   EXPECT_LT(done.largest_move, ball.step);
-  EXPECT_NEAR(volume(triangle_mesh(ball.even)), 4.0 / 3.0 * std::numbers::pi, 0.005);
+  EXPECT_NEAR(volume(collected(ball.even)), 4.0 / 3.0 * std::numbers::pi, 0.005);
 }
 
 TEST(EvenMesh, TopologyStays) {
   const auto expect_same = [](const EvenedMesh& mesh, std::int64_t genus) {
     EXPECT_EQ(mesh.even.triangles, mesh.plain.triangles);
-    const ManifoldReport report = report_of(mesh.even);
+    const ManifoldReport report = checked(mesh.even);
     EXPECT_TRUE(report.closed() && report.manifold());
     EXPECT_EQ(report.genus, genus);
-    EXPECT_EQ(analyze_topology(triangle_mesh(mesh.even)).genus, genus);
+    EXPECT_EQ(analyze_topology(collected(mesh.even)).genus, genus);
     EXPECT_LE(turned_over(mesh.even), turned_over(mesh.plain));
-    const double before = volume(triangle_mesh(mesh.plain)), after = volume(triangle_mesh(mesh.even));
+    const double before = volume(collected(mesh.plain)), after = volume(collected(mesh.even));
     EXPECT_NEAR(after / before, 1.0, 0.01);
   };
-  expect_same(evened(field_of(torus, 1.0), 48), 1);
-  const EvenedMesh carved = evened(field_of(carved_ball, 1.5), 48);
-  expect_same(carved, report_of(carved.plain).genus);
+  expect_same(evened(even_test_field(plain_ring, 1.0), 48), 1);
+  const EvenedMesh carved = evened(even_test_field(carved_ball, 1.5), 48);
+  expect_same(carved, checked(carved.plain).genus);
   EXPECT_GT(carved.statistics.after.first_percentile, 0.4);
 }
 
 // Marching cubes cuts edges off by a part of a cell. Evening must not round them further.
 TEST(EvenMesh, SharpEdgesStaySharp) {
-  const EvenedMesh mesh = evened(field_of(die, 1.0), 64);
+  const EvenedMesh mesh = evened(even_test_field(die, 1.0), 64);
   EXPECT_GT(mesh.statistics.after.first_percentile, 0.4);
-  const double exact = 1.0, before = volume(triangle_mesh(mesh.plain)),
-               after = volume(triangle_mesh(mesh.even));
+  const double exact = 1.0, before = volume(collected(mesh.plain)), after = volume(collected(mesh.even));
   EXPECT_LT(std::abs(after - exact), std::abs(before - exact));
   EXPECT_EQ(turned_over(mesh.even), 0);
   for (const MeshVertex& v : mesh.even.vertices)
@@ -135,20 +134,20 @@ TEST(EvenMesh, SharpEdgesStaySharp) {
 }
 
 TEST(EvenMesh, SameBytesForAnyThreadsAndBlocks) {
-  const AnalyticField field = field_of(carved_ball, 1.5);
+  const AnalyticField field = even_test_field(carved_ball, 1.5);
   const EvenedMesh usual = evened(field, 40);
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
-    EXPECT_TRUE(same_bytes(evened(field, 40).even, usual.even)) << threads;
+    EXPECT_TRUE(same_mesh(evened(field, 40).even, usual.even)) << threads;
   }
-  EXPECT_TRUE(same_bytes(evened<4>(field, 40).even, usual.even));
+  EXPECT_TRUE(same_mesh(evened<4>(field, 40).even, usual.even));
 }
 
 TEST(EvenMesh, CutsStayWhereTheyAreSoThatTilesFit) {
-  const AnalyticField field = field_of(unit_sphere, 1.0);
+  const AnalyticField field = even_test_field(plain_ball, 1.0);
   for (int index = 0; index < 3; ++index) {
     const EvenedMesh tile = evened(field, 48, {index, 3});
-    const TriangleMesh plain = triangle_mesh(tile.plain);
+    const TriangleMesh plain = collected(tile.plain);
     std::vector<int> balance(plain.vertices.size());
     for (const Triangle& t : plain.triangles) {
       for (std::size_t k = 0; k < 3; ++k)
@@ -160,7 +159,7 @@ TEST(EvenMesh, CutsStayWhereTheyAreSoThatTilesFit) {
       ++open;
       ASSERT_EQ(std::memcmp(&tile.even.vertices[v], &tile.plain.vertices[v], sizeof(MeshVertex)), 0);
     }
-    EXPECT_EQ(report_of(tile.even).open_vertices, open);
+    EXPECT_EQ(checked(tile.even).open_vertices, open);
     EXPECT_EQ(tile.statistics.kept, open);
     EXPECT_GT(tile.statistics.moved, open);
     EXPECT_GT(tile.statistics.after.first_percentile, tile.statistics.before.first_percentile);
@@ -192,7 +191,7 @@ TEST(EvenMesh, TrianglesThatWouldTurnOverArePutBack) {
 
 TEST(EvenMesh, AMeshWithoutTrianglesStaysEmpty) {
   RecordedMesh nothing;
-  const EvenStatistics done = even_mesh(field_of(unit_sphere, 1.0), 0.1, nothing, {});
+  const EvenStatistics done = even_mesh(even_test_field(plain_ball, 1.0), 0.1, nothing, {});
   EXPECT_EQ(done.moved, 0);
   EXPECT_EQ(done.after.mean, 0.0);
 }
@@ -207,13 +206,13 @@ TEST(EvenMesh, VerticesThatDoNotComeBackStay) {
   EXPECT_GT(mesh.statistics.kept, 0);
   EXPECT_GT(mesh.statistics.moved, 0);
   EXPECT_LT(mesh.statistics.largest_value, 0x1p-5 * mesh.step * 1.001);
-  EXPECT_TRUE(report_of(mesh.even).closed());
+  EXPECT_TRUE(checked(mesh.even).closed());
   EXPECT_LE(turned_over(mesh.even), turned_over(mesh.plain));
 }
 
 TEST(EvenMesh, ProgressCanStopIt) {
   RecordedMesh mesh;
-  const AnalyticField field = field_of(unit_sphere, 1.0);
+  const AnalyticField field = even_test_field(plain_ball, 1.0);
   const double step = mesh_field(field, cube(1.0), 32, mesh).step;
   EXPECT_THROW(even_mesh(field, step, mesh, [](double, std::string_view) { return false; }), WorkError);
 }
