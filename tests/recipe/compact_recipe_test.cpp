@@ -149,7 +149,7 @@ TEST(CompactRecipe, HostileStreamsEndInOneLineOrInARecipe) {
     for (int k = 0; k < 3; ++k) {
       const auto at =
           6 + static_cast<std::size_t>(random.uniform() * static_cast<double>(changed.size() - 6));
-      changed[at] = static_cast<char>(random.uniform() * 256.0);
+      changed[at] = static_cast<char>(static_cast<unsigned char>(random.uniform() * 256.0));
     }
     const std::string error = error_of_bytes(with_valid_check(changed));
     EXPECT_EQ(error.find('\n'), std::string::npos);
