@@ -61,7 +61,7 @@ inline double memory_limit(double gigabytes) {
 }
 
 // A sanitizer keeps memory of its own beside the program's, and ends a program whose allocation fails.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef ASTROLITH_SANITIZED
 inline constexpr bool kMemoryIsTheProgramsOwn = false;
 #else
 inline constexpr bool kMemoryIsTheProgramsOwn = true;

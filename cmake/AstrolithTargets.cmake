@@ -15,6 +15,9 @@ if(ASTROLITH_SANITIZE)
   # Eigen asks how malloc aligns and answers otherwise under the address sanitizer. Ceres was built without it, and
   # what one side takes the other gives back.
   target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_SANITIZED EIGEN_MALLOC_ALREADY_ALIGNED=1)
+  if(ASTROLITH_SANITIZE STREQUAL "thread")
+    target_compile_definitions(astrolith_compile_rules INTERFACE ASTROLITH_THREAD_SANITIZER)
+  endif()
 endif()
 if(ASTROLITH_FUZZ)
   target_compile_options(astrolith_compile_rules INTERFACE -fsanitize=fuzzer-no-link)  # counts what inputs reach

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <thread>
 
-#ifdef __SANITIZE_THREAD__
+#ifdef ASTROLITH_THREAD_SANITIZER
 #include "numerics/plain_threads.h"
 #endif
 
@@ -33,7 +33,7 @@ class ThreadLimit {
 // exception that a body throws is rethrown here.
 template <typename Body>
 void parallel_for(std::int64_t begin, std::int64_t end, const Body& body, std::int64_t grain = 1) {
-#ifdef __SANITIZE_THREAD__
+#ifdef ASTROLITH_THREAD_SANITIZER
   plain_parallel_for(begin, end, body, grain);
 #else
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(begin, end, static_cast<std::size_t>(grain)),

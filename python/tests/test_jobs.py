@@ -66,7 +66,7 @@ def test_other_python_threads_run_while_a_mesh_is_made(example):
 
     thread = threading.Thread(target=tick)
     thread.start()
-    astrolith.mesh(example("itokawa_details"), resolution=128)
+    astrolith.mesh(example("itokawa_details"), resolution=256)
     stop.set()
     thread.join()
     assert count[0] > 20
