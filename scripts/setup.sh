@@ -16,7 +16,7 @@ for option in "$@"; do
   case $option in
     --synth) fitting=() ;;
     --format) packages+=(clang-format-14) ;;
-    --lint) packages+=(clang-tidy-14) ;;
+    --lint) packages+=(clang-tidy-14 clang-14) ;;
     --package) packages+=(help2man dpkg-dev) ;;
     --browser) packages+=(chromium chromium-driver python3-selenium python3-numpy python3-pil) ;;
     --sanitizers) packages+=(clang-14 libclang-rt-14-dev) ;;
