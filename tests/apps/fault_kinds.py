@@ -82,14 +82,23 @@ def heeds_ctrl_c(process):
 
 
 def stopped_in_long_work(run, after):
-    """The moment counts from where the program heeds Ctrl-C, which it must do soon and end soon."""
-    process = run.start()
-    for _ in range(1000):
-        if heeds_ctrl_c(process) or ended_within(process, 0.01):
+    """The moment counts from where the program heeds Ctrl-C, which it must do soon and end soon.
+
+    Where a fast machine had done the work before, it is done again and stopped earlier."""
+    for _ in range(5):
+        process = run.start()
+        for _ in range(1000):
+            if heeds_ctrl_c(process) or ended_within(process, 0.01):
+                break
+        if not ended_within(process, after):
+            process.send_signal(signal.SIGINT)
+        ending = finish(process, PATIENCE / 10)
+        if ending.status != DONE:
             break
-    if not ended_within(process, after):
-        process.send_signal(signal.SIGINT)
-    return finish(process, PATIENCE / 10)
+        for file in run.out.iterdir():
+            file.unlink()
+        after *= 0.4
+    return ending
 
 
 def killed_and_started_again(run, after):
