@@ -79,8 +79,7 @@ bool may_hold_surface(const std::array<float, 8>& s) {
   return std::min(std::abs(*least), std::abs(*most)) <= kDiagonal;
 }
 
-// The lines of the lattice that cross the surface within one block of cells, as (axis, node, share of the
-// edge).
+// Where an edge of the lattice crosses the surface: the edge begins at the node, along the axis.
 struct Crossing {
   int axis;
   std::array<std::int32_t, 3> node;
