@@ -77,9 +77,7 @@ OUTPUTS = {
     "exemplar": Output(
         "fit_gabor", ["small.png", "--model", "exemplar", "-o", "out.json"], ["out.json", "out_exemplar.png"], True),
     "long mesh": Output("synth", ["body.json", "-o", "out.ply", "--resolution", "2000"], ["out.ply"], False, True, span=4),
-    "long fit": Output(
-        "fit_shape", ["fine.obj", "-o", "out.json", "--spheres", "300", "--checkpoint", "out.cp"], ["out.json", "out.cp"],
-        True, True, span=8),
+    "long fit": Output("fit_shape", ["fine.obj", "-o", "out.json", "--spheres", "300"], ["out.json"], True, True, span=8),
     "long texture fit": Output("fit_gabor", ["large.png", "-o", "out.json"], ["out.json"], True, True, span=2),
     "long histogram": Output("describe", ["fine.obj", "-o", "out.npy", "--points", "60000"], ["out.npy"], False, True, span=4),
     "long comparison": Output("compare", ["fine.obj", "fine.obj", "--points", "60000"], [], False, True, span=4),

@@ -57,6 +57,11 @@ std::vector<char> largest_piece(const std::vector<Vec3d>& places, std::vector<ch
   return in_piece;
 }
 
+double share_of(const std::vector<char>& marked) {
+  const auto count = static_cast<double>(std::count(marked.begin(), marked.end(), 1));
+  return marked.empty() ? 0.0 : count / static_cast<double>(marked.size());
+}
+
 std::size_t nearest_sphere(const Vec3d& p, const std::vector<Sphere>& spheres) {
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -69,18 +74,26 @@ std::size_t nearest_sphere(const Vec3d& p, const std::vector<Sphere>& spheres) {
   return nearest;
 }
 
-}  // namespace
-
-ImagedGround find_imaged_ground(const SurfaceStatistics& target, const std::vector<Sphere>& spheres) {
+// The places of the largest piece of smooth ground, none where it is no larger than by chance.
+std::vector<char> smooth_places(const SurfaceStatistics& target) {
   const LocalStatistic* roughness = target.find(SurfaceQuantity::roughness, 6.0);
-  if (roughness == nullptr || spheres.empty()) return {};
-  const std::vector<char> smooth = largest_piece(
+  if (roughness == nullptr) return {};
+  std::vector<char> smooth = largest_piece(
       target.places, far_below(means_around(target.places, roughness->values, kMeanReach * target.edge)),
       kPieceReach * target.edge);
+  return share_of(smooth) < kLeastSmoothShare ? std::vector<char>() : smooth;
+}
+
+}  // namespace
+
+double unseen_share(const SurfaceStatistics& target) { return share_of(smooth_places(target)); }
+
+ImagedGround find_imaged_ground(const SurfaceStatistics& target, const std::vector<Sphere>& spheres) {
+  if (spheres.empty()) return {};
+  const std::vector<char> smooth = smooth_places(target);
+  if (smooth.empty()) return {};
   ImagedGround ground;
-  ground.smooth_share =
-      static_cast<double>(std::count(smooth.begin(), smooth.end(), 1)) / static_cast<double>(smooth.size());
-  if (ground.smooth_share < kLeastSmoothShare) return {};
+  ground.smooth_share = share_of(smooth);
   std::vector<int> balance(spheres.size(), 0);  // places with details less smooth ones
   for (std::size_t i = 0; i < smooth.size(); ++i) {
     balance[nearest_sphere(target.places[i], spheres)] += smooth[i] != 0 ? -1 : 1;
