@@ -14,6 +14,7 @@
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "estimation/shape/fit/shape_fit.h"
+#include "estimation/shape/learning/imaged_ground.h"
 #include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
@@ -103,7 +104,9 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
   if (!wanted.micro.empty() && wanted.micro != "auto") {
     add_micro_layers(wanted.micro, wanted.mm_per_px, wanted.micro_height_mm, recipe);
   }
-  if (!Program::interrupted()) measure_recipe(target, recipe, arguments.fit, fit);
+  if (Program::interrupted()) return;
+  fit.base_mesh = std::move(fit.check.mesh);
+  measure_recipe(target, recipe, arguments.fit, fit);
 }
 
 void say_result(const Program& program, const TargetBody& target, const ShapeFitResult& fit,
@@ -156,6 +159,14 @@ std::optional<FitRealism> judge_surface(Program& program, const FitArguments& ar
   const nlohmann::ordered_json figures = fit_realism_json(*judged.realism, target, arguments.unit);
   for (const auto& words : figures["words"]) program.say("surface: " + words.get<std::string>());
   program.summary["realism"] = figures;
+  const double unseen = unseen_share(judged.realism->target);
+  program.summary["unseen_share"] = unseen;
+  if (unseen > 0.0) {
+    program.say(
+        fmt::format("{:.0f} % of the target's surface is smooth in one piece, which no camera may have "
+                    "seen; the fit has it as the model has it",
+                    100.0 * unseen));
+  }
   return std::move(judged.realism);
 }
 

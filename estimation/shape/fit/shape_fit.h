@@ -44,6 +44,7 @@ int spheres_for_bytes(int bytes);
 struct ShapeFitResult {
   MetaballBody body;        // in the file's frame and unit
   FitCheck check;           // measures the body, in the target's frame
+  TriangleMesh base_mesh;   // of the metaballs alone where `check` measures details too; else empty
   double similarity = 0.0;  // adaptive hybrid descriptor, 5,000 fresh Poisson-disk samples of target and fit
   // The similarity of two samplings of the target. A fit above this floor cannot be told from a perfect one.
   double similarity_floor = 0.0;

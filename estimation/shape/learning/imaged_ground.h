@@ -15,8 +15,8 @@ struct ImagedGround {
   std::vector<int> metaballs;
 };
 
-// The share of the surface that is smooth in one piece, as above: ground that the model's makers did not see, or
-// a plain. 0 where no roughness was measured.
+// The share of the surface that is smooth in one piece, as above: ground that the model's makers did not see,
+// or a plain. 0 where no roughness was measured.
 double unseen_share(const SurfaceStatistics& target);
 
 // A place is smooth if the mean logarithm of roughness within 6 edges, over the places within 10 edges, lies

@@ -49,11 +49,14 @@ std::string percent(double fraction) {
 
 void write_target_and_fit(const TargetBody& target, const ShapeFitResult& fit,
                           const std::filesystem::path& file) {
-  write_captioned_pictures({{render_preview(target.mesh, small_preview()), "target"},
-                            {render_preview(fit.check.mesh, small_preview()),
-                             std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
-                                 percent(fit.check.distance.mean) + " of the diagonal"}},
-                           file);
+  std::vector<CaptionedPicture> pictures{{render_preview(target.mesh, small_preview()), "target"}};
+  const std::string metaballs = std::to_string(fit.body.num_metaballs()) + " metaballs";
+  const bool has_details = !fit.base_mesh.triangles.empty();
+  if (has_details) pictures.push_back({render_preview(fit.base_mesh, small_preview()), metaballs + " alone"});
+  pictures.push_back({render_preview(fit.check.mesh, small_preview()),
+                      (has_details ? "with details" : metaballs) + ", mean distance " +
+                          percent(fit.check.distance.mean) + " of the diagonal"});
+  write_captioned_pictures(pictures, file);
 }
 
 void write_distance_map(const TargetBody& target, const ShapeFitResult& fit,
@@ -199,12 +202,14 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
   write_distance_map(target, fit, folder / "distance_map.png");
   write_error_histogram(sampled_distances(target, fit.check.mesh),
                         std::max(1.2 * fit.check.distance.p99, 1e-9), folder / "error_histogram.png");
+  const std::string shown =
+      fit.base_mesh.triangles.empty() ? "Target and fit" : "Target, metaballs alone and the whole fit";
   ReportPage page{title,
                   std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
                       percent(fit.check.distance.mean) + " of the bounding-box diagonal.",
                   target_beside_fit(target, fit),
                   {distance_table(fit.check.distance), likeness_table(fit), body_table(target, fit)},
-                  {{"target_and_fit.png", "Target and fit, from four sides, under the same sun."},
+                  {{"target_and_fit.png", shown + ", from four sides, under the same sun."},
                    {"distance_map.png", "Distance from the fit to the target, on the fit."},
                    {"error_histogram.png", "How the distances are spread over the fit."}}};
   if (realism != nullptr) add_realism(target, *realism, folder, page);
