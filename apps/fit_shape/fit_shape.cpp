@@ -105,7 +105,7 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
     add_micro_layers(wanted.micro, wanted.mm_per_px, wanted.micro_height_mm, recipe);
   }
   if (Program::interrupted()) return;
-  fit.base_mesh = std::move(fit.check.mesh);
+  if (!recipe.layers.empty()) fit.base_mesh = std::move(fit.check.mesh);
   measure_recipe(target, recipe, arguments.fit, fit);
 }
 

@@ -15,14 +15,13 @@ struct ImagedGround {
   std::vector<int> metaballs;
 };
 
-// The share of the surface that is smooth in one piece, as above: ground that the model's makers did not see,
-// or a plain. 0 where no roughness was measured.
-double unseen_share(const SurfaceStatistics& target);
-
 // A place is smooth if the mean logarithm of roughness within 6 edges, over the places within 10 edges, lies
 // 2 below the third quartile: a residual of less than a seventh of the rougher ground's. The largest piece
 // of smooth places counts if it holds at least 3 % of all. `spheres` are the body's, in the frame of the
 // statistics.
 ImagedGround find_imaged_ground(const SurfaceStatistics& target, const std::vector<Sphere>& spheres);
+
+// ImagedGround::smooth_share alone: ground that the model's makers did not see, or a plain.
+double unseen_share(const SurfaceStatistics& target);
 
 }  // namespace astrolith

@@ -23,9 +23,7 @@ struct ReportedRealism {
 
 // Writes these files into the folder, which is made if it is missing. Throws InputError where a file cannot
 // be written.
-//   target_and_fit.png   the bodies in the same light, from four sides each: target, metaballs alone where
-//   the
-//                        fit has details, and the whole fit
+//   target_and_fit.png   target, metaballs alone (where the fit has details) and fit, in the same light
 //   distance_map.png     the fit, coloured by distance to the target from 0 (dark) to the 99th percentile
 //   error_histogram.png  signed distances of the fit from the target
 //   convergence.png      mean distance (logarithmic) against iterations of the refinement
