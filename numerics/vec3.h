@@ -99,4 +99,10 @@ ASTROLITH_HD inline bool boxes_touch(const Box& a, const Box& b) {
          a.min.z <= b.max.z && a.max.z >= b.min.z;
 }
 
+// The part that two boxes share. Expects that they touch.
+inline Box common_part(const Box& a, const Box& b) {
+  return {{std::fmax(a.min.x, b.min.x), std::fmax(a.min.y, b.min.y), std::fmax(a.min.z, b.min.z)},
+          {std::fmin(a.max.x, b.max.x), std::fmin(a.max.y, b.max.y), std::fmin(a.max.z, b.max.z)}};
+}
+
 }  // namespace astrolith

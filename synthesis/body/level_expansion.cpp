@@ -232,4 +232,33 @@ ExpansionBounds bound_expansion(const LevelExpansion& e, const MetaballParameter
       low + high < 0.3 * linear};
 }
 
+// With q = grad L / (|grad L|^2 + floor), a step is L q. At the centre q is q0, and the linear part of a
+// step, (level + gradient.d) q0, takes from d what lies along the gradient. The rest of it is at most
+//
+//   |L - level - gradient.d| |q| + |level + gradient.d| |q - q0|,    |q - q0| <= |grad L - gradient| max
+//   |q|^2.
+Box projected_box(const LevelExpansion& e, const ExpansionBounds& bounds,
+                  const MetaballParameters<float>& body, const Box& box, double longest_step) {
+  const double margin = 1e-6 * largest_coordinate(box), divisor = bounds.divisor_min;
+  const Vec3d center{e.center.x, e.center.y, e.center.z}, g{e.gradient.x, e.gradient.y, e.gradient.z};
+  const Vec3d half = 0.5 * box.extent() + Vec3d{margin, margin, margin};
+  const Vec3d q0 = g * (1.0 / (squared_norm(g) + double{body.gradient_floor}));
+  const double squared = squared_norm(half),
+               turn = double{e.turn} * std::sqrt(squared) + double{e.turn_slack};
+  const double bend = double{std::max(e.below, e.above)} * squared + double{e.slack};
+  const double farthest =
+      std::max(std::fabs(bounds.interval.level_min), std::fabs(bounds.interval.level_max));
+  const double level = std::min(farthest, longest_step * bounds.interval.gradient_max) + bend;
+  const double rest = (bend + level * turn / divisor) / divisor + 2.0 * margin;
+  const auto reach = [&](const Vec3d& row) {  // of a coordinate of d - (gradient.d) q0
+    return std::fabs(row.x) * half.x + std::fabs(row.y) * half.y + std::fabs(row.z) * half.z + rest;
+  };
+  const Vec3d middle = center - double{e.level} * q0;
+  const Vec3d wide{reach(Vec3d{1.0, 0.0, 0.0} - q0.x * g), reach(Vec3d{0.0, 1.0, 0.0} - q0.y * g),
+                   reach(Vec3d{0.0, 0.0, 1.0} - q0.z * g)};
+  const Box linear{middle - wide, middle + wide};
+  const Box near = widened(box, std::min(farthest / divisor, longest_step) + 2.0 * margin);
+  return boxes_touch(linear, near) ? common_part(linear, near) : near;
+}
+
 }  // namespace astrolith

@@ -28,7 +28,7 @@ namespace astrolith {
 // For the float points p0 + d of a box, evaluate_metaballs() finds
 //
 //   L - log T within level + gradient.d + [-below |d|^2 - slack, above |d|^2 + slack],
-//   |grad L| within |gradient| +- (turn |d| + turn_slack).
+//   grad L within turn |d| + turn_slack of the gradient.
 struct LevelExpansion {
   Vec3f center;    // p0, length units
   float level;     // without unit, like L
@@ -51,5 +51,10 @@ struct ExpansionBounds {
 };
 ExpansionBounds bound_expansion(const LevelExpansion& expansion, const MetaballParameters<float>& body,
                                 const Box& box);
+
+// A box that holds the first-order projections (surface_projection.h) of those points of the box with
+// |s| <= longest_step. Expects the bounds of the same expansion.
+Box projected_box(const LevelExpansion& expansion, const ExpansionBounds& bounds,
+                  const MetaballParameters<float>& body, const Box& box, double longest_step);
 
 }  // namespace astrolith

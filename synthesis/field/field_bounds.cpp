@@ -96,21 +96,33 @@ void extend_bounds(const FieldModel& model, const LeafLists& metaballs, const Bo
   for (const Box& child : octants(box)) extend_bounds(model, reaching.lists(), child, depth - 1, bounds);
 }
 
+// What both of these say of the same box.
+ExpansionBounds both(const ExpansionBounds& a, const MetaballInterval& b) {
+  return {{std::max(a.interval.level_min, b.level_min), std::min(a.interval.level_max, b.level_max),
+           std::min(a.interval.gradient_max, b.gradient_max)},
+          a.divisor_min,
+          a.tight};
+}
+
 // The content of a box, without boulders, for a plain body without a warp. It is found from an expansion
-// about the centre of the box where that gives good bounds, as in all small boxes.
+// about the centre of the box, and from the bounds of each metaball where these may be better.
 std::optional<BlockContent> content_by_expansion(const FieldModel& model, const ModelLists& lists,
-                                                 const Box& box, Interval* kept) {
+                                                 const Box& box, const BoundScratch& scratch) {
   const FieldView& f = model.tables;
   if (!f.body.plain() || f.leaf(0).warped) return {};
   const MetaballsView metaballs{f.leaf(0).metaballs, lists.reaching.spheres};
   const std::optional<LevelExpansion> expansion = expand_level(metaballs, box);
   if (!expansion) return {};
-  const ExpansionBounds bounds = bound_expansion(*expansion, metaballs.parameters, box);
-  if (!bounds.tight) return {};
+  ExpansionBounds bounds = bound_expansion(*expansion, metaballs.parameters, box);
+  if (!bounds.tight) {
+    bounds = both(bounds, bound_metaballs(metaballs.parameters, lists.metaballs(0), box, f.height_bound,
+                                          scratch.kernels));
+  }
   const BlockContent content = content_by_height_bound(bounds.interval, f.height_bound);
   if (content != BlockContent::kMixed || f.num_layers == 0) return content;
-  const Box projected = projected_box(box, bounds.interval, f.height_bound, bounds.divisor_min);
-  return content_by_heights(bounds.interval, bound_elevations(f, lists, box, projected, kept),
+  const double longest_step = f.height_bound * (1.0 + kHeightSlack);
+  const Box projected = projected_box(*expansion, bounds, metaballs.parameters, box, longest_step);
+  return content_by_heights(bounds.interval, bound_elevations(f, lists, box, projected, scratch.kept),
                             [&] { return bounds.divisor_min; });
 }
 
@@ -124,14 +136,14 @@ BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaba
                         const Box& box) {
   const ModelLists lists{model, metaballs, spots};
   const BoundScratch scratch = scratch_for(model, metaballs);
-  const std::optional<BlockContent> content = content_by_expansion(model, lists, box, scratch.kept);
+  const std::optional<BlockContent> content = content_by_expansion(model, lists, box, scratch);
   if (!content) return field_content(model.tables, lists, box, scratch);
   return with_boulders(*content, lists, box);
 }
 
-Interval elevations_over(const FieldModel& model, const DrawnSpots& spots, const Box& box) {
+Interval elevations_over(const FieldModel& model, const DrawnSpots& spots, const Box& box,
+                         const Box& projected) {
   const ReachingMetaballs no_metaballs;  // only the bounds of the body read them
-  const Box projected = farthest_projected_box(box, model.height_bound);
   return bound_elevations(model.tables, ModelLists{model, no_metaballs, spots}, box, projected,
                           scratch_for(model, no_metaballs).kept);
 }

@@ -91,9 +91,10 @@ inline const SpotImpulses* spots_of(const DrawnSpots& spots, std::size_t layer) 
 BlockContent content_of(const FieldModel& model, const ReachingMetaballs& metaballs, const DrawnSpots& spots,
                         const Box& box);
 
-// Bounds of the elevations that the layers make over a box, for a plain body without a warp. `spots` must
-// hold all that reach the box.
-Interval elevations_over(const FieldModel& model, const DrawnSpots& spots, const Box& box);
+// Bounds of the elevations that the layers make over a box, of whose points the projections lie in another
+// one, for a plain body without a warp. `spots` must hold all that reach the box.
+Interval elevations_over(const FieldModel& model, const DrawnSpots& spots, const Box& box,
+                         const Box& projected);
 
 // The bound that all heights of a body must stay below, in length units. Where no metaball reaches, s is a
 // large negative number, but a finite one. Heights above its magnitude would fill all space with matter. The

@@ -19,6 +19,7 @@
 #include "synthesis/noise/phasor_noise.h"
 #include "synthesis/noise/random_phase_noise.h"
 #include "synthesis/noise/sparse_noise.h"
+#include "synthesis/relief/relief_bounds.h"
 #include "synthesis/relief/relief_noise.h"
 #include "synthesis/spots/spot_noise.h"
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "synthesis/body/level_expansion.h"
+#include "synthesis/field/content_bounds.h"
 #include "synthesis/field/field_batch_internal.h"
 
 namespace astrolith {
@@ -86,6 +87,7 @@ struct OpenPoints {
   std::array<float, kBatch> x, y, z;
   std::array<float, kBatch> middle, half;  // bounds of s
   std::array<float, kBatch> elevation;     // the elevations by the layers so far
+  float rest = 0.0f;  // bound of the change of elevations by all later layers, length units
 
   PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
   // Makes point `from` the point `to`.
@@ -115,7 +117,6 @@ class SignFinder {
     std::copy_n(at.z, n, open.z.data());
     leave_out_boulders(at, open);
     if (open.n == 0 || !bound(open)) return;
-    bound_layers(open);
     decide(open);
     add_layers(open);
     split(open, 2);
@@ -133,23 +134,29 @@ class SignFinder {
     open.n = static_cast<int>(kept);
   }
 
-  // Bounds s at the points by one expansion. Returns false where there is none.
+  // Bounds s at the points by one expansion, and the elevations where no layer has been evaluated. Returns
+  // false where there is none.
   bool bound(OpenPoints& open) const {
-    const std::optional<LevelExpansion> expansion =
-        expand_level(metaballs_, box_around(open.n, open.arrays()));
+    const Box box = box_around(open.n, open.arrays());
+    const std::optional<LevelExpansion> expansion = expand_level(metaballs_, box);
     if (!expansion) return false;
     bound_distances(*expansion, metaballs_.parameters.gradient_floor, open.n, open.x.data(), open.y.data(),
                     open.z.data(), open.middle.data(), open.half.data());
+    if (num_evaluated_ == 0) bound_layers(*expansion, box, open);
     return true;
   }
 
   // Bounds the elevations at all points by those over their box.
-  void bound_layers(OpenPoints& open) {
+  void bound_layers(const LevelExpansion& expansion, const Box& box, OpenPoints& open) const {
     Interval over;
-    if (!model_.layers.empty())
-      over = elevations_over(model_, lists_.spots, box_around(open.n, open.arrays()));
+    if (!model_.layers.empty()) {
+      const ExpansionBounds bounds = bound_expansion(expansion, metaballs_.parameters, box);
+      const Box projected = projected_box(expansion, bounds, metaballs_.parameters, box,
+                                          model_.height_bound * (1.0 + kHeightSlack));
+      over = elevations_over(model_, lists_.spots, box, projected);
+    }
     std::fill_n(open.elevation.data(), open.n, static_cast<float>(0.5 * (over.low + over.high)));
-    rest_ = static_cast<float>((0.5 + 1e-6) * (over.high - over.low));
+    open.rest = static_cast<float>((0.5 + 1e-6) * (over.high - over.low));
   }
 
   // Sets the signs of the points that are certain, and drops these points. Calls moved(from, to) for the
@@ -157,7 +164,8 @@ class SignFinder {
   template <typename Moved>
   void decide(OpenPoints& open, const Moved& moved) const {
     std::array<std::int32_t, kBatch> signs;
-    decide_signs(open.n, open.middle.data(), open.half.data(), open.elevation.data(), rest_, signs.data());
+    decide_signs(open.n, open.middle.data(), open.half.data(), open.elevation.data(), open.rest,
+                 signs.data());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(open.n); ++i) {
       if (signs[i] != 0) {
@@ -193,7 +201,8 @@ class SignFinder {
       b.n = open.n;
       b.spots = spots_of(lists_.spots, l);
       apply_layer(model_, model_.layers[l], b);
-      rest_ = l + 1 < model_.layers.size() ? model_.layers[l + 1].join.remaining_change : 0.0f;
+      ++num_evaluated_;
+      open.rest = l + 1 < model_.layers.size() ? model_.layers[l + 1].join.remaining_change : 0.0f;
       std::copy_n(b.elevation.data(), open.n, open.elevation.data());
       decide(open, [&](std::size_t from, std::size_t to) {
         for (auto* a : {&b.x, &b.y, &b.z, &b.elevation}) (*a)[to] = (*a)[from];
@@ -209,7 +218,7 @@ class SignFinder {
   void split(const OpenPoints& open, int depth) const {
     if (depth == 0 || open.n < kWorthExpansion) return;
     const float widest = *std::max_element(open.half.begin(), open.half.begin() + open.n);
-    if (!(widest > tolerance_ + 0.5f * rest_)) return;
+    if (!(widest > tolerance_ + 0.5f * open.rest)) return;
     const Vec3f c = to_float(box_around(open.n, open.arrays()).center());
     std::array<std::uint8_t, kBatch> octant;
     std::array<int, 8> count{};
@@ -219,6 +228,7 @@ class SignFinder {
       ++count[octant[i]];
     }
     OpenPoints group;
+    group.rest = open.rest;
     for (std::uint8_t k = 0; k < 8; ++k) {
       if (count[k] < kWorthExpansion) continue;
       group.n = 0;
@@ -240,7 +250,7 @@ class SignFinder {
   MetaballsView metaballs_;
   float tolerance_;
   std::int8_t* sign_;
-  float rest_ = 0.0f;  // bound of the change of elevations by all later layers, length units
+  std::size_t num_evaluated_ = 0;  // layers that have been evaluated
 };
 
 }  // namespace

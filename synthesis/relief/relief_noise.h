@@ -1,12 +1,11 @@
-// A relief layer of the recipe as plain tables: its height at one point of the bare surface, over many points
-// at once, and as a bound. The equation stands at ReliefLayer (recipe/relief_layer.h).
+// A relief layer of the recipe as plain tables: its height at one point of the bare surface, and over many
+// points at once. The equation stands at ReliefLayer (recipe/relief_layer.h).
 #pragma once
 
 #include <cstdint>
 
 #include "numerics/arrays.h"
 #include "numerics/host_device.h"
-#include "numerics/interval.h"
 #include "numerics/scalar_math.h"
 #include "recipe/relief_layer.h"
 #include "synthesis/body/layer_site.h"
@@ -128,10 +127,9 @@ ASTROLITH_KERNEL float relief_height(const ReliefNoise& n, const ReliefSums& sum
   return math::fma(n.step, sums.code, n.low * sums.weight) / (sums.weight + kHardlyAny);
 }
 
-// The height at a point of the bare surface, length units.
-ASTROLITH_HD inline float height_at(const ReliefNoise& n, const ArrayView& arrays, const Vec3f& at) {
-  if (n.count_x == 0) return 0.0f;
-  const ReliefPoint p = relief_point(n, at);
+// The height at a point of the lattice, length units.
+ASTROLITH_HD inline float height_in_lattice(const ReliefNoise& n, const ArrayView& arrays,
+                                            const ReliefPoint& p) {
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{p.cell};
   const ReliefSplit* splits = arrays[n.splits];
   const std::uint32_t* words = arrays[n.words];
@@ -142,45 +140,14 @@ ASTROLITH_HD inline float height_at(const ReliefNoise& n, const ArrayView& array
   return relief_height(n, sums);
 }
 
+// The height at a point of the bare surface, length units.
+ASTROLITH_HD inline float height_at(const ReliefNoise& n, const ArrayView& arrays, const Vec3f& at) {
+  return n.count_x == 0 ? 0.0f : height_in_lattice(n, arrays, relief_point(n, at));
+}
+
 // Writes height[i] = n(p_i) at these points, length units. The loops are vectorised and give the same bits as
 // height_at.
 void evaluate_heights(const ReliefNoise& n, const ArrayView& arrays, int count, const float* x,
                       const float* y, const float* z, float* height);
-
-// An interval that holds n(p) for every point of a box, length units.
-ASTROLITH_HD inline Interval bound_heights(const ReliefNoise& n, const ArrayView& arrays, const Box& box) {
-  if (n.count_x == 0) return {0.0, 0.0};
-  constexpr double kMostCells = 4096;  // beyond them the bound of all heights is as good
-  const double scale = n.inverse_spacing / static_cast<double>(kReliefCell);
-  const auto cell = [&](double coordinate, float origin, double slack, std::int32_t count) {
-    const double at = coordinate * scale + origin / static_cast<double>(kReliefCell) + slack;
-    return static_cast<std::int32_t>(std::floor(std::min(std::max(at, 0.0), static_cast<double>(count - 1))));
-  };
-  constexpr double kSlack = 1e-3;  // of a cell, for the rounding of lattice coordinates
-  const std::int32_t x0 = cell(box.min.x, n.origin.x, -kSlack, n.count_x),
-                     x1 = cell(box.max.x, n.origin.x, kSlack, n.count_x),
-                     y0 = cell(box.min.y, n.origin.y, -kSlack, n.count_y),
-                     y1 = cell(box.max.y, n.origin.y, kSlack, n.count_y),
-                     z0 = cell(box.min.z, n.origin.z, -kSlack, n.count_z),
-                     z1 = cell(box.max.z, n.origin.z, kSlack, n.count_z);
-  if ((x1 - x0 + 1.0) * (y1 - y0 + 1.0) * (z1 - z0 + 1.0) > kMostCells)
-    return {-n.height_bound, n.height_bound};
-  const ReliefCodeRange* ranges = arrays[n.ranges];
-  std::uint16_t least = 0xffff, greatest = 0;
-  for (std::int32_t k = z0; k <= z1; ++k) {
-    for (std::int32_t j = y0; j <= y1; ++j) {
-      for (std::int32_t i = x0; i <= x1; ++i) {
-        const ReliefCodeRange& r = ranges[i + std::int64_t{n.count_x} * (j + std::int64_t{n.count_y} * k)];
-        least = r.least < least ? r.least : least;
-        greatest = r.greatest > greatest ? r.greatest : greatest;
-      }
-    }
-  }
-  if (least > greatest) return {0.0, 0.0};
-  const double slack = 1e-5 * n.height_bound;
-  const double low = double{n.low} + double{n.step} * least - slack,
-               high = double{n.low} + double{n.step} * greatest + slack;
-  return {std::min(low, 0.0), std::max(high, 0.0)};  // 0 where no place has a weight
-}
 
 }  // namespace astrolith

@@ -96,11 +96,9 @@ def tests(preset, suite, cases=()):
         settings += " -DASTROLITH_PYTHON=ON -DPython_EXECUTABLE=$PWD/build/python-venv/bin/python"
     targets = {"apps": PROGRAMS, "python": ["_synthesis_stub", "_estimation_stub", *PROGRAMS]}.get(suite, [f"{suite}_tests"])
     names = "(apps|program)" if suite == "apps" else suite
-    run = f"ctest --preset {preset} --stop-on-failure --no-tests=error -R "
-    if preset == "ci":
-        run += shlex.quote(f"^{names}[.]" + (f".*({'|'.join(cases)})" if cases else ""))
-    else:
-        run = f"GTEST_FILTER={shlex.quote(':'.join(f'*{case}*' for case in cases) or '*')} {run}'^{names}[.]shard'"
+    shards = "[.]" if preset == "ci" else "[.]shard"
+    filters = ":".join(f"*{case}*" for case in cases) or "*"
+    run = f"GTEST_FILTER={shlex.quote(filters)} ctest --preset {preset} --stop-on-failure --no-tests=error -R '^{names}{shards}'"
     name = f"{suite} tests" + ("" if preset == "ci" else f", {preset}")
     return Check(name, f"scripts/build.sh {preset} {settings} {' '.join(targets)} && {run}")
 

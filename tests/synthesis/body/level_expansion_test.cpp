@@ -5,20 +5,32 @@
 #include <cmath>
 
 #include "numerics/hash_random.h"
+#include "synthesis/body/surface_projection.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
 namespace {
 
-// The level of L - log T and |grad L| that the float evaluation finds at a point.
+// What the float evaluation finds at a point: s and grad L, and from these L - log T and the projection.
 struct FoundLevel {
-  double level, slope;
+  float distance;
+  Vec3f gradient;
+  double level;
+  Vec3d projection;
 };
 FoundLevel level_at(const PreparedMetaballs& metaballs, const Vec3f& p) {
   float s = 0, gx = 0, gy = 0, gz = 0;
   evaluate_metaballs(metaballs, 1, &p.x, &p.y, &p.z, &s, &gx, &gy, &gz);
+  const float floor = metaballs.parameters.gradient_floor;
   const double slope = norm(Vec3d{gx, gy, gz});
-  return {double{s} * std::sqrt(slope * slope + double{metaballs.parameters.gradient_floor}), slope};
+  const auto coordinate = [&](float at, float g) {
+    const float far = 1e30f;
+    return double{projected_coordinate(at, g, gradient_length(gx, gy, gz, floor), s, far)};
+  };
+  return {s,
+          {gx, gy, gz},
+          double{s} * std::sqrt(slope * slope + double{floor}),
+          {coordinate(p.x, gx), coordinate(p.y, gy), coordinate(p.z, gz)}};
 }
 
 MetaballBody drawn_body(CounterRandom& random, int k) {
@@ -28,9 +40,9 @@ MetaballBody drawn_body(CounterRandom& random, int k) {
   return body;
 }
 
-TEST(LevelExpansion, HoldsTheLevelAndTheSlopeAtFloatPoints) {
+TEST(LevelExpansion, HoldsTheLevelTheGradientAndTheProjectionAtFloatPoints) {
   CounterRandom random(31);
-  int expanded = 0, tight = 0;
+  int expanded = 0, tight = 0, narrow = 0;
   for (int k = 0; k < 1500; ++k) {
     const PreparedMetaballs all = prepare_metaballs(drawn_body(random, k));
     const double size = std::pow(10.0, random.uniform(-4.0, -0.7));
@@ -42,6 +54,10 @@ TEST(LevelExpansion, HoldsTheLevelAndTheSlopeAtFloatPoints) {
     ++expanded;
     const double radius = 0.5 * norm(box.extent());
     tight += (e->below + e->above) * radius * radius < 0.1 * norm(e->gradient) * radius;
+    const ExpansionBounds bounds = bound_expansion(*e, near.parameters, box);
+    const double longest_step = random.uniform(0.01, 0.2);
+    const Box projected = projected_box(*e, bounds, near.parameters, box, longest_step);
+    narrow += norm(projected.extent()) < 1.5 * norm(box.extent());
     for (int i = 0; i < 50; ++i) {
       const auto at = [&](double low, double high) {
         return static_cast<float>(low + (high - low) * (i < 8 ? i % 2 : random.uniform()));
@@ -53,11 +69,14 @@ TEST(LevelExpansion, HoldsTheLevelAndTheSlopeAtFloatPoints) {
       ASSERT_GE(found.level, linear - double{e->below} * squared - double{e->slack}) << "body " << k;
       ASSERT_LE(found.level, linear + double{e->above} * squared + double{e->slack}) << "body " << k;
       const double turn = double{e->turn} * std::sqrt(squared) + double{e->turn_slack};
-      ASSERT_LE(std::fabs(found.slope - norm(e->gradient)), turn) << "body " << k;
+      ASSERT_LE(double{norm(found.gradient - e->gradient)}, turn) << "body " << k;
+      if (std::fabs(double{found.distance}) > longest_step) continue;
+      ASSERT_TRUE(boxes_touch(projected, {found.projection, found.projection})) << "body " << k;
     }
   }
   EXPECT_GT(expanded, 600);
   EXPECT_GT(tight, 200);
+  EXPECT_GT(narrow, 200);
 }
 
 // One sphere: L is quadratic, so that the lower bound is exact.

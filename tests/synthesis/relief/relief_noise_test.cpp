@@ -107,21 +107,27 @@ TEST(ReliefNoise, HasNoJumps) {
 TEST(ReliefNoise, StaysWithinItsBounds) {
   const Covered ball(sphere_recipe(1.0), 0.05, 0.1, waves);
   CounterRandom random(11);
-  double widths = 0.0;
-  constexpr int kBoxes = 300;
-  for (int i = 0; i < kBoxes; ++i) {
-    const Vec3d p = random_direction(random);
-    const Box box{p - Vec3d{0.05, 0.05, 0.05}, p + Vec3d{0.05, 0.05, 0.05}};
-    const Interval bound = bound_heights(ball.noise, ball.field.tables().arrays, box);
-    widths += bound.high - bound.low;
-    for (int k = 0; k < 50; ++k) {
-      const Vec3d q{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
-                    random.uniform(box.min.z, box.max.z)};
-      const double h = ball.at(q);
-      ASSERT_TRUE(h >= bound.low && h <= bound.high) << i;
+  const auto mean_width = [&](double half) {  // of the bounds of boxes, the heights in them checked
+    double widths = 0.0;
+    constexpr int kBoxes = 200;
+    for (int i = 0; i < kBoxes; ++i) {
+      const Vec3d p = random_direction(random), side{half, half, half};
+      const Box box{p - side, p + side};
+      const Interval bound = bound_heights(ball.noise, ball.field.tables().arrays, box);
+      widths += bound.high - bound.low;
+      for (int k = 0; k < 50; ++k) {
+        const Vec3d q{random.uniform(box.min.x, box.max.x), random.uniform(box.min.y, box.max.y),
+                      random.uniform(box.min.z, box.max.z)};
+        const double h = ball.at(q);
+        EXPECT_TRUE(h >= bound.low && h <= bound.high) << half << " " << i;
+      }
     }
-  }
-  EXPECT_LT(widths / kBoxes, 0.8 * 0.04);  // the range of all heights
+    return widths / kBoxes;
+  };
+  const double wide = mean_width(0.05);
+  EXPECT_LT(wide, 0.5 * 0.04);  // the range of all heights
+  EXPECT_LT(mean_width(0.005), 0.5 * wide);
+  EXPECT_LT(mean_width(0.0005), 0.1 * wide);
 }
 
 // A disc is thinner than a cell. Its upper and lower side have heights of their own.
