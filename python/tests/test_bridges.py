@@ -140,6 +140,14 @@ def test_height_maps_are_those_of_synth(example, program, tmp_path):
     assert len(points) > 100 and np.abs(field.value(np.ascontiguousarray(points))).max() < made.pixel
 
 
+@pytest.mark.parametrize("name, side", [("itokawa_details", 60.0), ("itokawa_relief", 0.06)])
+def test_height_maps_are_in_metres(example, name, side):
+    top = astrolith.mesh(example(name), resolution=40).vertices.astype(float)
+    made = astrolith.height_map(example(name), (*top[top[:, 2].argmax()].tolist(), side), resolution=32)
+    assert made.pixel == pytest.approx(60.0 / 32)
+    assert 100.0 < made.origin[2] < 130.0
+
+
 def test_what_is_missing_is_named_with_the_extra():
     code = """
 import sys

@@ -103,6 +103,11 @@ def tests(preset, suite, cases=()):
     return Check(name, f"scripts/build.sh {preset} {settings} {' '.join(targets)} && {run}")
 
 
+def seeds_of(fuzzer):
+    build = f"scripts/build.sh asan -DASTROLITH_CUDA=OFF fuzz_{fuzzer}"
+    return Check(f"seeds of {fuzzer}, asan", f"{build} && ctest --preset asan --no-tests=error -R '^fuzz[.]{fuzzer}$'")
+
+
 def static_checks(defect):
     file = shlex.quote(defect["file"])
     documents = ("scripts/check_docs.py", "scripts/recipe_reference.py --check", "scripts/summary_reference.py --check")
@@ -148,6 +153,8 @@ def search(defect, near=False):
             own += [(preset, cases)] if near and cases else [(preset, cases), (preset, ())]
     for preset, words in own:
         yield tests(preset, suite, tuple(words))
+    if "fuzzer" in defect:
+        yield seeds_of(defect["fuzzer"])
     if near:
         return
     if defect["file"].startswith(("numerics", "recipe", "geometry", "gravity", "descriptor", "synthesis", "cuda")):

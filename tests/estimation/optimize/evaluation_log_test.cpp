@@ -1,6 +1,8 @@
 #include "estimation/optimize/evaluation_log.h"
 
 #include <cmath>
+#include <thread>
+#include <vector>
 
 namespace astrolith {
 namespace {
@@ -19,6 +21,23 @@ TEST(EvaluationLog, TellsPointsApartByTheirBits) {
   EXPECT_FALSE(log.find(b).has_value());
   EXPECT_FALSE(log.find(c).has_value());
   EXPECT_EQ(log.size(), 1u);
+}
+
+// For the thread sanitizer: one thread adds, the others ask.
+TEST(EvaluationLog, ThreadsAskWhileAnotherAdds) {
+  EvaluationLog log;
+  constexpr int kPoints = 400;
+  const auto point = [](int i) { return std::vector<double>{static_cast<double>(i), 1.0}; };
+  log.add(point(0), 0.0);
+  std::vector<std::thread> others;
+  for (int thread = 0; thread < 2; ++thread) {
+    others.emplace_back([&] {
+      for (int i = 0; i < kPoints; ++i) EXPECT_EQ(log.find(point(0)), 0.0);
+    });
+  }
+  for (int i = 1; i < kPoints; ++i) log.add(point(i), i);
+  for (std::thread& other : others) other.join();
+  EXPECT_EQ(log.size(), std::size_t{kPoints});
 }
 
 TEST(EvaluationLog, EveryAlgorithmGoesOnWhereItStopped) {
