@@ -46,11 +46,21 @@ void check_exemplar_height(const ExemplarLayer& layer, const Place& place) {
   place.field("height_range").fail("must be 0 where height_rms is not; state one of both");
 }
 
-constexpr ReliefArrangement kArrangements[] = {ReliefArrangement::kMeasured};
+constexpr ReliefArrangement kArrangements[] = {ReliefArrangement::kMeasured, ReliefArrangement::kLike};
 
 void check_relief_heights(const ReliefLayer& layer, const Place& place) {
   if (layer.high >= layer.low) return;
   place.field("high").fail("must not be below low");
+}
+
+void check_donor(const ReliefLayer& layer, const Place& place) {
+  if (!layer.donor) return;
+  if (layer.arrangement != ReliefArrangement::kLike) {
+    place.field("donor").fail("has heights for places of its own; take arrangement \"like\" with it");
+  }
+  if (!layer.donor->operations.empty() || layer.donor->warp) {
+    place.field("donor").fail("must be metaballs without operations and warp");
+  }
 }
 
 void check_edge(const Vec3d& edge, const Place& place) {
@@ -185,6 +195,11 @@ void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.field_if(!layer.is_embedded(), "image", layer.image);
   v.field_if(!layer.is_embedded(), "image_sha256", layer.image_sha256);
   v.word("arrangement", layer.arrangement, kArrangements, arrangement_word);
+  v.field("donor", layer.donor);
+  v.rule(check_donor, layer);
+  v.field_if(layer.edge != 0.0, "edge", layer.edge, kNotNegative);
+  v.field_if(layer.reach != 0.3, "reach", layer.reach, range(0.01, 1.0));
+  v.field_if(layer.sharpen != 0.0, "sharpen", layer.sharpen, range(0.0, 2.0));
   v.required("spacing", layer.spacing, kPositive);
   v.required("low", layer.low, kAnyNumber);
   v.required("high", layer.high, kAnyNumber);

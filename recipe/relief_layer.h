@@ -2,18 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "recipe/body.h"
 #include "recipe/exemplar_image.h"
 #include "recipe/layer_traits.h"
 #include "recipe/noise_layers.h"
 
 namespace astrolith {
 
-// Where the heights of a relief stand.
-enum class ReliefArrangement { kMeasured };  // each in its own place
-constexpr std::string_view arrangement_word(ReliefArrangement) { return "measured"; }
+// Where the heights of a relief stand: each in its own place, or drawn from other places
+// (synthesis/relief/relief_likeness.h).
+enum class ReliefArrangement { kMeasured, kLike };
+constexpr std::string_view arrangement_word(ReliefArrangement a) {
+  return a == ReliefArrangement::kLike ? "like" : "measured";
+}
 
 // Heights over the bare surface, stored at places q that follow from the body and the spacing
 // (synthesis/relief/relief_places.h). With maps of the surface along the axes a = x, y, z,
@@ -37,6 +42,11 @@ struct ReliefLayer : NamedImage {
   LayerSeed seed;
   LayerUse use;
   ReliefArrangement arrangement = ReliefArrangement::kMeasured;
+  // The body whose places have the heights, where it is not the recipe's own; with kLike only.
+  std::optional<MetaballBody> donor;
+  double edge = 0.0;     // mean edge of the model that was measured, length units; 0: 1.2 spacings
+  double reach = 0.3;    // of donors with kLike, as a share of the body's diagonal
+  double sharpen = 0.0;  // with kLike: how much of the finest heights is added again
   double spacing = 1.0;  // length units between lines of the lattice, > 0
   double low = 0.0;      // height of the grey value 1, length units
   double high = 0.0;     // height of the grey value 65535, >= low
@@ -52,12 +62,19 @@ struct ReliefLayer : NamedImage {
   std::uint16_t value_of(std::uint16_t code) const {
     return static_cast<std::uint16_t>(1u + (code * 65534u + (levels - 1u) / 2u) / (levels - 1u));
   }
+  double edge_length() const { return edge > 0.0 ? edge : 1.2 * spacing; }
   StatedHeight stated_height() const { return {low < -high ? "low" : "high", low < -high ? low : high}; }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     spacing *= ratio;
+    edge *= ratio;
     low *= ratio;
     high *= ratio;
+    if (!donor) return;
+    for (Sphere& sphere : donor->spheres) {
+      sphere.center *= ratio;
+      sphere.radius *= ratio;
+    }
   }
 };
 

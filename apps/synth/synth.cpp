@@ -34,6 +34,7 @@ struct Options {
   MeshRequest mesh;
   MembersRequest members;
   FinishOptions finish;
+  bool like = false;  // whether reliefs are drawn anew
   double vary = 0.0;  // 0 = the recipe itself
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
@@ -55,6 +56,9 @@ void declare_options(Program& program, Options& options) {
                   "convert, and the unit \"body\" is the longest side of that body")
       .placeholder("BODY.json");
   declare_finish_options(program, options.finish);
+  program.app.add_flag("--like", options.like,
+                       "another body of the kind: the measured heights of the recipe's relief are drawn for "
+                       "other places, patch by patch; every --seed gives another one");
   Option vary =
       program.app
           .add_option(
@@ -81,7 +85,7 @@ void declare_options(Program& program, Options& options) {
        {"--resolution", "--triangles", "--max-memory",    "--tile",    "--patch",  "--feature-list",
         "--vary",       "--target",    "--min-component", "--predict", "--device", "--points",
         "--labels",     "--preview",   "--preview-maps",  "--view",    "--sun",    "--gravity",
-        "--height-map", "--uv",        "--finish",        "--even"}) {
+        "--height-map", "--uv",        "--finish",        "--even",    "--like"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {
@@ -106,11 +110,27 @@ void make_texture(Program& program, const Options& options, const Recipe& recipe
   summarize_output(program, files.front());
 }
 
+// Lets the heights of all reliefs be drawn for other places.
+void arrange_like(Recipe& recipe, const fs::path& file) {
+  bool has_relief = false;
+  for (Layer& layer : recipe.layers) {
+    if (ReliefLayer* relief = std::get_if<ReliefLayer>(&layer)) {
+      relief->arrangement = ReliefArrangement::kLike;
+      has_relief = true;
+    }
+  }
+  if (has_relief) return;
+  throw InputError(file.string() +
+                   ": layers: hold no relief, whose heights --like draws for other places; fit_shape writes "
+                   "one, and --vary varies other recipes");
+}
+
 Recipe read_input(const Program& program, const Options& options) {
   Recipe recipe = load_recipe(options.recipe);
   if (!options.base.empty()) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string());
   }
+  if (options.like) arrange_like(recipe, options.recipe);
   if (program.app.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
 }

@@ -47,7 +47,18 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
   }
   const double ratio = unit_ratio(details, details_name, base, base_name);
   Recipe result = base;
-  for (const Layer& layer : details.layers) result.layers.push_back(rescaled(layer, ratio));
+  for (const Layer& layer : details.layers) {
+    result.layers.push_back(rescaled(details.body ? drawn_from(*details.body, layer) : layer, ratio));
+  }
+  return result;
+}
+
+Layer drawn_from(const MetaballBody& measured, const Layer& layer) {
+  Layer result = layer;
+  if (ReliefLayer* relief = std::get_if<ReliefLayer>(&result)) {
+    relief->arrangement = ReliefArrangement::kLike;
+    if (!relief->donor) relief->donor = measured;
+  }
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/body/body_spheres.h"
+#include "synthesis/finish/lay_on_base.h"
 #include "synthesis/noise/coordinate_warp.h"
 
 namespace astrolith {
@@ -147,6 +148,7 @@ Recipe vary_recipe(const Recipe& recipe, double strength, std::uint64_t variatio
   std::vector<double> growth;
   for (std::size_t i = 0; i < varied.layers.size(); ++i) {
     const CounterRandom random(variation_seed, (std::uint64_t{kLayerStream} << 32) + i);
+    varied.layers[i] = drawn_from(*recipe.body, varied.layers[i]);
     growth.push_back(vary(varied.layers[i], strength, random));
   }
   follow_heights(growth, varied.layers);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "synthesis/relief/relief_likeness.h"
 #include "synthesis/relief/relief_picture.h"
 
 namespace astrolith {
@@ -36,6 +38,43 @@ std::vector<std::uint16_t> codes_of(const ReliefLayer& layer, const std::vector<
                      "own image, or leave the layer out");
   }
   return codes;
+}
+
+std::vector<double> heights_of(const ReliefLayer& layer, const std::vector<std::uint16_t>& codes) {
+  std::vector<double> heights(codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) heights[i] = layer.low + layer.step() * codes[i];
+  return heights;
+}
+
+// The heights as codes of their own range, which the noise gets.
+std::vector<std::uint16_t> encode(const std::vector<double>& heights, ReliefNoise& noise) {
+  const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
+  noise.low = static_cast<float>(*least);
+  noise.step = static_cast<float>((*most - *least) / 65535.0);
+  std::vector<std::uint16_t> codes(heights.size());
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double code = noise.step > 0.0f ? (heights[i] - double{noise.low}) / double{noise.step} : 0.0;
+    codes[i] = static_cast<std::uint16_t>(std::clamp(std::floor(code + 0.5), 0.0, 65535.0));
+  }
+  return codes;
+}
+
+// The heights of the layer, drawn for other places or another body.
+std::vector<double> drawn_heights(const ReliefLayer& layer, const LayerSource& source,
+                                  const BodyGround& ground, const std::vector<ReliefPlace>& places) {
+  const LikenessOptions options{layer.edge_length(), layer.reach, layer.sharpen,
+                                hash_seed(source.recipe.seed, static_cast<std::uint32_t>(source.number))};
+  const auto like = [&](const BodyGround& of, const std::vector<ReliefPlace>& its_places) {
+    const std::vector<double> heights = heights_of(layer, codes_of(layer, its_places, source.place));
+    return like_heights(places, {of, its_places, heights}, layer.donor.has_value(), layer.spacing, options,
+                        source.place);
+  };
+  if (!layer.donor) return like(ground, places);
+  ArrayStore arrays;
+  const BodyTables body = make_body(*layer.donor, source.recipe.seed, arrays);
+  const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
+  const BodyGround donor{body, arrays.view(), metaballs.lists()};
+  return like(donor, find_relief_places(donor, layer.spacing, source.place));
 }
 
 // The bounds of the codes in each cell.
@@ -139,7 +178,10 @@ ReliefNoise placed(const ReliefLayer& layer, const ReliefNoise& prepared, const 
                    const LayerSite& site, ArrayStore& arrays) {
   ReliefNoise noise = prepared;
   const std::vector<ReliefPlace> places = find_relief_places(site.ground(), layer.spacing, source.place);
-  const std::vector<std::uint16_t> codes = codes_of(layer, places, source.place);
+  const std::vector<std::uint16_t> codes =
+      layer.arrangement == ReliefArrangement::kLike
+          ? encode(drawn_heights(layer, source, site.ground(), places), noise)
+          : codes_of(layer, places, source.place);
   const ReliefTiles tiles = make_relief_tiles(places, source.place);
   std::vector<std::uint32_t> words(tiles.places.size(), 0);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -157,7 +199,8 @@ ReliefNoise placed(const ReliefLayer& layer, const ReliefNoise& prepared, const 
   noise.words = arrays.add(words);
   noise.ranges = arrays.add(ranges);
   for (const std::uint16_t code : codes) {
-    noise.height_bound = std::max(noise.height_bound, std::fabs(layer.low + layer.step() * code));
+    noise.height_bound =
+        std::max(noise.height_bound, std::fabs(double{noise.low} + double{noise.step} * code));
   }
   noise.height_bound *= 1.0 + 1e-5;
   return noise;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gravity/polyhedron_gravity.h"
+#include "numerics/parallel_for.h"
 #include "tests/support/meshes.h"
 
 namespace astrolith {
@@ -54,6 +55,20 @@ TEST(GravityCoefficients, DegreeTwoFollowsFromInertia) {
   EXPECT_NEAR(at(all, 1, 0).c, 0.0, 1e-15);
   EXPECT_NEAR(at(all, 2, 0).c, (a + b - 2 * c) / (2 * scale) / std::sqrt(5.0), 1e-14);
   EXPECT_NEAR(at(all, 2, 2).c, (b - a) / (4 * scale) * std::sqrt(12.0 / 5.0), 1e-14);
+}
+
+TEST(GravityCoefficients, AreTheSameForAnyThreadCount) {
+  TriangleMesh mesh = testing::icosphere(4);
+  for (Vec3d& p : mesh.vertices) p = {1.3 * p.x + 0.2 * p.y * p.z, p.y, 0.8 * p.z + 0.1 * p.x};
+  std::vector<std::vector<GravityCoefficient>> of_threads;
+  for (const int threads : {1, 16}) {
+    const ThreadLimit limit(threads);
+    of_threads.push_back(gravity_coefficients(mesh, {}, 1.7, 4));
+  }
+  for (std::size_t i = 0; i < of_threads[0].size(); ++i) {
+    EXPECT_EQ(of_threads[0][i].c, of_threads[1][i].c) << i;
+    EXPECT_EQ(of_threads[0][i].s, of_threads[1][i].s) << i;
+  }
 }
 
 // The series outside the body is the exact potential.

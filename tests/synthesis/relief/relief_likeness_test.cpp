@@ -1,0 +1,161 @@
+#include "synthesis/relief/relief_likeness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
+#include "numerics/parallel_for.h"
+#include "synthesis/relief/relief_anchors.h"
+#include "tests/support/refusal.h"
+#include "tests/synthesis/bodies.h"
+#include "tests/synthesis/reliefs.h"
+
+namespace astrolith {
+namespace {
+
+using testing::places_of;
+using testing::position;
+using testing::potato_recipe;
+
+constexpr double kSpacing = 0.025;
+
+// A body with heights at its places: waves of many lengths, rough on the side of +x.
+struct Rough {
+  Recipe recipe = potato_recipe(60, 5);
+  ArrayStore arrays;
+  BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
+  ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
+  BodyGround ground{body, arrays.view(), metaballs.lists()};
+  std::vector<ReliefPlace> places = places_of(recipe, kSpacing);
+  std::vector<double> heights;
+
+  Rough() {
+    for (const ReliefPlace& p : places) {
+      const Vec3d at = position(p, kSpacing);
+      const double wide = std::sin(17.0 * at.x) * std::sin(15.0 * at.y) * std::sin(16.0 * at.z);
+      const double narrow = std::sin(80.0 * at.x + 7.0 * at.y) * std::sin(75.0 * at.y - 9.0 * at.z);
+      heights.push_back(0.004 * wide + (at.x > 0.0 ? 0.004 : 0.001) * narrow);
+    }
+  }
+  std::vector<double> like(std::uint32_t seed, double edge = kSpacing / 3.0) const {
+    LikenessOptions options;
+    options.edge = edge;
+    options.hash = seed;
+    return like_heights(places, {ground, places, heights}, false, kSpacing, options, "test");
+  }
+};
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return sum / static_cast<double>(values.size());
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum / static_cast<double>(a.size()) / std::sqrt(mean_square(a) * mean_square(b));
+}
+
+// The mean square of the heights on the side of +x, over that on the other.
+double contrast(const Rough& rough, const std::vector<double>& heights) {
+  std::vector<double> front, back;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double x = position(rough.places[i], kSpacing).x;
+    if (std::fabs(x) > 0.2) (x > 0.0 ? front : back).push_back(heights[i]);
+  }
+  return mean_square(front) / mean_square(back);
+}
+
+TEST(ReliefLikeness, DrawsHeightsOfTheSameSizeForOtherPlaces) {
+  const Rough rough;
+  const std::vector<double> like = rough.like(1), other = rough.like(2);
+  EXPECT_NEAR(std::sqrt(mean_square(like) / mean_square(rough.heights)), 1.0, 0.2);
+  EXPECT_LT(std::fabs(correlation(like, rough.heights)), 0.2);
+  EXPECT_LT(std::fabs(correlation(like, other)), 0.2);
+}
+
+TEST(ReliefLikeness, KeepsRoughRegionsWhereTheyAre) {
+  const Rough rough;
+  EXPECT_GT(contrast(rough, rough.like(1)), 1.5);
+  EXPECT_GT(contrast(rough, rough.like(2)), 1.5);
+}
+
+TEST(ReliefLikeness, KeepsAConstantHeight) {
+  Rough even;
+  even.heights.assign(even.places.size(), 0.01);
+  for (const double height : even.like(3)) ASSERT_NEAR(height, 0.01, 1e-7);
+}
+
+TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
+  const Rough rough;
+  Recipe ball = testing::sphere_recipe(0.4);
+  const std::vector<ReliefPlace> places = places_of(ball, kSpacing);
+  LikenessOptions options;
+  options.edge = kSpacing / 3.0;
+  const std::vector<double> heights =
+      like_heights(places, {rough.ground, rough.places, rough.heights}, true, kSpacing, options, "test");
+  ASSERT_EQ(heights.size(), places.size());
+  EXPECT_NEAR(std::sqrt(mean_square(heights) / mean_square(rough.heights)), 1.0, 0.3);
+}
+
+TEST(ReliefLikeness, IsTheSameForAnyThreadCount) {
+  const Rough rough;
+  std::vector<double> of_one;
+  {
+    const ThreadLimit limit(1);
+    of_one = rough.like(1);
+  }
+  const ThreadLimit limit(3);
+  EXPECT_EQ(rough.like(1), of_one);
+}
+
+TEST(ReliefLikeness, RefusesABodyOfFewPatches) {
+  const Rough rough;
+  const std::string refused = testing::refusal_of([&] { rough.like(1, kSpacing * 4.0); });
+  EXPECT_TRUE(testing::has(refused, "test: the body has room for 4 patches of its relief"));
+}
+
+TEST(ReliefAnchors, LieApartAndReachEveryPlace) {
+  const Rough rough;
+  const ReliefPoints points(rough.places, kSpacing);
+  const double distance = 0.15;
+  const std::vector<ReliefAnchor> anchors = relief_anchors(points, rough.heights, distance, distance);
+  std::set<std::uint32_t> reached;
+  for (const ReliefAnchor& a : anchors) {
+    EXPECT_NEAR(dot(cross(a.right, a.ahead), a.up), 1.0, 1e-6);
+    points.for_each_near(a.at, a.up, distance, [&](std::uint32_t k, double, double) { reached.insert(k); });
+    for (const ReliefAnchor& b : anchors) {
+      const bool others = &a != &b && dot(a.up, b.up) > 0.0;
+      EXPECT_TRUE(!others || norm(a.at - b.at) >= distance);
+    }
+  }
+  EXPECT_EQ(reached.size(), points.size());
+}
+
+TEST(ReliefAnchors, HaveDonorsWithinReachOfLikeRoughness) {
+  const Rough rough;
+  const ReliefPoints points(rough.places, kSpacing);
+  const std::vector<ReliefAnchor> anchors = relief_anchors(points, rough.heights, 0.12, 0.2);
+  Box box;
+  for (const ReliefAnchor& a : anchors) box.extend(a.at);
+  const double reach = 0.25 * box.diagonal();
+  const std::vector<std::uint32_t> donors = relief_donors(anchors, anchors, 0.25, 7),
+                                   others = relief_donors(anchors, anchors, 0.25, 8);
+  int same = 0;
+  double unlike = 0.0;
+  for (std::size_t a = 0; a < anchors.size(); ++a) {
+    ASSERT_NE(donors[a], a);
+    EXPECT_LT(norm(anchors[donors[a]].at - anchors[a].at), reach);
+    same += donors[a] == others[a];
+    unlike += std::fabs(anchors[donors[a]].roughness - anchors[a].roughness);
+  }
+  EXPECT_LT(same, static_cast<int>(anchors.size()) / 2);
+  EXPECT_LT(unlike / static_cast<double>(anchors.size()), 0.15);
+}
+
+}  // namespace
+}  // namespace astrolith
