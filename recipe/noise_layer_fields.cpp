@@ -199,7 +199,6 @@ void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.rule(check_donor, layer);
   v.field_if(layer.edge != 0.0, "edge", layer.edge, kNotNegative);
   v.field_if(layer.reach != 0.3, "reach", layer.reach, range(0.01, 1.0));
-  v.field_if(layer.sharpen != 0.0, "sharpen", layer.sharpen, range(0.0, 2.0));
   v.required("spacing", layer.spacing, kPositive);
   v.required("low", layer.low, kAnyNumber);
   v.required("high", layer.high, kAnyNumber);

@@ -46,7 +46,6 @@ struct ReliefLayer : NamedImage {
   std::optional<MetaballBody> donor;
   double edge = 0.0;     // mean edge of the model that was measured, length units; 0: 1.2 spacings
   double reach = 0.3;    // of donors with kLike, as a share of the body's diagonal
-  double sharpen = 0.0;  // with kLike: how much of the finest heights is added again
   double spacing = 1.0;  // length units between lines of the lattice, > 0
   double low = 0.0;      // height of the grey value 1, length units
   double high = 0.0;     // height of the grey value 65535, >= low

@@ -7,32 +7,43 @@
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_double.h"
 #include "synthesis/body/ground_points.h"
 #include "synthesis/relief/relief_anchors.h"
 #include "synthesis/relief/relief_shares.h"
+#include "synthesis/relief/relief_values.h"
 
 namespace astrolith {
 namespace {
 
-// In mean edges of the measured model.
-constexpr double kAnchorDistance = 16.0, kPatchRadius = 24.0, kLowBand = 2.5, kSharpened = 0.75;
-constexpr std::size_t kFewestAnchors = 10;
+// In mean edges of the measured model; the last are standard deviations of smoothing.
+constexpr double kWidestDistance = 24.0, kLeastDistance = 8.0, kLowBand = 2.5,
+                 kEqualBands[] = {0.7, 1.4, 2.8};
+constexpr std::size_t kEnoughAnchors = 40, kFewestAnchors = 10;
+constexpr int kLowExponent = 5;
+
+// How far anchors lie apart, and what follows from it.
+struct AnchorSpacing {
+  double edge;   // length units
+  double edges;  // between anchors
+
+  double distance() const { return edges * edge; }
+  double radius() const { return 1.5 * distance(); }  // of patches
+  // Patches change from one to the next within some 4 edges.
+  int high_exponent() const {
+    const double share = edges / kWidestDistance;
+    return std::max(kLowExponent, static_cast<int>(60.0 * share * share + 0.5));
+  }
+};
 
 // Heights in two bands, as coefficients at the places.
 struct ReliefBands {
   std::vector<double> low, high;
 };
 
-ReliefBands split_bands(const ReliefPoints& points, const std::vector<double>& heights,
-                        const LikenessOptions& options) {
-  ReliefBands bands{smoothed_heights(points, heights, kLowBand * options.edge), heights};
+ReliefBands split_bands(const ReliefPoints& points, const std::vector<double>& heights, double edge) {
+  ReliefBands bands{smoothed_heights(points, heights, kLowBand * edge), heights};
   for (std::size_t i = 0; i < heights.size(); ++i) bands.high[i] -= bands.low[i];
-  if (options.sharpen > 0.0) {
-    const std::vector<double> blurred = smoothed_heights(points, bands.high, kSharpened * options.edge);
-    for (std::size_t i = 0; i < heights.size(); ++i) {
-      bands.high[i] += options.sharpen * (bands.high[i] - blurred[i]);
-    }
-  }
   return bands;
 }
 
@@ -58,9 +69,14 @@ struct PatchHeight {
 // Patches of what was measured, laid around anchors.
 class Patches {
  public:
-  Patches(const BodyGround& ground, const ReliefShares& shares, const ReliefBands& bands, double radius,
-          double most_missed)
-      : ground_(ground), shares_(shares), bands_(bands), radius_(radius), most_missed_(most_missed) {}
+  Patches(const BodyGround& ground, const ReliefShares& shares, const ReliefBands& bands,
+          const AnchorSpacing& spacing, double most_missed)
+      : ground_(ground),
+        shares_(shares),
+        bands_(bands),
+        radius_(spacing.radius()),
+        high_exponent_(spacing.high_exponent()),
+        most_missed_(most_missed) {}
 
   // What the donor's patch gives to the points around an anchor.
   std::vector<PatchHeight> heights_around(const ReliefPoints& points, const ReliefAnchor& anchor,
@@ -69,9 +85,8 @@ class Patches {
     std::vector<Vec3d> at;
     points.for_each_near(anchor.at, anchor.up, radius_, [&](std::uint32_t k, double squared, double facing) {
       const double near = 1.0 - squared / (radius_ * radius_);
-      const double soft = near * near * facing * facing;
-      const double near_4 = near * near * near * near, near_12 = near_4 * near_4 * near_4;
-      patch.push_back({k, soft, soft * near_12 * near_12 * near_4, 0.0, 0.0});
+      const double soft = portable::whole_power(near, kLowExponent) * facing * facing;
+      patch.push_back({k, soft, portable::whole_power(near, high_exponent_) * facing * facing, 0.0, 0.0});
       at.push_back(carried(points.at(k) - anchor.at, anchor, donor, turn));
     });
     read(at, patch);
@@ -114,7 +129,9 @@ class Patches {
   const BodyGround& ground_;
   const ReliefShares& shares_;
   const ReliefBands& bands_;
-  double radius_, most_missed_;
+  double radius_;
+  int high_exponent_;
+  double most_missed_;
 };
 
 // Sums over the patches of a place.
@@ -168,41 +185,44 @@ std::vector<double> blended(const Patches& patches, const ReliefPoints& points, 
   return heights;
 }
 
-// Coefficients whose blend has nearly these values at the places, by damped iterations. What lies at the
-// finest waves of the lattice is left to the spline.
-std::vector<double> coefficients_of(const std::vector<double>& values, const ReliefPoints& points,
-                                    const ReliefShares& shares) {
-  constexpr int kIterations = 6;
-  constexpr double kDamping = 1.3;
-  struct Row {
-    std::vector<std::uint32_t> places;
-    std::vector<float> shares;
-  };
-  const auto n = static_cast<std::int64_t>(values.size());
-  std::vector<Row> rows(values.size());
-  parallel_for(
-      0, n,
-      [&](std::int64_t i) {
-        Row& row = rows[static_cast<std::size_t>(i)];
-        shares.add(to_float(points.at(static_cast<std::size_t>(i))), row.places, row.shares);
-      },
-      256);
-  std::vector<double> coefficients = values, next(values.size());
-  for (int pass = 0; pass < kIterations; ++pass) {
-    parallel_for(
-        0, n,
-        [&](std::int64_t number) {
-          const auto i = static_cast<std::size_t>(number);
-          double sum = 0.0;
-          for (std::size_t k = 0; k < rows[i].places.size(); ++k) {
-            sum += double{rows[i].shares[k]} * coefficients[rows[i].places[k]];
-          }
-          next[i] = coefficients[i] + (rows[i].places.empty() ? 0.0 : kDamping * (values[i] - sum));
-        },
-        256);
-    coefficients.swap(next);
+// Heights in bands, from fine to wide; the last is what all smoothing leaves. Their sum is the heights.
+std::vector<std::vector<double>> bands_of(const ReliefPoints& points, std::vector<double> heights,
+                                          double edge) {
+  std::vector<std::vector<double>> bands;
+  for (const double sigma : kEqualBands) {
+    std::vector<double> smooth = smoothed_heights(points, heights, sigma * edge);
+    for (std::size_t i = 0; i < heights.size(); ++i) heights[i] -= smooth[i];
+    bands.push_back(std::move(heights));
+    heights = std::move(smooth);
   }
-  return coefficients;
+  bands.push_back(std::move(heights));
+  return bands;
+}
+
+double weighted_rms(const ReliefPoints& points, const std::vector<double>& heights) {
+  double total = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    total += points.weight(i);
+    squares += points.weight(i) * heights[i] * heights[i];
+  }
+  return std::sqrt(squares / total);
+}
+
+// Heights whose bands have the root mean squares of those that were measured: blends and resampling take from
+// each a share of its own.
+std::vector<double> equalized(const ReliefPoints& points, const std::vector<double>& heights,
+                              const ReliefPoints& of_measured, const std::vector<double>& measured,
+                              double edge) {
+  constexpr double kMostGain = 2.0;
+  const std::vector<std::vector<double>> bands = bands_of(points, heights, edge),
+                                         wanted = bands_of(of_measured, measured, edge);
+  std::vector<double> sum = bands.back();
+  for (std::size_t band = 0; band + 1 < bands.size(); ++band) {
+    const double has = weighted_rms(points, bands[band]), wants = weighted_rms(of_measured, wanted[band]);
+    const double gain = has > 0.0 ? std::min(wants / has, kMostGain) : 1.0;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands[band][i];
+  }
+  return sum;
 }
 
 }  // namespace
@@ -212,26 +232,36 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const M
                                  const std::string& where) {
   const ReliefPoints of_measured(measured.places, spacing);
   const ReliefShares shares(measured.places, spacing);
-  const ReliefBands bands = split_bands(of_measured, measured.heights, options);
-  const std::vector<ReliefAnchor> anchors =
-      relief_anchors(of_measured, bands.high, kAnchorDistance * options.edge, kPatchRadius * options.edge);
+  const ReliefBands bands = split_bands(of_measured, measured.heights, options.edge);
+  AnchorSpacing apart{options.edge, kWidestDistance};
+  std::vector<ReliefAnchor> anchors =
+      relief_anchors(of_measured, bands.high, apart.distance(), apart.radius());
+  if (anchors.size() < kEnoughAnchors) {
+    const double share = std::sqrt(static_cast<double>(anchors.size()) / static_cast<double>(kEnoughAnchors));
+    apart.edges = std::max(kLeastDistance, share * kWidestDistance);
+    anchors = relief_anchors(of_measured, bands.high, apart.distance(), apart.radius());
+  }
   if (anchors.size() < kFewestAnchors) {
     throw InputError(where + ": the body has room for " + std::to_string(anchors.size()) +
                      " patches of its relief, and a body of its kind needs " +
                      std::to_string(kFewestAnchors) +
                      "; keep the arrangement measured, or fit a finer model");
   }
-  const Patches patches(measured.ground, shares, bands, kPatchRadius * options.edge, 0.25 * spacing);
+  const Patches patches(measured.ground, shares, bands, apart, 0.25 * spacing);
+  const ReliefValues blend(of_measured, shares);
+  const std::vector<double> values = blend.values_of(measured.heights);
   if (!foreign) {
     const DrawnAnchors drawn = draw_anchors(anchors, anchors, options);
-    return coefficients_of(blended(patches, of_measured, drawn, measured.heights, options.hash), of_measured,
-                           shares);
+    const std::vector<double> like = blended(patches, of_measured, drawn, values, options.hash);
+    return blend.coefficients_of(equalized(of_measured, like, of_measured, values, options.edge));
   }
   const ReliefPoints points(places, spacing);
   const DrawnAnchors drawn =
-      draw_anchors(relief_anchors(points, {}, kAnchorDistance * options.edge, 0.0), anchors, options);
-  return coefficients_of(blended(patches, points, drawn, std::vector<double>(places.size()), options.hash),
-                         points, ReliefShares(places, spacing));
+      draw_anchors(relief_anchors(points, {}, apart.distance(), 0.0), anchors, options);
+  const std::vector<double> like =
+      blended(patches, points, drawn, std::vector<double>(places.size()), options.hash);
+  return ReliefValues(points, ReliefShares(places, spacing))
+      .coefficients_of(equalized(points, like, of_measured, values, options.edge));
 }
 
 }  // namespace astrolith

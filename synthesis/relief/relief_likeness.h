@@ -12,9 +12,8 @@
 namespace astrolith {
 
 struct LikenessOptions {
-  double edge = 0.0;     // mean edge of the model that was measured, length units
-  double reach = 0.3;    // how far donors are looked for at first, as a share of the body's diagonal
-  double sharpen = 0.0;  // how much of what is finer than .75 edges is added again
+  double edge = 0.0;   // mean edge of the model that was measured, length units
+  double reach = 0.3;  // how far donors are looked for at first, as a share of the body's diagonal
   std::uint32_t hash = 0;
 };
 
@@ -27,11 +26,13 @@ struct MeasuredRelief {
 
 // New heights at places of a body, from those measured on it or, with `foreign`, on another one.
 //
-// Anchors (relief_anchors.h) lie 16 edges apart. A place at the offset o from an anchor, in the tangent frame
-// and as long as the chord, gets the height at the offset o from the anchor's donor, turned by an angle of
-// the hash and projected on the surface. Heights smoothed by 2.5 edges are means over the anchors within R =
-// 24 edges with weights (1 - d^2 / R^2)^2, since they are wide; the rest has the exponent 30, and is divided
-// by the root of the sum of the squared weights, so that it keeps its variance.
+// Anchors (relief_anchors.h) lie 24 edges apart, or on small models as near as leaves forty of them, but 8 at
+// least. A place at the offset o from an anchor, in the tangent frame and as long as the chord, gets the
+// height at the offset o from the anchor's donor, turned by an angle of the hash and projected on the
+// surface. Heights smoothed by 2.5 edges are means over the anchors within R = 1.5 distances with weights
+// (1 - d^2 / R^2)^5, since they are wide; the rest has an exponent of up to 60, and is divided by the root of
+// the sum of the squared weights, so that it keeps its variance. Bands of the result, cut at .7, 1.4 and 2.8
+// edges, get the root mean squares of those that were measured.
 // Throws InputError, which begins with `where`, where fewer than ten anchors have been measured.
 std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const MeasuredRelief& measured,
                                  bool foreign, double spacing, const LikenessOptions& options,

@@ -62,7 +62,7 @@ std::vector<std::uint16_t> encode(const std::vector<double>& heights, ReliefNois
 // The heights of the layer, drawn for other places or another body.
 std::vector<double> drawn_heights(const ReliefLayer& layer, const LayerSource& source,
                                   const BodyGround& ground, const std::vector<ReliefPlace>& places) {
-  const LikenessOptions options{layer.edge_length(), layer.reach, layer.sharpen,
+  const LikenessOptions options{layer.edge_length(), layer.reach,
                                 hash_seed(source.recipe.seed, static_cast<std::uint32_t>(source.number))};
   const auto like = [&](const BodyGround& of, const std::vector<ReliefPlace>& its_places) {
     const std::vector<double> heights = heights_of(layer, codes_of(layer, its_places, source.place));

@@ -36,6 +36,12 @@ double default_spacing(const TriangleMesh& surface) {
   return std::sqrt(surface_area(surface) / places);
 }
 
+// The edge of equilateral facets that cover the surface.
+double mean_edge(const TriangleMesh& surface) {
+  return std::sqrt(4.0 / std::sqrt(3.0) * surface_area(surface) /
+                   static_cast<double>(surface.triangles.size()));
+}
+
 void expect_plain_body(const Recipe& recipe) {
   if (recipe.body && recipe.body->operations.empty() && !recipe.body->warp) return;
   throw InputError(
@@ -91,6 +97,7 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   expect_plain_body(recipe);
   ReliefFit fit;
   ReliefLayer& layer = fit.layer;
+  layer.edge = mean_edge(surface);
   layer.spacing = options.spacing > 0.0 ? options.spacing : default_spacing(surface);
   const ReliefEquations equations = relief_equations(surface, recipe, layer.spacing);
   const ReliefSamples& samples = equations.samples;

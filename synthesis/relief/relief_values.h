@@ -1,0 +1,33 @@
+// Heights are coefficients of a blend (relief_layer.h), which is smoother than they are. Here coefficients
+// become the values of the blend at the places, and back.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "synthesis/relief/relief_shares.h"
+#include "synthesis/relief/relief_smoothing.h"
+
+namespace astrolith {
+
+class ReliefValues {
+ public:
+  // The shares of each place in the blend at every other.
+  ReliefValues(const ReliefPoints& points, const ReliefShares& shares);
+
+  // The values at the places of the blend with these coefficients.
+  std::vector<double> values_of(const std::vector<double>& coefficients) const;
+
+  // Coefficients that have nearly these values, by damped iterations. What lies at the finest waves of the
+  // lattice is left to the spline.
+  std::vector<double> coefficients_of(const std::vector<double>& values) const;
+
+ private:
+  struct Row {
+    std::vector<std::uint32_t> places;
+    std::vector<float> shares;
+  };
+  std::vector<Row> rows_;
+};
+
+}  // namespace astrolith
