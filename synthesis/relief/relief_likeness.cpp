@@ -17,10 +17,10 @@ namespace astrolith {
 namespace {
 
 // In mean edges of the measured model; the last are standard deviations of smoothing.
-constexpr double kWidestDistance = 24.0, kLeastDistance = 8.0, kLowBand = 2.5,
+constexpr double kWidestDistance = 16.0, kLeastDistance = 8.0, kLowBand = 2.5,
                  kEqualBands[] = {0.7, 1.4, 2.8};
 constexpr std::size_t kEnoughAnchors = 40, kFewestAnchors = 10;
-constexpr int kLowExponent = 5;
+constexpr int kLowExponent = 3;
 
 // How far anchors lie apart, and what follows from it.
 struct AnchorSpacing {
@@ -32,7 +32,7 @@ struct AnchorSpacing {
   // Patches change from one to the next within some 4 edges.
   int high_exponent() const {
     const double share = edges / kWidestDistance;
-    return std::max(kLowExponent, static_cast<int>(60.0 * share * share + 0.5));
+    return std::max(kLowExponent, static_cast<int>(30.0 * share * share + 0.5));
   }
 };
 
@@ -199,13 +199,21 @@ std::vector<std::vector<double>> bands_of(const ReliefPoints& points, std::vecto
   return bands;
 }
 
-double weighted_rms(const ReliefPoints& points, const std::vector<double>& heights) {
-  double total = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
+// The geometric mean over the body of the root mean square around a place. A mean of squares would be that of
+// few rough places.
+double typical_rms(const ReliefPoints& points, const std::vector<double>& heights, double edge) {
+  constexpr double kAround = 3.0, kLeast = 1e-12;  // edges; of the largest square
+  std::vector<double> squares(heights.size());
+  for (std::size_t i = 0; i < heights.size(); ++i) squares[i] = heights[i] * heights[i];
+  const double largest = *std::max_element(squares.begin(), squares.end());
+  if (!(largest > 0.0)) return 0.0;
+  double total = 0.0, logarithms = 0.0;
+  const std::vector<double> around = smoothed_heights(points, squares, kAround * edge);
+  for (std::size_t i = 0; i < around.size(); ++i) {
     total += points.weight(i);
-    squares += points.weight(i) * heights[i] * heights[i];
+    logarithms += points.weight(i) * portable::log(std::max(around[i] / largest, kLeast));
   }
-  return std::sqrt(squares / total);
+  return std::sqrt(largest * portable::exp(logarithms / total));
 }
 
 // Heights whose bands have the root mean squares of those that were measured: blends and resampling take from
@@ -218,7 +226,8 @@ std::vector<double> equalized(const ReliefPoints& points, const std::vector<doub
                                          wanted = bands_of(of_measured, measured, edge);
   std::vector<double> sum = bands.back();
   for (std::size_t band = 0; band + 1 < bands.size(); ++band) {
-    const double has = weighted_rms(points, bands[band]), wants = weighted_rms(of_measured, wanted[band]);
+    const double has = typical_rms(points, bands[band], edge),
+                 wants = typical_rms(of_measured, wanted[band], edge);
     const double gain = has > 0.0 ? std::min(wants / has, kMostGain) : 1.0;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands[band][i];
   }
