@@ -47,7 +47,6 @@ estimation/shape/model     -> numerics recipe geometry synthesis
 estimation/shape/refinement -> numerics recipe geometry estimation/shape/target estimation/shape/model
 estimation/shape/fit       -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target estimation/shape/packing estimation/shape/model estimation/shape/refinement
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
-estimation/shape/learning  -> numerics recipe geometry descriptor synthesis estimation/optimize estimation/shape/target
 estimation/shape/relief    -> numerics recipe geometry synthesis
 estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
 tasks/gravity              -> numerics recipe geometry gravity synthesis

@@ -13,8 +13,8 @@
 #include "apps/fit_shape/known_bodies.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
+#include "estimation/shape/details/imaged_ground.h"
 #include "estimation/shape/fit/shape_fit.h"
-#include "estimation/shape/learning/imaged_ground.h"
 #include "estimation/shape/report/fit_report.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
@@ -48,20 +48,6 @@ Recipe recipe_of(const Program& program, const FitArguments& arguments, const Sh
   return recipe;
 }
 
-// Adds learnt details, and says what was learnt. A target without surface statistics gets none.
-void learn(Program& program, const FitArguments& arguments, const TargetBody& target, EvaluationLog& log,
-           const Progress& progress, Recipe& recipe) {
-  try {
-    const LearntDetails learnt =
-        add_learnt_details(target, arguments.fit, arguments.details.everywhere, log, progress, recipe);
-    const nlohmann::ordered_json figures = learnt_json(learnt, arguments.unit);
-    for (const auto& words : figures["words"]) program.say("learnt: " + words.get<std::string>());
-    program.summary["learnt"] = figures;
-  } catch (const InputError& e) {
-    program.say(std::string("no details are learnt: ") + e.what());
-  }
-}
-
 // Adds the measured surface as a relief, and says how much nearer it brings the model.
 void keep_relief(Program& program, const FitArguments& arguments, const TargetBody& target,
                  const Progress& progress, Recipe& recipe) try {
@@ -92,9 +78,6 @@ void add_details(Program& program, const FitArguments& arguments, const TargetBo
   } else if (const Progress progress = checkpoint.guard(limit.guard(program.progress("details"), "details"));
              wanted.keeps_relief()) {
     keep_relief(program, arguments, target, progress, recipe);
-  } else if (wanted.learns()) {
-    learn(program, arguments, target, checkpoint.log(), progress, recipe);
-    checkpoint.save();
   } else {
     const DetailsFitResult details =
         search_details(program, target, arguments.fit, wanted, checkpoint.log(), progress, recipe);
@@ -254,7 +237,6 @@ void run(Program& program, FitArguments& arguments) {
     std::optional<ReportedRealism> shown;
     if (realism) {
       shown.emplace(reported(*realism, target, arguments.unit));
-      if (program.summary.contains("learnt")) program.summary["learnt"]["words"].get_to(shown->learnt);
     }
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(), arguments.report,
                      shown ? &*shown : nullptr);

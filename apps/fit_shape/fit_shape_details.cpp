@@ -56,17 +56,11 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
       .add_option(
           "--details", arguments.details,
           "relief: the measured surface itself, as heights over the metaballs that a picture or a compact "
-          "recipe holds. thesis: the search for the 34 parameters of three noises. learnt: noise that is "
-          "rough and "
-          "smooth by regions, and boulders or craters where the mesh shows them; some 80 candidates are "
-          "meshed and compared with the mesh's surface, as compare --realism does. Or the "
-          "layers of this recipe, scaled by the ratio of the two bodies' sizes")
-      .default_text("relief; thesis with --generations or --variations")
-      .placeholder("relief|thesis|learnt|OTHER.json")
+          "recipe holds. thesis: the search for the 34 parameters of three noises. Or the layers of this "
+          "recipe, scaled by the ratio of the two bodies' sizes")
+      .default_text("relief; thesis with --generations")
+      .placeholder("relief|thesis|OTHER.json")
       .excludes(base_only);
-  program.app.add_flag("--everywhere", arguments.everywhere,
-                       "with --details learnt: details on ground, too, that is smooth in the mesh since no "
-                       "camera saw it; else such ground gets none");
   declare_micro_options(program, arguments);
   Option variations =
       program.app
@@ -84,21 +78,12 @@ void declare_detail_options(Program& program, DetailArguments& arguments) {
 
 void settle_details(const Program& program, DetailArguments& arguments) {
   if (!arguments.details.empty()) return;
-  const bool searches = program.app.option("--generations").count() > 0 || arguments.variations > 0;
-  arguments.details = searches ? "thesis" : "relief";
+  arguments.details = program.app.option("--generations").count() > 0 ? "thesis" : "relief";
 }
 
 void check_detail_inputs(const Program& program, const DetailArguments& arguments) {
   if (program.app.option("--generations").count() > 0 && !arguments.searches()) {
     throw InputError("--generations: are those of --details thesis; give that too, or leave them out");
-  }
-  if (arguments.variations > 0 && arguments.keeps_relief()) {
-    throw InputError(
-        "--variations: vary noise, and a relief belongs to its body; give --details thesis, or leave one "
-        "out");
-  }
-  if (arguments.everywhere && !arguments.learns()) {
-    throw InputError("--everywhere: goes with --details learnt; give that too, or leave it out");
   }
   Recipe unused;
   if (arguments.transfers()) unused.layers = read_details(arguments.details).layers;

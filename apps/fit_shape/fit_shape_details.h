@@ -17,8 +17,7 @@ struct DetailArguments {
   bool base_only = false;
   int generations = 100;
   std::string
-      details;  // "relief", "learnt", "thesis", or a recipe whose layers are taken; "": not settled yet
-  bool everywhere = false;                        // learnt details on ground that is smooth in the target
+      details;  // "relief", "thesis", or a recipe whose layers are taken; "": not settled yet
   std::string micro;                              // a recipe of Gabor layers, "auto", or nothing
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
@@ -26,10 +25,9 @@ struct DetailArguments {
   DeviceOption device;  // computes the search
 
   bool keeps_relief() const { return details == "relief"; }
-  bool learns() const { return details == "learnt"; }
   bool searches() const { return details == "thesis"; }
   // Whether the layers of another recipe are taken.
-  bool transfers() const { return !details.empty() && !keeps_relief() && !learns() && !searches(); }
+  bool transfers() const { return !details.empty() && !keeps_relief() && !searches(); }
 };
 
 // Declares the options that fill in the arguments.

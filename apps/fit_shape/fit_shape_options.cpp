@@ -84,9 +84,9 @@ void declare_packing_options(CommandLine& app, FitArguments& arguments) {
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
-  for (const char* option : {"--kernel", "--subtract", "--points", "--optimizer", "--population",
-                             "--generations", "--base-only", "--details", "--everywhere", "--variations",
-                             "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
+  for (const char* option :
+       {"--kernel", "--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only",
+        "--details", "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
     packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,

@@ -97,7 +97,6 @@ def fit_shape(
     generations: Optional[int] = None,
     base_only: bool = False,
     details: Optional[PathLike] = None,
-    everywhere: bool = False,
     micro: Optional[PathLike] = None,
     mm_per_px: Optional[float] = None,
     micro_height: Optional[float] = None,
@@ -138,11 +137,8 @@ def fit_shape(
         Metaballs alone, without details.
     details
         "relief" (default): the measured surface itself, as heights over the metaballs. "thesis" (default with
-        `generations`): the search for the 34 parameters of three noises. "learnt": noise that is rough and smooth by
-        regions, and boulders or craters where the mesh shows them. Or the layers of this recipe's file, scaled
-        by the ratio of the two bodies' sizes.
-    everywhere
-        With "learnt": details on ground, too, that is smooth in the mesh since no camera saw it.
+        `generations`): the search for the 34 parameters of three noises. Or the layers of this recipe's file, scaled by
+        the ratio of the two bodies' sizes.
     micro
         The finest detail: the file of a recipe of ``fit_gabor``, whose layers are added; or "auto": instead of the
         search, a Gabor layer learnt from what the metaballs leave of the mesh.
@@ -183,15 +179,13 @@ def fit_shape(
     given = _given(
         spheres=spheres, bytes=bytes, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
         population=population, generations=generations, base_only=base_only, unit=unit, seed=seed,
-        details=_name(details), everywhere=everywhere, micro=_name(micro), mm_per_px=mm_per_px, micro_height=micro_height, device=device,
+        details=_name(details), micro=_name(micro), mm_per_px=mm_per_px, micro_height=micro_height, device=device,
         time_limit=time_limit,
     )  # fmt: skip
     if details is not None and base_only:
         raise ValueError("details: base_only leaves them out; leave out one of both")
     if details not in (None, "thesis") and generations is not None:
         raise ValueError("generations: are those of details=\"thesis\"; leave out one of both")
-    if everywhere and details != "learnt":
-        raise ValueError("everywhere: needs details=\"learnt\"")
     if bytes is not None and (not base_only or micro is not None):
         raise ValueError("bytes: are those of a bare body; pass base_only=True and leave out micro")
     if micro is None and (mm_per_px is not None or micro_height is not None):
@@ -213,7 +207,6 @@ def fit_shape(
         100 if generations is None else _arrays.integer(generations, "generations", 1, 100000),
         bool(base_only),
         _name(details) or ("relief" if generations is None else "thesis"),
-        bool(everywhere),
         _name(micro) or "",
         0.0 if mm_per_px is None else _arrays.number(mm_per_px, "mm_per_px", 1e-12, 1e12),
         0.0 if micro_height is None else _arrays.number(micro_height, "micro_height", 1e-12, 1e12),

@@ -59,12 +59,10 @@ struct DetailArguments {
   std::string details, micro;  // as fit_shape --details and --micro
   double mm_per_px = 0.0, micro_height = 0.0;
   std::string device;  // "auto", "cpu" or "cuda"
-  bool everywhere = false;
 
   bool keeps_relief() const { return details == "relief"; }
-  bool learns() const { return details == "learnt"; }
   // Whether the layers of another recipe are taken.
-  bool transfers() const { return !keeps_relief() && !learns() && details != "thesis"; }
+  bool transfers() const { return !keeps_relief() && details != "thesis"; }
 };
 
 struct ShapeArguments {
@@ -129,12 +127,6 @@ void add_details(const TargetBody& target, const ShapeArguments& a, FitCheckpoin
     } catch (const InputError& e) {  // a model of few facets keeps its metaballs alone
       figures = {{"remark", e.what()}};
     }
-  } else if (wanted.learns()) {
-    const LearntDetails learnt =
-        add_learnt_details(target, a.fit, wanted.everywhere, checkpoint.log(),
-                           checkpoint.guard(limit.guard(state.progress("details"), "details")), recipe);
-    checkpoint.save();
-    figures = learnt_json(learnt, a.unit);
   } else {
     const std::unique_ptr<CandidateEvaluator> evaluator = evaluator_on(wanted.device);
     const DetailsFitResult found =
@@ -190,10 +182,7 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   figures["stopped_early"] = stopped() || limit.reached();
   figures["diagonal"] = target.diagonal;
   figures["remarks"] = target.remarks;
-  if (!details.is_null())
-    figures[arguments.details.learns()         ? "learnt"
-            : arguments.details.keeps_relief() ? "relief"
-                                               : "details"] = details;
+  if (!details.is_null()) figures[arguments.details.keeps_relief() ? "relief" : "details"] = details;
   return {recipe_to_json(recipe), figures.dump()};
 }
 
@@ -202,12 +191,11 @@ std::pair<std::string, std::string> fit_shape_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, int bytes,
     double subtract, std::int64_t points, double tolerance, const std::string& optimizer, int population,
-    int generations, bool base_only, const std::string& details, bool everywhere, const std::string& micro,
-    double mm_per_px, double micro_height, const std::string& device, double time_limit,
-    const std::string& unit, const std::string& checkpoint, const std::string& report, const Options& options,
-    std::uint64_t seed, int threads, nb::object progress) {
-  const DetailArguments layers{base_only, generations,  details, micro,
-                               mm_per_px, micro_height, device,  everywhere};
+    int generations, bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
+    double micro_height, const std::string& device, double time_limit, const std::string& unit,
+    const std::string& checkpoint, const std::string& report, const Options& options, std::uint64_t seed,
+    int threads, nb::object progress) {
+  const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device};
   ShapeArguments arguments{name, vertices ? "" : name, {},     layers, time_limit,
                            unit, checkpoint,           report, options};
   arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
@@ -277,10 +265,9 @@ NB_MODULE(_estimation, module) {
              nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("bytes"),
              nb::arg("subtract"), nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"),
              nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"),
-             nb::arg("everywhere"), nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"),
-             nb::arg("device"), nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"),
-             nb::arg("report"), nb::arg("options"), nb::arg("seed"), nb::arg("threads"),
-             nb::arg("progress").none());
+             nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"),
+             nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"),
+             nb::arg("options"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),
              nb::arg("depth"), nb::arg("components"), nb::arg("seed"), nb::arg("threads"),

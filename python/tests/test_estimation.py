@@ -238,8 +238,6 @@ def test_wrong_meshes(worm):
 
 def test_options_of_another_search_for_details_are_refused(worm):
     with pytest.raises(ValueError, match="generations"):
-        astrolith.fit_shape(worm, details="learnt", generations=3)
-    with pytest.raises(ValueError, match="everywhere"):
-        astrolith.fit_shape(worm, everywhere=True)
+        astrolith.fit_shape(worm, details="relief", generations=3)
     with pytest.raises(ValueError, match="base_only"):
-        astrolith.fit_shape(worm, details="learnt", base_only=True)
+        astrolith.fit_shape(worm, details="relief", base_only=True)

@@ -66,17 +66,6 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
   return result;
 }
 
-LearntDetails add_learnt_details(const TargetBody& target, const ShapeFitOptions& options, bool everywhere,
-                                 EvaluationLog& log, const Progress& progress, Recipe& recipe) {
-  LearningOptions learning;
-  learning.seed = learning.candidate.seed = options.seed;
-  learning.everywhere = everywhere;
-  learning.log = &log;
-  LearntDetails learnt = learn_details(target, recipe, learning, progress);
-  recipe = learnt.recipe;
-  return learnt;
-}
-
 void expect_relief(const TargetBody& target) { expect_relief_facets(target.surface); }
 
 ReliefFit add_relief(const TargetBody& target, const Progress& progress, Recipe& recipe) {
@@ -126,57 +115,6 @@ nlohmann::ordered_json fit_figures(const ShapeFitResult& fit) {
   summary["sharpness"] = fit.body.blend_exponent * fit.body.a;
   summary["evaluations"] = fit.evaluations;
   return summary;
-}
-
-namespace {
-
-nlohmann::ordered_json model_json(const SurfaceModel& model, double edge) {
-  nlohmann::ordered_json json;
-  if (model.amplitude > 0.0) {
-    json["amplitude"] = model.amplitude * edge;
-    json["wavelength"] = model.wavelength * edge;
-    json["gain"] = model.gain;
-    json["contrast"] = model.contrast;
-    json["mask_wavelength"] = model.mask_wavelength * edge;
-  }
-  if (model.landforms == LandformKind::none) return json;
-  json["landforms"] = name_of(model.landforms);
-  json["count"] = std::llround(model.count);
-  json["exponent"] = model.exponent;
-  json["least_diameter"] = model.least * edge;
-  json["greatest_diameter"] = model.greatest * edge;
-  json[model.landforms == LandformKind::boulders ? "burial" : "depth"] = model.shape;
-  return json;
-}
-
-nlohmann::ordered_json candidate_json(const JudgedCandidate& candidate, double edge) {
-  return {{"name", candidate.name},
-          {"kept", candidate.kept},
-          {"reason", candidate.reason},
-          {"distance", candidate.distance},
-          {"held_out", candidate.held_out},
-          {"similarity", candidate.similarity},
-          {"variance_ratio", candidate.variance_ratio},
-          {"components", candidate.components},
-          {"genus", candidate.genus},
-          {"model", model_json(candidate.model, edge)}};
-}
-
-}  // namespace
-
-nlohmann::ordered_json learnt_json(const LearntDetails& learnt, const std::string& unit) {
-  const LengthWords lengths = words_for_lengths(unit, 3.0 * learnt.edge);
-  nlohmann::ordered_json candidates = nlohmann::ordered_json::array();
-  for (const JudgedCandidate& candidate : learnt.candidates) {
-    candidates.push_back(candidate_json(candidate, learnt.edge));
-  }
-  return {{"words", learnt_words(learnt, lengths.scale, lengths.unit)},
-          {"evaluations", learnt.evaluations},
-          {"history", learnt.history},
-          {"edge", learnt.edge},
-          {"smooth_share", learnt.smooth_share},
-          {"skewness_lack", learnt.skewness_lack},
-          {"candidates", candidates}};
 }
 
 nlohmann::ordered_json details_json(const DetailsFitResult& details) {

@@ -8,7 +8,6 @@
 #include "cuda/candidate_evaluator.h"
 #include "estimation/shape/details/details_fit.h"
 #include "estimation/shape/fit/shape_fit.h"
-#include "estimation/shape/learning/learnt_details.h"
 #include "estimation/shape/relief/relief_fit.h"
 #include "recipe/recipe.h"
 #include "tasks/estimation/fit_checkpoint.h"
@@ -27,12 +26,6 @@ DetailsFitResult add_searched_details(const TargetBody& target, const ShapeFitOp
                                       int generations, EvaluationLog& log, CandidateEvaluator* evaluator,
                                       const Progress& progress, Recipe& recipe);
 
-// Replaces the layers of the recipe (in the file's frame, with its body) by details learnt from the target.
-// The body gets a group of metaballs where only a part of the target has details. Candidates that the log
-// knows are not measured again. Throws InputError where the target is too coarse to have surface statistics.
-LearntDetails add_learnt_details(const TargetBody& target, const ShapeFitOptions& options, bool everywhere,
-                                 EvaluationLog& log, const Progress& progress, Recipe& recipe);
-
 // Adds the heights of the target's surface over the recipe's body (in the file's frame) as a relief layer.
 // Throws as fit_relief().
 // expect_relief() throws what it would throw for a target of too few facets.
@@ -50,10 +43,6 @@ void note_achieved(const ShapeFitResult& fit, Recipe& recipe);
 
 // The figures of a fit, for summaries. Distances are fractions of the bounding-box diagonal.
 nlohmann::ordered_json fit_figures(const ShapeFitResult& fit);
-
-// What was learnt: sentences in `unit`, "m" or "km", the model with lengths in that unit, and the figures of
-// each candidate that fresh seeds judged.
-nlohmann::ordered_json learnt_json(const LearntDetails& learnt, const std::string& unit);
 
 // The figures of a relief: heights, spacing, step, mean distances before and after, lengths in the recipe's
 // unit.

@@ -161,17 +161,9 @@ TEST_F(FitShape, DetailsOfAnotherBodyAreScaledToThisOne) {
 }
 
 TEST_F(FitShape, OptionsOfAnotherSearchForDetailsAreRefusedBeforeAnyWork) {
-  refuse("none.obj -o no.json --details learnt --generations 3",
+  refuse("none.obj -o no.json --details relief --generations 3",
          "--generations: are those of --details thesis");
-  refuse("none.obj -o no.json --everywhere", "--everywhere: goes with --details learnt");
-  refuse("none.obj -o no.json --details learnt --base-only", "excludes");
-}
-
-// The egg has too few triangles to say what its surface is like.
-TEST_F(FitShape, WithoutSurfaceStatisticsNothingIsLearntAndTheBaseIsWritten) {
-  EXPECT_TRUE(has(succeed("egg.obj -o egg.json --spheres 12 --points 400 --details learnt"),
-                  "no details are learnt"));
-  EXPECT_TRUE(recipe("egg.json").layers.empty());
+  refuse("none.obj -o no.json --details relief --base-only", "excludes");
 }
 
 TEST_F(FitShape, MicroLayersGetTheirScaleFromTheOptions) {

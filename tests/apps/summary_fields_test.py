@@ -83,7 +83,7 @@ def runs(folder):
     fit = ["--spheres", "2", "--points", "200", "--population", "2", "-o"]
     search = ["--generations", "1", "--variations", "1", "--delta", "1", "--noise-seeds", "0"]
     yield ["fit_shape", ball, *fit, folder / "fit.json", *search]
-    yield ["fit_shape", fine, *fit, folder / "learnt.json", "--details", "learnt", "--noise-seeds", "1"]
+    yield ["fit_shape", fine, *fit, folder / "relief.json", "--noise-seeds", "1"]
     yield ["fit_shape", ball, "--spheres", "6", "-o", folder / "packing.csv", "--packing-only"]
     yield ["describe", fine, "--surface", "-o", folder / "surface.json"]
     yield ["describe", ball, "-o", folder / "description.npy", "--points", "1000"]

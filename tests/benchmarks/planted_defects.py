@@ -40,7 +40,7 @@ SUITES = {
     "descriptor/classification": "classification", "synthesis": "synthesis", "cuda": "cuda",
     "estimation/optimize": "optimize", "estimation/plot": "plot", "estimation/page": "page", "estimation/gabor": "gabor_fit",
     "estimation/shape": "shape_fit", "estimation/shape/details": "details_fit",
-    "estimation/shape/learning": "learnt_details", "tasks": "apps", "apps": "apps", "python": "python",
+    "tasks": "apps", "apps": "apps", "python": "python",
 }  # fmt: skip
 PROGRAMS = ["apps_tests", "program_tests", "check_tiles", "classify", "compare", "describe", "fit_gabor", "fit_shape",
             "gravity", "synth", "asteroid_experiment", "standard_set_experiment"]  # fmt: skip

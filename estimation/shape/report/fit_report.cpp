@@ -174,19 +174,12 @@ PageTable verdict_table(const ReportedRealism& realism) {
   return table;
 }
 
-PageTable learnt_table(const std::vector<std::string>& learnt) {
-  PageTable table{{"details learnt from the target", ""}, {}};
-  for (const std::string& words : learnt) table.rows.push_back({words, ""});
-  return table;
-}
-
 void add_realism(const TargetBody& target, const ReportedRealism& realism,
                  const std::filesystem::path& folder, ReportPage& page) {
   const std::string target_name = "target", fit_name = "fit";
   const NamedSurface a{target_name, target.surface, realism.target}, b{fit_name, realism.mesh, realism.fit};
   write_quantile_curves(a, b, folder / "quantile_curves.png");
   write_roughness_maps(a, b, folder / "roughness_maps.png");
-  if (!realism.learnt.empty()) page.tables.push_back(learnt_table(realism.learnt));
   page.tables.push_back(verdict_table(realism));
   page.tables.push_back(realism_table(realism));
   page.pictures.push_back({"roughness_maps.png", "Roughness of target and fit from place to place."});

@@ -18,7 +18,6 @@ struct ReportedRealism {
   const TriangleMesh& mesh;  // of the fit with its details, as the verdict took it
   const SurfaceStatistics& fit;
   LengthWords lengths;
-  std::vector<std::string> learnt = {};  // what was learnt of the details, in sentences
 };
 
 // Writes these files into the folder, which is made if it is missing. Throws InputError where a file cannot

@@ -1,8 +1,7 @@
-#include "estimation/shape/learning/imaged_ground.h"
+#include "estimation/shape/details/imaged_ground.h"
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 
 namespace astrolith {
 namespace {
@@ -62,18 +61,6 @@ double share_of(const std::vector<char>& marked) {
   return marked.empty() ? 0.0 : count / static_cast<double>(marked.size());
 }
 
-std::size_t nearest_sphere(const Vec3d& p, const std::vector<Sphere>& spheres) {
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < spheres.size(); ++s) {
-    const double distance = norm(p - spheres[s].center) - spheres[s].radius;
-    if (distance >= least) continue;
-    least = distance;
-    nearest = s;
-  }
-  return nearest;
-}
-
 // The places of the largest piece of smooth ground, none where it is no larger than by chance.
 std::vector<char> smooth_places(const SurfaceStatistics& target) {
   const LocalStatistic* roughness = target.find(SurfaceQuantity::roughness, 6.0);
@@ -87,23 +74,5 @@ std::vector<char> smooth_places(const SurfaceStatistics& target) {
 }  // namespace
 
 double unseen_share(const SurfaceStatistics& target) { return share_of(smooth_places(target)); }
-
-ImagedGround find_imaged_ground(const SurfaceStatistics& target, const std::vector<Sphere>& spheres) {
-  if (spheres.empty()) return {};
-  const std::vector<char> smooth = smooth_places(target);
-  if (smooth.empty()) return {};
-  ImagedGround ground;
-  ground.smooth_share = share_of(smooth);
-  std::vector<int> balance(spheres.size(), 0);  // places with details less smooth ones
-  for (std::size_t i = 0; i < smooth.size(); ++i) {
-    balance[nearest_sphere(target.places[i], spheres)] += smooth[i] != 0 ? -1 : 1;
-  }
-  for (std::size_t s = 0; s < spheres.size(); ++s) {
-    if (balance[s] > 0) ground.metaballs.push_back(static_cast<int>(s));
-  }
-  const bool all = ground.metaballs.size() == spheres.size();
-  if (all) ground.metaballs.clear();
-  return ground;
-}
 
 }  // namespace astrolith
