@@ -216,19 +216,20 @@ double typical_rms(const ReliefPoints& points, const std::vector<double>& height
   return std::sqrt(largest * portable::exp(logarithms / total));
 }
 
-// Heights whose bands have the root mean squares of those that were measured: blends and resampling take from
-// each a share of its own.
+// Heights whose bands are as strong as those that were measured: blends and resampling take from each a share
+// of its own.
 std::vector<double> equalized(const ReliefPoints& points, const std::vector<double>& heights,
                               const ReliefPoints& of_measured, const std::vector<double>& measured,
                               double edge) {
-  constexpr double kMostGain = 2.0;
+  constexpr double kMostGain = 2.0;  // of all bands but the finest, which would be noise
   const std::vector<std::vector<double>> bands = bands_of(points, heights, edge),
                                          wanted = bands_of(of_measured, measured, edge);
   std::vector<double> sum = bands.back();
   for (std::size_t band = 0; band + 1 < bands.size(); ++band) {
     const double has = typical_rms(points, bands[band], edge),
                  wants = typical_rms(of_measured, wanted[band], edge);
-    const double gain = has > 0.0 ? std::min(wants / has, kMostGain) : 1.0;
+    const double most = band == 0 ? 1.0 : kMostGain;
+    const double gain = has > 0.0 ? std::min(wants / has, most) : 1.0;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands[band][i];
   }
   return sum;
@@ -257,20 +258,20 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const M
                      "; keep the arrangement measured, or fit a finer model");
   }
   const Patches patches(measured.ground, shares, bands, apart, 0.25 * spacing);
-  const ReliefValues blend(of_measured, shares);
-  const std::vector<double> values = blend.values_of(measured.heights);
   if (!foreign) {
+    const ReliefValues blend(of_measured, shares);
     const DrawnAnchors drawn = draw_anchors(anchors, anchors, options);
-    const std::vector<double> like = blended(patches, of_measured, drawn, values, options.hash);
-    return blend.coefficients_of(equalized(of_measured, like, of_measured, values, options.edge));
+    const std::vector<double> values =
+        blended(patches, of_measured, drawn, blend.values_of(measured.heights), options.hash);
+    return equalized(of_measured, blend.coefficients_of(values), of_measured, measured.heights, options.edge);
   }
   const ReliefPoints points(places, spacing);
+  const ReliefValues blend(points, ReliefShares(places, spacing));
   const DrawnAnchors drawn =
       draw_anchors(relief_anchors(points, {}, apart.distance(), 0.0), anchors, options);
-  const std::vector<double> like =
+  const std::vector<double> values =
       blended(patches, points, drawn, std::vector<double>(places.size()), options.hash);
-  return ReliefValues(points, ReliefShares(places, spacing))
-      .coefficients_of(equalized(points, like, of_measured, values, options.edge));
+  return equalized(points, blend.coefficients_of(values), of_measured, measured.heights, options.edge);
 }
 
 }  // namespace astrolith
