@@ -137,6 +137,23 @@ class Recipe(Record):
             records(_synthesis.lay_on_base(_dumped(self, details_name), details_name, json_of(base, base_name)[0], base_name))
         )
 
+    def like(self, seed: int) -> "Recipe":
+        """Return another body of the kind, as ``synth --like --seed``: measured heights drawn for other places.
+
+        Raises
+        ------
+        ValueError
+            The recipe has no relief.
+        """
+        made = self.copy()
+        reliefs = [layer for layer in made.get("layers", []) if layer["type"] == "relief"]
+        if not reliefs:
+            raise ValueError("recipe: has no relief, whose heights could be drawn for other places; fit_shape makes one")
+        for relief in reliefs:
+            relief["arrangement"] = "like"
+        made["seed"] = seed
+        return made
+
     def finished(self, body: str, to: float, start: float | None = None) -> "Recipe":
         """Return the recipe with the craters and boulders of a known body below its finest size.
 

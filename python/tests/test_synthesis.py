@@ -203,3 +203,13 @@ def test_a_finished_recipe_has_the_landforms_of_a_known_body(ball):
     assert astrolith.Recipe.from_json(finished.to_json()) == finished
     with pytest.raises(ValueError, match="no known body; name one of itokawa"):
         asteroid.finished("vesta", 0.2)
+
+
+def test_a_body_of_the_kind_is_that_of_synth(ball, example, program, tmp_path):
+    relief = astrolith.Recipe.read(example("itokawa_relief"))
+    program("synth", example("itokawa_relief"), "--like", "--seed", "5", "--resolution", "40", "-o", "like.ply")
+    like, made = astrolith.mesh(relief.like(5), resolution=40), astrolith.read_mesh(tmp_path / "like.ply")
+    assert (like.vertices == made.vertices).all() and (like.faces == made.faces).all()
+    assert relief.layers[-1].arrangement == "measured"
+    with pytest.raises(ValueError, match="has no relief"):
+        ball.like(5)

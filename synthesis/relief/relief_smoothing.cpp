@@ -1,6 +1,7 @@
 #include "synthesis/relief/relief_smoothing.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "numerics/parallel_for.h"
 
@@ -17,16 +18,26 @@ Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
 
 }  // namespace
 
-ReliefPoints::ReliefPoints(const std::vector<ReliefPlace>& places, double spacing) {
-  std::vector<Box> boxes;
-  boxes.reserve(places.size());
+ReliefPoints::ReliefPoints(const std::vector<ReliefPlace>& places, double spacing) : cell_(4.0 * spacing) {
+  Box box;
   for (const ReliefPlace& p : places) {
     at_.push_back(spacing * along_axes(p, double{p.w}, p.u, p.v));
     normals_.push_back(along_axes(p, double{p.normal.x}, double{p.normal.y}, double{p.normal.z}));
     weights_.push_back(p.weight / 65535.0);
-    boxes.push_back({at_.back(), at_.back()});
+    box.extend(at_.back());
   }
-  tree_ = BoxTree(boxes);
+  if (places.empty()) return;
+  corner_ = {box.min.x, box.min.y, box.min.z};
+  const Vec3d extent = box.extent();
+  count_ = {1 + static_cast<std::int64_t>(extent.x / cell_), 1 + static_cast<std::int64_t>(extent.y / cell_),
+            1 + static_cast<std::int64_t>(extent.z / cell_)};
+  std::vector<std::int64_t> keys;
+  for (const Vec3d& p : at_) keys.push_back(key(cell(p.x, 0), cell(p.y, 1), cell(p.z, 2)));
+  order_.resize(places.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+  for (const std::uint32_t i : order_) keys_.push_back(keys[i]);
 }
 
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
