@@ -1,9 +1,13 @@
 #include "synthesis/finish/lay_on_base.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "numerics/errors.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/noise/fractal_noise.h"
 #include "tests/support/refusal.h"
+#include "tests/synthesis/reliefs.h"
 
 namespace astrolith {
 namespace {
@@ -83,6 +87,31 @@ TEST(LayOnBase, PixelsAndMissingBodiesAreErrorsThatNameTheFile) {
       testing::refusal_of([&] { lay_on_base(bumps("px", 1.0), "rock.json", ball("km", 1.0), "ball.json"); }),
       "rock.json: length_unit"));
   EXPECT_THROW(lay_on_base(bumps("m", 1.0), "a", bumps("m", 1.0), "b"), InputError);
+}
+
+// The measured body goes with its heights, in the unit of the base.
+TEST(LayOnBase, ReliefsAreDrawnFromTheBodyThatWasMeasured) {
+  Recipe measured = ball("km", 1.0);
+  ReliefLayer heights = testing::relief_layer(measured, 0.05, -0.02, 0.02,
+                                              [](const Vec3d& p) { return 0.01 * std::sin(40.0 * p.x); });
+  heights.edge = 0.04;
+  measured.layers = {heights};
+  const Recipe laid = lay_on_base(measured, "measured", ball("m", 700.0), "base");
+  const auto& relief = std::get<ReliefLayer>(laid.layers.back());
+  EXPECT_EQ(relief.arrangement, ReliefArrangement::kLike);
+  ASSERT_TRUE(relief.donor);
+  EXPECT_EQ(relief.donor->spheres[0].radius, 1000.0);
+  EXPECT_EQ(relief.spacing, 50.0);
+  EXPECT_EQ(relief.edge, 40.0);
+  const ImplicitField bare(ball("m", 700.0)), field(laid);
+  double least = 0.0, most = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const double height = field.value({7.0 * i, std::sqrt(700.0 * 700.0 - 49.0 * i * i), 0.0}) -
+                          bare.value({7.0 * i, std::sqrt(700.0 * 700.0 - 49.0 * i * i), 0.0});
+    least = std::min(least, height), most = std::max(most, height);
+  }
+  EXPECT_LT(least, -4.0);
+  EXPECT_GT(most, 4.0);
 }
 
 }  // namespace
