@@ -53,6 +53,13 @@ void check_relief_heights(const ReliefLayer& layer, const Place& place) {
   place.field("high").fail("must not be below low");
 }
 
+// Patches of other sizes would take long to draw.
+void check_model_edge(const ReliefLayer& layer, const Place& place) {
+  const double spacings = layer.edge / layer.spacing;
+  if (layer.edge == 0.0 || (spacings >= 0.25 && spacings <= 8.0)) return;
+  place.field("edge").fail("must be 0, or 0.25 to 8 spacings, as fit_shape writes it");
+}
+
 void check_donor(const ReliefLayer& layer, const Place& place) {
   if (!layer.donor) return;
   if (layer.arrangement != ReliefArrangement::kLike) {
@@ -200,6 +207,7 @@ void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.field_if(layer.edge != 0.0, "edge", layer.edge, kNotNegative);
   v.field_if(layer.reach != 0.3, "reach", layer.reach, range(0.01, 1.0));
   v.required("spacing", layer.spacing, kPositive);
+  v.rule(check_model_edge, layer);
   v.required("low", layer.low, kAnyNumber);
   v.required("high", layer.high, kAnyNumber);
   v.rule(check_relief_heights, layer);
