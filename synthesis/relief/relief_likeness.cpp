@@ -169,7 +169,7 @@ DrawnAnchors draw_anchors(std::vector<ReliefAnchor> anchors, const std::vector<R
 
 // The heights at the points; where no patch has a weight, those of `otherwise`.
 std::vector<double> blended(const Patches& patches, const ReliefPoints& points, const DrawnAnchors& drawn,
-                            std::vector<double> otherwise, std::uint32_t hash) {
+                            const std::vector<double>& otherwise, std::uint32_t hash) {
   std::vector<std::vector<PatchHeight>> of_anchor(drawn.anchors.size());
   parallel_for(0, static_cast<std::int64_t>(of_anchor.size()), [&](std::int64_t number) {
     const auto a = static_cast<std::size_t>(number);
@@ -180,8 +180,8 @@ std::vector<double> blended(const Patches& patches, const ReliefPoints& points, 
   for (const std::vector<PatchHeight>& patch : of_anchor) {
     for (const PatchHeight& p : patch) sums[p.place].add(p);
   }
-  std::vector<double> heights = std::move(otherwise);
-  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = sums[i].height(heights[i]);
+  std::vector<double> heights(points.size());
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = sums[i].height(otherwise[i]);
   return heights;
 }
 
@@ -258,19 +258,14 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const M
                      "; keep the arrangement measured, or fit a finer model");
   }
   const Patches patches(measured.ground, shares, bands, apart, 0.25 * spacing);
-  if (!foreign) {
-    const ReliefValues blend(of_measured, shares);
-    const DrawnAnchors drawn = draw_anchors(anchors, anchors, options);
-    const std::vector<double> values =
-        blended(patches, of_measured, drawn, blend.values_of(measured.heights), options.hash);
-    return equalized(of_measured, blend.coefficients_of(values), of_measured, measured.heights, options.edge);
-  }
+  if (places.empty()) return {};  // a base that is smaller than the spacing
   const ReliefPoints points(places, spacing);
   const ReliefValues blend(points, ReliefShares(places, spacing));
   const DrawnAnchors drawn =
-      draw_anchors(relief_anchors(points, {}, apart.distance(), 0.0), anchors, options);
-  const std::vector<double> values =
-      blended(patches, points, drawn, std::vector<double>(places.size()), options.hash);
+      draw_anchors(foreign ? relief_anchors(points, {}, apart.distance(), 0.0) : anchors, anchors, options);
+  const std::vector<double> otherwise =
+      foreign ? std::vector<double>(places.size()) : blend.values_of(measured.heights);
+  const std::vector<double> values = blended(patches, points, drawn, otherwise, options.hash);
   return equalized(points, blend.coefficients_of(values), of_measured, measured.heights, options.edge);
 }
 

@@ -48,6 +48,7 @@ std::vector<double> heights_of(const ReliefLayer& layer, const std::vector<std::
 
 // The heights as codes of their own range, which the noise gets.
 std::vector<std::uint16_t> encode(const std::vector<double>& heights, ReliefNoise& noise) {
+  if (heights.empty()) return {};
   const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
   noise.low = static_cast<float>(*least);
   noise.step = static_cast<float>((*most - *least) / 65535.0);

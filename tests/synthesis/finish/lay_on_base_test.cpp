@@ -112,6 +112,9 @@ TEST(LayOnBase, ReliefsAreDrawnFromTheBodyThatWasMeasured) {
   }
   EXPECT_LT(least, -4.0);
   EXPECT_GT(most, 4.0);
+  Recipe speck = ball("m", 1.0);
+  speck.body->spheres[0].center = {20.0, 20.0, 20.0};
+  EXPECT_TRUE(ImplicitField(lay_on_base(measured, "measured", speck, "base")).inside({20.0, 20.0, 20.0}));
 }
 
 }  // namespace

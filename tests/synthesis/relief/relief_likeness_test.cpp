@@ -102,6 +102,15 @@ TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
   EXPECT_NEAR(std::sqrt(mean_square(heights) / mean_square(rough.heights)), 1.0, 0.3);
 }
 
+// A base that no line of the lattice meets has no places.
+TEST(ReliefLikeness, HasNoHeightsOnABodySmallerThanTheSpacing) {
+  const Rough rough;
+  LikenessOptions options;
+  options.edge = kSpacing / 3.0;
+  EXPECT_TRUE(
+      like_heights({}, {rough.ground, rough.places, rough.heights}, true, kSpacing, options, "test").empty());
+}
+
 TEST(ReliefLikeness, IsTheSameForAnyThreadCount) {
   const Rough rough;
   std::vector<double> of_one;
