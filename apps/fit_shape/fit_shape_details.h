@@ -16,9 +16,8 @@ namespace astrolith {
 struct DetailArguments {
   bool base_only = false;
   int generations = 100;
-  std::string
-      details;  // "relief", "thesis", or a recipe whose layers are taken; "": not settled yet
-  std::string micro;                              // a recipe of Gabor layers, "auto", or nothing
+  std::string details;  // "relief", "thesis", or a recipe whose layers are taken; "": not settled yet
+  std::string micro;    // a recipe of Gabor layers, "auto", or nothing
   double mm_per_px = 0.0, micro_height_mm = 0.0;  // scale of the micro layers; 0 = as the recipe says
   int variations = 0;
   double delta = 0.2;
