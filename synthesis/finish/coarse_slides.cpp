@@ -44,7 +44,7 @@ class NeighbourLists {
 };
 
 // Clusters of columns: the columns of the next coarser level.
-struct Clusters {
+struct ColumnClusters {
   double radius = 0.0;
   std::vector<std::uint32_t> of_column;  // the cluster of each column, or kRock
   std::vector<Vec3d> positions, up;
@@ -64,7 +64,7 @@ double mean_length(const Ground& ground) {
 // A column that no cluster covers becomes the seed of one. A cluster takes the columns that lie within its
 // radius and are nearer to its seed than to an earlier one, as far as they hang together. Returns the number
 // of clusters.
-std::uint32_t assign_clusters(const Ground& ground, Clusters& clusters) {
+std::uint32_t assign_clusters(const Ground& ground, ColumnClusters& clusters) {
   const std::size_t n = ground.positions.size();
   const NeighbourLists neighbours(n, ground.pairs);
   std::vector<float> distance(n, std::numeric_limits<float>::max());  // squared, in squared radii
@@ -92,7 +92,7 @@ std::uint32_t assign_clusters(const Ground& ground, Clusters& clusters) {
 }
 
 // A cluster stands at the mean position of its columns, along their mean vertical.
-void sum_columns(const Ground& ground, std::uint32_t count, Clusters& clusters) {
+void sum_columns(const Ground& ground, std::uint32_t count, ColumnClusters& clusters) {
   clusters.area.assign(count, 0.0);
   clusters.positions.assign(count, {});
   clusters.up.assign(count, {});
@@ -109,7 +109,7 @@ void sum_columns(const Ground& ground, std::uint32_t count, Clusters& clusters) 
   }
 }
 
-void join_neighbours(const Ground& ground, Clusters& clusters) {
+void join_neighbours(const Ground& ground, ColumnClusters& clusters) {
   for (const GroundPair& pair : ground.pairs) {
     const auto [a, b] = std::minmax(clusters.of_column[pair.a], clusters.of_column[pair.b]);
     if (a != b && b != kRock) clusters.pairs.push_back({a, b});
@@ -118,8 +118,8 @@ void join_neighbours(const Ground& ground, Clusters& clusters) {
   clusters.pairs.erase(std::unique(clusters.pairs.begin(), clusters.pairs.end()), clusters.pairs.end());
 }
 
-Clusters make_clusters(const Ground& ground) {
-  Clusters clusters;
+ColumnClusters make_clusters(const Ground& ground) {
+  ColumnClusters clusters;
   clusters.radius = kClusterRadius * mean_length(ground);
   if (!(clusters.radius > 0.0)) return clusters;
   const std::uint32_t count = assign_clusters(ground, clusters);
@@ -149,7 +149,7 @@ std::vector<GroundPair> wide_pairs(std::size_t count, const NeighbourLists& neig
 }
 
 // The horizontal gradient of the rises at each cluster: the least-squares one over its neighbours.
-std::vector<Vec3d> gradients(const Clusters& clusters, const NeighbourLists& neighbours,
+std::vector<Vec3d> gradients(const ColumnClusters& clusters, const NeighbourLists& neighbours,
                              std::span<const double> rises) {
   std::vector<Vec3d> result(rises.size());
   for (std::uint32_t c = 0; c < rises.size(); ++c) {
@@ -176,7 +176,7 @@ std::vector<Vec3d> gradients(const Clusters& clusters, const NeighbourLists& nei
 // others stay: ground that is to reach them slides there in the end.
 class SmoothSpread {
  public:
-  SmoothSpread(const Ground& ground, const Clusters& clusters, const NeighbourLists& neighbours,
+  SmoothSpread(const Ground& ground, const ColumnClusters& clusters, const NeighbourLists& neighbours,
                std::span<const double> rises)
       : ground_(ground), clusters_(clusters), neighbours_(neighbours), rises_(rises) {}
 
@@ -204,13 +204,13 @@ class SmoothSpread {
 
  private:
   const Ground& ground_;
-  const Clusters& clusters_;
+  const ColumnClusters& clusters_;
   const NeighbourLists& neighbours_;
   std::span<const double> rises_;
 };
 
 // The rises of the columns. What they lack of the volume of their cluster is spread too.
-std::vector<double> rises_of_columns(const Ground& ground, const Clusters& clusters,
+std::vector<double> rises_of_columns(const Ground& ground, const ColumnClusters& clusters,
                                      const NeighbourLists& neighbours, std::span<const double> rises) {
   const SmoothSpread spread(ground, clusters, neighbours, rises);
   std::vector<double> heights(ground.positions.size(), 0.0);
@@ -230,7 +230,7 @@ std::vector<double> slides_of_level(const Ground& ground, double slope, double m
       double(std::count_if(ground.area.begin(), ground.area.end(), [](double a) { return a > 0.0; }));
   std::vector<double> none(ground.positions.size(), 0.0);
   if (!(loose >= double(kFewestClusters)) || !(most_sweeps >= 3.0 * kLeastSweeps)) return none;
-  const Clusters clusters = make_clusters(ground);
+  const ColumnClusters clusters = make_clusters(ground);
   const std::size_t count = clusters.positions.size();
   const double sweeps = most_sweeps * double(count) / loose;
   if (count < kFewestClusters || double(count) > 0.7 * loose || !(sweeps >= kLeastSweeps)) return none;

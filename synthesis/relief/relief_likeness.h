@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "synthesis/body/body_ground.h"
-#include "synthesis/relief/relief_places.h"
+#include "synthesis/relief/relief_patches.h"
 
 namespace astrolith {
 
@@ -17,24 +16,14 @@ struct LikenessOptions {
   std::uint32_t hash = 0;
 };
 
-// Heights at the places of a body.
-struct MeasuredRelief {
-  BodyGround ground;
-  const std::vector<ReliefPlace>& places;
-  const std::vector<double>& heights;  // coefficients of the blend (relief_layer.h), length units
-};
-
 // New heights at places of a body, from those measured on it or, with `foreign`, on another one.
 //
-// Anchors (relief_anchors.h) lie 16 edges apart, or on small models as near as leaves forty of them, but 8 at
-// least. A place at the offset o from an anchor, in the tangent frame and as long as the chord, gets the
-// height at the offset o from the anchor's donor, turned by an angle of the hash and projected on the
-// surface. Heights smoothed by 2.5 edges are means over the anchors within R = 1.5 distances with weights
-// (1 - d^2 / R^2)^3, since they are wide; the rest has an exponent of up to 30, and is divided by the root of
-// the sum of the squared weights, so that it keeps its variance. Bands of the result, cut at .7, 1.4 and 2.8
-// edges, become as strong as those that were measured, by the
-// geometric mean over the body of the root mean square around a place.
-// Throws InputError, which begins with `where`, where fewer than ten anchors have been measured.
+// A place at the offset o from an anchor (AnchorSpacing), in the tangent frame and as long as the chord, gets
+// the height at the offset o from the anchor's donor, turned by an angle of the hash and projected on the
+// surface. Patches are blended as PatchSums does, with weights (1 - d^2 / R^2)^n of n = 3 for wide heights
+// and up to 30 for narrow ones. Bands of the result, cut at .7, 1.4 and 2.8 edges, become as strong as those
+// that were measured, by the geometric mean over the body of the root mean square around a place. Throws
+// InputError, which begins with `where`, where fewer than ten anchors have been measured.
 std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const MeasuredRelief& measured,
                                  bool foreign, double spacing, const LikenessOptions& options,
                                  const std::string& where);

@@ -1,0 +1,96 @@
+// Patches of a measured relief: the heights around one anchor, laid around another point and turned.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "synthesis/body/body_ground.h"
+#include "synthesis/relief/relief_anchors.h"
+#include "synthesis/relief/relief_places.h"
+#include "synthesis/relief/relief_shares.h"
+
+namespace astrolith {
+
+// Heights at the places of a body.
+struct MeasuredRelief {
+  BodyGround ground;
+  const std::vector<ReliefPlace>& places;
+  const std::vector<double>& heights;  // coefficients of the blend (relief_layer.h), length units
+};
+
+// How far anchors lie apart, and what follows from it: 16 edges, or on small models as near as leaves forty
+// anchors, but 8 at least.
+struct AnchorSpacing {
+  double edge;   // mean edge of the measured model, length units
+  double edges;  // between anchors
+
+  double distance() const { return edges * edge; }
+  double radius() const { return 1.5 * distance(); }  // of patches
+  // Of the weights of narrow heights: patches change from one to the next within some 4 edges.
+  int high_exponent() const;
+};
+
+// A cosine and a sine that belong together, from a hash: uniform over all angles.
+struct PatchTurn {
+  double cosine, sine;
+};
+PatchTurn turn_of(std::uint32_t hash);
+
+// A point near an anchor: its number, its offset in the anchor's tangent plane, as long as the chord, in
+// length units, and the weight (1 - d^2 / R^2), times the cosine between the normals squared where there are
+// two.
+struct PatchPoint {
+  std::uint32_t number;
+  double x, y;
+  double near, facing;
+};
+
+// What a patch gives to a point, in two bands: heights smoothed by 2.5 edges, and the rest.
+struct PatchHeight {
+  std::uint32_t number;
+  double low_weight, high_weight;
+  double low, high;
+};
+
+class ReliefPatches {
+ public:
+  // `measured` must outlive this.
+  ReliefPatches(const MeasuredRelief& measured, double spacing, double edge);
+
+  const ReliefPoints& points() const { return points_; }
+  const AnchorSpacing& anchor_spacing() const { return apart_; }
+  const std::vector<ReliefAnchor>& anchors() const { return anchors_; }
+
+  // What the donor's patch gives to points. A patch has no weight where its points miss the surface.
+  std::vector<PatchHeight> heights_at(const std::vector<PatchPoint>& points, const ReliefAnchor& donor,
+                                      const PatchTurn& turn) const;
+
+ private:
+  void read(const std::vector<Vec3d>& at, std::vector<PatchHeight>& patch) const;
+
+  BodyGround ground_;
+  ReliefPoints points_;
+  ReliefShares shares_;
+  std::vector<double> low_, high_;  // bands of the coefficients
+  double most_missed_;              // length units
+  AnchorSpacing apart_;
+  std::vector<ReliefAnchor> anchors_;
+};
+
+// Sums over the patches of a point. Wide heights are means, since they are wide; narrow ones are divided by
+// the root of the sum of the squared weights, so that they keep their variance.
+struct PatchSums {
+  double low_weight = 0.0, low = 0.0, high_squares = 0.0, high = 0.0;
+
+  void add(const PatchHeight& p) {
+    low_weight += p.low_weight;
+    low += p.low_weight * p.low;
+    high_squares += p.high_weight * p.high_weight;
+    high += p.high_weight * p.high;
+  }
+  bool any() const { return low_weight > 0.0 && high_squares > 0.0; }
+  // Expects any().
+  double height() const;
+};
+
+}  // namespace astrolith
