@@ -212,6 +212,7 @@ void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.required("high", layer.high, kAnyNumber);
   v.rule(check_relief_heights, layer);
   v.required("levels", layer.levels, range(2, 65535));
+  v.field_if(layer.finer != 0, "finer", layer.finer, range(0, kMostFinerLevels));
   visit_heights(v, layer);
   v.rule(check_relief_source, layer);
 }

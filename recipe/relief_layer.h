@@ -27,6 +27,7 @@ constexpr std::string_view arrangement_word(ReliefArrangement a) {
 // distances along the two other axes, in spacings, and n_a the normal's component along the map's axis. h(q)
 // comes from the grey value v of the image's pixel for q:
 //   h = low + (high - low) round((v - 1) (levels - 1) / 65534) / (levels - 1).
+inline constexpr int kMostFinerLevels = 6;
 struct ReliefLayer : NamedImage {
   static constexpr std::string_view kType = "relief";
   static constexpr LayerTraits kTraits{.is_noise = true,
@@ -50,6 +51,7 @@ struct ReliefLayer : NamedImage {
   double low = 0.0;      // height of the grey value 1, length units
   double high = 0.0;     // height of the grey value 65535, >= low
   int levels = 2;        // heights from low to high, 2 .. 65535
+  int finer = 0;         // levels below the model (synthesis/relief/relief_levels.h), 0 .. kMostFinerLevels
 
   // Whether the layer names no file, since the recipe holds its pixels (recipe/relief_text.h).
   bool is_embedded() const { return image.empty() && image_sha256.empty(); }

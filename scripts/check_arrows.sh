@@ -27,7 +27,7 @@ synthesis/spots            -> numerics recipe synthesis/noise synthesis/body
 synthesis/gabor            -> numerics recipe synthesis/noise synthesis/body
 synthesis/exemplar         -> numerics recipe synthesis/noise synthesis/body synthesis/gabor
 synthesis/landforms        -> numerics recipe geometry gravity synthesis/noise synthesis/mesh synthesis/body
-synthesis/relief           -> numerics recipe synthesis/noise synthesis/body
+synthesis/relief           -> numerics recipe synthesis/noise synthesis/body synthesis/exemplar
 synthesis/field            -> numerics recipe geometry synthesis/noise synthesis/mesh synthesis/body synthesis/spots synthesis/gabor synthesis/exemplar synthesis/landforms synthesis/relief
 synthesis/finish           -> numerics recipe geometry synthesis
 cuda                       -> numerics descriptor synthesis cuda/.

@@ -35,6 +35,7 @@ struct Options {
   MembersRequest members;
   FinishOptions finish;
   bool like = false;  // whether reliefs are drawn anew
+  int finer = 0;      // levels of reliefs below their models
   double vary = 0.0;  // 0 = the recipe itself
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
@@ -59,6 +60,13 @@ void declare_options(Program& program, Options& options) {
   program.app.add_flag("--like", options.like,
                        "another body of the kind: the measured heights of the recipe's relief are drawn for "
                        "other places, patch by patch; every --seed gives another one");
+  program.app
+      .add_option("--finer", options.finer,
+                  "continue the recipe's relief below the edges of the model that was measured, by this many "
+                  "levels of its own ground, each a quarter as large as the one before")
+      .check(in_range(0, kMostFinerLevels))
+      .placeholder("LEVELS")
+      .default_text("those of the recipe");
   Option vary =
       program.app
           .add_option(
@@ -85,7 +93,7 @@ void declare_options(Program& program, Options& options) {
        {"--resolution", "--triangles", "--max-memory",    "--tile",    "--patch",  "--feature-list",
         "--vary",       "--target",    "--min-component", "--predict", "--device", "--points",
         "--labels",     "--preview",   "--preview-maps",  "--view",    "--sun",    "--gravity",
-        "--height-map", "--uv",        "--finish",        "--even",    "--like"}) {
+        "--height-map", "--uv",        "--finish",        "--even",    "--like",   "--finer"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {
@@ -110,19 +118,16 @@ void make_texture(Program& program, const Options& options, const Recipe& recipe
   summarize_output(program, files.front());
 }
 
-// Lets the heights of all reliefs be drawn for other places.
-void arrange_like(Recipe& recipe, const fs::path& file) {
+// Changes all reliefs; the words say what an option does with their heights, for a recipe without any.
+template <class Change>
+void change_reliefs(Recipe& recipe, const fs::path& file, std::string_view does, const Change& change) {
   bool has_relief = false;
   for (Layer& layer : recipe.layers) {
-    if (ReliefLayer* relief = std::get_if<ReliefLayer>(&layer)) {
-      relief->arrangement = ReliefArrangement::kLike;
-      has_relief = true;
-    }
+    if (ReliefLayer* relief = std::get_if<ReliefLayer>(&layer)) change(*relief), has_relief = true;
   }
   if (has_relief) return;
-  throw InputError(file.string() +
-                   ": layers: hold no relief, whose heights --like draws for other places; fit_shape writes "
-                   "one, and --vary varies other recipes");
+  throw InputError(
+      fmt::format("{}: layers: hold no relief, whose heights {}; fit_shape writes one", file.string(), does));
 }
 
 Recipe read_input(const Program& program, const Options& options) {
@@ -130,7 +135,14 @@ Recipe read_input(const Program& program, const Options& options) {
   if (!options.base.empty()) {
     recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string());
   }
-  if (options.like) arrange_like(recipe, options.recipe);
+  if (options.like) {
+    change_reliefs(recipe, options.recipe, "--like draws for other places",
+                   [](ReliefLayer& relief) { relief.arrangement = ReliefArrangement::kLike; });
+  }
+  if (program.app.option("--finer").count() > 0) {
+    change_reliefs(recipe, options.recipe, "--finer continues",
+                   [&](ReliefLayer& relief) { relief.finer = options.finer; });
+  }
   if (program.app.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
 }

@@ -39,12 +39,12 @@ void rank_roughness(const ReliefPoints& points, const std::vector<double>& heigh
       total += points.weight(k);
       squares += points.weight(k) * heights[k] * heights[k];
     });
-    anchor.roughness = total > 0.0 ? squares / total : 0.0;
+    anchor.rms = total > 0.0 ? std::sqrt(squares / total) : 0.0;
   });
   std::vector<std::size_t> order(anchors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return anchors[a].roughness < anchors[b].roughness; });
+                   [&](std::size_t a, std::size_t b) { return anchors[a].rms < anchors[b].rms; });
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
     anchors[order[rank]].roughness = static_cast<double>(rank) / static_cast<double>(order.size());
   }

@@ -12,12 +12,13 @@ namespace astrolith {
 struct ReliefAnchor {
   Vec3d at;  // length units
   Vec3d right, ahead, up;
-  double roughness = 0.0;  // rank among all anchors, 0 to 1
+  double rms = 0.0;        // of the heights around it, length units
+  double roughness = 0.0;  // rank of rms among all anchors, 0 to 1
 };
 
 // Anchors at Poisson disks: no two that face the same side are closer than `distance`, and every place has
-// one within it. Roughness is by the root mean square of `heights` within `radius`; without heights there is
-// no rank. Lengths in length units.
+// one within it. Roughness is that of `heights` within `radius`; it is 0 without heights. Lengths in
+// length units.
 std::vector<ReliefAnchor> relief_anchors(const ReliefPoints& points, const std::vector<double>& heights,
                                          double distance, double radius);
 

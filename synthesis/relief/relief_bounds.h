@@ -104,7 +104,7 @@ ASTROLITH_HD inline double change_of_sum(const ReliefNoise& n, const std::uint32
 // An interval that holds the height, before rounding, at every point of a part of a cell, length units.
 ASTROLITH_HD inline Interval bound_part(const ReliefNoise& n, const ArrayView& arrays,
                                         const ReliefPart& part) {
-  constexpr std::uint32_t kHardlyAny = 512;  // below this weight 0 is near (relief_height)
+  constexpr std::uint32_t kHardlyAny = 512;  // below this weight 0 is near (relief_mean)
   constexpr double kNarrow = 1.0;            // spacings; slopes say little of wider parts
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{part.cell};
   const std::uint32_t* words = arrays[n.words];
@@ -209,7 +209,7 @@ ASTROLITH_HD inline Interval bound_heights(const ReliefNoise& n, const ArrayView
   const Interval bound =
       cells <= kFewCells ? bound_parts(n, arrays, x, y, z) : bound_cells(n, arrays, x, y, z);
   const double slack = 1e-5 * n.height_bound;
-  return {bound.low - slack, bound.high + slack};
+  return {bound.low + n.below.least - slack, bound.high + n.below.greatest + slack};
 }
 
 }  // namespace astrolith

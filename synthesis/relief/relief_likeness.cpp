@@ -120,11 +120,12 @@ std::vector<double> equalized(const ReliefPoints& points, const std::vector<doub
 
 }  // namespace
 
-std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const MeasuredRelief& measured,
+std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefPatches& patches,
                                  bool foreign, double spacing, const LikenessOptions& options,
                                  const std::string& where) {
-  const ReliefPatches patches(measured, spacing, options.edge);
   const std::vector<ReliefAnchor>& anchors = patches.anchors();
+  const std::vector<double>& measured = patches.measured().heights;
+  const AnchorSpacing& apart = patches.anchor_spacing();
   if (anchors.size() < kFewestAnchors) {
     throw InputError(where + ": the body has room for " + std::to_string(anchors.size()) +
                      " patches of its relief, and a body of its kind needs " +
@@ -135,12 +136,11 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const M
   const ReliefPoints points(places, spacing);
   const ReliefValues blend(points, ReliefShares(places, spacing));
   const DrawnAnchors drawn =
-      draw_anchors(foreign ? relief_anchors(points, {}, patches.anchor_spacing().distance(), 0.0) : anchors,
-                   anchors, options);
+      draw_anchors(foreign ? relief_anchors(points, {}, apart.distance(), 0.0) : anchors, anchors, options);
   const std::vector<double> otherwise =
-      foreign ? std::vector<double>(places.size()) : blend.values_of(measured.heights);
+      foreign ? std::vector<double>(places.size()) : blend.values_of(measured);
   const std::vector<double> values = blended(patches, points, drawn, otherwise, options.hash);
-  return equalized(points, blend.coefficients_of(values), patches.points(), measured.heights, options.edge);
+  return equalized(points, blend.coefficients_of(values), patches.points(), measured, apart.edge);
 }
 
 }  // namespace astrolith

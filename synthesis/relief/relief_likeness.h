@@ -11,7 +11,6 @@
 namespace astrolith {
 
 struct LikenessOptions {
-  double edge = 0.0;   // mean edge of the model that was measured, length units
   double reach = 0.3;  // how far donors are looked for at first, as a share of the body's diagonal
   std::uint32_t hash = 0;
 };
@@ -24,7 +23,7 @@ struct LikenessOptions {
 // and up to 30 for narrow ones. Bands of the result, cut at .7, 1.4 and 2.8 edges, become as strong as those
 // that were measured, by the geometric mean over the body of the root mean square around a place. Throws
 // InputError, which begins with `where`, where fewer than ten anchors have been measured.
-std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const MeasuredRelief& measured,
+std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefPatches& patches,
                                  bool foreign, double spacing, const LikenessOptions& options,
                                  const std::string& where);
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <vector>
 
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
+#include "synthesis/relief/relief_level_ground.h"
 #include "synthesis/relief/relief_likeness.h"
 #include "synthesis/relief/relief_picture.h"
 
@@ -46,36 +48,66 @@ std::vector<double> heights_of(const ReliefLayer& layer, const std::vector<std::
   return heights;
 }
 
-// The heights as codes of their own range, which the noise gets.
-std::vector<std::uint16_t> encode(const std::vector<double>& heights, ReliefNoise& noise) {
-  if (heights.empty()) return {};
-  const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
-  noise.low = static_cast<float>(*least);
-  noise.step = static_cast<float>((*most - *least) / 65535.0);
-  std::vector<std::uint16_t> codes(heights.size());
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double code = noise.step > 0.0f ? (heights[i] - double{noise.low}) / double{noise.step} : 0.0;
-    codes[i] = static_cast<std::uint16_t>(std::clamp(std::floor(code + 0.5), 0.0, 65535.0));
-  }
-  return codes;
+// The metaballs of a donor, and its places.
+struct DonorBody {
+  ArrayStore arrays;
+  BodyTables body;
+  ReachingMetaballs metaballs;
+  std::vector<ReliefPlace> places;
+
+  DonorBody(const MetaballBody& donor, double spacing, const LayerSource& source)
+      : body(make_body(donor, source.recipe.seed, arrays)),
+        metaballs(all_metaballs(body, arrays.view())),
+        places(find_relief_places(ground(), spacing, source.place)) {}
+  BodyGround ground() const { return {body, arrays.view(), metaballs.lists()}; }
+};
+
+std::uint32_t hash_of(const LayerSource& source) {
+  return hash_seed(source.recipe.seed, static_cast<std::uint32_t>(source.number));
 }
 
-// The heights of the layer, drawn for other places or another body.
-std::vector<double> drawn_heights(const ReliefLayer& layer, const LayerSource& source,
-                                  const BodyGround& ground, const std::vector<ReliefPlace>& places) {
-  const LikenessOptions options{layer.edge_length(), layer.reach,
-                                hash_seed(source.recipe.seed, static_cast<std::uint32_t>(source.number))};
-  const auto like = [&](const BodyGround& of, const std::vector<ReliefPlace>& its_places) {
-    const std::vector<double> heights = heights_of(layer, codes_of(layer, its_places, source.place));
-    return like_heights(places, {of, its_places, heights}, layer.donor.has_value(), layer.spacing, options,
-                        source.place);
-  };
-  if (!layer.donor) return like(ground, places);
-  ArrayStore arrays;
-  const BodyTables body = make_body(*layer.donor, source.recipe.seed, arrays);
-  const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
-  const BodyGround donor{body, arrays.view(), metaballs.lists()};
-  return like(donor, find_relief_places(donor, layer.spacing, source.place));
+}  // namespace
+
+struct ReliefGround {
+  std::once_flag once;
+  std::vector<ReliefPlace> places;
+  std::vector<std::uint16_t> codes;
+  float low = 0.0f, step = 0.0f;  // length units
+  ReliefTiles tiles;
+  LevelGround levels;
+
+  void find(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body);
+};
+
+namespace {
+
+// The heights as codes of their own range.
+void encode(const std::vector<double>& heights, ReliefGround& ground) {
+  ground.codes.resize(heights.size());
+  if (heights.empty()) return;
+  const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
+  ground.low = static_cast<float>(*least);
+  ground.step = static_cast<float>((*most - *least) / 65535.0);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double code = ground.step > 0.0f ? (heights[i] - double{ground.low}) / double{ground.step} : 0.0;
+    ground.codes[i] = static_cast<std::uint16_t>(std::clamp(std::floor(code + 0.5), 0.0, 65535.0));
+  }
+}
+
+// Heights of the layer drawn for other places or another body, and what the levels below the model are made
+// of.
+void draw(const ReliefLayer& layer, const LayerSource& source, const MeasuredRelief& measured,
+          ReliefGround& ground) {
+  const ReliefPatches patches(measured, layer.spacing, layer.edge_length());
+  std::vector<double> heights = measured.heights;
+  if (layer.arrangement == ReliefArrangement::kLike) {
+    heights = like_heights(ground.places, patches, layer.donor.has_value(), layer.spacing,
+                           {layer.reach, hash_of(source)}, source.place);
+    encode(heights, ground);
+  }
+  if (layer.finer == 0) return;
+  const ReliefPoints points(ground.places, layer.spacing);
+  ground.levels = level_ground(patches, points, heights, hash_append(hash_of(source), 4));
 }
 
 // The bounds of the codes in each cell.
@@ -132,77 +164,111 @@ ASTROLITH_SIMD_CLONES void add_tiles(const std::uint32_t* words, const std::int3
   }
 }
 
-ASTROLITH_SIMD_CLONES void finish_heights(const ReliefNoise& of_layer, int n, const float* __restrict weight,
-                                          const float* __restrict code, float* __restrict height) {
-  const ReliefNoise noise = of_layer;
+ASTROLITH_SIMD_CLONES void find_means(float low, float step, int n, const float* __restrict weight,
+                                      const float* __restrict code, float* __restrict mean) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) height[i] = relief_height(noise, {weight[i], code[i]});
+  for (int i = 0; i < n; ++i) mean[i] = relief_mean(low, step, {weight[i], code[i]});
 }
 
-void evaluate_chunk(const ReliefNoise& n, const ArrayView& arrays, int count, const float* px,
-                    const float* py, const float* pz, float* height) {
-  std::array<float, kChunk> x, y, z, weight, code;
-  std::array<std::int32_t, kChunk> cell, first;
-  find_cells(n, count, px, py, pz, cell.data(), x.data(), y.data(), z.data());
-  std::fill_n(weight.data(), count, 0.0f);
-  std::fill_n(code.data(), count, 0.0f);
-  const std::int32_t* tiles = arrays[n.tiles];
-  const ReliefSplit* splits = arrays[n.splits];
-  const std::array<const float*, 3> p{x.data(), y.data(), z.data()};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const float *u = p[(a + 1) % 3], *v = p[(a + 2) % 3], *w = p[a];
-    bool any = false;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      first[i] =
-          kReliefTileSize * relief_tile(tiles[3 * std::int64_t{cell[i]} + static_cast<std::int64_t>(a)],
-                                        splits, u[i], v[i], w[i]);
-      any |= first[i] != 0;
+// Points in the lattice, and the first word of each one's tile of each axis.
+struct ChunkPlaces {
+  int count;
+  std::array<std::array<float, kChunk>, 3> at;
+  std::array<std::array<std::int32_t, kChunk>, 3> first;
+  std::array<bool, 3> any{};  // whether a tile of the axis is not the empty one, which adds exactly nothing
+
+  ChunkPlaces(const ReliefNoise& n, const ArrayView& arrays, int points, const float* px, const float* py,
+              const float* pz)
+      : count(points) {
+    std::array<std::int32_t, kChunk> cell;
+    find_cells(n, count, px, py, pz, cell.data(), at[0].data(), at[1].data(), at[2].data());
+    const std::int32_t* tiles = arrays[n.tiles];
+    const ReliefSplit* splits = arrays[n.splits];
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::array<float, kChunk>&u = at[(a + 1) % 3], &v = at[(a + 2) % 3], &w = at[a];
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        const std::int32_t tile = tiles[3 * std::int64_t{cell[i]} + static_cast<std::int64_t>(a)];
+        first[a][i] = kReliefTileSize * relief_tile(tile, splits, u[i], v[i], w[i]);
+        any[a] |= first[a][i] != 0;
+      }
     }
-    // The empty tile adds exactly nothing.
-    if (any) add_tiles(arrays[n.words], first.data(), count, u, v, weight.data(), code.data());
   }
-  finish_heights(n, count, weight.data(), code.data(), height);
+
+  // The means of low + step * code of these words.
+  void means(const std::uint32_t* words, float low, float step, float* mean) const {
+    std::array<float, kChunk> weight, code;
+    std::fill_n(weight.data(), count, 0.0f);
+    std::fill_n(code.data(), count, 0.0f);
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!any[a]) continue;
+      add_tiles(words, first[a].data(), count, at[(a + 1) % 3].data(), at[(a + 2) % 3].data(), weight.data(),
+                code.data());
+    }
+    find_means(low, step, count, weight.data(), code.data(), mean);
+  }
+};
+
+// The words of the tiles for a code of each place.
+std::vector<std::uint32_t> words_of(const ReliefGround& ground, const std::vector<std::uint16_t>& codes) {
+  std::vector<std::uint32_t> words(ground.tiles.places.size(), 0);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::uint32_t number = ground.tiles.places[i];
+    if (number != kNoPlace) words[i] = std::uint32_t{ground.places[number].weight} << 16 | codes[number];
+  }
+  return words;
 }
 
 }  // namespace
 
-ReliefNoise prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {
-  ReliefNoise noise;
-  noise.inverse_spacing = static_cast<float>(1.0 / layer.spacing);
-  noise.low = static_cast<float>(layer.low);
-  noise.step = static_cast<float>(layer.step());
-  noise.detail.finest = layer.spacing;
-  return noise;
+void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body) {
+  places = find_relief_places(body, layer.spacing, source.place);
+  tiles = make_relief_tiles(places, source.place);
+  low = static_cast<float>(layer.low);
+  step = static_cast<float>(layer.step());
+  if (layer.donor) {
+    const DonorBody donor(*layer.donor, layer.spacing, source);
+    const std::vector<double> heights = heights_of(layer, codes_of(layer, donor.places, source.place));
+    return draw(layer, source, {donor.ground(), donor.places, heights}, *this);
+  }
+  codes = codes_of(layer, places, source.place);
+  if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0) return;
+  const std::vector<double> heights = heights_of(layer, codes);
+  draw(layer, source, {body, places, heights}, *this);
 }
 
-ReliefNoise placed(const ReliefLayer& layer, const ReliefNoise& prepared, const LayerSource& source,
+PreparedRelief prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {
+  PreparedRelief prepared{{}, std::make_shared<ReliefGround>()};
+  prepared.noise.inverse_spacing = static_cast<float>(1.0 / layer.spacing);
+  prepared.noise.detail.finest = layer.spacing;
+  return prepared;
+}
+
+ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, const LayerSource& source,
                    const LayerSite& site, ArrayStore& arrays) {
-  ReliefNoise noise = prepared;
-  const std::vector<ReliefPlace> places = find_relief_places(site.ground(), layer.spacing, source.place);
-  const std::vector<std::uint16_t> codes =
-      layer.arrangement == ReliefArrangement::kLike
-          ? encode(drawn_heights(layer, source, site.ground(), places), noise)
-          : codes_of(layer, places, source.place);
-  const ReliefTiles tiles = make_relief_tiles(places, source.place);
-  std::vector<std::uint32_t> words(tiles.places.size(), 0);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::uint32_t number = tiles.places[i];
-    if (number != kNoPlace) words[i] = std::uint32_t{places[number].weight} << 16 | codes[number];
-  }
+  ReliefNoise noise = prepared.noise;
+  ReliefGround& ground = *prepared.ground;
+  std::call_once(ground.once, [&] { ground.find(layer, source, site.ground()); });
+  const ReliefTiles& tiles = ground.tiles;
+  noise.low = ground.low, noise.step = ground.step;
   noise.count_x = tiles.count[0], noise.count_y = tiles.count[1], noise.count_z = tiles.count[2];
   const Vec3d origin = site.frame.origin * (1.0 / layer.spacing);
   noise.origin = to_float(origin - Vec3d{static_cast<double>(tiles.low[0]), static_cast<double>(tiles.low[1]),
                                          static_cast<double>(tiles.low[2])} *
                                        static_cast<double>(kReliefCell));
-  const std::vector<ReliefCodeRange> ranges = ranges_of(tiles, codes);
+  if (layer.finer > 0 && !ground.places.empty()) {
+    noise.below = place_levels(ground.levels, layer.finer, source.place, hash_append(hash_of(source), 5),
+                               site, arrays, noise.detail);
+    noise.below.words = arrays.add(words_of(ground, ground.levels.codes));
+  }
   noise.tiles = arrays.add(tiles.tiles);
   noise.splits = arrays.add(tiles.splits);
-  noise.words = arrays.add(words);
-  noise.ranges = arrays.add(ranges);
-  for (const std::uint16_t code : codes) {
+  noise.words = arrays.add(words_of(ground, ground.codes));
+  noise.ranges = arrays.add(ranges_of(tiles, ground.codes));
+  for (const std::uint16_t code : ground.codes) {
     noise.height_bound =
         std::max(noise.height_bound, std::fabs(double{noise.low} + double{noise.step} * code));
   }
+  noise.height_bound += std::max(-noise.below.least, noise.below.greatest);
   noise.height_bound *= 1.0 + 1e-5;
   return noise;
 }
@@ -213,9 +279,14 @@ void evaluate_heights(const ReliefNoise& n, const ArrayView& arrays, int count, 
     std::fill_n(height, count, 0.0f);
     return;
   }
+  const bool finer = n.below.levels.count > 0;
+  std::vector<float> roughness(finer ? static_cast<std::size_t>(count) : 0);
   for (int i = 0; i < count; i += kChunk) {
-    evaluate_chunk(n, arrays, std::min(kChunk, count - i), x + i, y + i, z + i, height + i);
+    const ChunkPlaces places(n, arrays, std::min(kChunk, count - i), x + i, y + i, z + i);
+    places.means(arrays[n.words], n.low, n.step, height + i);
+    if (finer) places.means(arrays[n.below.words], 0.0f, n.below.step, roughness.data() + i);
   }
+  if (finer) add_levels(n.below, arrays, count, x, y, z, roughness.data(), height);
 }
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "numerics/arrays.h"
 #include "numerics/host_device.h"
@@ -11,6 +12,7 @@
 #include "synthesis/body/layer_site.h"
 #include "synthesis/noise/noise_frame.h"
 #include "synthesis/noise/noise_traits.h"
+#include "synthesis/relief/relief_levels.h"
 #include "synthesis/relief/relief_tiles.h"
 
 namespace astrolith {
@@ -36,16 +38,24 @@ struct ReliefNoise {
   ArrayRange<ReliefSplit> splits;
   ArrayRange<std::uint32_t> words;     // (tiles x kReliefTileSize) weight << 16 | code
   ArrayRange<ReliefCodeRange> ranges;  // (cells)
+  ReliefLevels below;                  // below the edges of the model
   double height_bound = 0.0;           // bound of |n(p)|, length units
   NoiseDetail detail;
 };
 
+// The heights of a layer at the places of its body, found when the first site asks.
+struct ReliefGround;
+
 // What all sites of a layer share.
-ReliefNoise prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore& arrays);
+struct PreparedRelief {
+  ReliefNoise noise;
+  std::shared_ptr<ReliefGround> ground;
+};
+PreparedRelief prepare(const ReliefLayer& layer, const LayerSource& source, ArrayStore& arrays);
 
 // The noise at a site. Throws InputError, which begins with the source's place, where the layer has no
 // pixels, or where they are not those of the places on this body.
-ReliefNoise placed(const ReliefLayer& layer, const ReliefNoise& prepared, const LayerSource& source,
+ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, const LayerSource& source,
                    const LayerSite& site, ArrayStore& arrays);
 
 // The weights of the four places next to a point, which lies t in [0, 1] beyond the second: a cubic B-spline.
@@ -121,28 +131,39 @@ ASTROLITH_HD inline std::int32_t relief_tile(std::int32_t tile, const ReliefSpli
   return w > math::fma(s.of_u, u, math::fma(s.of_v, v, s.at)) ? s.upper : s.lower;
 }
 
-// The height of these sums. Where no place has a weight, it is 0.
-ASTROLITH_KERNEL float relief_height(const ReliefNoise& n, const ReliefSums& sums) {
+// The mean of low + step * code with these sums. Where no place has a weight, it is 0.
+ASTROLITH_KERNEL float relief_mean(float low, float step, const ReliefSums& sums) {
   constexpr float kHardlyAny = 1e-3f;  // of 65535
-  return math::fma(n.step, sums.code, n.low * sums.weight) / (sums.weight + kHardlyAny);
+  return math::fma(step, sums.code, low * sums.weight) / (sums.weight + kHardlyAny);
 }
 
-// The height at a point of the lattice, length units.
-ASTROLITH_HD inline float height_in_lattice(const ReliefNoise& n, const ArrayView& arrays,
-                                            const ReliefPoint& p) {
+// The sums of these words around a point of the lattice.
+ASTROLITH_HD inline ReliefSums sums_in_lattice(const ReliefNoise& n, const std::uint32_t* words,
+                                               const ArrayView& arrays, const ReliefPoint& p) {
   const std::int32_t* tiles = arrays[n.tiles] + 3 * std::int64_t{p.cell};
   const ReliefSplit* splits = arrays[n.splits];
-  const std::uint32_t* words = arrays[n.words];
   ReliefSums sums;
   add_relief_tile(words + kReliefTileSize * relief_tile(tiles[0], splits, p.y, p.z, p.x), p.y, p.z, sums);
   add_relief_tile(words + kReliefTileSize * relief_tile(tiles[1], splits, p.z, p.x, p.y), p.z, p.x, sums);
   add_relief_tile(words + kReliefTileSize * relief_tile(tiles[2], splits, p.x, p.y, p.z), p.x, p.y, sums);
-  return relief_height(n, sums);
+  return sums;
+}
+
+// The height of the model's own relief at a point of the lattice, length units.
+ASTROLITH_HD inline float height_in_lattice(const ReliefNoise& n, const ArrayView& arrays,
+                                            const ReliefPoint& p) {
+  return relief_mean(n.low, n.step, sums_in_lattice(n, arrays[n.words], arrays, p));
 }
 
 // The height at a point of the bare surface, length units.
 ASTROLITH_HD inline float height_at(const ReliefNoise& n, const ArrayView& arrays, const Vec3f& at) {
-  return n.count_x == 0 ? 0.0f : height_in_lattice(n, arrays, relief_point(n, at));
+  if (n.count_x == 0) return 0.0f;
+  const ReliefPoint p = relief_point(n, at);
+  const float height = height_in_lattice(n, arrays, p);
+  if (n.below.levels.count == 0) return height;
+  const float roughness =
+      relief_mean(0.0f, n.below.step, sums_in_lattice(n, arrays[n.below.words], arrays, p));
+  return math::fma(roughness, sum_of_levels(n.below, arrays, at), height);
 }
 
 // Writes height[i] = n(p_i) at these points, length units. The loops are vectorised and give the same bits as

@@ -38,11 +38,16 @@ PatchTurn turn_of(std::uint32_t hash) {
 
 double PatchSums::height() const { return low / low_weight + high / std::sqrt(high_squares); }
 
+std::vector<double> wide_heights(const ReliefPoints& points, const std::vector<double>& heights,
+                                 double edge) {
+  return smoothed_heights(points, heights, kLowBand * edge);
+}
+
 ReliefPatches::ReliefPatches(const MeasuredRelief& measured, double spacing, double edge)
-    : ground_(measured.ground),
+    : measured_(measured),
       points_(measured.places, spacing),
       shares_(measured.places, spacing),
-      low_(smoothed_heights(points_, measured.heights, kLowBand * edge)),
+      low_(wide_heights(points_, measured.heights, edge)),
       high_(measured.heights),
       most_missed_(0.25 * spacing),
       apart_{edge, kWidestDistance} {
@@ -74,11 +79,12 @@ void ReliefPatches::read(const std::vector<Vec3d>& at, std::vector<PatchHeight>&
   constexpr int kProjections = 4;
   if (at.empty()) return;
   GroundPoints feet(at);
+  const BodyGround& ground = measured_.ground;
   for (int i = 0; i < kProjections; ++i) {
-    evaluate(ground_, feet);
-    project(ground_, feet);
+    evaluate(ground, feet);
+    project(ground, feet);
   }
-  evaluate(ground_, feet);
+  evaluate(ground, feet);
   std::vector<std::uint32_t> places;
   std::vector<float> shares;
   for (std::size_t i = 0; i < patch.size(); ++i) {

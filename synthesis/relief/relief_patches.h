@@ -52,11 +52,15 @@ struct PatchHeight {
   double low, high;
 };
 
+// The wide band: heights smoothed by 2.5 edges.
+std::vector<double> wide_heights(const ReliefPoints& points, const std::vector<double>& heights, double edge);
+
 class ReliefPatches {
  public:
-  // `measured` must outlive this.
+  // The places and heights must outlive this.
   ReliefPatches(const MeasuredRelief& measured, double spacing, double edge);
 
+  const MeasuredRelief& measured() const { return measured_; }
   const ReliefPoints& points() const { return points_; }
   const AnchorSpacing& anchor_spacing() const { return apart_; }
   const std::vector<ReliefAnchor>& anchors() const { return anchors_; }
@@ -68,7 +72,7 @@ class ReliefPatches {
  private:
   void read(const std::vector<Vec3d>& at, std::vector<PatchHeight>& patch) const;
 
-  BodyGround ground_;
+  MeasuredRelief measured_;
   ReliefPoints points_;
   ReliefShares shares_;
   std::vector<double> low_, high_;  // bands of the coefficients

@@ -40,11 +40,11 @@ struct Rough {
       heights.push_back(0.004 * wide + (at.x > 0.0 ? 0.004 : 0.001) * narrow);
     }
   }
+  ReliefPatches patches(double edge = kSpacing / 3.0) const {
+    return {{ground, places, heights}, kSpacing, edge};
+  }
   std::vector<double> like(std::uint32_t seed, double edge = kSpacing / 3.0) const {
-    LikenessOptions options;
-    options.edge = edge;
-    options.hash = seed;
-    return like_heights(places, {ground, places, heights}, false, kSpacing, options, "test");
+    return like_heights(places, patches(edge), false, kSpacing, {0.3, seed}, "test");
   }
 };
 
@@ -94,10 +94,7 @@ TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
   const Rough rough;
   Recipe ball = testing::sphere_recipe(0.4);
   const std::vector<ReliefPlace> places = places_of(ball, kSpacing);
-  LikenessOptions options;
-  options.edge = kSpacing / 3.0;
-  const std::vector<double> heights =
-      like_heights(places, {rough.ground, rough.places, rough.heights}, true, kSpacing, options, "test");
+  const std::vector<double> heights = like_heights(places, rough.patches(), true, kSpacing, {}, "test");
   ASSERT_EQ(heights.size(), places.size());
   EXPECT_NEAR(std::sqrt(mean_square(heights) / mean_square(rough.heights)), 1.0, 0.3);
 }
@@ -105,10 +102,7 @@ TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
 // A base that no line of the lattice meets has no places.
 TEST(ReliefLikeness, HasNoHeightsOnABodySmallerThanTheSpacing) {
   const Rough rough;
-  LikenessOptions options;
-  options.edge = kSpacing / 3.0;
-  EXPECT_TRUE(
-      like_heights({}, {rough.ground, rough.places, rough.heights}, true, kSpacing, options, "test").empty());
+  EXPECT_TRUE(like_heights({}, rough.patches(), true, kSpacing, {}, "test").empty());
 }
 
 TEST(ReliefLikeness, IsTheSameForAnyThreadCount) {

@@ -1,0 +1,202 @@
+#include "synthesis/relief/relief_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "numerics/hash_random.h"
+#include "numerics/parallel_for.h"
+#include "numerics/portable_double.h"
+
+namespace astrolith {
+namespace {
+
+// In mean edges of the measured model; the last is the standard deviation of smoothing.
+constexpr int kSide = 128, kPixelsPerEdge = 2;
+constexpr double kHighPass = 1.5;
+
+// A square of heights that repeats.
+struct PeriodicHeights {
+  int side;
+  std::vector<double> values;
+
+  explicit PeriodicHeights(int n)
+      : side(n), values(static_cast<std::size_t>(n) * static_cast<std::size_t>(n)) {}
+  std::size_t number(int x, int y) const {
+    const auto inside = [this](int at) { return static_cast<std::size_t>((at % side + side) % side); };
+    return inside(y) * static_cast<std::size_t>(side) + inside(x);
+  }
+  double at(int x, int y) const { return values[number(x, y)]; }
+};
+
+// An anchor in the plane and the donor of its patch.
+struct PlaneAnchor {
+  double x, y;  // pixels
+  const ReliefAnchor* donor;
+  PatchTurn turn;
+};
+
+// How much the base bends around each place: 1 less the length of the mean of normals there.
+std::vector<double> bends(const ReliefPoints& points, double edge) {
+  constexpr double kAround = 1.5;  // edges
+  std::vector<double> squares(points.size(), 0.0), along(points.size());
+  for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}) {
+    for (std::size_t i = 0; i < along.size(); ++i) along[i] = dot(points.normal(i), axis);
+    const std::vector<double> means = smoothed_heights(points, along, kAround * edge);
+    for (std::size_t i = 0; i < means.size(); ++i) squares[i] += means[i] * means[i];
+  }
+  for (double& of_place : squares) of_place = 1.0 - std::sqrt(of_place);
+  return squares;
+}
+
+// The rougher half of the anchors, and of these the half about which the base bends least: patches of a
+// smooth plain say little but how their heights were rounded, and heights over a crease of the base undo the
+// crease.
+std::vector<const ReliefAnchor*> plain_donors(const ReliefPatches& patches) {
+  struct Donor {
+    const ReliefAnchor* anchor;
+    double bend;
+  };
+  const std::vector<double> of_place = bends(patches.points(), patches.anchor_spacing().edge);
+  std::vector<Donor> donors;
+  for (const ReliefAnchor& anchor : patches.anchors()) {
+    if (anchor.roughness < 0.5 || !(anchor.rms > 0.0)) continue;
+    double most = 0.0;
+    patches.points().for_each_near(
+        anchor.at, anchor.up, 0.75 * patches.anchor_spacing().distance(),
+        [&](std::uint32_t k, double, double) { most = std::max(most, of_place[k]); });
+    donors.push_back({&anchor, most});
+  }
+  std::stable_sort(donors.begin(), donors.end(),
+                   [](const Donor& a, const Donor& b) { return a.bend < b.bend; });
+  std::vector<const ReliefAnchor*> plain;
+  for (std::size_t i = 0; i < (donors.size() + 1) / 2; ++i) plain.push_back(donors[i].anchor);
+  return plain;
+}
+
+// A jittered lattice whose donors come round in turn, in an order of the hash.
+std::vector<PlaneAnchor> plane_anchors(const ReliefPatches& patches,
+                                       const std::vector<const ReliefAnchor*>& donors, std::uint32_t hash) {
+  constexpr double kJitter = 0.15;  // of a cell, either way
+  const int per_side = std::max(1, static_cast<int>(kSide / patches.anchor_spacing().edges + 0.5));
+  const double cell = static_cast<double>(kSide * kPixelsPerEdge) / per_side;
+  std::vector<std::uint32_t> order(donors.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t of_a = hash_append(hash, a), of_b = hash_append(hash, b);
+    return of_a != of_b ? of_a < of_b : a < b;
+  });
+  std::vector<PlaneAnchor> anchors;
+  for (int y = 0; y < per_side; ++y) {
+    for (int x = 0; x < per_side; ++x) {
+      const auto number = static_cast<std::uint32_t>(anchors.size());
+      const std::uint32_t own = hash_append(hash_append(hash, 0x6a09e667u), number);
+      const auto jittered = [&](int at, std::uint32_t axis) {
+        return cell * (at + 0.5 + kJitter * (2.0 * double{unit_float(hash_append(own, axis))} - 1.0));
+      };
+      anchors.push_back({jittered(x, 0), jittered(y, 1), donors[order[number % order.size()]],
+                         turn_of(hash_append(own, 2))});
+    }
+  }
+  return anchors;
+}
+
+// The pixels around an anchor. Farther ones have weights that count for nothing.
+std::vector<PatchPoint> pixels_around(const PeriodicHeights& plane, const PlaneAnchor& anchor,
+                                      const AnchorSpacing& spacing) {
+  const double pixel = spacing.edge / kPixelsPerEdge, radius = spacing.radius() / pixel,
+               reach = spacing.distance() / pixel;
+  std::vector<PatchPoint> pixels;
+  for (int y = static_cast<int>(std::floor(anchor.y - reach)); y <= anchor.y + reach; ++y) {
+    for (int x = static_cast<int>(std::floor(anchor.x - reach)); x <= anchor.x + reach; ++x) {
+      const double dx = x - anchor.x, dy = y - anchor.y, squared = dx * dx + dy * dy;
+      if (squared > reach * reach) continue;
+      pixels.push_back({static_cast<std::uint32_t>(plane.number(x, y)), dx * pixel, dy * pixel,
+                        1.0 - squared / (radius * radius), 1.0});
+    }
+  }
+  return pixels;
+}
+
+PeriodicHeights blended(const ReliefPatches& patches, const std::vector<PlaneAnchor>& anchors) {
+  PeriodicHeights plane(kSide * kPixelsPerEdge);
+  std::vector<std::vector<PatchHeight>> of_anchor(anchors.size());
+  parallel_for(0, static_cast<std::int64_t>(anchors.size()), [&](std::int64_t number) {
+    const auto a = static_cast<std::size_t>(number);
+    of_anchor[a] = patches.heights_at(pixels_around(plane, anchors[a], patches.anchor_spacing()),
+                                      *anchors[a].donor, anchors[a].turn);
+    const double scale = 1.0 / anchors[a].donor->rms;
+    for (PatchHeight& p : of_anchor[a]) p.low *= scale, p.high *= scale;
+  });
+  std::vector<PatchSums> sums(plane.values.size());
+  for (const std::vector<PatchHeight>& patch : of_anchor) {
+    for (const PatchHeight& p : patch) sums[p.number].add(p);
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) plane.values[i] = sums[i].any() ? sums[i].height() : 0.0;
+  return plane;
+}
+
+// The root mean square of second differences along rows and columns.
+double second_differences(const PeriodicHeights& plane, int lag) {
+  double sum = 0.0;
+  for (int y = 0; y < plane.side; ++y) {
+    for (int x = 0; x < plane.side; ++x) {
+      const double along_x = plane.at(x - lag, y) - 2.0 * plane.at(x, y) + plane.at(x + lag, y),
+                   along_y = plane.at(x, y - lag) - 2.0 * plane.at(x, y) + plane.at(x, y + lag);
+      sum += along_x * along_x + along_y * along_y;
+    }
+  }
+  return std::sqrt(0.5 * sum / static_cast<double>(plane.values.size()));
+}
+
+double exponent_of(const PeriodicHeights& plane) {
+  constexpr double kLeast = 0.3, kMost = 1.5;
+  const double narrow = second_differences(plane, kPixelsPerEdge),
+               wide = second_differences(plane, 4 * kPixelsPerEdge);
+  return narrow > 0.0 ? std::clamp(0.5 * portable::log2(wide / narrow), kLeast, kMost) : kMost;
+}
+
+// What the means around each pixel, with the weights of smoothed_heights(), leave of the heights.
+PeriodicHeights high_passed(const PeriodicHeights& plane) {
+  const double radius = std::sqrt(8.0) * kHighPass * kPixelsPerEdge;
+  struct Tap {
+    int x, y;
+    double weight;
+  };
+  std::vector<Tap> taps;
+  double total = 0.0;
+  for (int y = static_cast<int>(-radius); y <= radius; ++y) {
+    for (int x = static_cast<int>(-radius); x <= radius; ++x) {
+      const double near = 1.0 - (x * x + y * y) / (radius * radius);
+      if (near <= 0.0) continue;
+      taps.push_back({x, y, portable::whole_power(near, 4)});
+      total += taps.back().weight;
+    }
+  }
+  PeriodicHeights passed(plane.side);
+  parallel_for(0, plane.side, [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < plane.side; ++x) {
+      double sum = 0.0;
+      for (const Tap& tap : taps) sum += tap.weight * plane.at(x + tap.x, y + tap.y);
+      passed.values[plane.number(x, y)] = plane.at(x, y) - sum / total;
+    }
+  });
+  return passed;
+}
+
+}  // namespace
+
+ReliefTexture relief_texture(const ReliefPatches& patches, std::uint32_t hash) {
+  ReliefTexture texture;
+  texture.side = kSide * kPixelsPerEdge;
+  texture.pixel = patches.anchor_spacing().edge / kPixelsPerEdge;
+  const std::vector<const ReliefAnchor*> donors = plain_donors(patches);
+  PeriodicHeights plane(texture.side);
+  if (!donors.empty()) plane = blended(patches, plane_anchors(patches, donors, hash));
+  texture.exponent = exponent_of(plane);
+  texture.heights = high_passed(plane).values;
+  return texture;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Measures how a relief goes on below the edges of its model (synth --finer), on patches of a fitted body.
+
+    finer_roughness.py build/release/bin recipe.astro EDGE [--patches 6]
+
+EDGE is the mean edge of the model in the recipe's unit. S(l) is the root mean square of second differences of the
+relief over the bare body at the lag l, on height maps of patches 40 edges wide. Rows: S at 1/16 to 4 edges over the
+straight line through 1 and 4 edges, without and with levels, and the difference that remains in means over an edge.
+Needs NumPy and Pillow.
+"""
+import argparse
+import json
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy
+from PIL import Image
+
+PIXELS = 640
+WIDE = 40  # edges
+LAGS = [1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 4]
+
+
+def run(*command):
+    subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True)
+
+
+def vertices_of(mesh):
+    lines = mesh.read_text().split("\n")
+    return numpy.array([[float(word) for word in line.split()[1:4]] for line in lines if line.startswith("v ")])
+
+
+def height_map(synth, recipe, finer, patch, folder):
+    file = folder / "map.tif"
+    options = [] if finer is None else ["--finer", finer]
+    run(synth, recipe, *options, "--patch", *patch, "--resolution", PIXELS, "--height-map", file, "-o",
+        folder / "patch.ply", "--quiet")
+    heights = numpy.array(Image.open(file), dtype=float)
+    heights[~(numpy.abs(heights) < 1e30)] = numpy.nan
+    frame = json.loads(file.with_suffix(".json").read_text())
+    return heights, numpy.array(frame["origin_m"]), numpy.array(frame["up"])
+
+
+def second_differences(heights, lag):
+    found = []
+    for rows in (heights, heights.T):
+        change = rows[2 * lag:] - 2 * rows[lag:-lag] + rows[:-2 * lag]
+        found.append(change[numpy.isfinite(change)])
+    return numpy.concatenate(found)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=Path)
+    parser.add_argument("recipe", type=Path)
+    parser.add_argument("edge", type=float)
+    parser.add_argument("--patches", type=int, default=6)
+    arguments = parser.parse_args()
+    synth = arguments.programs / "synth"
+    pixels_per_edge = PIXELS / WIDE
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        run(synth, arguments.recipe, "--resolution", 40, "-o", folder / "body.obj", "--quiet")
+        vertices = vertices_of(folder / "body.obj")
+        chosen = vertices[numpy.random.default_rng(1).choice(len(vertices), arguments.patches, replace=False)]
+        differences = {finer: {lag: [] for lag in LAGS} for finer in range(4)}
+        left = {finer: [] for finer in range(1, 4)}
+        for centre in chosen:
+            patch = [*centre, WIDE * arguments.edge]
+            maps = {finer: height_map(synth, arguments.recipe, finer, patch, folder)[0] for finer in range(4)}
+            for finer, heights in maps.items():
+                for lag in LAGS:
+                    differences[finer][lag].append(second_differences(heights, round(lag * pixels_per_edge)))
+                if finer == 0:
+                    continue
+                added = heights - maps[0]
+                cell = round(pixels_per_edge)
+                count = PIXELS // cell
+                means = added[:count * cell, :count * cell].reshape(count, cell, count, cell).mean((1, 3))
+                left[finer].append(means[numpy.isfinite(means)])
+    print("| levels | H | " + " | ".join(f"{lag:g}" for lag in LAGS) + " | means over an edge, rms, edges |")
+    print("|---" * (len(LAGS) + 3) + "|")
+    for finer in range(4):
+        s = [numpy.sqrt(numpy.mean(numpy.concatenate(differences[finer][lag]) ** 2)) for lag in LAGS]
+        if finer == 0:
+            exponent = numpy.log(s[5] / s[4]) / numpy.log(4)
+            at_edge = s[4]
+        line = [at_edge * lag ** exponent for lag in LAGS]
+        rest = ""
+        if finer:
+            rest = f"{numpy.sqrt(numpy.mean(numpy.concatenate(left[finer]) ** 2)) / arguments.edge:.4f}"
+        print(f"| {finer} | {exponent:.2f} | " + " | ".join(f"{x / y:.2f}" for x, y in zip(s, line)) + f" | {rest} |")
+
+
+if __name__ == "__main__":
+    main()
