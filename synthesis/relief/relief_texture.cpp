@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -53,6 +54,7 @@ std::vector<double> bends(const ReliefPoints& points, double edge) {
 // smooth plain say little but how their heights were rounded, and heights over a crease of the base undo the
 // crease.
 std::vector<const ReliefAnchor*> plain_donors(const ReliefPatches& patches) {
+  constexpr double kFlat = 1e-6;  // edges; less is rounding
   struct Donor {
     const ReliefAnchor* anchor;
     double bend;
@@ -60,7 +62,7 @@ std::vector<const ReliefAnchor*> plain_donors(const ReliefPatches& patches) {
   const std::vector<double> of_place = bends(patches.points(), patches.anchor_spacing().edge);
   std::vector<Donor> donors;
   for (const ReliefAnchor& anchor : patches.anchors()) {
-    if (anchor.roughness < 0.5 || !(anchor.rms > 0.0)) continue;
+    if (anchor.roughness < 0.5 || !(anchor.rms > kFlat * patches.anchor_spacing().edge)) continue;
     double most = 0.0;
     patches.points().for_each_near(
         anchor.at, anchor.up, 0.75 * patches.anchor_spacing().distance(),
@@ -118,8 +120,10 @@ std::vector<PatchPoint> pixels_around(const PeriodicHeights& plane, const PlaneA
   return pixels;
 }
 
-PeriodicHeights blended(const ReliefPatches& patches, const std::vector<PlaneAnchor>& anchors) {
-  PeriodicHeights plane(kSide * kPixelsPerEdge);
+// What each anchor's patch gives to the pixels around it, over its roughness.
+std::vector<std::vector<PatchHeight>> patches_in_plane(const ReliefPatches& patches,
+                                                       const std::vector<PlaneAnchor>& anchors,
+                                                       const PeriodicHeights& plane) {
   std::vector<std::vector<PatchHeight>> of_anchor(anchors.size());
   parallel_for(0, static_cast<std::int64_t>(anchors.size()), [&](std::int64_t number) {
     const auto a = static_cast<std::size_t>(number);
@@ -128,32 +132,54 @@ PeriodicHeights blended(const ReliefPatches& patches, const std::vector<PlaneAnc
     const double scale = 1.0 / anchors[a].donor->rms;
     for (PatchHeight& p : of_anchor[a]) p.low *= scale, p.high *= scale;
   });
+  return of_anchor;
+}
+
+// The narrow heights of the patches, blended.
+PeriodicHeights blended(const std::vector<std::vector<PatchHeight>>& of_anchor, int side) {
+  PeriodicHeights plane(side);
   std::vector<PatchSums> sums(plane.values.size());
   for (const std::vector<PatchHeight>& patch : of_anchor) {
-    for (const PatchHeight& p : patch) sums[p.number].add(p);
+    for (const PatchHeight& p : patch)
+      sums[p.number].add({p.number, p.low_weight, p.high_weight, 0.0, p.high});
   }
   for (std::size_t i = 0; i < sums.size(); ++i) plane.values[i] = sums[i].any() ? sums[i].height() : 0.0;
   return plane;
 }
 
-// The root mean square of second differences along rows and columns.
-double second_differences(const PeriodicHeights& plane, int lag) {
-  double sum = 0.0;
-  for (int y = 0; y < plane.side; ++y) {
-    for (int x = 0; x < plane.side; ++x) {
-      const double along_x = plane.at(x - lag, y) - 2.0 * plane.at(x, y) + plane.at(x + lag, y),
-                   along_y = plane.at(x, y - lag) - 2.0 * plane.at(x, y) + plane.at(x, y + lag);
-      sum += along_x * along_x + along_y * along_y;
-    }
+// Sums of squared second differences of all heights in a patch, along rows and columns, at two lags. Both are
+// taken about the pixels that have the wider one.
+struct SecondDifferences {
+  double narrow = 0.0, wide = 0.0;
+};
+void add_second_differences(const std::vector<PatchHeight>& patch, int narrow, int wide,
+                            PeriodicHeights& heights, SecondDifferences& sums) {
+  std::fill(heights.values.begin(), heights.values.end(), std::numeric_limits<double>::quiet_NaN());
+  for (const PatchHeight& p : patch) {
+    if (p.low_weight > 0.0) heights.values[p.number] = p.low + p.high;
   }
-  return std::sqrt(0.5 * sum / static_cast<double>(plane.values.size()));
+  for (const PatchHeight& p : patch) {
+    const int x = static_cast<int>(p.number) % heights.side, y = static_cast<int>(p.number) / heights.side;
+    const auto squares = [&](int lag) {
+      const double twice = 2.0 * heights.at(x, y);
+      const double along_x = heights.at(x - lag, y) - twice + heights.at(x + lag, y),
+                   along_y = heights.at(x, y - lag) - twice + heights.at(x, y + lag);
+      return along_x * along_x + along_y * along_y;
+    };
+    const double of_narrow = squares(narrow), of_wide = squares(wide);
+    if (std::isfinite(of_narrow + of_wide)) sums.narrow += of_narrow, sums.wide += of_wide;
+  }
 }
 
-double exponent_of(const PeriodicHeights& plane) {
+double exponent_of(const std::vector<std::vector<PatchHeight>>& of_anchor, int side) {
   constexpr double kLeast = 0.3, kMost = 1.5;
-  const double narrow = second_differences(plane, kPixelsPerEdge),
-               wide = second_differences(plane, 4 * kPixelsPerEdge);
-  return narrow > 0.0 ? std::clamp(0.5 * portable::log2(wide / narrow), kLeast, kMost) : kMost;
+  PeriodicHeights heights(side);
+  SecondDifferences sums;
+  for (const std::vector<PatchHeight>& patch : of_anchor) {
+    add_second_differences(patch, kPixelsPerEdge, 4 * kPixelsPerEdge, heights, sums);
+  }
+  return sums.narrow > 0.0 ? std::clamp(0.25 * portable::log2(sums.wide / sums.narrow), kLeast, kMost)
+                           : kMost;
 }
 
 // What the means around each pixel, with the weights of smoothed_heights(), leave of the heights.
@@ -192,10 +218,14 @@ ReliefTexture relief_texture(const ReliefPatches& patches, std::uint32_t hash) {
   texture.side = kSide * kPixelsPerEdge;
   texture.pixel = patches.anchor_spacing().edge / kPixelsPerEdge;
   const std::vector<const ReliefAnchor*> donors = plain_donors(patches);
-  PeriodicHeights plane(texture.side);
-  if (!donors.empty()) plane = blended(patches, plane_anchors(patches, donors, hash));
-  texture.exponent = exponent_of(plane);
-  texture.heights = high_passed(plane).values;
+  if (donors.empty()) {
+    texture.heights = PeriodicHeights(texture.side).values;
+    return texture;
+  }
+  const std::vector<std::vector<PatchHeight>> of_anchor =
+      patches_in_plane(patches, plane_anchors(patches, donors, hash), PeriodicHeights(texture.side));
+  texture.exponent = exponent_of(of_anchor, texture.side);
+  texture.heights = high_passed(blended(of_anchor, texture.side)).values;
   return texture;
 }
 

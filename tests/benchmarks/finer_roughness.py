@@ -4,7 +4,7 @@
     finer_roughness.py build/release/bin recipe.astro EDGE [--patches 6]
 
 EDGE is the mean edge of the model in the recipe's unit. S(l) is the root mean square of second differences of the
-relief over the bare body at the lag l, on height maps of patches 40 edges wide. Rows: S at 1/16 to 4 edges over the
+surface at the lag l, on height maps of patches 30 edges wide. Rows: S at 1/16 to 4 edges over the
 straight line through 1 and 4 edges, without and with levels, and the difference that remains in means over an edge.
 Needs NumPy and Pillow.
 """
@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy
 from PIL import Image
 
-PIXELS = 640
-WIDE = 40  # edges
+PIXELS = 480
+WIDE = 30  # edges
 LAGS = [1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 4]
 
 
