@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 struct Options {
   fs::path recipe;
   fs::path base;
+  std::string base_lengths = "units";
   fs::path output;
   fs::path written_recipe;  // where to write the recipe that is made; empty = nowhere
   TextureRequest texture;
@@ -53,9 +54,17 @@ void declare_options(Program& program, Options& options) {
   declare_mesh_options(program, options.mesh);
   program.app
       .add_option("--base", options.base,
-                  "lay the recipe's layers on the body of this recipe, after the layers it has; m and km "
-                  "convert, and the unit \"body\" is the longest side of that body")
+                  "lay the recipe's layers on the body of this recipe, after the layers it has; a relief "
+                  "takes the place of that body's own")
       .placeholder("BODY.json");
+  program.app
+      .add_option("--base-lengths", options.base_lengths,
+                  "what keeps its size on the --base: units, the lengths themselves, where m and km convert "
+                  "and the unit \"body\" is the longest side of that body; body, the shares of the longest "
+                  "side; edges, the lengths in mean edges of the two measured models")
+      .needs(program.app.option("--base"))
+      .check(one_of({"units", "body", "edges"}))
+      .placeholder("WHAT");
   declare_finish_options(program, options.finish);
   program.app.add_flag("--like", options.like,
                        "another body of the kind: the measured heights of the recipe's relief are drawn for "
@@ -133,7 +142,8 @@ void change_reliefs(Recipe& recipe, const fs::path& file, std::string_view does,
 Recipe read_input(const Program& program, const Options& options) {
   Recipe recipe = load_recipe(options.recipe);
   if (!options.base.empty()) {
-    recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string());
+    recipe = lay_on_base(recipe, options.recipe.string(), load_recipe(options.base), options.base.string(),
+                         base_lengths_of(options.base_lengths));
   }
   if (options.like) {
     change_reliefs(recipe, options.recipe, "--like draws for other places",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Mapping, Union
+from typing import Any, Literal, Mapping, Union
 
 from astrolith import _synthesis
 
@@ -130,12 +130,19 @@ class Recipe(Record):
         """Return a copy that shares nothing with this recipe."""
         return type(self)(records(json.dumps(self)))
 
-    def laid_on(self, base: "RecipeLike") -> "Recipe":
-        """Return `base` with this recipe's layers after its own, as ``synth --base`` does; m and km convert."""
+    def laid_on(self, base: "RecipeLike", lengths: Literal["units", "body", "edges"] = "units") -> "Recipe":
+        """Return `base` with this recipe's layers after its own, as ``synth --base --base-lengths`` does.
+
+        Parameters
+        ----------
+        base
+            The recipe whose body gets the layers.
+        lengths
+            What keeps its size: lengths in their units, shares of the bodies, or lengths in edges of the measured models.
+        """
         details_name, base_name = "recipe", "base"
-        return Recipe(
-            records(_synthesis.lay_on_base(_dumped(self, details_name), details_name, json_of(base, base_name)[0], base_name))
-        )
+        details, body = _dumped(self, details_name), json_of(base, base_name)[0]
+        return Recipe(records(_synthesis.lay_on_base(details, details_name, body, base_name, lengths)))
 
     def like(self, seed: int) -> "Recipe":
         """Return another body of the kind, as ``synth --like --seed``: measured heights drawn for other places.

@@ -58,11 +58,13 @@ void bind_recipes(nb::module_& module) {
   module.def(
       "lay_on_base",
       [](const std::string& details, const std::string& details_name, const std::string& base,
-         const std::string& base_name) {
+         const std::string& base_name, const std::string& lengths) {
         return recipe_to_json(lay_on_base(parse_recipe(details, details_name), details_name,
-                                          parse_recipe(base, base_name), base_name));
+                                          parse_recipe(base, base_name), base_name,
+                                          base_lengths_of(lengths)));
       },
-      nb::arg("details"), nb::arg("details_name"), nb::arg("base"), nb::arg("base_name"), unlocked);
+      nb::arg("details"), nb::arg("details_name"), nb::arg("base"), nb::arg("base_name"), nb::arg("lengths"),
+      unlocked);
   module.def(
       "finish_recipe",
       [](const std::string& json, const std::string& name, const std::string& body, double to,

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kSizeCells = 64;  // of the mesh that shows how long the base is: within some thousandths
 
-double longest_side(const Recipe& base, const std::string& base_name) {
-  const TriangleMesh mesh = bare_body(base).meshed_at(kSizeCells);
-  if (mesh.vertices.empty()) throw InputError(base_name + ": body: is empty; give a base with a surface");
+double longest_side(const Recipe& recipe, const std::string& name) {
+  const TriangleMesh mesh = bare_body(recipe).meshed_at(kSizeCells);
+  if (mesh.vertices.empty()) throw InputError(name + ": body: is empty; give one with a surface");
   Box box;
   for (const Vec3d& v : mesh.vertices) box.extend(v);
   const Vec3d extent = box.extent();
@@ -33,10 +33,50 @@ double unit_ratio(const Recipe& details, const std::string& details_name, const 
                    ", which is in \"" + to + "\"; state length_unit \"m\" or \"km\" and the lengths in it");
 }
 
+const ReliefLayer* relief_of(const Recipe& recipe) {
+  for (const Layer& layer : recipe.layers) {
+    if (const ReliefLayer* relief = std::get_if<ReliefLayer>(&layer)) return relief;
+  }
+  return nullptr;
+}
+
+double measured_edge(const Recipe& recipe, const std::string& name) {
+  const ReliefLayer* relief = relief_of(recipe);
+  if (relief != nullptr) return relief->edge_length();
+  throw InputError(name +
+                   ": layers: hold no relief, whose model has edges; take lengths by \"body\" or \"units\"");
+}
+
+// The length in units of the base of what is one unit long in the details.
+double length_ratio(const Recipe& details, const std::string& details_name, const Recipe& base,
+                    const std::string& base_name, BaseLengths lengths) {
+  if (lengths == BaseLengths::kUnits) return unit_ratio(details, details_name, base, base_name);
+  if (lengths == BaseLengths::kEdges) {
+    return measured_edge(base, base_name) / measured_edge(details, details_name);
+  }
+  if (!details.body) {
+    throw InputError(details_name +
+                     ": body: absent, so that lengths are no shares of it; take lengths by \"units\"");
+  }
+  return longest_side(base, base_name) / longest_side(details, details_name);
+}
+
+bool is_unnamed_relief(const Layer& layer) {
+  const ReliefLayer* relief = std::get_if<ReliefLayer>(&layer);
+  return relief != nullptr && relief->name.empty();
+}
+
 }  // namespace
 
+BaseLengths base_lengths_of(std::string_view word) {
+  if (word == "units") return BaseLengths::kUnits;
+  if (word == "body") return BaseLengths::kBody;
+  if (word == "edges") return BaseLengths::kEdges;
+  throw InputError(fmt::format("base lengths: must be units, body or edges, are {}", word));
+}
+
 Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,
-                   const std::string& base_name) {
+                   const std::string& base_name, BaseLengths lengths) {
   if (!base.body) throw InputError(base_name + ": body: absent; give a recipe with a body as the base");
   if (details.family) {
     throw InputError(
@@ -45,8 +85,9 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
                     "and state it there, where these layers begin at layers[{}]",
                     details_name, base.layers.size()));
   }
-  const double ratio = unit_ratio(details, details_name, base, base_name);
+  const double ratio = length_ratio(details, details_name, base, base_name, lengths);
   Recipe result = base;
+  if (relief_of(details) != nullptr) std::erase_if(result.layers, is_unnamed_relief);
   for (const Layer& layer : details.layers) {
     result.layers.push_back(rescaled(details.body ? drawn_from(*details.body, layer) : layer, ratio));
   }

@@ -2,19 +2,28 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "recipe/recipe.h"
 
 namespace astrolith {
 
-// The base recipe with the layers of `details` after its own layers. Lengths of `details` are converted to
-// the unit of the base: m and km convert into each other, px into nothing else, and "body" is the longest
-// side of the bounding box of the base's body without layers, as a mesh of 64 cells shows it. Seed and frame
-// are those of the base. A body in `details` is that from which the heights of reliefs are drawn. Throws
-// InputError, which names the files by the two names, when the base has no body or an empty one, or the units
-// do not convert.
+// What keeps its size where layers move to another body.
+//   units   lengths, in the unit of the base: m and km convert into each other, px into nothing else, and the
+//           unit "body" is the longest side of the base
+//   body    shares of the longest side of the body that the layers had
+//   edges   lengths in mean edges of the models that both bodies' reliefs were measured on
+// A longest side is that of the bounding box of the body without layers, as a mesh of 64 cells shows it.
+enum class BaseLengths { kUnits, kBody, kEdges };
+// Throws InputError for other words than "units", "body" and "edges".
+BaseLengths base_lengths_of(std::string_view word);
+
+// The base recipe with the layers of `details` after its own layers. Seed and frame are those of the base. A
+// body in `details` is that from which the heights of reliefs are drawn; a relief takes the place of unnamed
+// ones of the base. Throws InputError, which names the files by the two names, when the base has no body or
+// an empty one, the units do not convert, or what should keep its size is missing.
 Recipe lay_on_base(const Recipe& details, const std::string& details_name, const Recipe& base,
-                   const std::string& base_name);
+                   const std::string& base_name, BaseLengths lengths = BaseLengths::kUnits);
 
 // The layer for another body than the one it was made for: a relief's heights are drawn from that one, where
 // they are not already drawn from a third.

@@ -117,5 +117,35 @@ TEST(LayOnBase, ReliefsAreDrawnFromTheBodyThatWasMeasured) {
   EXPECT_TRUE(ImplicitField(lay_on_base(measured, "measured", speck, "base")).inside({20.0, 20.0, 20.0}));
 }
 
+// A ball under a relief of edges of this share of its radius.
+Recipe measured_ball(double radius, double edge) {
+  Recipe measured = ball("m", radius);
+  ReliefLayer heights =
+      testing::relief_layer(measured, radius * edge, -0.02 * radius, 0.02 * radius,
+                            [&](const Vec3d& p) { return 0.01 * std::sin(40.0 * p.x / radius); });
+  heights.edge = radius * edge;
+  measured.layers = {heights};
+  return measured;
+}
+
+TEST(LayOnBase, KeepsSharesOfTheBodyOrEdgesOfTheModel) {
+  const Recipe details = measured_ball(2.0, 0.05), base = measured_ball(10.0, 0.1);
+  const auto edge_by = [&](const char* lengths) {
+    const Recipe laid = lay_on_base(details, "details", base, "base", base_lengths_of(lengths));
+    EXPECT_EQ(laid.layers.size(), 1u);  // the base's own relief is gone
+    return std::get<ReliefLayer>(laid.layers.back()).edge;
+  };
+  EXPECT_DOUBLE_EQ(edge_by("units"), 0.1);
+  EXPECT_NEAR(edge_by("body"), 0.5, 1e-3);
+  EXPECT_DOUBLE_EQ(edge_by("edges"), 1.0);
+  const auto refused = [&](const Recipe& layers, const char* lengths) {
+    return testing::refusal_of(
+        [&] { lay_on_base(layers, "details", ball("m", 1.0), "base", base_lengths_of(lengths)); });
+  };
+  EXPECT_TRUE(testing::has(refused(details, "edges"), "base: layers: hold no relief"));
+  EXPECT_TRUE(testing::has(refused(bumps("m", 1.0), "body"), "details: body: absent"));
+  EXPECT_TRUE(testing::has(refused(details, "feet"), "must be units, body or edges"));
+}
+
 }  // namespace
 }  // namespace astrolith
