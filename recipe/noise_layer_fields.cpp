@@ -206,6 +206,7 @@ void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.rule(check_donor, layer);
   v.field_if(layer.edge != 0.0, "edge", layer.edge, kNotNegative);
   v.field_if(layer.reach != 0.3, "reach", layer.reach, range(0.01, 1.0));
+  v.field_if(layer.fill_unseen, "fill_unseen", layer.fill_unseen);
   v.required("spacing", layer.spacing, kPositive);
   v.rule(check_model_edge, layer);
   v.required("low", layer.low, kAnyNumber);

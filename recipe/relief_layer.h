@@ -45,13 +45,14 @@ struct ReliefLayer : NamedImage {
   ReliefArrangement arrangement = ReliefArrangement::kMeasured;
   // The body whose places have the heights, where it is not the recipe's own; with kLike only.
   std::optional<MetaballBody> donor;
-  double edge = 0.0;     // mean edge of the model that was measured, length units; 0: 1.2 spacings
-  double reach = 0.3;    // of donors with kLike, as a share of the body's diagonal
-  double spacing = 1.0;  // length units between lines of the lattice, > 0
-  double low = 0.0;      // height of the grey value 1, length units
-  double high = 0.0;     // height of the grey value 65535, >= low
-  int levels = 2;        // heights from low to high, 2 .. 65535
-  int finer = 0;         // levels below the model (synthesis/relief/relief_levels.h), 0 .. kMostFinerLevels
+  double edge = 0.0;         // mean edge of the model that was measured, length units; 0: 1.2 spacings
+  double reach = 0.3;        // of donors with kLike, as a share of the body's diagonal
+  bool fill_unseen = false;  // whether ground that no camera saw gets patches of seen ground
+  double spacing = 1.0;      // length units between lines of the lattice, > 0
+  double low = 0.0;          // height of the grey value 1, length units
+  double high = 0.0;         // height of the grey value 65535, >= low
+  int levels = 2;            // heights from low to high, 2 .. 65535
+  int finer = 0;  // levels below the model (synthesis/relief/relief_levels.h), 0 .. kMostFinerLevels
 
   // Whether the layer names no file, since the recipe holds its pixels (recipe/relief_text.h).
   bool is_embedded() const { return image.empty() && image_sha256.empty(); }

@@ -36,6 +36,7 @@ struct Options {
   MembersRequest members;
   FinishOptions finish;
   bool like = false;  // whether reliefs are drawn anew
+  bool fill_unseen = false;
   int finer = 0;      // levels of reliefs below their models
   double vary = 0.0;  // 0 = the recipe itself
   fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
@@ -69,6 +70,9 @@ void declare_options(Program& program, Options& options) {
   program.app.add_flag("--like", options.like,
                        "another body of the kind: the measured heights of the recipe's relief are drawn for "
                        "other places, patch by patch; every --seed gives another one");
+  program.app.add_flag("--fill-unseen", options.fill_unseen,
+                       "ground that no camera saw, which the model has smooth, gets patches of the ground "
+                       "that was seen");
   program.app
       .add_option("--finer", options.finer,
                   "continue the recipe's relief below the edges of the model that was measured, by this many "
@@ -99,10 +103,11 @@ void declare_options(Program& program, Options& options) {
   declare_texture_options(program, options.texture);
   declare_members_options(program, options.members);
   for (const char* of_mesh :
-       {"--resolution", "--triangles", "--max-memory",    "--tile",    "--patch",  "--feature-list",
-        "--vary",       "--target",    "--min-component", "--predict", "--device", "--points",
-        "--labels",     "--preview",   "--preview-maps",  "--view",    "--sun",    "--gravity",
-        "--height-map", "--uv",        "--finish",        "--even",    "--like",   "--finer"}) {
+       {"--resolution",   "--triangles", "--max-memory", "--tile",          "--patch",
+        "--feature-list", "--vary",      "--target",     "--min-component", "--predict",
+        "--device",       "--points",    "--labels",     "--preview",       "--preview-maps",
+        "--view",         "--sun",       "--gravity",    "--height-map",    "--uv",
+        "--finish",       "--even",      "--like",       "--finer",         "--fill-unseen"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {
@@ -148,6 +153,10 @@ Recipe read_input(const Program& program, const Options& options) {
   if (options.like) {
     change_reliefs(recipe, options.recipe, "--like draws for other places",
                    [](ReliefLayer& relief) { relief.arrangement = ReliefArrangement::kLike; });
+  }
+  if (options.fill_unseen) {
+    change_reliefs(recipe, options.recipe, "--fill-unseen fills",
+                   [](ReliefLayer& relief) { relief.fill_unseen = true; });
   }
   if (program.app.option("--finer").count() > 0) {
     change_reliefs(recipe, options.recipe, "--finer continues",

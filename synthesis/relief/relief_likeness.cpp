@@ -28,7 +28,7 @@ DrawnAnchors draw_anchors(std::vector<ReliefAnchor> anchors, const std::vector<R
                           const LikenessOptions& options) {
   DrawnAnchors drawn{std::move(anchors), {}};
   for (const std::uint32_t donor :
-       relief_donors(drawn.anchors, measured, options.reach, hash_append(options.hash, 1))) {
+       relief_donors(drawn.anchors, measured, options.reach, options.fill, hash_append(options.hash, 1))) {
     drawn.donors.push_back(measured[donor]);
   }
   return drawn;
@@ -46,10 +46,9 @@ std::vector<PatchPoint> points_around(const ReliefPoints& points, const ReliefAn
   return around;
 }
 
-// The heights at the points; where no patch has a weight, those of `otherwise`.
-std::vector<double> blended(const ReliefPatches& patches, const ReliefPoints& points,
-                            const DrawnAnchors& drawn, const std::vector<double>& otherwise,
-                            std::uint32_t hash) {
+// The sums of the patches at the points.
+std::vector<PatchSums> sums_of(const ReliefPatches& patches, const ReliefPoints& points,
+                               const DrawnAnchors& drawn, std::uint32_t hash) {
   std::vector<std::vector<PatchHeight>> of_anchor(drawn.anchors.size());
   parallel_for(0, static_cast<std::int64_t>(of_anchor.size()), [&](std::int64_t number) {
     const auto a = static_cast<std::size_t>(number);
@@ -61,6 +60,14 @@ std::vector<double> blended(const ReliefPatches& patches, const ReliefPoints& po
   for (const std::vector<PatchHeight>& patch : of_anchor) {
     for (const PatchHeight& p : patch) sums[p.number].add(p);
   }
+  return sums;
+}
+
+// The heights at the points; where no patch has a weight, those of `otherwise`.
+std::vector<double> blended(const ReliefPatches& patches, const ReliefPoints& points,
+                            const DrawnAnchors& drawn, const std::vector<double>& otherwise,
+                            std::uint32_t hash) {
+  const std::vector<PatchSums> sums = sums_of(patches, points, drawn, hash);
   std::vector<double> heights(points.size());
   for (std::size_t i = 0; i < heights.size(); ++i) {
     heights[i] = sums[i].any() ? sums[i].height() : otherwise[i];
@@ -83,16 +90,24 @@ std::vector<std::vector<double>> bands_of(const ReliefPoints& points, std::vecto
 }
 
 // The geometric mean over the body of the root mean square around a place. A mean of squares would be that of
-// few rough places.
-double typical_rms(const ReliefPoints& points, const std::vector<double>& heights, double edge) {
+// few rough places. With `seen_alone` places below a seventh of the third quartile do not count.
+double typical_rms(const ReliefPoints& points, const std::vector<double>& heights, double edge,
+                   bool seen_alone) {
   constexpr double kAround = 3.0, kLeast = 1e-12;  // edges; of the largest square
   std::vector<double> squares(heights.size());
   for (std::size_t i = 0; i < heights.size(); ++i) squares[i] = heights[i] * heights[i];
   const double largest = *std::max_element(squares.begin(), squares.end());
   if (!(largest > 0.0)) return 0.0;
-  double total = 0.0, logarithms = 0.0;
+  double total = 0.0, logarithms = 0.0, least = 0.0;
   const std::vector<double> around = smoothed_heights(points, squares, kAround * edge);
+  if (seen_alone) {
+    std::vector<double> sorted = around;
+    const auto quartile = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 3 / 4);
+    std::nth_element(sorted.begin(), quartile, sorted.end());
+    least = *quartile / 49.0;
+  }
   for (std::size_t i = 0; i < around.size(); ++i) {
+    if (around[i] < least) continue;
     total += points.weight(i);
     logarithms += points.weight(i) * portable::log(std::max(around[i] / largest, kLeast));
   }
@@ -103,14 +118,14 @@ double typical_rms(const ReliefPoints& points, const std::vector<double>& height
 // of its own.
 std::vector<double> equalized(const ReliefPoints& points, const std::vector<double>& heights,
                               const ReliefPoints& of_measured, const std::vector<double>& measured,
-                              double edge) {
+                              double edge, bool seen_alone) {
   constexpr double kMostGain = 2.0;  // of all bands but the finest, which would be noise
   const std::vector<std::vector<double>> bands = bands_of(points, heights, edge),
                                          wanted = bands_of(of_measured, measured, edge);
   std::vector<double> sum = bands.back();
   for (std::size_t band = 0; band + 1 < bands.size(); ++band) {
-    const double has = typical_rms(points, bands[band], edge),
-                 wants = typical_rms(of_measured, wanted[band], edge);
+    const double has = typical_rms(points, bands[band], edge, seen_alone),
+                 wants = typical_rms(of_measured, wanted[band], edge, seen_alone);
     const double most = band == 0 ? 1.0 : kMostGain;
     const double gain = has > 0.0 ? std::min(wants / has, most) : 1.0;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands[band][i];
@@ -140,7 +155,34 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
   const std::vector<double> otherwise =
       foreign ? std::vector<double>(places.size()) : blend.values_of(measured);
   const std::vector<double> values = blended(patches, points, drawn, otherwise, options.hash);
-  return equalized(points, blend.coefficients_of(values), patches.points(), measured, apart.edge);
+  return equalized(points, blend.coefficients_of(values), patches.points(), measured, apart.edge,
+                   options.fill);
+}
+
+std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
+                                   const LikenessOptions& options) {
+  const MeasuredRelief& measured = patches.measured();
+  const ReliefPoints& points = patches.points();
+  DrawnAnchors unseen;
+  std::vector<double> weights(points.size(), 0.0);  // of wide heights of all anchors
+  const DrawnAnchors drawn = draw_anchors(patches.anchors(), patches.anchors(), options);
+  for (std::size_t a = 0; a < drawn.anchors.size(); ++a) {
+    const ReliefAnchor& anchor = drawn.anchors[a];
+    for (const PatchPoint& p : points_around(points, anchor, patches.anchor_spacing().radius())) {
+      weights[p.number] += wide_weight(p);
+    }
+    if (anchor.unseen) unseen.anchors.push_back(anchor), unseen.donors.push_back(drawn.donors[a]);
+  }
+  if (unseen.anchors.empty()) return measured.heights;
+  const ReliefValues blend(points, ReliefShares(measured.places, spacing));
+  const std::vector<PatchSums> sums = sums_of(patches, points, unseen, options.hash);
+  std::vector<double> change = blend.values_of(measured.heights);
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    change[i] = sums[i].any() ? sums[i].low_weight / weights[i] * (sums[i].height() - change[i]) : 0.0;
+  }
+  std::vector<double> heights = blend.coefficients_of(change);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] += measured.heights[i];
+  return heights;
 }
 
 }  // namespace astrolith

@@ -12,6 +12,7 @@ namespace astrolith {
 
 struct LikenessOptions {
   double reach = 0.3;  // how far donors are looked for at first, as a share of the body's diagonal
+  bool fill = false;   // whether unseen ground (relief_anchors.h) gets patches of seen ground
   std::uint32_t hash = 0;
 };
 
@@ -26,5 +27,10 @@ struct LikenessOptions {
 std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefPatches& patches,
                                  bool foreign, double spacing, const LikenessOptions& options,
                                  const std::string& where);
+
+// The measured heights, but for ground that no camera saw, which gets patches of seen ground as above.
+// Between both, heights go over as the weights of the patches of wide heights do.
+std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
+                                   const LikenessOptions& options);
 
 }  // namespace astrolith

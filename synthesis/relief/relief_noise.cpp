@@ -100,9 +100,13 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const MeasuredRel
           ReliefGround& ground) {
   const ReliefPatches patches(measured, layer.spacing, layer.edge_length());
   std::vector<double> heights = measured.heights;
+  const LikenessOptions options{layer.reach, layer.fill_unseen, hash_of(source)};
   if (layer.arrangement == ReliefArrangement::kLike) {
-    heights = like_heights(ground.places, patches, layer.donor.has_value(), layer.spacing,
-                           {layer.reach, hash_of(source)}, source.place);
+    heights =
+        like_heights(ground.places, patches, layer.donor.has_value(), layer.spacing, options, source.place);
+    encode(heights, ground);
+  } else if (layer.fill_unseen) {
+    heights = filled_heights(patches, layer.spacing, options);
     encode(heights, ground);
   }
   if (layer.finer == 0) return;
@@ -231,7 +235,7 @@ void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, con
     return draw(layer, source, {donor.ground(), donor.places, heights}, *this);
   }
   codes = codes_of(layer, places, source.place);
-  if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0) return;
+  if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0 && !layer.fill_unseen) return;
   const std::vector<double> heights = heights_of(layer, codes);
   draw(layer, source, {body, places, heights}, *this);
 }

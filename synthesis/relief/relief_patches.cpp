@@ -36,6 +36,10 @@ PatchTurn turn_of(std::uint32_t hash) {
   }
 }
 
+double wide_weight(const PatchPoint& p) {
+  return portable::whole_power(p.near, kLowExponent) * (p.facing * p.facing);
+}
+
 double PatchSums::height() const { return low / low_weight + high / std::sqrt(high_squares); }
 
 std::vector<double> wide_heights(const ReliefPoints& points, const std::vector<double>& heights,
@@ -66,8 +70,8 @@ std::vector<PatchHeight> ReliefPatches::heights_at(const std::vector<PatchPoint>
   const int high_exponent = apart_.high_exponent();
   for (const PatchPoint& p : points) {
     const double facing = p.facing * p.facing;
-    patch.push_back({p.number, portable::whole_power(p.near, kLowExponent) * facing,
-                     portable::whole_power(p.near, high_exponent) * facing, 0.0, 0.0});
+    patch.push_back(
+        {p.number, wide_weight(p), portable::whole_power(p.near, high_exponent) * facing, 0.0, 0.0});
     at.push_back(carried(p, donor, turn));
   }
   read(at, patch);

@@ -45,6 +45,9 @@ struct PatchPoint {
   double near, facing;
 };
 
+// The weight of a patch's wide heights at a point.
+double wide_weight(const PatchPoint& p);
+
 // What a patch gives to a point, in two bands: heights smoothed by 2.5 edges, and the rest.
 struct PatchHeight {
   std::uint32_t number;

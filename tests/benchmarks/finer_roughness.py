@@ -4,18 +4,17 @@
     finer_roughness.py build/release/bin recipe.astro EDGE [--patches 6]
 
 EDGE is the mean edge of the model in the recipe's unit. S(l) is the root mean square of second differences of the
-surface at the lag l, on height maps of patches 30 edges wide. Rows: S at 1/16 to 4 edges over the
+heights over the bare body at the lag l, on patches 30 edges wide. Rows: S at 1/16 to 4 edges over the
 straight line through 1 and 4 edges, without and with levels, and the difference that remains in means over an edge.
-Needs NumPy and Pillow.
+Needs NumPy.
 """
 import argparse
-import json
+import re
 import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy
-from PIL import Image
 
 PIXELS = 480
 WIDE = 30  # edges
@@ -32,14 +31,25 @@ def vertices_of(mesh):
 
 
 def height_map(synth, recipe, finer, patch, folder):
-    file = folder / "map.tif"
-    options = [] if finer is None else ["--finer", finer]
-    run(synth, recipe, *options, "--patch", *patch, "--resolution", PIXELS, "--height-map", file, "-o",
-        folder / "patch.ply", "--quiet")
-    heights = numpy.array(Image.open(file), dtype=float)
-    heights[~(numpy.abs(heights) < 1e30)] = numpy.nan
-    frame = json.loads(file.with_suffix(".json").read_text())
-    return heights, numpy.array(frame["origin_m"]), numpy.array(frame["up"])
+    """The heights of all layers on a grid of the plane that fits the patch best."""
+    mesh = folder / "patch.ply"
+    run(synth, recipe, "--finer", finer, "--patch", *patch, "--resolution", PIXELS, "--labels", "-o", mesh, "--quiet")
+    data = mesh.read_bytes()
+    header, body = data.split(b"end_header\n", 1)
+    names = re.findall(rb"property (\w+) (\w+)\n", header.split(b"element face")[0])
+    kinds = {b"float": "<f4", b"double": "<f8", b"int": "<i4", b"uchar": "u1", b"ushort": "<u2", b"short": "<i2", b"uint": "<u4"}
+    row = numpy.dtype([(name.decode(), kinds[kind]) for kind, name in names])
+    vertices = numpy.frombuffer(body, row, int(re.search(rb"element vertex (\d+)", header)[1]))
+    points = numpy.stack([vertices["x"], vertices["y"], vertices["z"]], 1).astype(float)
+    right, ahead, _ = numpy.linalg.svd(points - points.mean(0), full_matrices=False)[2]
+    across = numpy.stack([points @ right, points @ ahead], 1)
+    half, side = 0.35 * patch[3], round(0.7 * PIXELS)
+    pixel = numpy.floor((across / half + 1.0) * 0.5 * side).astype(int)
+    inside = ((pixel >= 0) & (pixel < side)).all(1)
+    number = pixel[inside] @ [1, side]
+    sums = numpy.bincount(number, vertices["elevation"][inside].astype(float), side * side)
+    counts = numpy.bincount(number, None, side * side)
+    return numpy.where(counts > 0, sums / numpy.maximum(counts, 1), numpy.nan).reshape(side, side)
 
 
 def second_differences(heights, lag):
@@ -68,7 +78,7 @@ def main():
         left = {finer: [] for finer in range(1, 4)}
         for centre in chosen:
             patch = [*centre, WIDE * arguments.edge]
-            maps = {finer: height_map(synth, arguments.recipe, finer, patch, folder)[0] for finer in range(4)}
+            maps = {finer: height_map(synth, arguments.recipe, finer, patch, folder) for finer in range(4)}
             for finer, heights in maps.items():
                 for lag in LAGS:
                     differences[finer][lag].append(second_differences(heights, round(lag * pixels_per_edge)))
@@ -76,7 +86,7 @@ def main():
                     continue
                 added = heights - maps[0]
                 cell = round(pixels_per_edge)
-                count = PIXELS // cell
+                count = added.shape[0] // cell
                 means = added[:count * cell, :count * cell].reshape(count, cell, count, cell).mean((1, 3))
                 left[finer].append(means[numpy.isfinite(means)])
     print("| levels | H | " + " | ".join(f"{lag:g}" for lag in LAGS) + " | means over an edge, rms, edges |")

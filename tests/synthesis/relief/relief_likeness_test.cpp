@@ -44,7 +44,7 @@ struct Rough {
     return {{ground, places, heights}, kSpacing, edge};
   }
   std::vector<double> like(std::uint32_t seed, double edge = kSpacing / 3.0) const {
-    return like_heights(places, patches(edge), false, kSpacing, {0.3, seed}, "test");
+    return like_heights(places, patches(edge), false, kSpacing, {0.3, false, seed}, "test");
   }
 };
 
@@ -82,6 +82,50 @@ TEST(ReliefLikeness, KeepsRoughRegionsWhereTheyAre) {
   const Rough rough;
   EXPECT_GT(contrast(rough, rough.like(1)), 1.5);
   EXPECT_GT(contrast(rough, rough.like(2)), 1.5);
+}
+
+// The body with the smooth ground of a side that no camera saw.
+struct HalfSeen : Rough {
+  HalfSeen() {
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+      if (position(places[i], kSpacing).x < 0.0) heights[i] = 0.0;
+    }
+  }
+};
+
+TEST(ReliefLikeness, FillsUnseenGroundAndKeepsWhatWasSeen) {
+  const HalfSeen rough;
+  const std::vector<double> filled = filled_heights(rough.patches(), kSpacing, {0.3, true, 5});
+  std::vector<double> far_side, near_side;
+  double moved = 0.0;
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const double x = position(rough.places[i], kSpacing).x;
+    if (x < -0.3) far_side.push_back(filled[i]);
+    if (x > 0.25)
+      near_side.push_back(rough.heights[i]), moved = std::max(moved, std::fabs(filled[i] - rough.heights[i]));
+  }
+  EXPECT_LT(moved, 1e-9);
+  EXPECT_NEAR(std::sqrt(mean_square(far_side) / mean_square(near_side)), 1.0, 0.35);
+}
+
+TEST(ReliefLikeness, DrawsUnseenGroundFromSeenGround) {
+  const HalfSeen rough;
+  const auto far_side = [&](bool fill) {
+    std::vector<double> heights;
+    const std::vector<double> like =
+        like_heights(rough.places, rough.patches(), false, kSpacing, {0.3, fill, 5}, "test");
+    for (std::size_t i = 0; i < like.size(); ++i) {
+      if (position(rough.places[i], kSpacing).x < -0.3) heights.push_back(like[i]);
+    }
+    return std::sqrt(mean_square(heights) / mean_square(rough.heights));
+  };
+  EXPECT_LT(far_side(false), 0.2);
+  EXPECT_GT(far_side(true), 0.8);
+}
+
+TEST(ReliefLikeness, LeavesGroundThatWasSeenEverywhereAsItIs) {
+  const Rough rough;
+  EXPECT_EQ(filled_heights(rough.patches(), kSpacing, {0.3, true, 5}), rough.heights);
 }
 
 TEST(ReliefLikeness, KeepsAConstantHeight) {
@@ -146,8 +190,8 @@ TEST(ReliefAnchors, HaveDonorsWithinReachOfLikeRoughness) {
   Box box;
   for (const ReliefAnchor& a : anchors) box.extend(a.at);
   const double reach = 0.25 * box.diagonal();
-  const std::vector<std::uint32_t> donors = relief_donors(anchors, anchors, 0.25, 7),
-                                   others = relief_donors(anchors, anchors, 0.25, 8);
+  const std::vector<std::uint32_t> donors = relief_donors(anchors, anchors, 0.25, false, 7),
+                                   others = relief_donors(anchors, anchors, 0.25, false, 8);
   int same = 0;
   double unlike = 0.0;
   for (std::size_t a = 0; a < anchors.size(); ++a) {
