@@ -116,6 +116,16 @@ TriangleMesh noise_impostor(const TriangleMesh& body, std::uint64_t seed) {
   return rough;
 }
 
+TriangleMesh relief_impostor(const TriangleMesh& body, double share) {
+  constexpr int kSmoothings = 60;
+  TriangleMesh base = body;
+  for (int k = 0; k < kSmoothings; ++k) base = laplace_step(base, 0.5);
+  for (std::size_t v = 0; v < base.vertices.size(); ++v) {
+    base.vertices[v] += share * (body.vertices[v] - base.vertices[v]);
+  }
+  return base;
+}
+
 TriangleMesh laplace_impostor(const TriangleMesh& body) { return laplace_step(body, 1.0); }
 
 TriangleMesh decimated_impostor(const TriangleMesh& body) {

@@ -14,6 +14,9 @@ namespace astrolith {
 // roughness within 3 and 12 edges are the body's.
 TriangleMesh noise_impostor(const TriangleMesh& body, std::uint64_t seed);
 
+// The body smoothed by sixty half steps of Laplace, with a share of the relief that this took away.
+TriangleMesh relief_impostor(const TriangleMesh& body, double share);
+
 // Each vertex in the mean of its neighbours.
 TriangleMesh laplace_impostor(const TriangleMesh& body);
 
