@@ -1,6 +1,10 @@
 // compare: how alike two meshes are in shape, how far apart their surfaces lie, and whether one surface
 // passes for the other.
+#include <fmt/format.h>
+
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/output_names.h"
 #include "apps/program.h"
@@ -18,7 +22,7 @@ struct Arguments {
   std::string a, b, output;
   ShapeOptions options;
   std::int64_t samples = 100000;
-  bool floor = false, realism = false;
+  bool floor = false, realism = false, json = false;
   std::string unit;
   SurfaceOptions surface;
 };
@@ -40,6 +44,8 @@ void add_options(Program& program, Arguments& arguments) {
       "--realism", arguments.realism,
       "also say whether the surface of B passes for that of A, by what both are like from place to place: "
       "Kolmogorov-Smirnov distances, p by exchange of regions, and in words what B lacks");
+  app.add_flag("--json", arguments.json,
+               "print all figures as JSON with --realism too, in place of the ten lines that matter");
   app.add_option("--unit", arguments.unit, "unit of both files, for the lengths in these words")
       .check(one_of({"m", "km"}))
       .default_text("")
@@ -47,30 +53,37 @@ void add_options(Program& program, Arguments& arguments) {
   arguments.surface.add_to(app, realism);
 }
 
-void print(const nlohmann::ordered_json& result, const std::string& output) {
+std::string text_of(const nlohmann::ordered_json& result) {
   // File names need not be UTF-8.
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  const std::string text = result.dump(2, ' ', false, replace) + "\n";
-  if (output.empty()) {
-    print_result(text);
-    return;
-  }
+  return result.dump(2, ' ', false, replace) + "\n";
+}
+
+void write(const std::string& text, const std::string& output) {
   OutputFile file(output);
   file.write(text.data(), text.size());
   file.commit();
 }
 
-nlohmann::ordered_json judge(const Program& program, const Arguments& arguments, const TriangleMesh& a,
-                             const TriangleMesh& b) {
-  const SurfaceComparison made = judge_surfaces(
+SurfaceComparison judge(const Program& program, const Arguments& arguments, const TriangleMesh& a,
+                        const TriangleMesh& b) {
+  SurfaceComparison made = judge_surfaces(
       {arguments.a, a}, {arguments.b, b}, arguments.surface.with_seed(program.seed), arguments.floor,
       arguments.unit, [&](const std::string& stage) { return program.progress(stage); });
   for (const std::string& remark : made.a.remarks) program.say(arguments.a + ": " + remark);
   for (const std::string& remark : made.b.remarks) program.say(arguments.b + ": " + remark);
-  for (const auto& words : made.figures["words"]) {
-    program.say(arguments.b + ": " + words.get<std::string>());
-  }
-  return made.figures;
+  return made;
+}
+
+// What a reader of the terminal wants of the comparison.
+std::string lines_of(const nlohmann::ordered_json& result, const std::vector<std::string>& surface) {
+  std::string text =
+      fmt::format("similarity of the shapes {:.3f}; 1: the same\n", result["similarity"].get<double>());
+  text += fmt::format("distance {:.3g} mean, {:.3g} p99, {:.3g} max, of A's diagonal\n",
+                      result["mean_distance"].get<double>(), result["p99_distance"].get<double>(),
+                      result["max_distance"].get<double>());
+  for (const std::string& line : surface) text += line + "\n";
+  return text + "--json prints all figures\n";
 }
 
 void run(Program& program, const Arguments& arguments) {
@@ -90,9 +103,19 @@ void run(Program& program, const Arguments& arguments) {
                      [&](const std::string& stage) { return program.progress(stage); });
   for (const std::string& remark : comparison.remarks) program.say(remark);
   result.update(comparison.figures);
-  if (arguments.realism) result["realism"] = judge(program, arguments, a, b);
-  print(result, arguments.output);
+  std::vector<std::string> lines;
+  if (arguments.realism) {
+    SurfaceComparison judged = judge(program, arguments, a, b);
+    result["realism"] = std::move(judged.figures);
+    lines = std::move(judged.lines);
+  }
   program.summary = result;
+  if (!arguments.output.empty()) write(text_of(result), arguments.output);
+  if (arguments.realism && !arguments.json) {
+    print_result(lines_of(result, lines));
+  } else if (arguments.output.empty()) {
+    print_result(text_of(result));
+  }
 }
 
 }  // namespace
@@ -104,7 +127,9 @@ int main(int argc, char** argv) {
       "Says as JSON how alike two meshes are in shape (similarity 1: the same; position, "
       "attitude and size do not matter) and how far apart their surfaces lie as they "
       "stand (mean, p99 and max distance as fractions of A's bounding-box diagonal). "
-      "With --realism it also says whether the surface of B passes for that of A.");
+      "With --realism it also says whether the surface of B passes for that of A, in ten lines, and as JSON "
+      "with "
+      "--json.");
   astrolith::Arguments arguments;
   astrolith::add_options(program, arguments);
   return program.run(argc, argv, [&] { astrolith::run(program, arguments); });

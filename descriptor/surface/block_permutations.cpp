@@ -14,11 +14,18 @@ RegionLabels own_regions() {
   return labels;
 }
 
-RegionLabels exchanged_regions(std::uint64_t seed, std::uint64_t k) {
-  RegionLabels labels = own_regions();
+RegionLabels exchanged_regions(const RegionGroups& of_first, const RegionGroups& of_second,
+                               std::uint64_t seed, std::uint64_t k) {
+  std::array<bool, 2 * kRegionGroups> is_first{};
+  std::fill_n(is_first.begin(), kRegionGroups, true);
   CounterRandom random(seed, k);
-  for (std::size_t i = 0; i < kRegions; ++i) {
-    std::swap(labels[i], labels[i + random.below(labels.size() - i)]);
+  for (std::size_t i = 0; i < kRegionGroups; ++i) {
+    std::swap(is_first[i], is_first[i + random.below(is_first.size() - i)]);
+  }
+  RegionLabels labels{};
+  for (std::size_t r = 0; r < kRegions; ++r) {
+    labels[r] = is_first[of_first[r]];
+    labels[r + kRegions] = is_first[of_second[r] + std::size_t{kRegionGroups}];
   }
   return labels;
 }

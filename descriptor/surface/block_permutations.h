@@ -1,5 +1,5 @@
 // Differences between two surfaces as functions of which regions belong to which surface. A permutation test
-// exchanges whole regions: places of one region resemble one another and are not independent.
+// exchanges whole groups of regions: neighbouring places resemble one another and are not independent.
 #pragma once
 
 #include <array>
@@ -16,8 +16,10 @@ using RegionLabels = std::array<bool, 2 * kRegions>;
 
 // The labels as the surfaces are.
 RegionLabels own_regions();
-// The k-th random choice of kRegions of all regions for the first sample.
-RegionLabels exchanged_regions(std::uint64_t seed, std::uint64_t k);
+// The k-th random choice of kRegionGroups of all groups for the first sample, which has kRegions regions
+// then.
+RegionLabels exchanged_regions(const RegionGroups& of_first, const RegionGroups& of_second,
+                               std::uint64_t seed, std::uint64_t k);
 
 // Values at places, each with the region of its place.
 struct RegionalValues {

@@ -18,31 +18,38 @@ struct Smoothed {
   double height = 0.0;  // along the normal
   Vec3d normal;
   double bend = 0.0;
+  Vec3d mean;
 };
 
 // The weighted mean of the normals, and of the heights over the plane across it.
 Smoothed smoothed(const Vec3d& point, const Vec3d& own_normal, double reach, const PointTree& tree,
                   const SurfaceSamples& samples) {
   constexpr double kNear = kBendReach * kBendReach / (kReach * kReach);
-  double weights = 0.0, near = 0.0;
-  Vec3d normals{}, offsets{}, near_normals{};
+  constexpr double kOfMean = kReach * kReach / (kMeanReach * kMeanReach);
+  double weights = 0.0, near = 0.0, fine_squares = 0.0;
+  Vec3d normals{}, offsets{}, near_normals{}, fine_offsets{};
   for (const auto& [j, squared] : tree.within(point, reach)) {
     if (dot(samples.normals[j], own_normal) <= 0.0) continue;
     const double x = std::max(0.0, 1.0 - squared / (reach * reach)), w = x * x * x;
     weights += w;
     normals += w * samples.normals[j];
     offsets += w * (samples.points[j] - point);
+    const double fine = std::max(0.0, 1.0 - kOfMean * squared / (reach * reach));
+    fine_squares += fine * squared;
+    fine_offsets += fine * (samples.points[j] - point);
     if (squared > kNear * reach * reach) continue;
     near += 1.0;
     near_normals += samples.normals[j];
   }
-  if (!(weights > 0.0) || !(squared_norm(normals) > 0.0)) return {0.0, own_normal, 0.0};
+  if (!(weights > 0.0) || !(squared_norm(normals) > 0.0)) return {0.0, own_normal, 0.0, point};
   const Vec3d normal = normalized(normals);
   // The mean squared chord of unit vectors from the direction of their sum s is 2 - 2 |s| / n. Rounding
   // leaves some 1e-16 of a flat facet.
   const double chord = near > 0.0 ? 2.0 - 2.0 * norm(near_normals) / near : 0.0;
   const double bend = chord > 1e-10 ? std::sqrt(chord) : 0.0;
-  return {dot(offsets, normal) / weights, normal, bend};
+  const double mean_square = kMeanSquare * reach * reach / (kReach * kReach);
+  const Vec3d mean = fine_squares > 0.0 ? point + (mean_square / fine_squares) * fine_offsets : point;
+  return {dot(offsets, normal) / weights, normal, bend, mean};
 }
 
 }  // namespace
@@ -56,8 +63,9 @@ EvenedSurface even_surface(const TriangleMesh& mesh, std::int64_t n, std::uint64
   SurfaceSamples points = sample_poisson_disk(mesh, n, seed, SampleNormals::triangle, at_beginning(progress));
   const SurfaceSamples samples =
       sample_surface(mesh, kSamplesPerPoint * n, seed + 1, SampleNormals::triangle, at_beginning(progress));
-  EvenedSurface even{std::move(points.points), std::move(points.normals), {}, surface_area(mesh), 0.0};
+  EvenedSurface even{std::move(points.points), std::move(points.normals), {}, {}, surface_area(mesh), 0.0};
   even.bends.resize(even.points.size());
+  even.means.resize(even.points.size());
   even.edge = evened_edge(even.area, n);
   const PointTree tree(samples.points);
   reported_parallel_for({0, n, n}, at_beginning(progress), "evening", [&](std::int64_t index) {
@@ -66,6 +74,7 @@ EvenedSurface even_surface(const TriangleMesh& mesh, std::int64_t n, std::uint64
     even.points[i] += s.height * s.normal;
     even.normals[i] = s.normal;
     even.bends[i] = s.bend;
+    even.means[i] = s.mean;
   });
   return even;
 }

@@ -15,9 +15,15 @@ struct EvenedSurface {
   // (n) rms angle in radians between the normals of the mesh's facets within .5 edges of each point and
   // their mean, before anything is smoothed: 0 within a flat facet.
   std::vector<double> bends;
+  // (n) the mean of the mesh around each point, by weights 1 - d^2 / (1.96 edge)^2, whose deviation is .8
+  // edges. They lie a little beside the points.
+  std::vector<Vec3d> means;
   double area = 0.0;  // of the mesh
   double edge = 0.0;  // evened_edge(area, n)
 };
+
+// Reach of these weights, edges, and the mean square distance that is theirs on a plane, squared edges.
+inline constexpr double kMeanReach = 1.96, kMeanSquare = 1.28;
 
 // The edge of equilateral triangles with n vertices that cover an area: 2 area = sqrt(3) n edge^2.
 double evened_edge(double area, std::int64_t n);

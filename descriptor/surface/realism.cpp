@@ -117,18 +117,19 @@ std::vector<StatisticTest> all_tests(const SurfaceStatistics& a, const SurfaceSt
 }
 
 // (#permutations x #tests) the distances with exchanged regions.
-std::vector<double> exchanged_distances(const std::vector<StatisticTest>& tests,
-                                        const RealismOptions& options, const Progress& progress) {
+std::vector<double> exchanged_distances(const std::vector<StatisticTest>& tests, const Regions& a,
+                                        const Regions& b, const RealismOptions& options,
+                                        const Progress& progress) {
   const std::size_t count = tests.size();
   std::vector<double> distances(static_cast<std::size_t>(options.permutations) * count);
-  reported_parallel_for({0, options.permutations, options.permutations}, progress, "permutations",
-                        [&](std::int64_t k) {
-                          const auto row = static_cast<std::size_t>(k);
-                          const RegionLabels labels = exchanged_regions(options.seed, row);
-                          for (std::size_t t = 0; t < count; ++t) {
-                            distances[row * count + t] = tests[t].distance(labels);
-                          }
-                        });
+  reported_parallel_for(
+      {0, options.permutations, options.permutations}, progress, "permutations", [&](std::int64_t k) {
+        const auto row = static_cast<std::size_t>(k);
+        const RegionLabels labels = exchanged_regions(a.groups, b.groups, options.seed, row);
+        for (std::size_t t = 0; t < count; ++t) {
+          distances[row * count + t] = tests[t].distance(labels);
+        }
+      });
   return distances;
 }
 
@@ -157,11 +158,36 @@ void add_ratios(double own, const std::vector<double>& exchanged, LargestRatios&
   }
 }
 
-bool passing(const RealismVerdict& verdict) {
-  return verdict.p >= kPassingP && verdict.largest_distance <= kPassingDistance;
+// Decides by the figures that stand in the verdict.
+void decide(RealismVerdict& verdict) {
+  const bool alike = verdict.p >= kPassingP && verdict.largest_distance <= kPassingDistance;
+  verdict.too_coarse = alike && verdict.points < kFewestJudged;
+  verdict.passes = alike && !verdict.too_coarse;
+}
+
+std::vector<BandRatio> band_ratios(const HeightBands& a, const HeightBands& b) {
+  std::vector<BandRatio> ratios;
+  for (std::size_t k = 0; k < std::min(a.bands.size(), b.bands.size()); ++k) {
+    const HeightBand& band = a.bands[k];
+    if (band.rms > 0.0) ratios.push_back({band.from, band.to, b.bands[k].rms / band.rms});
+  }
+  return ratios;
+}
+
+std::optional<double> coupling_ratio(const HeightBands& a, const HeightBands& b) {
+  if (!a.coupling || !b.coupling || !(*a.coupling > 0.0)) return std::nullopt;
+  return *b.coupling / *a.coupling;
 }
 
 }  // namespace
+
+const StatisticComparison* RealismVerdict::farthest() const {
+  const StatisticComparison* found = nullptr;
+  for (const StatisticComparison& c : statistics) {
+    if (c.counts_in_distance && (found == nullptr || c.distance > found->distance)) found = &c;
+  }
+  return found;
+}
 
 std::vector<StatisticComparison> statistic_distances(const SurfaceStatistics& a, const SurfaceStatistics& b) {
   std::vector<StatisticComparison> statistics;
@@ -184,7 +210,7 @@ RealismVerdict judge_realism(const SurfaceStatistics& a, const SurfaceStatistics
                      " is outside 19 to 99999");
   }
   const std::vector<StatisticTest> tests = all_tests(a, b);
-  const std::vector<double> distances = exchanged_distances(tests, options, progress);
+  const std::vector<double> distances = exchanged_distances(tests, a.regions, b.regions, options, progress);
   const auto permutations = static_cast<std::size_t>(options.permutations);
   RealismVerdict verdict;
   LargestRatios ratios{0.0, std::vector<double>(permutations, 0.0)};
@@ -198,9 +224,12 @@ RealismVerdict judge_realism(const SurfaceStatistics& a, const SurfaceStatistics
   }
   verdict.p = share_as_large(ratios.own, ratios.exchanged);
   verdict.largest_distance = largest_distance(verdict.statistics);
-  verdict.passes = passing(verdict);
+  verdict.points = a.points;
+  decide(verdict);
   verdict.edge = a.edge;
   verdict.variance_ratio = a.regions.between > 0.0 ? b.regions.between / a.regions.between : 0.0;
+  verdict.bands = band_ratios(a.heights, b.heights);
+  verdict.coupling_ratio = coupling_ratio(a.heights, b.heights);
   return verdict;
 }
 
@@ -219,10 +248,21 @@ RealismVerdict median_verdict(std::span<const RealismVerdict> verdicts) {
           median_of([&](const RealismVerdict& verdict) { return verdict.statistics[s].*figure; });
     }
   }
+  // A surface of a little less area may lack the largest band.
+  for (const RealismVerdict& v : verdicts) {
+    result.bands.resize(std::min(result.bands.size(), v.bands.size()));
+    if (!v.coupling_ratio) result.coupling_ratio.reset();
+  }
+  for (std::size_t k = 0; k < result.bands.size(); ++k) {
+    result.bands[k].ratio = median_of([&](const RealismVerdict& v) { return v.bands[k].ratio; });
+  }
+  if (result.coupling_ratio) {
+    result.coupling_ratio = median_of([](const RealismVerdict& v) { return *v.coupling_ratio; });
+  }
   result.p = median_of([](const RealismVerdict& v) { return v.p; });
   result.largest_distance = median_of([](const RealismVerdict& v) { return v.largest_distance; });
   result.variance_ratio = median_of([](const RealismVerdict& v) { return v.variance_ratio; });
-  result.passes = passing(result);
+  decide(result);
   return result;
 }
 

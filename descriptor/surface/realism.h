@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ namespace astrolith {
 
 inline constexpr double kPassingP = 0.05, kPassingDistance = 0.13;
 
+// Below so many points the test seldom notices that all relief is gone (docs/descriptor.md).
+inline constexpr std::int64_t kFewestJudged = 1400;
+
 // The difference of two surfaces in one statistic.
 struct StatisticComparison {
   SurfaceQuantity quantity = SurfaceQuantity::roughness;
@@ -21,7 +25,7 @@ struct StatisticComparison {
   bool correlation = false;
   double radius = 0.0, reach = 0.0;  // edges
   double distance = 0.0;             // Kolmogorov-Smirnov; of correlations their difference
-  double p = 1.0;                    // share of exchanged regions with a distance at least as large
+  double p = 1.0;                    // share of exchanges with a distance at least as large
   // Whether the statistic counts in the verdict's p, and in its largest distance. Others are stated only.
   bool counts_in_p = false, counts_in_distance = false;
   // Medians and interquartile ranges of both distributions, for skewness the means; for a correlation its two
@@ -32,13 +36,30 @@ struct StatisticComparison {
   }
 };
 
+// How high the relief of one scale is beside that of the first surface.
+struct BandRatio {
+  double from = 0.0, to = 0.0;  // edges
+  double ratio = 1.0;           // rms of the heights, b over a
+};
+// Where ratios are as wanted. They do not change the verdict.
+inline constexpr double kWantedBandRatio[] = {0.85, 1.15}, kWantedCouplingRatio = 0.9;
+
 struct RealismVerdict {
-  bool passes = false;            // p >= kPassingP and largest_distance <= kPassingDistance
+  // p >= kPassingP and largest_distance <= kPassingDistance, of surfaces that are not too coarse.
+  bool passes = false;
+  // The surfaces have fewer points than kFewestJudged, and the test found no difference, which says nothing.
+  bool too_coarse = false;
+  std::int64_t points = 0;        // that each surface was evened to
   double p = 1.0;                 // of the whole
   double largest_distance = 0.0;  // of the statistics that count in it
   double variance_ratio = 0.0;    // of roughness between regions, b over a; 0 where a has none
   double edge = 0.0;              // of the first surface, its unit
   std::vector<StatisticComparison> statistics;
+  std::vector<BandRatio> bands;          // those that both surfaces have (height_bands.h)
+  std::optional<double> coupling_ratio;  // b over a, where both have a coupling and that of a is above 0
+
+  // The statistic of the largest distance; none where no distance counts.
+  const StatisticComparison* farthest() const;
 };
 
 struct RealismOptions {
@@ -53,13 +74,13 @@ std::vector<StatisticComparison> statistic_distances(const SurfaceStatistics& a,
 // The largest distance among those that count.
 double largest_distance(std::span<const StatisticComparison> statistics);
 
-// Tests whether both surfaces could be two draws of one kind. Under that hypothesis regions can be exchanged
-// between them. p of a statistic is (1 + the number of permutations with at least its distance) / (1 +
-// permutations). The whole is tested by the largest ratio of a distance to its own 95 % quantile over the
-// permutations. A statistic counts in p where 40 regions hold its radius, and in the largest distance where
-// 100 discs of the radius find room on the body. A test by regions is lenient on bodies that vary much, which
-// is why a surface passes by p and by distance. Throws as statistic_distances() does, InputError for options
-// out of range, and WorkError when progress asks to stop.
+// Tests whether both surfaces could be two draws of one kind. Under that hypothesis groups of regions can be
+// exchanged between them. p of a statistic is (1 + the number of permutations with at least its distance) /
+// (1 + permutations). The whole is tested by the largest ratio of a distance to its own 95 % quantile over
+// the permutations. A statistic counts in p where 40 regions hold its radius, and in the largest distance
+// where 100 discs of the radius find room on the body. A test by regions is lenient on bodies that vary much,
+// which is why a surface passes by p and by distance. Throws as statistic_distances() does, InputError for
+// options out of range, and WorkError when progress asks to stop.
 RealismVerdict judge_realism(const SurfaceStatistics& a, const SurfaceStatistics& b,
                              const RealismOptions& options, const Progress& progress = {});
 
@@ -72,8 +93,11 @@ struct LengthWords {
   std::string unit = "units";
 };
 
-// What a reader should know: "passes", or what the second surface lacks beside the first: "too smooth between
-// 8 and 20 m", "no boulders".
+// What a reader should know: "passes", "too coarse to judge: ...", or what the second surface lacks beside
+// the first: "too smooth between 8 and 20 m", "no boulders".
 std::vector<std::string> realism_words(const RealismVerdict& verdict, const LengthWords& lengths);
+
+// The bands and the coupling whose ratios are not as wanted, one line each. The test of realism sees neither.
+std::vector<std::string> band_words(const RealismVerdict& verdict, const LengthWords& lengths);
 
 }  // namespace astrolith

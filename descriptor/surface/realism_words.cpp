@@ -59,7 +59,7 @@ std::optional<std::string> roughness_words(const StatisticComparison& c) {
   }
 }
 
-std::optional<std::string> band_words(const StatisticComparison& c) {
+std::optional<std::string> radius_words(const StatisticComparison& c) {
   switch (c.quantity) {
     case SurfaceQuantity::roughness:
       return roughness_words(c);
@@ -102,6 +102,10 @@ void add_once(const std::string& words, std::vector<std::string>& all) {
 }  // namespace
 
 std::vector<std::string> realism_words(const RealismVerdict& verdict, const LengthWords& lengths) {
+  if (verdict.too_coarse) {
+    return {fmt::format("too coarse to judge: {} points; give meshes of at least {} facets", verdict.points,
+                        2 * kFewestJudged)};
+  }
   if (verdict.passes) return {"passes"};
   std::vector<Band> bands;
   std::vector<std::string> others;
@@ -115,7 +119,7 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
       add_once("flat facets of a coarser mesh", others);
     } else if (c.quantity == SurfaceQuantity::slope) {
       add_once(slope_words(c), others);
-    } else if (const std::optional<std::string> words = band_words(c)) {
+    } else if (const std::optional<std::string> words = radius_words(c)) {
       add_band(*words, c.radius, bands);
     }
   }
@@ -123,6 +127,25 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
   for (const Band& band : bands) all.push_back(length_range(band, verdict.edge, lengths));
   all.insert(all.end(), others.begin(), others.end());
   if (all.empty()) all.emplace_back("differs, and no single statistic says in what");
+  return all;
+}
+
+std::vector<std::string> band_words(const RealismVerdict& verdict, const LengthWords& lengths) {
+  const auto [least, most] = kWantedBandRatio;
+  std::vector<std::string> all;
+  for (const BandRatio& band : verdict.bands) {
+    if (band.ratio >= least && band.ratio <= most) continue;
+    all.push_back(
+        fmt::format("relief at scales of {:.2g} to {:.2g} {} is {:.2f} times as high; {} to {} wanted",
+                    band.from * verdict.edge * lengths.scale, band.to * verdict.edge * lengths.scale,
+                    lengths.unit, band.ratio, least, most));
+  }
+  if (verdict.coupling_ratio.value_or(1.0) < kWantedCouplingRatio) {
+    all.push_back(fmt::format(
+        "high relief of one scale lies less where the next scale has it: {:.2f} times the coupling; "
+        "at least {} wanted",
+        *verdict.coupling_ratio, kWantedCouplingRatio));
+  }
   return all;
 }
 

@@ -1,6 +1,8 @@
 #include "descriptor/surface/regions.h"
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/parallel_for.h"
@@ -54,7 +56,45 @@ double variance_of_means(std::span<const std::uint8_t> of_place, std::span<const
   return mean_square(deviations(means));
 }
 
+using Centers = std::array<Vec3d, kRegions>;
+
+// Numbers the groups of the regions from `first` on; there are `groups` of them, a power of 2.
+void halve(std::span<std::uint8_t> regions, const Centers& centers, int groups, int first,
+           RegionGroups& group_of) {
+  if (groups == 1) {
+    for (const std::uint8_t r : regions) group_of[r] = static_cast<std::uint8_t>(first);
+    return;
+  }
+  Box box;
+  for (const std::uint8_t r : regions) box.extend(centers[r]);
+  const Vec3d extent = box.extent();
+  double Vec3d::*axis = extent.x >= extent.y && extent.x >= extent.z ? &Vec3d::x
+                        : extent.y >= extent.z                       ? &Vec3d::y
+                                                                     : &Vec3d::z;
+  std::stable_sort(regions.begin(), regions.end(),
+                   [&](std::uint8_t a, std::uint8_t b) { return centers[a].*axis < centers[b].*axis; });
+  const std::size_t half = regions.size() / 2;
+  halve(regions.first(half), centers, groups / 2, first, group_of);
+  halve(regions.subspan(half), centers, groups / 2, first + groups / 2, group_of);
+}
+
 }  // namespace
+
+RegionGroups region_groups(std::span<const std::uint8_t> of_place, std::span<const Vec3d> places) {
+  Centers centers{};
+  std::array<double, kRegions> counts{};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    centers[of_place[i]] += places[i];
+    counts[of_place[i]] += 1.0;
+  }
+  for (std::size_t r = 0; r < kRegions; ++r) {
+    if (counts[r] > 0.0) centers[r] *= 1.0 / counts[r];
+  }
+  RegionGroups regions{}, group_of{};
+  std::iota(regions.begin(), regions.end(), std::uint8_t{0});
+  halve(regions, centers, kRegionGroups, 0, group_of);
+  return group_of;
+}
 
 double Regions::correlation(std::size_t lag) const {
   PairSum all;
@@ -105,6 +145,7 @@ Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d>
   }
   regions.variance = mean_square(from_mean);
   regions.between = variance_of_means(of_place, from_mean);
+  regions.groups = region_groups(of_place, places);
   regions.of_place = std::move(of_place);
   return regions;
 }

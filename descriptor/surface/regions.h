@@ -1,4 +1,4 @@
-// Regions of a surface: the blocks that a permutation test exchanges, and how far roughness differs between
+// Regions of a surface: what a permutation test exchanges, and how far roughness differs between
 // them.
 #pragma once
 
@@ -12,6 +12,10 @@
 namespace astrolith {
 
 inline constexpr int kRegions = 40;
+// Groups of five neighbouring regions, which a permutation test exchanges as one: places on both sides of a
+// border resemble one another, and within a group there are few borders to others.
+inline constexpr int kRegionGroups = 8;
+using RegionGroups = std::array<std::uint8_t, kRegions>;
 
 // Ranges of distance between two places, in edges.
 struct LagRange {
@@ -26,6 +30,7 @@ struct PairSum {
 
 struct Regions {
   std::vector<std::uint8_t> of_place;  // (#places) number of the region, below kRegions
+  RegionGroups groups{};               // of the regions, below kRegionGroups
   double variance = 0.0;               // of the value over all places
   double between = 0.0;                // variance of the regions' means
   // The pairs at each lag whose places lie in one region. Pairs of two regions would be torn when regions are
@@ -39,6 +44,10 @@ struct Regions {
 // Parts the places among the kRegions points of a Poisson disk on the mesh, each to the nearest.
 std::vector<std::uint8_t> region_of_places(const TriangleMesh& mesh, std::span<const Vec3d> places,
                                            std::uint64_t seed);
+
+// The group of each region. The regions are halved three times along the longest axis of their centres, which
+// are the means of their places.
+RegionGroups region_groups(std::span<const std::uint8_t> of_place, std::span<const Vec3d> places);
 
 // The sums of a value over the regions.  values: (#places)
 Regions regional_sums(std::vector<std::uint8_t> of_place, std::span<const Vec3d> places,

@@ -325,6 +325,7 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
     refuse_option("the mesh is no surface at fewer than " + std::to_string(kFewestPlaces) +
                   " of its places; give one that is connected");
   }
+  result.heights = height_bands(even, at_beginning(progress));
   result.lags = roughness_at_lags(places, lag_radius, even.edge);
   result.local = columns(places, radii);
   result.regions = regional_sums(region_of_places(mesh, result.places, options.seed + 2), result.places,

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "descriptor/surface/height_bands.h"
 #include "descriptor/surface/regions.h"
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
@@ -61,6 +62,7 @@ struct SurfaceStatistics {
   std::vector<Vec3d> places;
   std::vector<LocalStatistic> local;  // roughness, skewness, kurtosis, normals of each radius; bend; slope
   std::vector<RoughnessAtLag> lags;
+  HeightBands heights;
   Regions regions;             // of the places, with the covariance of roughness within the first radius
   std::int64_t undefined = 0;  // places left out, around which the points determine no quadric
   std::vector<std::string> remarks;  // what could not be measured, for people

@@ -48,8 +48,8 @@ def test_the_verdict_has_the_bytes_of_compare(program, tmp_path):
     for name, (vertices, faces) in (("a.ply", a), ("b.ply", b)):
         astrolith.write_mesh(astrolith.Mesh(vertices, faces), tmp_path / name)
     a, b = astrolith.read_mesh(tmp_path / "a.ply"), astrolith.read_mesh(tmp_path / "b.ply")
-    said = json.loads(program("compare", "a.ply", "b.ply", "--points", "300", "--samples", "500", "--realism", "--unit",
-                              "km", "--places", "400", "--floor"))["realism"]  # fmt: skip
+    said = json.loads(program("compare", "a.ply", "b.ply", "--points", "300", "--samples", "500", "--realism", "--json",
+                              "--unit", "km", "--places", "400", "--floor"))["realism"]  # fmt: skip
     verdict = astrolith.realism(a, b, unit="km", places=400, floor=True)
     assert verdict == said
     assert not verdict.passes and verdict.words[0].startswith("too smooth between")

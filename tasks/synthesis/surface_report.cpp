@@ -65,6 +65,17 @@ Json lags_json(const SurfaceStatistics& surface) {
   return lags;
 }
 
+Json bands_json(const SurfaceStatistics& surface) {
+  Json bands = Json::array();
+  for (const HeightBand& band : surface.heights.bands) {
+    bands.push_back({{"from", band.from * surface.edge},
+                     {"to", band.to * surface.edge},
+                     {"edges", {band.from, band.to}},
+                     {"rms_edges", band.rms}});
+  }
+  return bands;
+}
+
 Json statistic_json(const StatisticComparison& c, double edge) {
   Json entry{{"statistic", c.correlation ? "correlation" : name_of(c.quantity)}};
   if (c.correlation) {
@@ -109,6 +120,8 @@ nlohmann::ordered_json surface_json(const SurfaceStatistics& surface) {
              {"places", surface.places.size()}, {"undefined_places", surface.undefined},
              {"radii", radii_json(surface)},    {"roughness_at_lags", lags_json(surface)},
              {"regions", regions_json(surface)}};
+  entry["height_bands"] = bands_json(surface);
+  if (surface.heights.coupling) entry["band_coupling"] = *surface.heights.coupling;
   entry["bends"] = distribution_json(surface.find(SurfaceQuantity::bend, 0.0)->values);
   if (const LocalStatistic* slope = surface.find(SurfaceQuantity::slope, 0.0)) {
     entry["slopes"] = distribution_json(slope->values);
@@ -138,13 +151,52 @@ nlohmann::ordered_json realism_json(const RealismVerdict& verdict, const LengthW
   for (const StatisticComparison& c : verdict.statistics) {
     statistics.push_back(statistic_json(c, verdict.edge));
   }
-  return {{"passes", verdict.passes},
-          {"words", realism_words(verdict, lengths)},
-          {"p", verdict.p},
-          {"largest_distance", verdict.largest_distance},
-          {"variance_ratio", verdict.variance_ratio},
-          {"edge", verdict.edge},
-          {"statistics", statistics}};
+  Json bands = Json::array();
+  for (const BandRatio& band : verdict.bands) {
+    bands.push_back(
+        {{"from", band.from * verdict.edge}, {"to", band.to * verdict.edge}, {"ratio", band.ratio}});
+  }
+  Json entry{{"passes", verdict.passes},
+             {"too_coarse", verdict.too_coarse},
+             {"words", realism_words(verdict, lengths)},
+             {"band_words", band_words(verdict, lengths)},
+             {"p", verdict.p},
+             {"largest_distance", verdict.largest_distance},
+             {"variance_ratio", verdict.variance_ratio},
+             {"edge", verdict.edge},
+             {"bands", bands}};
+  if (verdict.coupling_ratio) entry["coupling_ratio"] = *verdict.coupling_ratio;
+  entry["statistics"] = statistics;
+  return entry;
+}
+
+std::vector<std::string> realism_lines(const RealismVerdict& verdict, const LengthWords& lengths) {
+  const auto length = [&](double edges) {
+    return fmt::format("{:.3g} {}", edges * verdict.edge * lengths.scale, lengths.unit);
+  };
+  const std::vector<std::string> words = realism_words(verdict, lengths);
+  std::vector<std::string> lines{
+      fmt::format("surface: {}{}",
+                  verdict.passes || verdict.too_coarse ? "" : "does not pass: ", fmt::join(words, "; "))};
+  lines.push_back(fmt::format("p {:.3f}; at least {} to pass", verdict.p, kPassingP));
+  if (const StatisticComparison* c = verdict.farthest()) {
+    const std::string within = c->radius > 0.0 ? " within " + length(c->radius) : "";
+    lines.push_back(fmt::format("largest distance {:.3f}, of {}{}; at most {} to pass", c->distance,
+                                name_of(c->quantity), within, kPassingDistance));
+  } else {
+    lines.emplace_back("no distance counts on so few points");
+  }
+  std::string ratios;
+  for (const BandRatio& band : verdict.bands) {
+    ratios += fmt::format("{}{:.2f} ({} to {})", ratios.empty() ? "" : ", ", band.ratio, length(band.from),
+                          length(band.to));
+  }
+  if (!ratios.empty()) lines.push_back("relief over A's, by scale: " + ratios);
+  if (verdict.coupling_ratio) {
+    lines.push_back(fmt::format("coupling of scales over A's: {:.2f}", *verdict.coupling_ratio));
+  }
+  for (const std::string& said : band_words(verdict, lengths)) lines.push_back("note: " + said);
+  return lines;
 }
 
 SurfaceComparison judge_surfaces(const NamedMesh& a, const NamedMesh& b, SurfaceStatisticsOptions options,
@@ -156,12 +208,16 @@ SurfaceComparison judge_surfaces(const NamedMesh& a, const NamedMesh& b, Surface
     return describe_surface(shape, options, progress("surface"));
   };
   const RealismOptions test{.permutations = 999, .seed = seed};
-  SurfaceComparison comparison{{}, {}, sampled(a, 0), sampled(b, 1)};
+  SurfaceComparison comparison{{}, {}, {}, sampled(a, 0), sampled(b, 1)};
   comparison.verdict = judge_realism(comparison.a, comparison.b, test, progress("permutations"));
-  comparison.figures = realism_json(comparison.verdict, words_for_lengths(unit, 3.0 * comparison.a.edge));
+  const LengthWords lengths = words_for_lengths(unit, 3.0 * comparison.a.edge);
+  comparison.figures = realism_json(comparison.verdict, lengths);
+  comparison.lines = realism_lines(comparison.verdict, lengths);
   if (with_floor) {
     const RealismVerdict again = judge_realism(comparison.a, sampled(a, 2), test, progress("permutations"));
     comparison.figures["floor"] = {{"p", again.p}, {"largest_distance", again.largest_distance}};
+    comparison.lines.push_back(
+        fmt::format("A sampled again: p {:.3f}, largest distance {:.3f}", again.p, again.largest_distance));
   }
   return comparison;
 }

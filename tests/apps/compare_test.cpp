@@ -1,4 +1,6 @@
 // compare, run as a user runs it.
+#include <algorithm>
+
 #include "tests/apps/inputs.h"
 #include "tests/apps/program_runner.h"
 
@@ -54,12 +56,27 @@ TEST_F(Compare, WritesAFileAndASummary) {
 }
 
 TEST_F(Compare, JudgesWhetherASurfacePasses) {
-  const auto same = compare("ball.obj bigger.obj --realism --places 1500 --unit km --floor")["realism"];
+  const auto same =
+      compare("ball.obj bigger.obj --realism --json --places 1500 --unit km --floor")["realism"];
   EXPECT_TRUE(same["passes"]) << same.dump();
   EXPECT_EQ(same["words"][0], "passes");
   EXPECT_GT(same["floor"]["p"], 0.05);
   EXPECT_FALSE(compare("ball.obj bigger.obj").contains("realism"));
   refuse("ball.obj bigger.obj --unit km", "--realism");
+}
+
+TEST_F(Compare, SaysTheVerdictInTenLines) {
+  const std::string line = "ball.obj bigger.obj --realism --places 500 --points 1000 --samples 1000";
+  const testing::Outcome outcome = run(line + " -o c.json --quiet");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_LE(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 11) << outcome.output;
+  for (const char* part :
+       {"similarity", "surface: passes\n", "largest distance 0.", "relief over A's, by scale: "}) {
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << part << "\n" << outcome.output;
+  }
+  EXPECT_EQ(json("c.json")["realism"]["passes"], true);
+  EXPECT_EQ(run(line + " --json -o c.json").output, "");
 }
 
 TEST_F(Compare, BadFilesAreRefused) {

@@ -142,7 +142,7 @@ void judge_coarse(const std::vector<std::string>& files, const std::vector<std::
           ++power.cases;
           power.by_p += v.p < kPassingP ? 1 : 0;
           power.by_distance += v.largest_distance > kPassingDistance ? 1 : 0;
-          power.failed += v.passes ? 0 : 1;
+          power.failed += v.passes || v.too_coarse ? 0 : 1;
         }
       }
     }

@@ -13,6 +13,14 @@ namespace {
 
 using Values = std::vector<double>;
 
+constexpr RegionGroups kGroups = [] {
+  RegionGroups groups{};
+  for (std::size_t r = 0; r < groups.size(); ++r) {
+    groups[r] = static_cast<std::uint8_t>(r % static_cast<std::size_t>(kRegionGroups));
+  }
+  return groups;
+}();
+
 TEST(KolmogorovSmirnovDistance, OfSamplesWithKnownDistances) {
   const auto distance = [](const Values& a, const Values& b) { return kolmogorov_smirnov_distance(a, b); };
   EXPECT_EQ(distance({1, 2, 3}, {4, 5, 6, 7}), 1);
@@ -25,12 +33,34 @@ TEST(KolmogorovSmirnovDistance, OfSamplesWithKnownDistances) {
 TEST(ExchangedRegions, KeepTheirNumber) {
   RegionLabels together{};
   for (std::uint64_t k = 0; k < 50; ++k) {
-    const RegionLabels labels = exchanged_regions(3, k);
+    const RegionLabels labels = exchanged_regions(kGroups, kGroups, 3, k);
     EXPECT_EQ(std::count(labels.begin(), labels.end(), true), kRegions);
-    EXPECT_EQ(labels, exchanged_regions(3, k));
+    EXPECT_EQ(labels, exchanged_regions(kGroups, kGroups, 3, k));
     for (std::size_t r = 0; r < labels.size(); ++r) together[r] = together[r] || labels[r];
   }
   EXPECT_EQ(std::count(together.begin(), together.end(), true), 2 * kRegions);
+}
+
+TEST(ExchangedRegions, KeepGroupsTogether) {
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    const RegionLabels labels = exchanged_regions(kGroups, kGroups, 4, k);
+    for (std::size_t r = 0; r < labels.size(); ++r) {
+      EXPECT_EQ(labels[r], labels[r / kRegions * kRegions + kGroups[r % kRegions]]);
+    }
+  }
+}
+
+TEST(RegionGroups, HaveFiveNeighbouringRegionsEach) {
+  std::vector<std::uint8_t> regions;
+  std::vector<Vec3d> places;
+  for (int r = 0; r < kRegions; ++r) {  // eight clusters of five regions, numbered across the clusters
+    const int cluster = r % 8;
+    regions.push_back(static_cast<std::uint8_t>(r));
+    places.push_back({10.0 * (cluster & 1), 6.0 * (cluster >> 1 & 1), 3.0 * (cluster >> 2) + 0.1 * (r / 8)});
+  }
+  const RegionGroups groups = region_groups(regions, places);
+  for (std::size_t r = 8; r < groups.size(); ++r) EXPECT_EQ(groups[r], groups[r % 8]);
+  for (int g = 0; g < kRegionGroups; ++g) EXPECT_EQ(std::count(groups.begin(), groups.end(), g), 5);
 }
 
 struct Sample {
@@ -66,7 +96,7 @@ TEST(KolmogorovSmirnov, WithExchangedRegionsFollowsTheDefinition) {
   const KolmogorovSmirnov test({a.values, a.regions}, {b.values, b.regions});
   EXPECT_NEAR(test(own_regions()), by_definition(a.values, b.values), 1e-14);
   for (std::uint64_t k = 0; k < 10; ++k) {
-    const RegionLabels labels = exchanged_regions(5, k);
+    const RegionLabels labels = exchanged_regions(kGroups, kGroups, 5, k);
     Values first, second;
     for (std::size_t i = 0; i < a.values.size(); ++i) {
       (labels[a.regions[i]] ? first : second).push_back(a.values[i]);

@@ -114,6 +114,96 @@ TEST(Realism, RejectsFiveInAHundredDrawsOfOneKind) {
   EXPECT_LE(rejected, 20);  // 10 expected, deviation 3.1
 }
 
+// 40 centres, spread evenly over the unit sphere along a spiral.
+std::vector<std::uint8_t> regions_of(const std::vector<Vec3d>& places) {
+  std::vector<std::uint8_t> regions;
+  for (const Vec3d& place : places) {
+    std::size_t nearest = 0;
+    double least = 1e300;
+    for (std::size_t r = 0; r < kRegions; ++r) {
+      const double z = 1 - (2.0 * static_cast<double>(r) + 1) / kRegions,
+                   turn = 2.399963 * static_cast<double>(r);
+      const Vec3d center{std::sqrt(1 - z * z) * std::cos(turn), std::sqrt(1 - z * z) * std::sin(turn), z};
+      const double squared = squared_norm(center - place);
+      if (squared < least) least = squared, nearest = r;
+    }
+    regions.push_back(static_cast<std::uint8_t>(nearest));
+  }
+  return regions;
+}
+
+// Draws of one kind whose values reach beyond a region, so that neighbouring regions are alike.
+SurfaceStatistics drawn_smoothly(std::uint64_t seed) {
+  constexpr double kReach = 0.35;  // a region is .6 wide
+  const BumpHeights up(120, kReach, 2 * seed), down(120, kReach, 2 * seed + 1);
+  CounterRandom random(seed, 0);
+  SurfaceStatistics s;
+  s.points = 20000;
+  s.body_radius = 40;
+  s.local.push_back({SurfaceQuantity::roughness, 3.0, {}});
+  for (int i = 0; i < 500; ++i) {
+    s.places.push_back(testing::random_direction(random));
+    s.local[0].values.push_back(up(s.places.back()) - down(s.places.back()));
+  }
+  s.regions = regional_sums(regions_of(s.places), s.places, s.local[0].values, 1.0 / 40);
+  return s;
+}
+
+TEST(Realism, RejectsFewDrawsOfOneKindWhoseRegionsAreAlike) {
+  constexpr int kTrials = 200;
+  int rejected = 0;
+  for (std::uint64_t t = 0; t < kTrials; ++t) {
+    const RealismVerdict verdict =
+        judge_realism(drawn_smoothly(2 * t), drawn_smoothly(2 * t + 1), {.permutations = 199});
+    if (verdict.p < kPassingP) ++rejected;
+  }
+  EXPECT_LE(rejected, 22);  // 18 are; 33 when single regions were exchanged
+}
+
+TEST(Realism, ReliefIsComparedByScale) {
+  const RealismVerdict verdict = judge_realism(waves(0.01, 1), waves(0.006, 1), {});
+  ASSERT_EQ(verdict.bands.size(), 3u);
+  for (const BandRatio& band : verdict.bands) EXPECT_NEAR(band.ratio, 0.6, 0.06) << band.from;
+  EXPECT_FALSE(verdict.coupling_ratio);  // the sphere has no room for the largest band
+  const std::vector<std::string> said = band_words(verdict, {});
+  ASSERT_EQ(said.size(), 3u);
+  EXPECT_TRUE(said[0].starts_with("relief at scales of 0.03 to 0.06")) << said[0];
+  EXPECT_TRUE(band_words(judge_realism(waves(0.01, 1, 1), waves(0.01, 1, 2), {}), {}).empty());
+}
+
+TEST(Realism, CouplingIsComparedAndSaid) {
+  SurfaceStatistics a = drawn(1), b = drawn(2);
+  a.heights.coupling = 0.6, b.heights.coupling = 0.3;
+  const RealismVerdict verdict = judge_realism(a, b, {.permutations = 19});
+  EXPECT_EQ(verdict.coupling_ratio, 0.5);
+  ASSERT_EQ(band_words(verdict, {}).size(), 1u);
+  EXPECT_TRUE(band_words(verdict, {})[0].ends_with("0.50 times the coupling; at least 0.9 wanted"));
+}
+
+TEST(Realism, FewFacetsAreTooCoarseToJudge) {
+  const WaveHeights height(0.6, 1);
+  TriangleMesh rough = testing::icosphere(3);  // 642 vertices
+  for (Vec3d& p : rough.vertices) p *= 1 + 0.004 * height(p);
+  SurfaceStatisticsOptions options;
+  const SurfaceStatistics a = surface_statistics(rough, options),
+                          b = surface_statistics(testing::icosphere(3), options);
+  const RealismVerdict verdict = judge_realism(a, b, {});
+  EXPECT_FALSE(verdict.passes);
+  EXPECT_TRUE(verdict.too_coarse);
+  EXPECT_EQ(realism_words(verdict, {})[0],
+            "too coarse to judge: 640 points; give meshes of at least 2800 facets");
+}
+
+TEST(Realism, AClearDifferenceCountsOnCoarseMeshesToo) {
+  SurfaceStatistics a = drawn(1), b = drawn(2);
+  a.points = b.points = 700;
+  EXPECT_TRUE(judge_realism(a, b, {}).too_coarse);
+  for (double& value : b.local[0].values) value -= 3;
+  const RealismVerdict verdict = judge_realism(a, b, {});
+  EXPECT_FALSE(verdict.too_coarse);
+  EXPECT_TRUE(says(verdict, "too smooth"));
+}
+
 // Bends between 1 and 10 degrees, but for a share of places in flat facets.
 SurfaceStatistics with_flat_share(std::uint64_t seed, double share) {
   SurfaceStatistics s = drawn(seed);
@@ -146,6 +236,7 @@ TEST(Realism, DistancesAloneAreThoseOfTheVerdict) {
 
 TEST(Realism, MediansOfSeveralVerdicts) {
   RealismVerdict low, middle, high;
+  low.points = middle.points = high.points = 20000;
   low.p = 0.01, middle.p = 0.2, high.p = 0.9;
   low.largest_distance = 0.3, middle.largest_distance = 0.1, high.largest_distance = 0.05;
   const RealismVerdict verdict = median_verdict(std::vector{high, low, middle});
