@@ -93,6 +93,9 @@ struct LengthWords {
   std::string unit = "units";
 };
 
+// A length of so many edges without its unit, to two digits: "0.11", "690", "1400".
+std::string length_in_words(double edges, const RealismVerdict& verdict, const LengthWords& lengths);
+
 // What a reader should know: "passes", "too coarse to judge: ...", or what the second surface lacks beside
 // the first: "too smooth between 8 and 20 m", "no boulders".
 std::vector<std::string> realism_words(const RealismVerdict& verdict, const LengthWords& lengths);

@@ -72,9 +72,9 @@ std::optional<std::string> radius_words(const StatisticComparison& c) {
   }
 }
 
-std::string length_range(const Band& band, double edge, const LengthWords& lengths) {
-  return fmt::format("{} between {:.2g} and {:.2g} {}", band.words, band.from * edge * lengths.scale,
-                     band.to * edge * lengths.scale, lengths.unit);
+std::string length_range(const Band& band, const RealismVerdict& verdict, const LengthWords& lengths) {
+  return fmt::format("{} between {} and {} {}", band.words, length_in_words(band.from, verdict, lengths),
+                     length_in_words(band.to, verdict, lengths), lengths.unit);
 }
 
 // Slopes between facets follow from roughness, and need no words of their own where that differs.
@@ -101,6 +101,14 @@ void add_once(const std::string& words, std::vector<std::string>& all) {
 
 }  // namespace
 
+std::string length_in_words(double edges, const RealismVerdict& verdict, const LengthWords& lengths) {
+  const double length = edges * verdict.edge * lengths.scale;
+  if (!(length >= 100.0 && length < 1e6)) return fmt::format("{:.2g}", length);
+  double unit = 1.0;
+  while (length >= 100.0 * unit) unit *= 10.0;
+  return fmt::format("{:.0f}", unit * std::round(length / unit));
+}
+
 std::vector<std::string> realism_words(const RealismVerdict& verdict, const LengthWords& lengths) {
   if (verdict.too_coarse) {
     return {fmt::format("too coarse to judge: {} points; give meshes of at least {} facets", verdict.points,
@@ -124,7 +132,7 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
     }
   }
   std::vector<std::string> all;
-  for (const Band& band : bands) all.push_back(length_range(band, verdict.edge, lengths));
+  for (const Band& band : bands) all.push_back(length_range(band, verdict, lengths));
   all.insert(all.end(), others.begin(), others.end());
   if (all.empty()) all.emplace_back("differs, and no single statistic says in what");
   return all;
@@ -135,10 +143,10 @@ std::vector<std::string> band_words(const RealismVerdict& verdict, const LengthW
   std::vector<std::string> all;
   for (const BandRatio& band : verdict.bands) {
     if (band.ratio >= least && band.ratio <= most) continue;
-    all.push_back(
-        fmt::format("relief at scales of {:.2g} to {:.2g} {} is {:.2f} times as high; {} to {} wanted",
-                    band.from * verdict.edge * lengths.scale, band.to * verdict.edge * lengths.scale,
-                    lengths.unit, band.ratio, least, most));
+    all.push_back(fmt::format("relief at scales of {} to {} {} is {:.2f} times as high; {} to {} wanted",
+                              length_in_words(band.from, verdict, lengths),
+                              length_in_words(band.to, verdict, lengths), lengths.unit, band.ratio, least,
+                              most));
   }
   if (verdict.coupling_ratio.value_or(1.0) < kWantedCouplingRatio) {
     all.push_back(fmt::format(

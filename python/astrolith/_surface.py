@@ -125,7 +125,8 @@ def realism(
     Returns
     -------
     Record
-        The member ``realism`` of what ``compare --realism`` writes: passes, words, p, largest_distance, statistics.
+        The member ``realism`` of what ``compare --realism --json`` writes: passes, words, p, largest_distance,
+        statistics, and beside the verdict bands and coupling_ratio.
 
     Raises
     ------

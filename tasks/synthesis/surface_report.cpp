@@ -68,10 +68,8 @@ Json lags_json(const SurfaceStatistics& surface) {
 Json bands_json(const SurfaceStatistics& surface) {
   Json bands = Json::array();
   for (const HeightBand& band : surface.heights.bands) {
-    bands.push_back({{"from", band.from * surface.edge},
-                     {"to", band.to * surface.edge},
-                     {"edges", {band.from, band.to}},
-                     {"rms_edges", band.rms}});
+    bands.push_back(
+        {{"from", band.from * surface.edge}, {"to", band.to * surface.edge}, {"rms_edges", band.rms}});
   }
   return bands;
 }
@@ -171,16 +169,14 @@ nlohmann::ordered_json realism_json(const RealismVerdict& verdict, const LengthW
 }
 
 std::vector<std::string> realism_lines(const RealismVerdict& verdict, const LengthWords& lengths) {
-  const auto length = [&](double edges) {
-    return fmt::format("{:.3g} {}", edges * verdict.edge * lengths.scale, lengths.unit);
-  };
+  const auto length = [&](double edges) { return length_in_words(edges, verdict, lengths); };
   const std::vector<std::string> words = realism_words(verdict, lengths);
   std::vector<std::string> lines{
       fmt::format("surface: {}{}",
                   verdict.passes || verdict.too_coarse ? "" : "does not pass: ", fmt::join(words, "; "))};
   lines.push_back(fmt::format("p {:.3f}; at least {} to pass", verdict.p, kPassingP));
   if (const StatisticComparison* c = verdict.farthest()) {
-    const std::string within = c->radius > 0.0 ? " within " + length(c->radius) : "";
+    const std::string within = c->radius > 0.0 ? " within " + length(c->radius) + " " + lengths.unit : "";
     lines.push_back(fmt::format("largest distance {:.3f}, of {}{}; at most {} to pass", c->distance,
                                 name_of(c->quantity), within, kPassingDistance));
   } else {
@@ -188,8 +184,8 @@ std::vector<std::string> realism_lines(const RealismVerdict& verdict, const Leng
   }
   std::string ratios;
   for (const BandRatio& band : verdict.bands) {
-    ratios += fmt::format("{}{:.2f} ({} to {})", ratios.empty() ? "" : ", ", band.ratio, length(band.from),
-                          length(band.to));
+    ratios += fmt::format("{}{:.2f} ({} to {} {})", ratios.empty() ? "" : ", ", band.ratio, length(band.from),
+                          length(band.to), lengths.unit);
   }
   if (!ratios.empty()) lines.push_back("relief over A's, by scale: " + ratios);
   if (verdict.coupling_ratio) {

@@ -38,11 +38,10 @@ std::string words_of(const RealismVerdict& verdict) {
   return all;
 }
 
-const StatisticComparison& worst(const RealismVerdict& verdict) {
-  return *std::max_element(
-      verdict.statistics.begin(), verdict.statistics.end(), [](const auto& a, const auto& b) {
-        return (a.counts_in_distance ? a.distance : -1) < (b.counts_in_distance ? b.distance : -1);
-      });
+std::string bands_of(const RealismVerdict& verdict) {
+  std::string all;
+  for (const BandRatio& band : verdict.bands) all += fmt::format("{:.2f} ", band.ratio);
+  return all;
 }
 
 SurfaceStatistics sampled(const TriangleMesh& mesh, std::int64_t points, std::uint64_t seed) {
@@ -63,9 +62,11 @@ void judge(const std::string& body, const std::string& kind, const TriangleMesh&
   ++counts.cases;
   if (verdict.p < kPassingP) ++counts.rejected_by_p;
   if (!verdict.passes) ++counts.failed;
-  fmt::print("| {} | {} | {} | {:.3f} | {:.3f} ({} {:g}) | {:.2f} | {} |\n", body, kind, seed, verdict.p,
-             verdict.largest_distance, name_of(worst(verdict).quantity), worst(verdict).radius,
-             verdict.variance_ratio, words_of(verdict));
+  const StatisticComparison* worst = verdict.farthest();
+  fmt::print("| {} | {} | {} | {:.3f} | {:.3f} ({} {:g}) | {:.2f} | {}| {:.2f} | {} |\n", body, kind, seed,
+             verdict.p, verdict.largest_distance, worst != nullptr ? name_of(worst->quantity) : "none",
+             worst != nullptr ? worst->radius : 0.0, verdict.variance_ratio, bands_of(verdict),
+             verdict.coupling_ratio.value_or(0.0), words_of(verdict));
   std::fflush(stdout);
 }
 
@@ -76,13 +77,14 @@ void judge_body(const std::string& file, int seeds) {
   fmt::print("| {} | measured in {:.2f} processor seconds | | | | | |\n", name, seconds);
   const auto triangles = static_cast<double>(body.triangles.size());
   const TriangleMesh other = remeshed(body, triangles), finer = remeshed(body, 2 * triangles),
-                     smooth = laplace_impostor(body), coarse = decimated_impostor(body),
-                     harmonics = harmonics_impostor(body);
+                     smooth = laplace_impostor(body), half = relief_impostor(body, 0.5),
+                     coarse = decimated_impostor(body), harmonics = harmonics_impostor(body);
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     judge(name, "itself, sampled anew", body, body, seed);
     judge(name, "itself, other triangles", body, other, seed);
     judge(name, "itself, twice the triangles", body, finer, seed);
     judge(name, "fractal noise", body, noise_impostor(body, seed), seed);
+    judge(name, "half its relief", body, half, seed);
     judge(name, "one Laplace step", body, smooth, seed);
     judge(name, "decimated and refined", body, coarse, seed);
     judge(name, "harmonics of degree 30", body, harmonics, seed);
@@ -121,8 +123,8 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", seeds);
   CLI11_PARSE(app, argc, argv);
   fmt::print(
-      "| body | case | seed | p | largest distance | variance ratio | words "
-      "|\n|---|---|---|---|---|---|---|\n");
+      "| body | case | seed | p | largest distance | variance ratio | bands | coupling | words "
+      "|\n|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& file : files) {
     if (file.ends_with(".json")) {
       judge_recipe(file, seeds);
