@@ -74,7 +74,7 @@ void judge_body(const std::string& file, int seeds) {
   const TriangleMesh body = read_mesh(file);
   const std::string name = std::filesystem::path(file).stem().string();
   const double seconds = processor_seconds([&] { sampled(body, 0, 1); });
-  fmt::print("| {} | measured in {:.2f} processor seconds | | | | | |\n", name, seconds);
+  fmt::print("| {} | measured in {:.2f} processor seconds | | | | | | | |\n", name, seconds);
   const auto triangles = static_cast<double>(body.triangles.size());
   const TriangleMesh other = remeshed(body, triangles), finer = remeshed(body, 2 * triangles),
                      smooth = laplace_impostor(body), half = relief_impostor(body, 0.5),
