@@ -26,7 +26,7 @@ Smoothed smoothed(const Vec3d& point, const Vec3d& own_normal, double reach, con
                   const SurfaceSamples& samples) {
   constexpr double kNear = kBendReach * kBendReach / (kReach * kReach);
   constexpr double kOfMean = kReach * kReach / (kMeanReach * kMeanReach);
-  double weights = 0.0, near = 0.0, fine_squares = 0.0;
+  double weights = 0.0, near = 0.0, fine_squares = 0.0, fine_weights = 0.0;
   Vec3d normals{}, offsets{}, near_normals{}, fine_offsets{};
   for (const auto& [j, squared] : tree.within(point, reach)) {
     if (dot(samples.normals[j], own_normal) <= 0.0) continue;
@@ -36,6 +36,7 @@ Smoothed smoothed(const Vec3d& point, const Vec3d& own_normal, double reach, con
     offsets += w * (samples.points[j] - point);
     const double fine = std::max(0.0, 1.0 - kOfMean * squared / (reach * reach));
     fine_squares += fine * squared;
+    fine_weights += fine;
     fine_offsets += fine * (samples.points[j] - point);
     if (squared > kNear * reach * reach) continue;
     near += 1.0;
@@ -48,7 +49,10 @@ Smoothed smoothed(const Vec3d& point, const Vec3d& own_normal, double reach, con
   const double chord = near > 0.0 ? 2.0 - 2.0 * norm(near_normals) / near : 0.0;
   const double bend = chord > 1e-10 ? std::sqrt(chord) : 0.0;
   const double mean_square = kMeanSquare * reach * reach / (kReach * kReach);
-  const Vec3d mean = fine_squares > 0.0 ? point + (mean_square / fine_squares) * fine_offsets : point;
+  // Where samples lie near the point only, no more than twice their mean offset.
+  const double fine_factor =
+      fine_weights > 0.0 ? std::min(mean_square / fine_squares, 2.0 / fine_weights) : 0.0;
+  const Vec3d mean = point + fine_factor * fine_offsets;
   return {dot(offsets, normal) / weights, normal, bend, mean};
 }
 

@@ -17,6 +17,8 @@ namespace {
 // Steps that make each of kBandScales.
 constexpr std::array<int, kBandScales.size()> kStepsOfScale{1, 4, 16, 64, 256};
 constexpr std::int64_t kGrain = 512;
+// Wide enough that points of the nominal mean square distance keep a third for themselves.
+constexpr double kStepReach = 2.2;  // edges
 
 struct Share {
   std::uint32_t point;
@@ -30,7 +32,7 @@ struct Neighbour {
 };
 
 std::vector<Neighbour> neighbours_of(const EvenedSurface& even, const PointTree& tree, std::size_t i) {
-  const double reach = kMeanReach * even.edge;
+  const double reach = kStepReach * even.edge;
   const Tangents<double> along = crossed_tangents(even.normals[i]);
   std::vector<Neighbour> neighbours;
   for (const auto& [j, squared] : tree.within(even.points[i], reach)) {
@@ -61,9 +63,14 @@ void center(std::vector<Neighbour>& neighbours) {
 std::vector<Share> shares_around(const EvenedSurface& even, const PointTree& tree, std::size_t i) {
   std::vector<Neighbour> neighbours = neighbours_of(even, tree, i);
   center(neighbours);
-  double squares = 0.0;
-  for (const Neighbour& n : neighbours) squares += n.weight * n.squared;
-  const double factor = squares > 0.0 ? kMeanSquare * even.edge * even.edge / squares : 0.0;
+  double squares = 0.0, weights = 0.0;
+  for (const Neighbour& n : neighbours) {
+    squares += n.weight * n.squared;
+    weights += n.weight;
+  }
+  // No share is negative, else the steps would grow without bound where points are crowded, as in a crease.
+  const double factor =
+      weights > 0.0 ? std::min(kMeanSquare * even.edge * even.edge / squares, 1.0 / weights) : 0.0;
   std::vector<Share> shares;
   double own = 1.0;
   for (const Neighbour& n : neighbours) {

@@ -35,10 +35,10 @@ struct HeightBands {
 // The coupling is the correlation over the surface of sqrt(G_s a^2) and |b|, of the bands a from 3.2 to 6.4
 // and b from 6.4 to 12.8 edges, with s = 6.4 edges.
 //
-// G_s is made of (s / .8)^2 steps of the deviation .8 edges, each a mean over the points within 1.96 edges
-// with weights near 1 - d^2 / (1.96 edges)^2. Points that look away lie on another side of a thin body and do
-// not count. Near the border of an open mesh the means lean inwards. Throws WorkError when progress asks to
-// stop.
+// G_s is made of (s / .8)^2 steps of the deviation .8 edges, each a mean over the points within 2.2 edges
+// with weights near 1 - d^2 / (2.2 edges)^2; the first leads from the mesh to the points. Points that look
+// away lie on another side of a thin body and do not count. Near the border of an open mesh the means lean
+// inwards. Throws WorkError when progress asks to stop.
 HeightBands height_bands(const EvenedSurface& even, const Progress& progress = {});
 
 inline constexpr double kMostOfBody = 0.45;

@@ -119,6 +119,16 @@ TEST(HeightBands, AreCoupledWhereTheyAreHighTogether) {
   EXPECT_LT(coupling([&](const Vec3d& p) { return half(-p.z); }), -0.2);
 }
 
+// Creases crowd the points that look the same way.
+TEST(HeightBands, OfACrumpledMeshAreBounded) {
+  TriangleMesh mesh = icosphere(4);
+  CounterRandom random(1, 0);
+  for (Vec3d& p : mesh.vertices) p *= 1 + 0.4 * random.uniform();
+  const HeightBands found = bands_of(mesh, 5000);
+  ASSERT_EQ(found.bands.size(), 3u);
+  for (const HeightBand& band : found.bands) EXPECT_LT(band.rms, 3) << band.from;
+}
+
 TEST(HeightBands, ASmallBodyHasFewer) {
   EXPECT_EQ(bands_of(icosphere(4), 2500).bands.size(), 2u);  // radius 13 edges
   EXPECT_FALSE(bands_of(icosphere(4), 2500).coupling);
