@@ -251,6 +251,12 @@ TEST_F(CheckTiles, BadCertificatesAreRefused) {
     refuse(changed.dump(), culprit);
   };
   refuse_field("length_unit", "mm", "tile: was changed since synth wrote it");
+  refuse_field("euler_characteristic", 7, "tile: was changed");
+  refuse_field("euler_characteristic", {}, "tile: was changed");
+  Json without = Json::parse(good);
+  without["tile"].erase("euler_characteristic");
+  refuse(without.dump(), "tile: was changed");
+  refuse_field("checksum", std::string(64, '0'), "tile: was changed");
   refuse_field("triangles", Json::parse(good)["tile"]["triangles"].get<int>() + 2, "tile: was changed");
   refuse_field("count", 1e300, "tile.count: is no whole number");
   refuse_field("count", std::uint64_t{1} << 63, "tile.count: is no whole number");
