@@ -6,7 +6,7 @@
 
 Names of files become relative to the folder of the joined manifest. The digest is the SHA-256 of its lines without
 `seconds` and `version`: sets with equal digests are equal in every byte of every file. Exit status 1 where members are
-missing.
+missing, or were made from several recipes, with several options or by several versions of the program.
 """
 import argparse
 import hashlib
@@ -64,6 +64,11 @@ def main():
     if missing:
         print(f"{len(missing)} of {given.members} members are missing, the first is {missing[0]}", file=sys.stderr)
         return 1
+    for field in ("family", "version"):
+        stated = sorted({str(entry.get(field)) for entry in entries.values()})
+        if len(stated) > 1:
+            print(f"members of several sets: {field} is {' and '.join(stated[:2])}", file=sys.stderr)
+            return 1
     if given.output:
         write_whole("".join(json.dumps(entries[m]) + "\n" for m in sorted(entries)), target)
     print(f"{len(entries)} members, digest {digest(entries)}")

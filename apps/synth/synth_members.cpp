@@ -15,6 +15,7 @@
 #include "apps/synth/synth_aside.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "recipe/sha256.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -117,7 +118,21 @@ class MemberMaker {
         family_(hash_of_family(program, recipe)) {}
 
   const Manifest& manifest() const { return manifest_; }
-  bool continues_another_set() const { return manifest_.has_other_family(family_); }
+
+  // Throws InputError where members of the manifest were made otherwise: their bytes need not be those that
+  // this program and these options make.
+  void require_same_set(const fs::path& manifest) const {
+    const std::string instead =
+        "name another manifest and other files, or remove it to make all members anew";
+    if (manifest_.has_other_family(family_)) {
+      throw InputError(manifest.string() + ": has members of another recipe, or made with other options; " +
+                       instead);
+    }
+    const std::string other = manifest_.other_version(version());
+    if (other.empty()) return;
+    throw InputError(manifest.string() + ": has members that " + other + " made, and this is " + version() +
+                     "; go on with that program, " + instead);
+  }
 
   bool is_finished(std::uint64_t member) const { return manifest_.has(member, family_, names_of(member)); }
 
@@ -133,7 +148,7 @@ class MemberMaker {
     std::vector<ManifestFile> written;
     for (const fs::path& name : names_of(number)) written.push_back(manifest_.file_of(name));
     line["files"] = to_json(written);
-    line["version"] = program_.tool();
+    line["version"] = version();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     manifest_.append(line);
   }
@@ -171,6 +186,11 @@ class MemberMaker {
     for (const char* figure : {"vertices", "triangles", "closed", "manifold", "genus", "components"}) {
       if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];
     }
+  }
+
+  // Two programs with changes that no commit holds differ by the digest of these changes.
+  std::string version() const {
+    return program_.tool() + (kCodeVersion.changes.empty() ? "" : " " + kCodeVersion.changes);
   }
 
   Program& program_;
@@ -293,12 +313,7 @@ void make_members(Program& program, const MembersRequest& request, const MeshReq
   if (!files.mesh.empty()) check_mesh_request(mesh, recipe, file);
   if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
   const MemberMaker maker(program, request, mesh, files, recipe, file);
-  if (maker.continues_another_set()) {
-    throw InputError(
-        request.manifest.string() +
-        ": has members of another recipe, or made with other options; name another manifest and other "
-        "files, or remove it to make all members anew");
-  }
+  maker.require_same_set(request.manifest);
   prepare_outputs(program, maker, mesh, files, range.begin);
   prepare_summary(program);
   if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {

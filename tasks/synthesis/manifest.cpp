@@ -20,8 +20,8 @@ constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 28;
 
 bool is_entry(const json& line) {
   return line.is_object() && line.contains("member") && line["member"].is_number_unsigned() &&
-         line.contains("family") && line["family"].is_string() && line.contains("files") &&
-         line["files"].is_array();
+         line.contains("family") && line["family"].is_string() && line.contains("version") &&
+         line["version"].is_string() && line.contains("files") && line["files"].is_array();
 }
 
 bool is_file(const json& file) {
@@ -60,7 +60,7 @@ void Manifest::read() {
 bool Manifest::read_line(const std::string& line) {
   const json object = json::parse(line, nullptr, false);
   if (!is_entry(object)) return false;
-  ManifestEntry entry{object["family"].get<std::string>(), {}};
+  ManifestEntry entry{object["family"].get<std::string>(), object["version"].get<std::string>(), {}};
   for (const json& file : object["files"]) {
     if (!is_file(file)) return false;
     entry.files.push_back({file["name"].get<std::string>(), file["bytes"].get<std::uint64_t>(),
@@ -99,6 +99,12 @@ bool Manifest::has(std::uint64_t member, const std::string& family,
 bool Manifest::has_other_family(const std::string& family) const {
   return std::any_of(entries_.begin(), entries_.end(),
                      [&](const auto& entry) { return entry.second.family != family; });
+}
+
+std::string Manifest::other_version(const std::string& version) const {
+  const auto other = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const auto& entry) { return entry.second.version != version; });
+  return other == entries_.end() ? "" : other->second.version;
 }
 
 void Manifest::append(const nlohmann::ordered_json& line) const {

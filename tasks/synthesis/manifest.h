@@ -19,7 +19,8 @@ struct ManifestFile {
 };
 
 struct ManifestEntry {
-  std::string family;  // the SHA-256 of what all members have in common
+  std::string family;   // the SHA-256 of what all members have in common
+  std::string version;  // of the program that made it
   std::vector<ManifestFile> files;
 };
 
@@ -42,6 +43,9 @@ class Manifest {
 
   // Name, size and hash of a file that is there. Throws InputError when it cannot be read.
   ManifestFile file_of(const std::filesystem::path& file) const;
+
+  // The version of a program that made members of it and that is not this one; empty where there is none.
+  std::string other_version(const std::string& version) const;
 
   // Appends the line of a finished member: `line` has "member", "family", "files" and what else is to be
   // kept. Throws as append_line() does.

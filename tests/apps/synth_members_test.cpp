@@ -97,6 +97,17 @@ TEST_F(SynthMembers, AnotherSetIsNotWrittenOverThisOne) {
   EXPECT_EQ(text("set/set.jsonl"), lines);
 }
 
+TEST_F(SynthMembers, MembersOfAnotherVersionAreNotContinued) {
+  expect_made(make("0:2"), "2 made");
+  const std::string lines = text("set/set.jsonl");
+  const std::string version = manifest().at(0)["version"];
+  write("set/set.jsonl", replaced(lines, version, "synth 0.0.1 (abcdef0)"));
+  const Outcome other = make("0:3");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_TRUE(has(other.errors, "has members that synth 0.0.1 (abcdef0) made, and this is " + version));
+  EXPECT_FALSE(exists("set/body_0000002.ply"));
+}
+
 TEST_F(SynthMembers, MembersMayHaveFoldersOfTheirOwn) {
   expect_made(run("r.json --members 0:2 -o {member}/body.ply --manifest m.jsonl --resolution 20 --summary "
                   "sums/a.json"),
