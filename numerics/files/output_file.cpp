@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <system_error>
@@ -45,6 +46,24 @@ FileHandle open_linkable_file(const fs::path& target) {
 FileHandle create(const char* name) {
   const int descriptor = ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
   return descriptor < 0 ? nullptr : stream_of(descriptor);
+}
+
+std::atomic<int> g_unsynced{std::getenv("ASTROLITH_NO_SYNC") != nullptr ? 1 : 0};
+
+// False, with errno set, where the disk fails. A file system that cannot be asked is taken at its word.
+bool on_disk(int synced) { return synced == 0 || errno == EINVAL || errno == ENOTSUP; }
+
+bool sync(int descriptor) { return g_unsynced > 0 || on_disk(::fsync(descriptor)); }
+
+// The names in a folder. A folder that may be written and not read cannot be synced.
+bool sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return true;
+  const bool done = sync(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  return done;
 }
 
 // Renaming would replace a device by a file, or take away the name under which a program sees its own output.
@@ -146,7 +165,7 @@ void OutputFile::commit() {
   if (target_.extension() == ".zst") compress();
   const int descriptor = duplicate_descriptor();
   bool done = std::fclose(file_.release()) == 0;
-  done = done && name_it(descriptor);
+  done = done && sync(descriptor) && name_it(descriptor) && sync_folder(folder_of(target_));
   const int error = errno;
   ::close(descriptor);
   errno = error;
@@ -168,6 +187,18 @@ bool OutputFile::replace_target(const std::string& nameless) {
 
 void OutputFile::fail() const {
   throw WorkError(target_.string() + ": writing failed (" + std::strerror(errno) + "); is the disk full?");
+}
+
+UnsyncedOutputs::UnsyncedOutputs() { ++g_unsynced; }
+UnsyncedOutputs::~UnsyncedOutputs() { --g_unsynced; }
+
+void sync_file_system(const fs::path& file) {
+  const int descriptor = g_unsynced > 0 ? -1 : ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  const bool done = on_disk(::syncfs(descriptor));
+  const std::string reason = std::strerror(errno);
+  ::close(descriptor);
+  if (!done) throw WorkError(file.string() + ": the disk did not keep it (" + reason + ")");
 }
 
 void require_writable(const fs::path& target) { const OutputFile probe(target); }

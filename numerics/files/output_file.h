@@ -55,6 +55,9 @@ FileHandle open_nameless_file(const std::filesystem::path& target);
 // the start. Where the target exists, the whole file has a temporary name for the moment between two system
 // calls, because Linux can replace a name only by another name.
 //
+// This holds through a power cut, too: commit() waits until the disk has the content before it gives the
+// name, and then until the disk has the name. UnsyncedOutputs leaves that out.
+//
 // A target whose name ends in .zst is compressed by commit() (numerics/files/zstd_stream.h).
 class OutputFile {
  public:
@@ -74,7 +77,7 @@ class OutputFile {
   // WorkError when there is none left.
   int duplicate_descriptor();
 
-  // Gives the file its name. Throws WorkError when the disk is full.
+  // Gives the file its name. Throws WorkError when the disk is full, or fails to keep the file.
   void commit();
 
  private:
@@ -88,6 +91,21 @@ class OutputFile {
   std::unique_ptr<TemporaryName> temporary_;  // null while the file has no name
   FileHandle file_;
 };
+
+// While an object of this class lives, or where the environment has ASTROLITH_NO_SYNC, no commit() of the
+// process waits for the disk. It is meant for sets of thousands of small files, whose maker can tell a file
+// that a power cut damaged. Such a maker calls sync_file_system() at its end.
+class UnsyncedOutputs {
+ public:
+  UnsyncedOutputs();
+  UnsyncedOutputs(const UnsyncedOutputs&) = delete;
+  UnsyncedOutputs& operator=(const UnsyncedOutputs&) = delete;
+  ~UnsyncedOutputs();
+};
+
+// Waits until the disk has all files of the file system that holds this one, unless the environment has
+// ASTROLITH_NO_SYNC. A file that does not exist is no reason to wait. Throws WorkError when the disk fails.
+void sync_file_system(const std::filesystem::path& file);
 
 // Throws InputError when the file cannot be written. Programs call it before long work.
 void require_writable(const std::filesystem::path& target);

@@ -12,6 +12,22 @@
 
 #include "tests/support/scratch_folder.h"
 
+namespace {
+
+// What fsync() was called for, in the order of the calls: 'd' for a folder, 'n' for a file without a name,
+// 'f' for a file with one.
+std::string g_synced;
+
+}  // namespace
+
+// Takes the place of the C library's function in this program.
+extern "C" int fsync(int descriptor) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return -1;
+  g_synced += S_ISDIR(status.st_mode) ? 'd' : status.st_nlink == 0 ? 'n' : 'f';
+  return ::fdatasync(descriptor);
+}
+
 namespace astrolith {
 namespace {
 
@@ -139,6 +155,28 @@ TEST_F(OutputFileTest, ReplacesAFileWholeOrNotAtAll) {
     fs::remove(other_name);
     fs::remove(target);
   }
+}
+
+TEST_F(OutputFileTest, TheDiskHasTheContentBeforeTheNameAndThenTheName) {
+  if (!knows_nameless_files(folder)) GTEST_SKIP() << "no nameless files in " << folder;
+  for (int times = 0; times < 2; ++times) {  // a new file, and one that replaces it
+    g_synced.clear();
+    write_file(folder / "file");
+    EXPECT_EQ(g_synced, "nd");
+  }
+  g_synced.clear();
+  write_file(folder / "named", OutputFile::Start::kNamed);
+  EXPECT_EQ(g_synced, "fd");
+  g_synced.clear();
+  {
+    const UnsyncedOutputs unsynced;
+    write_file(folder / "file");
+  }
+  EXPECT_EQ(g_synced, "");
+  write_file(folder / "file");
+  EXPECT_EQ(g_synced, "nd");
+  EXPECT_NO_THROW(sync_file_system(folder / "file"));
+  EXPECT_NO_THROW(sync_file_system(folder / "none"));
 }
 
 TEST_F(OutputFileTest, HasThePermissionsOfAnyNewFile) {
