@@ -238,8 +238,9 @@ void run(Program& program, FitArguments& arguments) {
     if (realism) {
       shown.emplace(reported(*realism, target, arguments.unit));
     }
+    const TriangleMesh likeness = likeness_for_report(recipe);
     write_fit_report(target, fit, std::filesystem::path(arguments.mesh).filename().string(), arguments.report,
-                     shown ? &*shown : nullptr);
+                     shown ? &*shown : nullptr, likeness.triangles.empty() ? nullptr : &likeness);
   }
   program.summary.update(fit_figures(fit));
   program.summary["stopped_early"] = limit.reached();

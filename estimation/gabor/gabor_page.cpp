@@ -96,7 +96,7 @@ void write_gabor_page(const ReportPicture& exemplar, const ReportPicture& synthe
   write_report_page(
       {title,
        channel.gaussianity.value().sentence,
-       reliefs,
+       {reliefs},
        {texture_table(channel.gaussianity.value()), fit_table(channel)},
        {{"report.png",
          "Photo and noise, the gap of the pursuit, and the spectra of the photo and of the fit."}}},

@@ -46,7 +46,7 @@ void write_report_page(const ReportPage& page, const std::filesystem::path& file
   html += "<title>" + escaped_html(page.title) + "</title>\n</head>\n<body>\n<h1>" +
           escaped_html(page.title) + "</h1>\n";
   html += "<p>" + escaped_html(page.summary) + "</p>\n";
-  if (page.surfaces) html += turnable_surfaces_html(*page.surfaces);
+  html += turnable_surfaces_html(page.surfaces);
   for (const PagePicture& picture : page.pictures) html += figure_html(picture, file.parent_path());
   for (const PageTable& table : page.tables) {
     html += "<table>\n" + row(table.head, "th");

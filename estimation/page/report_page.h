@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,8 +22,8 @@ struct PageTable {
 
 struct ReportPage {
   std::string title;
-  std::string summary;  // one sentence
-  std::optional<TurnableSurfaces> surfaces;
+  std::string summary;                     // one sentence
+  std::vector<TurnableSurfaces> surfaces;  // pairs
   std::vector<PageTable> tables;
   std::vector<PagePicture> pictures;
 };

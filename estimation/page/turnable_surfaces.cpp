@@ -91,15 +91,13 @@ constexpr const char* kStyle =
     ".turnable .slider { width: 100% }\n.turnable label { margin-right: 2em }\n"
     ".turnable .scale span { display: inline-block; width: 10em; height: .8em }\n</style>\n";
 
-}  // namespace
-
-std::string turnable_surfaces_html(const TurnableSurfaces& surfaces) {
+std::string figure_html(const TurnableSurfaces& surfaces, const std::string& id) {
   check(surfaces.left);
   check(surfaces.right);
   const SceneCube cube = cube_around(surfaces);
   const bool colored = !surfaces.left.rgb.empty() || !surfaces.right.rgb.empty();
-  std::string html = kStyle;
-  html += "<figure class=\"turnable\" id=\"turnable\" hidden>\n<canvas class=\"canvas\"></canvas>\n";
+  std::string html =
+      "<figure class=\"turnable\" id=\"" + id + "\" hidden>\n<canvas class=\"canvas\"></canvas>\n";
   html += "<input class=\"slider\" type=\"range\" aria-label=\"border between the surfaces\" hidden>\n";
   html += "<div class=\"names\"><span>" + escaped_html(surfaces.left.caption) + "</span><span>" +
           escaped_html(surfaces.right.caption) + "</span></div>\n" + scale_html(surfaces);
@@ -109,10 +107,21 @@ std::string turnable_surfaces_html(const TurnableSurfaces& surfaces) {
       "them</label>\n";
   html += std::string("<label") + (colored ? "" : " hidden") +
           "><input class=\"colored\" type=\"checkbox\" checked> colours</label></figcaption>\n</figure>\n";
+  html += "<script>\nshowSurfaces(document.getElementById(\"" + id + "\"), [" +
+          surface_script(surfaces.left, cube) + ",\n" + surface_script(surfaces.right, cube) +
+          "]);\n</script>\n";
+  return html;
+}
+
+}  // namespace
+
+std::string turnable_surfaces_html(const std::vector<TurnableSurfaces>& pairs) {
+  if (pairs.empty()) return "";
+  std::string html = kStyle;
   html += "<script>" + std::string(three_script()) + "</script>\n<script>" + trackball_script() +
-          "</script>\n<script>" + surface_viewer_script() +
-          "\nshowSurfaces(document.getElementById(\"turnable\"), [" + surface_script(surfaces.left, cube) +
-          ",\n" + surface_script(surfaces.right, cube) + "]);\n</script>\n";
+          "</script>\n<script>" + surface_viewer_script() + "</script>\n";
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    html += figure_html(pairs[i], "turnable" + std::to_string(i));
   return html;
 }
 

@@ -176,7 +176,9 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   if (!counts_bytes) note_achieved(fit, recipe);
   if (!arguments.report.empty() && !stopped()) {
     const std::filesystem::path file = arguments.name;
-    write_fit_report(target, fit, file.filename().string(), arguments.report);
+    const TriangleMesh likeness = likeness_for_report(recipe);
+    write_fit_report(target, fit, file.filename().string(), arguments.report, nullptr,
+                     likeness.triangles.empty() ? nullptr : &likeness);
   }
   nlohmann::ordered_json figures = fit_figures(fit);
   figures["stopped_early"] = stopped() || limit.reached();

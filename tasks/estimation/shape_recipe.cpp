@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "estimation/shape/details/detailed_check.h"
+#include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/implicit_field.h"
 #include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
@@ -115,6 +118,24 @@ nlohmann::ordered_json fit_figures(const ShapeFitResult& fit) {
   summary["sharpness"] = fit.body.blend_exponent * fit.body.a;
   summary["evaluations"] = fit.evaluations;
   return summary;
+}
+
+TriangleMesh likeness_for_report(const Recipe& recipe) {
+  constexpr int kResolution = 160;
+  Recipe like = recipe;
+  bool has_relief = false;
+  for (Layer& layer : like.layers) {
+    ReliefLayer* relief = std::get_if<ReliefLayer>(&layer);
+    if (relief == nullptr || relief->pixels == nullptr) continue;
+    relief->arrangement = ReliefArrangement::kLike;
+    has_relief = true;
+  }
+  if (!has_relief) return {};
+  try {
+    return coarse_mesh_of(ImplicitField(like), kResolution);
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 nlohmann::ordered_json details_json(const DetailsFitResult& details) {

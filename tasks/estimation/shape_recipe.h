@@ -48,6 +48,10 @@ nlohmann::ordered_json fit_figures(const ShapeFitResult& fit);
 // unit.
 nlohmann::ordered_json relief_json(const ReliefFit& relief);
 
+// Another body of the kind of a recipe with a relief, as a report shows it; in the recipe's frame. Empty for
+// recipes without a relief, and where a model is too small for patches.
+TriangleMesh likeness_for_report(const Recipe& recipe);
+
 // The figures of a search: its evaluations and scores, and the roughness of target and details at each lag.
 nlohmann::ordered_json details_json(const DetailsFitResult& details);
 

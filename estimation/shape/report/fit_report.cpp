@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimation/page/report_page.h"
@@ -80,18 +80,34 @@ TurnableSurface colored_surface(const std::string& caption, const TriangleMesh& 
   return surface;
 }
 
-// Target and fit, each coloured by its distance from the other. Nothing where a body of very many small parts
-// cannot be decimated for a page.
-std::optional<TurnableSurfaces> target_beside_fit(const TargetBody& target, const ShapeFitResult& fit) {
+// Target and fit, each coloured by its distance from the other.
+TurnableSurfaces target_beside_fit(const TargetBody& target, const ShapeFitResult& fit) {
   const double largest = std::max(fit.check.distance.p99, 1e-9);
-  TurnableSurfaces surfaces{colored_surface("target", target.mesh, SurfaceTree(fit.check.mesh), largest),
-                            colored_surface("fit", fit.check.mesh, target.tree, largest),
-                            "the distance from the other body, of the bounding-box diagonal", "0",
-                            percent(largest)};
-  for (const TurnableSurface* surface : {&surfaces.left, &surfaces.right}) {
-    if (surface->mesh.vertices.size() > kMostPageVertices) return std::nullopt;
-  }
-  return surfaces;
+  return {colored_surface("target", target.mesh, SurfaceTree(fit.check.mesh), largest),
+          colored_surface("fit", fit.check.mesh, target.tree, largest),
+          "the distance from the other body, of the bounding-box diagonal", "0", percent(largest)};
+}
+
+TurnableSurface grey_surface(const std::string& caption, TriangleMesh mesh) {
+  if (mesh.vertices.size() > kMostPageVertices) mesh = decimated(mesh, kMostPageVertices);
+  return {caption, std::move(mesh), {}};
+}
+
+TurnableSurfaces target_beside_likeness(const TargetBody& target, TriangleMesh likeness) {
+  for (Vec3d& p : likeness.vertices) p = (1.0 / target.diagonal) * (p - target.center);
+  return {grey_surface("target", target.mesh), grey_surface("another body of its kind", std::move(likeness)),
+          "", "", ""};
+}
+
+// The pairs to turn, but for bodies of very many small parts, which cannot be decimated for a page.
+std::vector<TurnableSurfaces> surface_pairs(const TargetBody& target, const ShapeFitResult& fit,
+                                            const TriangleMesh* likeness) {
+  std::vector<TurnableSurfaces> pairs{target_beside_fit(target, fit)};
+  if (likeness != nullptr) pairs.push_back(target_beside_likeness(target, *likeness));
+  std::erase_if(pairs, [](const TurnableSurfaces& pair) {
+    return std::max(pair.left.mesh.vertices.size(), pair.right.mesh.vertices.size()) > kMostPageVertices;
+  });
+  return pairs;
 }
 
 // Signed distances from the target at points spread evenly over the fit, as fractions of the diagonal.
@@ -189,7 +205,8 @@ void add_realism(const TargetBody& target, const ReportedRealism& realism,
 }  // namespace
 
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
-                      const std::filesystem::path& folder, const ReportedRealism* realism) {
+                      const std::filesystem::path& folder, const ReportedRealism* realism,
+                      const TriangleMesh* likeness) {
   make_output_folder(folder);
   write_target_and_fit(target, fit, folder / "target_and_fit.png");
   write_distance_map(target, fit, folder / "distance_map.png");
@@ -200,7 +217,7 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
   ReportPage page{title,
                   std::to_string(fit.body.num_metaballs()) + " metaballs, mean distance " +
                       percent(fit.check.distance.mean) + " of the bounding-box diagonal.",
-                  target_beside_fit(target, fit),
+                  surface_pairs(target, fit, likeness),
                   {distance_table(fit.check.distance), likeness_table(fit), body_table(target, fit)},
                   {{"target_and_fit.png", shown + ", from four sides, under the same sun."},
                    {"distance_map.png", "Distance from the fit to the target, on the fit."},

@@ -28,10 +28,11 @@ struct ReportedRealism {
 //   convergence.png      mean distance (logarithmic) against iterations of the refinement
 //   quantile_curves.png  with `realism`: local statistics of both surfaces
 //   roughness_maps.png   with `realism`: both bodies, coloured by their roughness
-//   index.html           a page that needs no other file: both bodies to turn, these pictures, and tables of
-//   the
+//   index.html           a page that needs no other file: both bodies to turn, the target beside another body
+//                        of its kind (`likeness`, in the file's frame), these pictures, and tables of the
 //                        numbers
 void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const std::string& title,
-                      const std::filesystem::path& folder, const ReportedRealism* realism = nullptr);
+                      const std::filesystem::path& folder, const ReportedRealism* realism = nullptr,
+                      const TriangleMesh* likeness = nullptr);
 
 }  // namespace astrolith

@@ -14,7 +14,7 @@ TurnableSurface triangle(const std::string& caption) {
 }
 
 TEST(TurnableSurfaces, HoldSixteenBitSteps) {
-  const std::string html = turnable_surfaces_html({triangle("a"), triangle("b"), "", "", ""});
+  const std::string html = turnable_surfaces_html({{triangle("a"), triangle("b"), "", "", ""}});
   // The cube has the centre (1, .5, 0) and the half width 1.
   const std::vector<std::int16_t> steps{-32767, -16384, 0, 32767, -16384, 0, -32767, 16384, 0};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(steps.data());
@@ -24,7 +24,7 @@ TEST(TurnableSurfaces, HoldSixteenBitSteps) {
 }
 
 TEST(TurnableSurfaces, CaptionsAreEscapedAndScriptsEndWhereTheyShould) {
-  const std::string html = turnable_surfaces_html({triangle("</script>"), triangle("b"), "<i>", "0", "1"});
+  const std::string html = turnable_surfaces_html({{triangle("</script>"), triangle("b"), "<i>", "0", "1"}});
   EXPECT_NE(html.find("&lt;/script&gt;"), std::string::npos);
   EXPECT_NE(html.find("&lt;i&gt;"), std::string::npos);
   std::size_t opened = 0, closed = 0;
@@ -37,11 +37,11 @@ TEST(TurnableSurfaces, CaptionsAreEscapedAndScriptsEndWhereTheyShould) {
 TEST(TurnableSurfaces, AreNeitherEmptyNorTooLarge) {
   TurnableSurface large = triangle("large");
   large.mesh.vertices.resize(kMostPageVertices + 1);
-  EXPECT_THROW(turnable_surfaces_html({triangle("a"), large, "", "", ""}), std::invalid_argument);
-  EXPECT_THROW(turnable_surfaces_html({triangle("a"), {}, "", "", ""}), std::invalid_argument);
+  EXPECT_THROW(turnable_surfaces_html({{triangle("a"), large, "", "", ""}}), std::invalid_argument);
+  EXPECT_THROW(turnable_surfaces_html({{triangle("a"), {}, "", "", ""}}), std::invalid_argument);
   TurnableSurface uncolored = triangle("colours of two vertices");
   uncolored.rgb.resize(6);
-  EXPECT_THROW(turnable_surfaces_html({uncolored, triangle("b"), "", "", ""}), std::invalid_argument);
+  EXPECT_THROW(turnable_surfaces_html({{uncolored, triangle("b"), "", "", ""}}), std::invalid_argument);
 }
 
 TEST(PageText, Base64IsThatOfRfc4648) {
@@ -52,6 +52,14 @@ TEST(PageText, Base64IsThatOfRfc4648) {
   EXPECT_EQ(encoded("f"), "Zg==");
   EXPECT_EQ(encoded("fo"), "Zm8=");
   EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
+}
+
+TEST(TurnableSurfaces, ShareTheirViewer) {
+  const TurnableSurfaces pair{triangle("a"), triangle("b"), "", "", ""};
+  const std::string one = turnable_surfaces_html({pair}), two = turnable_surfaces_html({pair, pair});
+  EXPECT_NE(two.find("id=\"turnable1\""), std::string::npos);
+  EXPECT_LT(two.size() - one.size(), 4000u);  // three.js is there once
+  EXPECT_EQ(turnable_surfaces_html({}), "");
 }
 
 }  // namespace
