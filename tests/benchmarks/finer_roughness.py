@@ -87,7 +87,8 @@ def main():
                 added = heights - maps[0]
                 cell = round(pixels_per_edge)
                 count = added.shape[0] // cell
-                means = added[:count * cell, :count * cell].reshape(count, cell, count, cell); means = numpy.nanmean(numpy.nanmean(means, 3), 1)
+                cells = added[:count * cell, :count * cell].reshape(count, cell, count, cell)
+                means = numpy.nanmean(cells, (1, 3))
                 left[finer].append(means[numpy.isfinite(means)])
     print("| levels | H | " + " | ".join(f"{lag:g}" for lag in LAGS) + " | means over an edge, rms, edges |")
     print("|---" * (len(LAGS) + 3) + "|")
