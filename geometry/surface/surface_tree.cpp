@@ -20,12 +20,47 @@
 namespace astrolith {
 namespace {
 
+Box box_of(const TriangleMesh& mesh, std::size_t triangle, double margin) {
+  Box box;
+  for (const std::uint32_t v : mesh.triangles[triangle]) box.extend(mesh.vertices[v]);
+  const Vec3d around{margin, margin, margin};
+  return {box.min - around, box.max + around};
+}
+
+// The mean number of triangles whose boxes hold a place of the surface, by some places and some of the boxes:
+// a search looks at no fewer. Boxes are as wide as single precision makes them.
+double triangles_at_a_place(const TriangleMesh& mesh) {
+  constexpr std::size_t kPlaces = 64, kBoxes = 1 << 16;
+  const std::size_t count = mesh.triangles.size(), step = count / kBoxes + 1;
+  const double margin = 1e-6 * mesh.bounds().diagonal();
+  std::vector<Vec3d> places;
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    const auto [a, b, c] = mesh.triangles[(2 * k + 1) * count / (2 * kPlaces)];
+    places.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) * (1.0 / 3.0));
+  }
+  std::size_t held = 0;
+  for (std::size_t t = 0; t < count; t += step) {
+    const Box box = box_of(mesh, t, margin);
+    for (const Vec3d& p : places) held += boxes_touch(box, {p, p}) ? step : 0;
+  }
+  return static_cast<double>(held) / static_cast<double>(kPlaces);
+}
+
+// Measured shapes have 2 to 3 triangles at a place, a cylinder of 1,000 sides 60. Where there are 4,000, the
+// 200,000 searches of a comparison took 25 seconds.
+constexpr double kMostAtAPlace = 500.0;
+
 const TriangleMesh& checked(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw InputError("mesh: has no triangles; a surface needs at least one");
   for (const Vec3d& p : mesh.vertices) {
     if (!std::isfinite(squared_norm(p))) throw InputError("mesh: a vertex is not finite; repair the file");
   }
   check_indices(mesh);
+  if (const double crowd = triangles_at_a_place(mesh); crowd > kMostAtAPlace) {
+    throw InputError("mesh: " + std::to_string(std::llround(crowd)) +
+                     " of its faces meet at each place; vertices are far outside the body, or vertices or "
+                     "faces are garbled: repair the file");
+  }
   return mesh;
 }
 

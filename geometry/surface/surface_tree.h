@@ -26,7 +26,8 @@ struct ClosestPoint {
 class SurfaceTree {
  public:
   // Throws InputError for a mesh without triangles, with vertices that are not finite or with indices out of
-  // range, and WorkError when Embree does not start or runs out of memory.
+  // range, and for a garbled one, in which searches would have to look at hundreds of triangles. Throws
+  // WorkError when Embree does not start or runs out of memory.
   explicit SurfaceTree(const TriangleMesh& mesh);
   SurfaceTree(SurfaceTree&&) noexcept;
   SurfaceTree& operator=(SurfaceTree&&) noexcept;

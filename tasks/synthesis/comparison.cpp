@@ -2,6 +2,7 @@
 
 #include "descriptor/histogram_distance.h"
 #include "geometry/surface/surface_distance.h"
+#include "numerics/errors.h"
 #include "tasks/synthesis/describe_file.h"
 
 namespace astrolith {
@@ -42,10 +43,15 @@ void compare_histograms(const NamedMesh& a, const NamedMesh& b, bool with_floor,
   result["earth_movers"] = d.earth_movers;
 }
 
-void compare_surfaces(const TriangleMesh& a, const TriangleMesh& b, std::int64_t samples, std::uint64_t seed,
-                      const Progress& progress, nlohmann::ordered_json& result) {
-  const SurfaceDistanceReport d = surface_distance(a, b, samples, seed, progress);
-  const double diagonal = a.bounds().diagonal();
+SurfaceTree tree_of(const NamedMesh& shape) {
+  try {
+    return SurfaceTree(shape.mesh);
+  } catch (const InputError& e) {
+    throw InputError(shape.name + ": " + e.what());
+  }
+}
+
+void add_distances(const SurfaceDistanceReport& d, double diagonal, nlohmann::ordered_json& result) {
   result["mean_distance"] = d.mean / diagonal;
   result["p99_distance"] = d.p99 / diagonal;
   result["max_distance"] = d.max / diagonal;
@@ -59,10 +65,14 @@ void compare_surfaces(const TriangleMesh& a, const TriangleMesh& b, std::int64_t
 
 Comparison compare_meshes(const NamedMesh& a, const NamedMesh& b, const DescriptionOptions& options,
                           std::int64_t samples, bool with_floor, const StageProgress& progress) {
+  // Trees refuse garbled meshes, so that they come first.
+  const SurfaceTree tree_of_a = tree_of(a), tree_of_b = tree_of(b);
   Comparison comparison;
   comparison.figures = nlohmann::ordered_json::object();
   compare_histograms(a, b, with_floor, {options, progress, comparison.remarks}, comparison.figures);
-  compare_surfaces(a.mesh, b.mesh, samples, options.seed, progress("distance"), comparison.figures);
+  add_distances(
+      surface_distance(a.mesh, tree_of_a, b.mesh, tree_of_b, samples, options.seed, progress("distance")),
+      a.mesh.bounds().diagonal(), comparison.figures);
   return comparison;
 }
 

@@ -55,6 +55,24 @@ TEST(SurfaceTree, TiesGoToTheLowestTriangle) {
   }
 }
 
+// Boxes in single precision hold all triangles of a body that is tiny beside its mesh's box.
+TEST(SurfaceTree, AGarbledMeshIsRefused) {
+  TriangleMesh flung = icosphere(4);
+  flung.vertices[7] = 1e9 * flung.vertices[7];
+  EXPECT_THROW(SurfaceTree{flung}, InputError);
+  TriangleMesh exchanged = icosphere(5);
+  CounterRandom random(5);
+  for (Triangle& t : exchanged.triangles) {
+    for (std::uint32_t& v : t) {
+      v = static_cast<std::uint32_t>(random.uniform() * static_cast<double>(exchanged.vertices.size()));
+    }
+  }
+  EXPECT_THROW(SurfaceTree{exchanged}, InputError);
+  TriangleMesh moved = icosphere(4);  // one that is only odd
+  moved.vertices[7] = 9.0 * moved.vertices[7];
+  EXPECT_NO_THROW(SurfaceTree{moved});
+}
+
 TEST(SurfaceTree, FarAwayPoints) {
   const TriangleMesh mesh = icosphere(2);
   const SurfaceTree tree(mesh);
