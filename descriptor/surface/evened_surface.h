@@ -34,7 +34,8 @@ double evened_edge(double area, std::int64_t n);
 // height. A finer triangulation therefore adds nothing that a mesh of n vertices cannot have. Normals are
 // weighted means of the normals of facets. Facets that look away from the point's own normal lie on another
 // side of a thin body and do not count. Random places on the mesh, 5 a point, stand for the surface. Throws
-// InputError as sample_surface() does, and WorkError when progress asks to stop.
+// InputError as sample_surface() does and for a mesh that passes through itself so often that it is no
+// surface, and WorkError when progress asks to stop.
 EvenedSurface even_surface(const TriangleMesh& mesh, std::int64_t n, std::uint64_t seed,
                            const Progress& progress = {});
 

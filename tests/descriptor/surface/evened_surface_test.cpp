@@ -1,6 +1,7 @@
 #include "descriptor/surface/evened_surface.h"
 
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "tests/descriptor/surface/rough_spheres.h"
 
 namespace astrolith {
@@ -41,6 +42,18 @@ TEST(EvenedSurface, OtherSideOfAThinPlateDoesNotCount) {
   TriangleMesh plate = sheet(40, [](double, double) { return 0.1; });
   plate = testing::joined(plate, testing::reversed(sheet(40, [](double, double) { return -0.1; })));
   for (const Vec3d& p : even_surface(plate, 3000, 1).points) ASSERT_NEAR(std::fabs(p.z), 0.1, 1e-12);
+}
+
+// The area of a mesh whose vertices were exchanged is hundreds of times that of its box.
+TEST(EvenedSurface, AGarbledMeshIsNoSurface) {
+  TriangleMesh mesh = icosphere(6);
+  CounterRandom random(5);
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      v = static_cast<std::uint32_t>(random.uniform() * static_cast<double>(mesh.vertices.size()));
+    }
+  }
+  EXPECT_THROW(even_surface(mesh, 20000, 1), InputError);
 }
 
 TEST(EvenedSurface, StopsWhenAsked) {
