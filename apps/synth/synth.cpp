@@ -223,14 +223,15 @@ void synthesize(Program& program, const Options& options) {
                      "with --texture WxH");
   }
   const fs::path& body_file = options.base.empty() ? options.recipe : options.base;
+  const double patch_side = options.mesh.patch.empty() ? 0.0 : options.mesh.patch.back();
   if (!options.members.range.empty()) {
     const auto job = options.mesh.size.only_predict ? predict_members : make_members;
     return job(program, options.members, options.mesh, {options.output, options.written_recipe},
-               finished(program, options.finish, recipe, body_file.string()), body_file);
+               finished(program, options.finish, recipe, body_file.string(), patch_side), body_file);
   }
   const Recipe made =
       finished(program, options.finish, options.vary > 0.0 ? varied(program, options, recipe) : recipe,
-               body_file.string());
+               body_file.string(), patch_side);
   if (!options.written_recipe.empty()) write_loaded_recipe(made, options.written_recipe);
   if (options.output.empty() && !options.mesh.size.only_predict) return;
   make_mesh(program, options.mesh, made, body_file, options.output);

@@ -33,6 +33,16 @@ nlohmann::ordered_json json_of(const FinishLayer& layer) {
           {"source", std::string(layer.known.source)}};
 }
 
+// The ground of a patch is about twice as large as a side of its cube where it is rough.
+void require_room(const FinishLayer& layer, double patch_side) {
+  const double number = 2.0 * layer.density * patch_side * patch_side;
+  if (number <= kMaxDrawnLandforms) return;
+  throw InputError(
+      fmt::format("--to: a patch of side {:g} would hold some {:.2g} {} of {:.4g} and more, of which at most "
+                  "1e6 are drawn; raise it, or make a smaller patch",
+                  patch_side, number, layer.known.craters ? "craters" : "boulders", layer.least));
+}
+
 }  // namespace
 
 void declare_finish_options(Program& program, FinishOptions& options) {
@@ -68,12 +78,13 @@ void check_finish(const FinishOptions& options) {
   }
 }
 
-Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe,
-                const std::string& file) {
+Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe, const std::string& file,
+                double patch_side) {
   if (!options.wanted()) return recipe;
   Finish finish = finish_recipe(
       recipe, file,
       {options.body, options.from > 0.0 ? std::optional(options.from) : std::nullopt, options.to});
+  for (const FinishLayer& layer : finish.layers) require_room(layer, patch_side);
   auto layers = nlohmann::ordered_json::array();
   for (const FinishLayer& layer : finish.layers) {
     layers.push_back(json_of(layer));

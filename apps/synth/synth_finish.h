@@ -23,8 +23,9 @@ void declare_finish_options(Program& program, FinishOptions& options);
 void check_finish(const FinishOptions& options);
 
 // The recipe with the landforms that were asked for. Says on stderr and in the summary what of them is
-// measured and what is drawn. `file` names the recipe.
-Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe,
-                const std::string& file);
+// measured and what is drawn. `file` names the recipe. Throws InputError where a patch of this side (0: none)
+// would hold more landforms than a layer draws.
+Recipe finished(Program& program, const FinishOptions& options, const Recipe& recipe, const std::string& file,
+                double patch_side);
 
 }  // namespace astrolith

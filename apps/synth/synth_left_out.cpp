@@ -24,11 +24,20 @@ std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
                      type_word(layer), share);
 }
 
-std::string reason_of(const LayerLeftOut& left, const ImplicitField& field, bool is_patch) {
+// Whether copies of an image lie on the body, of which a whole body gets some 64 along its side.
+bool tiles_an_image(const LayerLeftOut& left, const Recipe& recipe) {
+  if (left.layer < 0) return false;
+  const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
+  return std::holds_alternative<ExemplarLayer>(layer) || std::holds_alternative<ReliefLayer>(layer);
+}
+
+std::string reason_of(const LayerLeftOut& left, const Recipe& recipe, const ImplicitField& field,
+                      bool is_patch) {
   if (left.landforms > 0.0) {
     return is_patch ? "smaller than 8 spacings of float coordinates"
                     : "more than the 2e5 landforms that a whole body gets";
   }
+  if (!is_patch && tiles_an_image(left, recipe)) return "made of images of less than about 1/64 of the body";
   if (!is_patch) return "finer than float coordinates of a body of this size resolve";
   return field.has_local_form() ? "finer than the coordinates of this patch resolve"
                                 : "finer than coordinates of a body made by operations resolve";
@@ -41,7 +50,7 @@ void report_layers_left_out(Program& program, const ImplicitField& field, const 
   auto list = nlohmann::ordered_json::array();
   std::map<std::string, std::string> words;  // by reason
   for (const LayerLeftOut& left : field.left_out()) {
-    const std::string reason = reason_of(left, field, is_patch);
+    const std::string reason = reason_of(left, recipe, field, is_patch);
     nlohmann::ordered_json entry;
     if (left.layer < 0) {
       entry = {{"layer", nullptr}, {"name", ""}, {"type", "body warp"}};

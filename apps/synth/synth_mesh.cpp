@@ -1,10 +1,13 @@
 #include "apps/synth/synth_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <new>
 #include <optional>
 #include <utility>
+
 
 #include "apps/counted.h"
 #include "apps/memory_use.h"
@@ -324,11 +327,35 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .placeholder("FILE.csv|FILE.json");
 }
 
+namespace {
+
+struct FieldRegion {
+  Region region;
+  ImplicitField field;
+};
+
+// The field of a region; a patch beside the surface is moved onto it.
+FieldRegion region_on_surface(Program& program, const Recipe& recipe, const fs::path& file, Region region) {
+  constexpr int kMostMoves = 3;  // fine layers are known near a patch alone
+  for (int move = 0;; ++move) {
+    ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));
+    const std::optional<Vec3d> beside =
+        move < kMostMoves ? surface_beside_patch(field, region) : std::nullopt;
+    if (!beside) return {region, std::move(field)};
+    program.say(fmt::format(
+        "patch: no surface crosses this cube; moved by {:.4g} {} to {:.9g} {:.9g} {:.9g} on the surface",
+        norm(*beside - region.center), recipe.length_unit, beside->x, beside->y, beside->z));
+    region.center = *beside;
+  }
+}
+
+}  // namespace
+
 void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
                const fs::path& output) {
-  const Region region = parse_region(request.tile, request.patch);
-  check_request(request, region, recipe, file);
-  const ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));
+  const Region asked = parse_region(request.tile, request.patch);
+  check_request(request, asked, recipe, file);
+  const auto [region, field] = region_on_surface(program, recipe, file, asked);
   const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(),
                     recipe.erosion.has_value(),
                     request.least_component > 0.0,

@@ -31,6 +31,8 @@ struct LayerSite {
   double body_side;           // longest side of the box that holds the body, length units
   FieldBelow below;           // empty where no layer below makes an elevation
   double height_bound = 0.0;  // bound of the |elevation| of the layers below, length units
+  // A box around the bare surface in the body's frame. Domains reach beyond it as far as metaballs do.
+  std::function<Box()> surface;
 
   // The body. It is valid until the body's arrays grow.
   BodyGround ground() const {

@@ -174,24 +174,31 @@ ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place
 
 ExemplarNoise placed(const ExemplarLayer& layer, const ExemplarNoise& prepared, const LayerSource& source,
                      const LayerSite& site, ArrayStore& arrays) {
-  const BodyGround body = site.ground();
-  return placed_exemplar(prepared, layer, source.recipe.seed, source.number, site.frame,
-                         {body, site.below, site.height_bound}, arrays);
+  return placed_exemplar(prepared, layer, source.recipe.seed, source.number, site, true, arrays);
 }
 
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
-                              int layer_index, const NoiseFrame& frame, const ExemplarGround& ground,
-                              ArrayStore& arrays) {
+                              int layer_index, const LayerSite& site, bool on_layers, ArrayStore& arrays) {
+  const BodyGround body = site.ground();
+  const ExemplarGround ground =
+      on_layers ? ExemplarGround{body, site.below, site.height_bound} : ExemplarGround{body};
+  NoiseFrame frame = site.frame;
   ExemplarNoise noise = made;
-  noise.low = to_float(frame.domain.min);
-  noise.high = to_float(frame.domain.max);
   noise.lifted = static_cast<bool>(ground.below);
   noise.lattice.anchors = {};
   const double edge = exemplar_edge(layer);
   noise.detail.left_out = 1.0;
   if (!(frame.farthest() / layer.pixel_size <= kLargestCell)) return noise;
-  const ExemplarCells cells = exemplar_cells(frame, {edge, edge, edge});
+  ExemplarCells cells = exemplar_cells(frame, {edge, edge, edge});
+  if (!(cells.anchors <= kMostExemplarAnchors) && !frame.moved) {
+    const Box surface = site.surface();
+    if (surface.empty()) return noise;
+    frame.domain = widened(surface, site.height_bound);
+    cells = exemplar_cells(frame, {edge, edge, edge});
+  }
   if (!(cells.anchors <= kMostExemplarAnchors)) return noise;
+  noise.low = to_float(frame.domain.min);
+  noise.high = to_float(frame.domain.max);
   noise.detail.left_out = 0.0;
   noise.lattice = cells.lattice;
   noise.lattice.anchors = arrays.add(

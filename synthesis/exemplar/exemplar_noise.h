@@ -35,12 +35,12 @@ struct ExemplarNoise {
 // The noise without a lattice: its height is 0 everywhere. Throws as make_exemplar_texture() does.
 ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place, ArrayStore& arrays);
 
-// The noise `made` by make_exemplar() with the anchors of a frame, whose domain holds the surface. Where the
-// frame has more than kMostExemplarAnchors anchors, or float coordinates cannot tell its pixels apart, the
-// whole layer is left out. `ground.body.arrays` may be a view of `arrays`.
+// The noise `made` by make_exemplar() with the anchors of a site: those of the frame's domain, or where they
+// are too many of the box around the surface. Where also these are more than kMostExemplarAnchors, or float
+// coordinates cannot tell the pixels apart, the whole layer is left out. With `on_layers` the noise lies on
+// the surface that the layers below make. The site's arrays may be `arrays`.
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
-                              int layer_index, const NoiseFrame& frame, const ExemplarGround& ground,
-                              ArrayStore& arrays);
+                              int layer_index, const LayerSite& site, bool on_layers, ArrayStore& arrays);
 
 // What a layer is at every site, and the noise with the anchors of one site (synthesis/field/layer_maker.h).
 inline ExemplarNoise prepare(const ExemplarLayer& layer, const LayerSource& source, ArrayStore& arrays) {

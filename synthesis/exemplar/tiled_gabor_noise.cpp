@@ -92,8 +92,7 @@ TiledGaborNoise placed(const GaborLayer& layer, const PhaseTileSet& set, const L
                        const LayerSite& site, ArrayStore& arrays) {
   std::vector<ExemplarNoise> tiles;
   for (const PhaseTileSet::Tile& tile : set.tiles) {
-    const BodyGround body = site.ground();  // each tile makes the arrays grow
-    tiles.push_back(placed_exemplar(tile.made, tile.layer, tile.seed, 0, site.frame, {body}, arrays));
+    tiles.push_back(placed_exemplar(tile.made, tile.layer, tile.seed, 0, site, false, arrays));
   }
   const GaborSurfaceNoise narrow =
       make_noise(set.narrow, source.recipe.seed, source.number, site.frame, site.body_side, arrays);

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "synthesis/field/bare_body.h"
 #include "synthesis/field/layers_below_internal.h"
 #include "synthesis/field/stack_state_internal.h"
 
@@ -21,7 +22,8 @@ LayerSite StackState::site(const NoiseFrame& frame, std::size_t below) const {
           model.metaballs.lists(),
           std::max({e.x, e.y, e.z}),
           field_below(model, below, frame),
-          model.height_bound};
+          model.height_bound,
+          [&of_layers = recipe] { return bare_body(of_layers).bounds; }};
 }
 
 void StackState::update_model() {

@@ -29,7 +29,7 @@ struct DrawingPlaces {
   // For a population that is drawn by cells: the box that the landforms matter to. Absent: the whole body.
   std::optional<Box> region = std::nullopt;
   double reach = 0.5;      // how far from its place a landform matters, in its diameters
-  double margin = 0.0;     // and beyond that, length units
+  double margin = 0.0;     // how far layers may move points of the surface, length units
   Progress progress = {};  // asked some times a second
 };
 

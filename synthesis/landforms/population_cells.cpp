@@ -111,9 +111,9 @@ class CellDrawing {
 
   // The landforms of a class that matter to the region.
   void add(const SizeClass& size, const std::string& where, std::vector<DrawnLandform>& out) const {
-    const double reach = places_.reach * size.upper + places_.margin;
+    const std::optional<Box> region = region_of(size);
     Box box = widened(surface_.bounds(), size.shell());
-    if (places_.region) box = common(box, widened(*places_.region, reach + size.shell()));
+    if (region) box = common(box, widened(*region, size.shell()));
     if (!valid(box)) return;
     const CellRange cells(box, size.cell);
     if (cells.total() > kMostCellsOfClass) fail(where, "look through more cells than 6e7");
@@ -126,7 +126,7 @@ class CellDrawing {
       parallel_for(0, count, [&](std::int64_t i) {
         auto& mine = drawn[static_cast<std::size_t>(i)];
         mine.clear();
-        draw_cell(size, cells[first + i], reach, mine);
+        draw_cell(size, cells[first + i], region, mine);
       });
       for (std::int64_t i = 0; i < count; ++i) {
         const auto& mine = drawn[static_cast<std::size_t>(i)];
@@ -150,7 +150,31 @@ class CellDrawing {
                     where, what));
   }
 
-  void draw_cell(const SizeClass& size, const Cell& cell, double reach,
+  // The box on the bare surface where landforms of a class matter to the region: the feet of the points
+  // within their reach. Layers may lift the surface by many times the region's side, but along normals.
+  std::optional<Box> region_of(const SizeClass& size) const {
+    if (!places_.region) return std::nullopt;
+    const double reach = places_.reach * size.upper;
+    return common(feet_of(widened(*places_.region, reach)), widened(*places_.region, reach + places_.margin));
+  }
+
+  // A box around the projections of the points of a box on the bare surface: of a lattice of points, with two
+  // of its steps for those between.
+  Box feet_of(const Box& box) const {
+    constexpr int kSteps = 8;
+    const Vec3d step = box.extent() * (1.0 / kSteps);
+    Box feet;
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int j = 0; j <= kSteps; ++j) {
+        for (int k = 0; k <= kSteps; ++k) {
+          feet.extend(surface_.projected(box.min + Vec3d{i * step.x, j * step.y, k * step.z}));
+        }
+      }
+    }
+    return widened(feet, 2.0 * std::max({step.x, step.y, step.z}));
+  }
+
+  void draw_cell(const SizeClass& size, const Cell& cell, const std::optional<Box>& region,
                  std::vector<DrawnLandform>& out) const {
     const double side = size.cell, shell = size.shell();
     const Vec3d corner{side * static_cast<double>(cell.x), side * static_cast<double>(cell.y),
@@ -165,18 +189,16 @@ class CellDrawing {
       Vec3d p{random.uniform(), random.uniform(), random.uniform()};
       p = corner + side * p;
       const CounterRandom own(random.next(), static_cast<std::uint64_t>(size.number));
-      if (std::fabs(surface_.value(p)) < shell) add_landform(size, p, reach, own, out);
+      if (std::fabs(surface_.value(p)) < shell) add_landform(size, p, region, own, out);
     }
   }
   static double next_event(CounterRandom& random) { return -portable::log(1.0 - random.uniform()); }
 
-  void add_landform(const SizeClass& size, const Vec3d& p, double reach, CounterRandom own,
-                    std::vector<DrawnLandform>& out) const {
+  void add_landform(const SizeClass& size, const Vec3d& p, const std::optional<Box>& region,
+                    CounterRandom own, std::vector<DrawnLandform>& out) const {
     DrawnLandform landform;
     landform.position = surface_.projected(p);
-    if (places_.region &&
-        !boxes_touch(widened(*places_.region, reach), {landform.position, landform.position}))
-      return;
+    if (region && !boxes_touch(*region, {landform.position, landform.position})) return;
     const double u = size.low_share + own.uniform() * (size.high_share - size.low_share);
     landform.diameter = diameter_at(population_, u);
     const double chance = own.uniform();

@@ -70,9 +70,8 @@ ReliefLevels place_levels(const LevelGround& ground, int count, const std::strin
   for (int k = 1; k <= count; ++k) {
     layer.pixel_size *= 0.25;
     const double gain = portable::exp(-k * ground.exponent * portable::log(4.0));
-    const BodyGround body = site.ground();  // each level makes the arrays grow
     const ExemplarNoise noise = placed_exemplar(made, layer, hash_append(hash, static_cast<std::uint32_t>(k)),
-                                                0, site.frame, {body}, arrays);
+                                                0, site, false, arrays);
     total += gain * gain;
     if (noise.lattice.anchors.count == 0) {
       left_out += gain * gain;

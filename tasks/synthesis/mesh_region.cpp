@@ -125,6 +125,18 @@ std::string rounded_count(double count) {
   return count >= 1e6 ? fmt::format("{:.1f} M", count / 1e6) : fmt::format("{:.0f} k", count / 1e3);
 }
 
+std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Region& region) {
+  constexpr double kNear = 0.02;           // of the body's diagonal
+  constexpr double kHalfDiagonal = 0.867;  // of a cube's side: no nearer surface can cross it
+  if (!region.is_patch) return {};
+  const std::optional<Vec3d> near = down_the_gradient(field, region.center);
+  if (!near) return {};
+  const double distance = norm(*near - region.center);
+  const bool beside =
+      distance > kHalfDiagonal * region.size && distance < kNear * norm(field.bounds().extent());
+  return beside ? near : std::nullopt;
+}
+
 void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,
                 const std::filesystem::path& file) {
   const int cells = region.is_patch ? kLookAround : std::min(resolution, kLookAround);

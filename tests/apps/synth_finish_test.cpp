@@ -44,6 +44,11 @@ TEST_F(SynthFinish, APatchHasTheLandformsOfAKnownBody) {
   EXPECT_TRUE(summary["layers_left_out"].empty());
 }
 
+TEST_F(SynthFinish, APatchOfTooManyLandformsIsRefusedInWordsOfTheOption) {
+  refuse("a.json -o p.ply --finish itokawa --from 4 --to 0.002 --patch 0 0 159 30",
+         "--to: a patch of side 30 would hold");
+}
+
 TEST_F(SynthFinish, TheWrittenRecipeMakesTheSamePatch) {
   const std::string patch = " --patch 0 0 159 6 --resolution 32";
   succeed("a.json -o a.ply --finish bennu --from 4 --to 0.4 --write-recipe made.json" + patch);

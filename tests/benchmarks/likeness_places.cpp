@@ -31,7 +31,9 @@ ReliefLayer* relief_of(Recipe& recipe) {
 // The heights of the first relief at these points.
 std::vector<double> heights_at(const ImplicitField& field, const std::vector<Vec3d>& points) {
   std::vector<double> heights;
-  for (const FieldLayer& layer : field.tables().layers) {
+  const FieldView tables = field.tables();
+  for (std::uint32_t i = 0; i < tables.num_layers; ++i) {
+    const FieldLayer& layer = tables.layers[i];
     const ReliefNoise* noise = layer.noise.get_if<ReliefNoise>();
     if (noise == nullptr) continue;
     for (const Vec3d& p : points)

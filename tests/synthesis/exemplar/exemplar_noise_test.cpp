@@ -126,6 +126,20 @@ TEST(ExemplarNoise, HasThePlanesValuesOnABall) {
   }
 }
 
+// Metaballs reach far beyond the surface; anchors need not.
+TEST(ExemplarNoise, IsKeptOnABodyFiftyImagesWide) {
+  const Recipe recipe = Ball::recipe_of(exemplar_layer(5e-4, 1e-4), 1.0);
+  const ImplicitField whole(recipe);
+  EXPECT_TRUE(whole.left_out().empty());
+  const Vec3d center{1.0, 0.0, 0.0};
+  const ImplicitField patch(recipe, "r", PatchCube{center, 0.02});
+  CounterRandom random(3);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d p = normalized(center + 0.008 * Vec3d{0.0, random.normal(), random.normal()});
+    ASSERT_NEAR(whole.value(p), patch.value(p), 2e-6);
+  }
+}
+
 // A body more than 64 images wide has too many anchors. The layer is left out and reported; a patch has it.
 TEST(ExemplarNoise, IsLeftOutWhereItsAnchorsAreTooMany) {
   const Recipe recipe = Ball::recipe_of(exemplar_layer(1e-4, 1e-4), 1.0);

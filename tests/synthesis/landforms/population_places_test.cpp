@@ -246,6 +246,29 @@ bool same(const DrawnLandform& a, const DrawnLandform& b) {
          CounterRandom(a.random).next() == CounterRandom(b.random).next();
 }
 
+// Layers lift the ground along normals: a small region far above the bare surface is not that of all ground
+// within its height.
+TEST(PopulationByCells, LiftedRegionsDrawWhatLiesBelowThem) {
+  const BareSurface surface = unit_sphere();
+  const Population population = by_cells(3000.0, 0.003, 0.05, 2.2);
+  const double lift = 0.4;
+  const Vec3d center = (1.0 + lift) * normalized(Vec3d{0.3, -0.5, 0.8});
+  DrawingPlaces places;
+  places.margin = lift;
+  places.region = widened(Box{center, center}, 0.05);
+  const auto some = draw_population(population, surface, 7, 2, "r", places);
+  std::size_t needed = 0, found = 0;
+  for (const DrawnLandform& f : draw_population(population, surface, 7, 2, "r")) {
+    const Vec3d lifted = (1.0 + lift) * f.position;
+    if (!boxes_touch(widened(*places.region, 0.5 * f.diameter), {lifted, lifted})) continue;
+    ++needed;
+    for (const DrawnLandform& other : some) found += same(f, other) ? 1 : 0;
+  }
+  EXPECT_GT(needed, 5u);
+  EXPECT_EQ(found, needed);
+  EXPECT_LT(some.size(), 40 * needed);
+}
+
 // A region draws exactly the landforms of the whole body that matter to it, in their order.
 TEST(PopulationByCells, RegionsDrawTheirOwn) {
   const BareSurface surface = unit_sphere();
