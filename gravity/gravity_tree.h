@@ -31,7 +31,9 @@ struct GravityNode {
   std::array<double, kMostOrder + 1> spread{};
 };
 
-// The multipoles of one node: four layers for each harmonic, real parts and then imaginary parts.
+// The multipoles of one node: four layers for each harmonic, real parts and then imaginary parts. They make
+// up the memory of a tree: 4,224 bytes a node, which are 350 to 700 a facet. Floats would halve that, but
+// could not keep tolerances down to 1e-12.
 struct GravityMultipoles {
   std::array<std::array<double, 8>, kHarmonics> terms;
 };
