@@ -80,11 +80,13 @@ ASTROLITH_SIMD_CLONES void take_spreads(int n, const Vec3f& a, float e, float ra
   }
 }
 
-// Writes bounds of exp k_i over the box, up to the factor that all kernels have in common.
-ASTROLITH_SIMD_CLONES void grow_weights(int n, float common, float radius, const float* __restrict value,
+// Writes bounds of exp k_i over the box, up to the factor that all kernels have in common: the mean of k_i
+// over the sum is a.d - e |d|^2 / 2 everywhere, since a and e are weighted means of v_i and c_i, so that the
+// sum of exp (k_i less this mean) is nowhere less than at the centre (Jensen).
+ASTROLITH_SIMD_CLONES void grow_weights(int n, float radius, const float* __restrict value,
                                         const float* __restrict spread, float* __restrict weight) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) weight[i] = value[i] * math::exp(math::fma(radius, spread[i], common));
+  for (int i = 0; i < n; ++i) weight[i] = value[i] * math::exp(radius * spread[i]);
 }
 
 // The logarithm of a sum of kernels over a box, in terms of LevelExpansion.
@@ -136,8 +138,7 @@ LogSum expand_sum(const MetaballParameters<float>& body, std::span<const Metabal
   double mean_spread = constant * spread_of_constant;
   for (std::size_t i = 0; i < spheres.size(); ++i) mean_spread += double{k.value[i]} * k.spread[i];
   mean_spread /= total;
-  const double common = radius * mean_spread;
-  grow_weights(n, static_cast<float>(common), r, k.value.data(), k.spread.data(), k.weight.data());
+  grow_weights(n, r, k.value.data(), k.spread.data(), k.weight.data());
   // Bounds of the mean curvature and of the variance of the slopes. Beyond kLargestGrowth the weights say
   // nothing, and the largest curvature and deviation are the bounds.
   double bend = 0.0, variance = 0.0, widest = 0.0, growth = 0.0;
@@ -146,10 +147,10 @@ LogSum expand_sum(const MetaballParameters<float>& body, std::span<const Metabal
     bend += weight * c;
     variance += weight * deviation * deviation;
     widest = std::max(widest, deviation);
-    growth = std::max(growth, common + radius * spread);
+    growth = std::max(growth, radius * spread);
   };
   if (constant > 0.0) {
-    add(constant * portable::exp(common + radius * spread_of_constant), spread_of_constant, 0.0);
+    add(constant * portable::exp(radius * spread_of_constant), spread_of_constant, 0.0);
   }
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (k.value[i] > 0.0f) add(k.weight[i], k.spread[i], k.curvature[i]);

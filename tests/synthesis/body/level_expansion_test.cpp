@@ -75,8 +75,8 @@ TEST(LevelExpansion, HoldsTheLevelTheGradientAndTheProjectionAtFloatPoints) {
     }
   }
   EXPECT_GT(expanded, 600);
-  EXPECT_GT(tight, 200);
-  EXPECT_GT(narrow, 200);
+  EXPECT_GT(tight, 975);
+  EXPECT_GT(narrow, 295);
 }
 
 // One sphere: L is quadratic, so that the lower bound is exact.
