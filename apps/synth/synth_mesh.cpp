@@ -225,7 +225,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
                       chosen ? MeshingDevice::kGpu : MeshingDevice::kCpu,
                       may_be_empty(request, region, output), request.even},
                      sinks, [&](const std::string& stage) { return program.progress(stage); });
-  const ManifoldReport& report = made.manifold;
+  ManifoldReport report = made.manifold;
   if (tile) tile->finish(report.open_vertices);
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
   if (made.even && report.triangles > 0) report_even(program, *made.even, recipe.length_unit);
@@ -239,6 +239,8 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (request.gravity.wanted())
     quantities = vertex_gravity(program, request.gravity, recipe, result.collected());
   result.write(quantities);
+  const MeshCounts kept = counts_in_file({report.vertices, report.triangles}, output);
+  report.vertices = kept.vertices, report.triangles = kept.triangles;
   if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
   if (!request.preview.maps.empty())
     write_preview_maps(program, request.preview, result.collected(), {recipe, file, region, field});

@@ -102,6 +102,10 @@ MeshWriter writer_for(const std::filesystem::path& file) {
 
 }  // namespace
 
+MeshCounts counts_in_file(const MeshCounts& mesh, const std::filesystem::path& file) {
+  return mesh_extension(file) == ".icq" ? icq_counts(mesh.triangles) : mesh;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
   TriangleMesh mesh = reader_for(content)(content);

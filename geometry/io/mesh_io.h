@@ -55,6 +55,13 @@ struct MeshFileInfo {
 // cannot hold.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
+// What a file of this name has of a mesh of so many vertices and triangles that write_mesh writes: the same,
+// but in an .icq. An .icq that is read again has these.
+struct MeshCounts {
+  std::int64_t vertices = 0, triangles = 0;
+};
+MeshCounts counts_in_file(const MeshCounts& mesh, const std::filesystem::path& file);
+
 // The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for "Bennu.PLY"
 // and for "bennu.ply.zst".
 std::string mesh_extension(const std::filesystem::path& file);

@@ -20,6 +20,8 @@ void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, cons
 // The two formats of plates have no place for comments. write_icq throws InputError for a body that has
 // several surfaces along a direction from its centre of mass.
 void write_icq(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+// The vertices and triangles of the .icq of a mesh of so many triangles.
+MeshCounts icq_counts(std::int64_t triangles);
 void write_plate(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
 // The lines of a file's comment: "length unit: km", "frame: ...", the comment and the program. Empty texts

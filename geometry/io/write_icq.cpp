@@ -146,6 +146,11 @@ void append_point(std::string& line, const Vec3d& p) {
 
 }  // namespace
 
+MeshCounts icq_counts(std::int64_t triangles) {
+  const std::int64_t q = fitting_q(static_cast<std::size_t>(triangles));
+  return {6 * q * q + 2, 12 * q * q};
+}
+
 void write_icq(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo&) {
   const Vec3d center = volume_centroid(mesh);
   require_star_shape(mesh, center, file);

@@ -110,8 +110,11 @@ TEST_F(Synth, GravityThatMakesNoSenseIsRefused) {
 TEST_F(Synth, WritesIcqAndPlates) {
   synthesise("a.tab");
   EXPECT_TRUE(analyze_topology(read_mesh(folder_ / "a.tab")).closed);
-  succeed(write("ball.json", ball_recipe("km", 1)) + " -o a.icq --resolution 32");
-  EXPECT_TRUE(analyze_topology(read_mesh(folder_ / "a.icq")).closed);
+  const auto made = figures(write("ball.json", ball_recipe("km", 1)) + " -o a.icq --resolution 32");
+  const TriangleMesh icq = read_mesh(folder_ / "a.icq");
+  EXPECT_TRUE(analyze_topology(icq).closed);
+  EXPECT_EQ(made["triangles"], icq.triangles.size());
+  EXPECT_EQ(made["vertices"], icq.vertices.size());
   write("apart.json", replaced(ball_recipe("km", 1), "]]", "], [9, 0, 0, 1]]"));
   refuse("apart.json -o b.icq --resolution 32", "b.icq");
 }
