@@ -67,9 +67,9 @@ void write(const std::string& text, const std::string& output) {
 
 SurfaceComparison judge(const Program& program, const Arguments& arguments, const TriangleMesh& a,
                         const TriangleMesh& b) {
-  SurfaceComparison made = judge_surfaces(
-      {arguments.a, a}, {arguments.b, b}, arguments.surface.with_seed(program.seed), arguments.floor,
-      arguments.unit, [&](const std::string& stage) { return program.progress(stage); });
+  SurfaceComparison made =
+      judge_surfaces({arguments.a, a}, {arguments.b, b}, arguments.surface.of(program), arguments.floor,
+                     arguments.unit, [&](const std::string& stage) { return program.progress(stage); });
   for (const std::string& remark : made.a.remarks) program.say(arguments.a + ": " + remark);
   for (const std::string& remark : made.b.remarks) program.say(arguments.b + ": " + remark);
   return made;

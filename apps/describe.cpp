@@ -70,9 +70,8 @@ void run_surface(Program& program, const Arguments& arguments) {
   require_extension(arguments.output, {".json", ".csv"});
   require_writable(arguments.output);
   const TriangleMesh mesh = read_mesh(arguments.shape);
-  const SurfaceStatistics surface =
-      describe_surface({arguments.shape, mesh}, arguments.surface_options.with_seed(program.seed),
-                       program.progress("surface"));
+  const SurfaceStatistics surface = describe_surface(
+      {arguments.shape, mesh}, arguments.surface_options.of(program), program.progress("surface"));
   for (const std::string& remark : surface.remarks) program.say(arguments.shape + ": " + remark);
   write_surface(surface, arguments.output);
   program.summary["surface"] = surface_json(surface);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "apps/command_line.h"
+#include "apps/density_question.h"
 #include "descriptor/surface/surface_statistics.h"
 
 namespace astrolith {
@@ -29,9 +30,10 @@ struct SurfaceOptions {
         .check(above_zero())
         .needs(flag);
   }
-  SurfaceStatisticsOptions with_seed(std::uint64_t seed) const {
+  SurfaceStatisticsOptions of(const Program& program) const {
+    question_density(program, statistics.density);
     SurfaceStatisticsOptions options = statistics;
-    options.seed = seed;
+    options.seed = program.seed;
     return options;
   }
 };

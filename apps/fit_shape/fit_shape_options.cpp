@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "apps/density_question.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -110,7 +111,6 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
   declare_run_options(program.app, arguments);
   declare_packing_options(program.app, arguments);
   Option bytes = program.app.option("--bytes");
-  bytes.needs(program.app.option("--base-only"));
   for (const char* option : {"--packing-only", "--variations", "--micro"}) {
     bytes.excludes(program.app.option(option));
   }
@@ -124,6 +124,10 @@ void settle_fit_options(const Program& program, FitArguments& arguments) {
     throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
   }
   arguments.fit.length_unit = arguments.unit;
+  if (arguments.fit.bytes > 0 && !arguments.details.base_only) {
+    throw InputError("--bytes: counts the bare body's bytes, to which details would add; add --base-only");
+  }
+  question_density(program, arguments.density);
   if (arguments.fit.bytes > 0 && program.app.option("--spheres").count() == 0) {
     arguments.fit.spheres = spheres_for_bytes(arguments.fit.bytes);
   }

@@ -2,6 +2,7 @@
 #include <string>
 #include <tuple>
 
+#include "apps/density_question.h"
 #include "apps/gravity/gravity_body.h"
 #include "apps/gravity/gravity_outputs.h"
 #include "apps/gravity/gravity_parts.h"
@@ -81,6 +82,7 @@ void check(const Program& program, const Arguments& a) {
   if (!(a.density > 0.0)) {
     throw InputError("--density: must be above 0 kg/m3; give one, such as 2000 for an asteroid of rubble");
   }
+  question_density(program, a.density);
   if (program.app.option("--period").count() > 0 && !(a.period > 0.0)) {
     throw InputError("--period: must be above 0 hours; leave it out for a body at rest");
   }

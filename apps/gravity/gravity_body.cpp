@@ -1,6 +1,7 @@
 #include "apps/gravity/gravity_body.h"
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -10,7 +11,13 @@ namespace astrolith {
 GravityBody read_gravity_body(const Program& program, const std::filesystem::path& file,
                               const std::string& unit, int resolution) {
   if (!is_recipe_name(file)) {
-    return gravity_body(read_mesh(file), unit.empty() ? "km" : unit, file.string());
+    GravityBody body = gravity_body(read_mesh(file), unit.empty() ? "km" : unit, file.string());
+    if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
+      program.say(
+          file.string() + ": holds " + std::to_string(surfaces) +
+          " surfaces apart from one another, bodies or cavities: their gravity is that of all together");
+    }
+    return body;
   }
   const Recipe recipe = load_recipe(file);
   if (!unit.empty() && unit != recipe.length_unit) {

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <sstream>
 
+#include "apps/density_question.h"
 #include "apps/gravity/gravity_body.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
@@ -43,6 +44,7 @@ std::vector<BodyPart> read_parts(const Program& program, const std::string& word
   std::istringstream all(words);
   for (std::string word; std::getline(all, word, ',');) {
     const PartWord read = parse(word);
+    question_density(program, read.density);
     const bool recipe = is_recipe_name(read.file);
     BodyPart part{read.file,
                   read_gravity_body(program, read.file, recipe ? "" : whole.unit, resolution),

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/density_question.h"
 #include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
@@ -195,6 +196,7 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
 // Refuses outputs that cannot be written before any work.
 void check_outputs(const Program& program, const Options& options) {
   check_finish(options.finish);
+  if (options.mesh.gravity.wanted()) question_density(program, options.mesh.gravity.density_and_period[0]);
   if (!options.members.range.empty()) {
     check_members(options.members, options.mesh, {options.output, options.written_recipe});
   }

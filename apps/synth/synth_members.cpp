@@ -269,7 +269,7 @@ void declare_members_options(Program& program, MembersRequest& request) {
           .add_option("--members", request.range,
                       "make members A to B - 1 of the recipe's family instead, each with files of its own: "
                       "{member} in their names stands for its number. Member 4711 is the same body on every "
-                      "machine")
+                      "machine. Needs a --manifest, but for --predict")
           .placeholder("A:B");
   program.app.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
       .needs(members)

@@ -91,6 +91,7 @@ TEST_F(FitShape, PackingOnlyWritesATableOfMascons) {
   EXPECT_TRUE(has(table, "x,y,z,radius,mass\n"));
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3 + 12);
   refuse("egg.obj -o no.json --density 2000", "--packing-only");
+  refuse("egg.obj -o no.json --bytes 500", "to which details would add; add --base-only");
   refuse("egg.obj -o no.csv --packing-only --points 500", "excludes");
 }
 

@@ -9,6 +9,7 @@
 #include "geometry/io/mesh_io.h"
 #include "tests/apps/inputs.h"
 #include "tests/apps/program_runner.h"
+#include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
@@ -43,6 +44,18 @@ class Gravity : public testing::ProgramTest {
     return rows;
   }
 };
+
+TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
+  const Outcome likely = run("ball.obj --density 2670");
+  EXPECT_EQ(likely.errors, "");
+  const Outcome light = run("ball.obj --density 2.67");
+  EXPECT_EQ(light.status, 0);
+  EXPECT_TRUE(has(light.errors, "a density of 2.67 kg/m^3 is that of no solid; for 2.67 g/cm^3 give 2670"));
+  write_mesh(testing::two_spheres(2, 1, 2.5), folder_ / "two.ply", {});
+  const Outcome two = run("two.ply --density 2000");
+  EXPECT_EQ(two.status, 0) << two.errors;
+  EXPECT_TRUE(has(two.errors, "two.ply: holds 2 surfaces apart from one another"));
+}
 
 // A ball of 1 km, 2,000 kg/m3: mass and fields within the error of its polyhedron.
 TEST_F(Gravity, OfABallThatTurns) {

@@ -178,6 +178,10 @@ TargetBody prepare_target(TriangleMesh mesh, const std::string& name, const Prog
     remarks.push_back("components overlap; their union is fitted, walls inside it are left out (" +
                       std::to_string(mesh.triangles.size() - outer.mesh.triangles.size()) + " faces)");
   }
+  if (outer.components > 1) {
+    remarks.push_back("holds " + std::to_string(outer.components) +
+                      " surfaces apart from one another, bodies or cavities; fitted together");
+  }
   report(progress, 0.7, "outer surface");
   require_no_crossing(mesh, outer.mesh, name, progress);
   const double area = surface_area(outer.mesh);

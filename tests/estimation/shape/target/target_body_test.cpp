@@ -79,6 +79,8 @@ TEST(TargetBody, AcceptsCavitiesAndSeveralComponents) {
 TEST(TargetBody, OverlappingComponentsBecomeTheirUnion) {
   const TargetBody apart = prepare_target(testing::two_spheres(3, 1.0, 2.6), "apart");
   EXPECT_EQ(apart.components, 2);
+  ASSERT_EQ(apart.remarks.size(), 1u);
+  EXPECT_NE(apart.remarks[0].find("holds 2 surfaces apart"), std::string::npos);
   EXPECT_EQ(apart.surface.triangles.size(), apart.mesh.triangles.size());
   // Two unit spheres one radius apart: each loses the cap of height 1/2, a quarter of its area.
   const TargetBody joined = prepare_target(testing::two_spheres(4, 1.0, 1.0), "joined");
