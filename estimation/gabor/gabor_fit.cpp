@@ -109,8 +109,8 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
   require_texture(exemplar, name);
   const Borders borders =
       options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
-  GaborFit fit = fit_gabor_spectrum(exemplar_periodogram(exemplar, options.largest_side, borders), name,
-                                    options, progress);
+  GaborFit fit = fit_gabor_spectrum(exemplar_periodogram(exemplar, options.largest_side, borders, progress),
+                                    name, options, progress);
   fit.exemplar_mean = mean_grey(exemplar);
   return fit;
 }

@@ -176,6 +176,7 @@ PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& opt
     read.planes.push_back(std::move(grey.image));
     read.remarks = std::move(grey.remarks);
   }
+  if (!report(progress, 0.0, "photo read")) throw WorkError(file.string() + ": stopped; nothing is written");
   PhotoFit photo = fit_planes(std::move(read.planes), file.string(), options, progress);
   photo.remarks = std::move(read.remarks);
   return photo;

@@ -8,6 +8,7 @@
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/periodic_component.h"
+#include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
@@ -90,7 +91,8 @@ PowerSpectrum power_spectrum(const GreyImage& image) {
   return spectrum;
 }
 
-PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Borders borders) {
+PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Borders borders,
+                                   const Progress& progress) {
   const int tile_width = std::min(image.width, largest_side);
   const int tile_height = std::min(image.height, largest_side);
   const std::vector<int> xs = tile_starts(image.width, tile_width);
@@ -101,6 +103,9 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
   mean.power.assign(static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height), 0.0);
   for (const int y : ys) {
     for (const int x : xs) {
+      if (!report(progress, 0.0, "spectrum of the photo")) {
+        throw WorkError("stopped before the spectrum was known; nothing is written");
+      }
       const PowerSpectrum one = periodogram_of(cut(image, x, y, tile_width, tile_height), borders);
       for (std::size_t i = 0; i < mean.power.size(); ++i) mean.power[i] += one.power[i];
     }

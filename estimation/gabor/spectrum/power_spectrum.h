@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "estimation/gabor/image/grey_image.h"
+#include "numerics/progress.h"
 
 namespace astrolith {
 
@@ -35,8 +36,9 @@ enum class Borders {
 
 // The periodogram to which lobes are fitted, with the mean removed. An image with a side above `largest_side`
 // is cut into half-overlapping tiles of at most this side, whose periodograms are averaged (Welch 1967). This
-// lowers speckle and bounds memory; frequencies below one cycle per tile are lost.
+// lowers speckle and bounds memory; frequencies below one cycle per tile are lost. Reports progress 0 after
+// each tile, and throws WorkError when asked to stop.
 PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side = 1024,
-                                   Borders borders = Borders::kTaper);
+                                   Borders borders = Borders::kTaper, const Progress& progress = {});
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/errors.h"
 #include "numerics/hash_random.h"
 
 namespace astrolith {
@@ -29,6 +30,17 @@ TEST(PowerSpectrum, MeanPowerIsTheVariance) {
     const GreyImage image = white_noise(w, h, 3);
     EXPECT_NEAR(power_spectrum(image).variance(), sample_variance(image), 1e-14);
   }
+}
+
+// A photo of 12,000 x 5,000 pixels has 200 tiles, which take seconds.
+TEST(PowerSpectrum, AMeanOverTilesIsReportedAndStops) {
+  const GreyImage image = white_noise(160, 96, 3);
+  int reports = 0;
+  exemplar_periodogram(image, 32, Borders::kTaper, [&](double, std::string_view) { return ++reports > 0; });
+  EXPECT_EQ(reports, 9 * 5);
+  EXPECT_THROW(
+      exemplar_periodogram(image, 32, Borders::kTaper, [](double, std::string_view) { return false; }),
+      WorkError);
 }
 
 TEST(PowerSpectrum, IsSymmetric) {
