@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-
 #include "apps/counted.h"
 #include "apps/memory_use.h"
 #include "apps/output_names.h"

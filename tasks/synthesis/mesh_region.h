@@ -32,8 +32,9 @@ Region patch_region(const Vec3d& center, double side);
 // The tile `number` of `count`, counted from 1. Throws InputError for a tile that does not exist.
 Region tile_region(int number, int count);
 
-// The point of the surface near the centre of a patch whose cube the surface misses, where there is one within
-// a fiftieth of the body: as for a place on the mesh to which the recipe was fitted. None for other regions.
+// The point of the surface near the centre of a patch whose cube the surface misses, where there is one
+// within a fiftieth of the body: as for a place on the mesh to which the recipe was fitted. None for other
+// regions.
 std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Region& region);
 
 // Names the part of a field or region that the GPU cannot mesh, in a few words. Empty where the GPU can mesh
