@@ -3,38 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <span>
+#include <string>
+#include <string_view>
 
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/mesh_writers_internal.h"
 #include "geometry/io/text_scanner_internal.h"
+#include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
-
-enum class Format { obj, ply, stl_ascii, stl_binary, off, plate, icq, bmf, other, unknown };
-
-struct FormatEntry {
-  Format format;
-  const char* name;
-  const char* extension;
-  MeshReader reader;
-};
-
-constexpr FormatEntry kFormats[] = {
-    {Format::obj, "Wavefront OBJ", ".obj", read_obj},
-    {Format::ply, "PLY", ".ply", read_ply},
-    {Format::stl_ascii, "ascii STL", ".stl", read_stl_ascii},
-    {Format::stl_binary, "binary STL", ".stl", read_stl_binary},
-    {Format::off, "OFF", ".off", read_off},
-    {Format::plate, "PDS plate model", ".tab", read_plate},
-    {Format::icq, "Gaskell ICQ", ".icq", read_icq},
-    {Format::bmf, "BMF", ".bmf", read_bmf},
-};
-
-const FormatEntry& entry(Format format) {
-  return *std::find_if(std::begin(kFormats), std::end(kFormats),
-                       [&](const FormatEntry& e) { return e.format == format; });
-}
 
 struct Signature {
   std::string_view start;
@@ -59,13 +37,10 @@ constexpr Signature kOtherFiles[] = {
     {"version https://git-lfs", "a Git LFS pointer"},
 };
 
-bool starts_with_any(std::string_view text, std::span<const std::string_view> starts) {
-  return std::any_of(starts.begin(), starts.end(), [&](std::string_view s) { return text.starts_with(s); });
-}
-
 // A binary STL has 80 bytes, a count and 50 bytes for each triangle. Files of other formats do not have
 // exactly this size.
-bool is_binary_stl(std::string_view bytes) {
+bool is_binary_stl(const MeshFile& file) {
+  const std::string_view bytes = file.bytes;
   if (bytes.size() < 84) return false;
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, sizeof count);
@@ -83,88 +58,138 @@ int count_numbers(TextScanner& scan) {
   return count;
 }
 
-// Tells tables of numbers apart. An ICQ states Q and goes on with "x y z". A plate model states its count (or
-// both counts) and goes on with "i x y z", after both counts perhaps with "x y z".
-Format sniff_table(const MeshFile& file) {
+bool is_ply(const MeshFile& file) {
+  return file.bytes.starts_with("ply\n") || file.bytes.starts_with("ply\r");
+}
+bool is_ascii_stl(const MeshFile& file) { return file.bytes.starts_with("solid"); }
+
+// How many numbers stand on the first two filled lines. An ICQ states Q and goes on with "x y z". A plate
+// model states its count (or both counts) and goes on with "i x y z", after both counts perhaps with "x y z".
+struct TableStart {
+  int first, second;
+};
+TableStart table_start(const MeshFile& file) {
   TextScanner scan(file);
   const int first = count_numbers(scan);
-  const int second = count_numbers(scan);
-  if (first == 1 && second == 3) return Format::icq;
-  if ((first == 1 || first == 2) && second == 4) return Format::plate;
-  if (first == 2 && second == 3) return Format::plate;  // rows without numbers
-  return Format::unknown;
+  return {first, count_numbers(scan)};
+}
+bool is_icq(const MeshFile& file) {
+  const auto [first, second] = table_start(file);
+  return first == 1 && second == 3;
+}
+bool is_plate(const MeshFile& file) {
+  const auto [first, second] = table_start(file);
+  return ((first == 1 || first == 2) && second == 4) || (first == 2 && second == 3);
 }
 
-Format sniff_words(const MeshFile& file) {
+std::string_view first_word(TextScanner& scan) { return scan.next_filled_line() ? scan.word() : ""; }
+bool is_obj(const MeshFile& file) {
+  static constexpr std::string_view kWords[] = {"v", "vn", "vt",     "vp",     "f",
+                                                "o", "g",  "mtllib", "usemtl", "s"};
   TextScanner scan(file);
-  if (!scan.next_filled_line()) return Format::unknown;
-  static constexpr std::array<std::string_view, 10> kObjWords{"v", "vn", "vt",     "vp",     "f",
-                                                              "o", "g",  "mtllib", "usemtl", "s"};
-  const std::string_view word = scan.word();
-  if (std::find(kObjWords.begin(), kObjWords.end(), word) != kObjWords.end()) return Format::obj;
-  static constexpr std::array<std::string_view, 6> kOffWords{"OFF",   "COFF",  "NOFF",
-                                                             "CNOFF", "STOFF", "NCOFF"};
-  if (starts_with_any(word, kOffWords)) return Format::off;
-  return sniff_table(file);
+  return std::find(std::begin(kWords), std::end(kWords), first_word(scan)) != std::end(kWords);
+}
+bool is_off(const MeshFile& file) {
+  static constexpr std::string_view kStarts[] = {"OFF", "COFF", "NOFF", "CNOFF", "STOFF", "NCOFF"};
+  TextScanner scan(file);
+  const std::string_view word = first_word(scan);
+  return std::any_of(std::begin(kStarts), std::end(kStarts),
+                     [&](std::string_view start) { return word.starts_with(start); });
+}
+bool never(const MeshFile&) { return false; }  // known by its name alone
+
+struct MeshFormat {
+  const char* name;
+  std::array<std::string_view, 4> extensions;  // that may stand for it, its own first
+  MeshReader reader;                           // null: meshes are only written so
+  MeshWriter writer;                           // null: meshes are only read so
+  bool (*has)(const MeshFile&);                // whether the content tells the format
+};
+
+// In the order in which contents are looked at; of the formats of an extension the likeliest comes first.
+constexpr MeshFormat kFormats[] = {
+    {"PLY", {".ply"}, read_ply, write_ply, is_ply},
+    {"binary STL", {".stl"}, read_stl_binary, write_stl, is_binary_stl},
+    {"ascii STL", {".stl"}, read_stl_ascii, nullptr, is_ascii_stl},
+    {"PDS plate model", {".tab", ".plt", ".txt"}, read_plate, write_plate, is_plate},
+    {"Gaskell ICQ", {".icq", ".tab", ".plt", ".txt"}, read_icq, write_icq, is_icq},
+    {"Wavefront OBJ", {".obj", ".tab", ".plt", ".txt"}, read_obj, write_obj, is_obj},
+    {"OFF", {".off"}, read_off, nullptr, is_off},
+    {"BMF", {".bmf"}, read_bmf, nullptr, never},
+    {"glTF", {".glb"}, nullptr, write_glb, never},
+};
+
+bool may_end_in(const MeshFormat& format, const std::string& extension) {
+  return !extension.empty() &&
+         std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end();
 }
 
-Format sniff(const MeshFile& file) {
-  const std::string_view bytes = file.bytes;
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return Format::ply;
-  if (is_binary_stl(bytes)) return Format::stl_binary;
-  if (bytes.starts_with("solid")) return Format::stl_ascii;
-  for (const Signature& other : kOtherFiles) {
-    if (bytes.starts_with(other.start)) return Format::other;
+// The extensions of formats with a member, such as ".ply .stl .tab".
+template <class Member>
+std::string extensions_with(Member MeshFormat::*member) {
+  std::string words;
+  for (const MeshFormat& format : kFormats) {
+    const std::string extension(format.extensions[0]);
+    if (format.*member == nullptr || words.find(extension) != std::string::npos) continue;
+    words += (words.empty() ? "" : " ") + extension;
   }
-  return sniff_words(file);
+  return words;
 }
 
-// The formats that an extension may stand for, the likeliest first; none for an unknown extension.
-std::span<const Format> formats_of(const std::string& extension) {
-  using enum Format;
-  static constexpr Format kTable[] = {plate, icq, obj};
-  static constexpr Format kIcq[] = {icq};
-  static constexpr Format kStl[] = {stl_binary, stl_ascii};
-  static constexpr Format kObj[] = {obj}, kPly[] = {ply}, kOff[] = {off}, kBmf[] = {bmf};
-  if (extension == ".obj") return kObj;
-  if (extension == ".ply") return kPly;
-  if (extension == ".stl") return kStl;
-  if (extension == ".off") return kOff;
-  if (extension == ".bmf") return kBmf;
-  if (extension == ".icq") return kIcq;
-  if (extension == ".tab" || extension == ".plt" || extension == ".txt") return kTable;
-  return {};
-}
+std::string remedy() { return "give a mesh (" + extensions_with(&MeshFormat::reader) + ")"; }
 
-std::string describe(const MeshFile& file, Format seen) {
+[[noreturn]] void fail_unknown(const MeshFile& file) {
   for (const Signature& other : kOtherFiles) {
-    if (seen == Format::other && file.bytes.starts_with(other.start)) return other.name;
+    if (file.bytes.starts_with(other.start)) {
+      file.fail("byte 0", std::string("the content is ") + other.name, remedy());
+    }
   }
-  return entry(seen).name;
+  file.fail("byte 0", "neither name nor content tells a mesh format", remedy());
+}
+
+bool is_other_file(const MeshFile& file) {
+  return std::any_of(std::begin(kOtherFiles), std::end(kOtherFiles),
+                     [&](const Signature& other) { return file.bytes.starts_with(other.start); });
 }
 
 }  // namespace
 
 MeshReader reader_for(const MeshFile& file) {
-  const auto named = formats_of(mesh_extension(file.path));
-  const Format seen = sniff(file);
-  if (seen == Format::other) {
-    file.fail("byte 0", "the content is " + describe(file, seen),
-              "give a mesh (.obj .ply .stl .off .tab .icq .bmf)");
+  const std::string extension = mesh_extension(file.path);
+  const auto named = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const MeshFormat& f) {
+    return f.reader != nullptr && may_end_in(f, extension);
+  });
+  const auto seen = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                 [&](const MeshFormat& f) { return f.has(file); });
+  const bool is_named = named != std::end(kFormats);
+  if (seen == std::end(kFormats)) {
+    if (!is_named || is_other_file(file)) fail_unknown(file);
+    return named->reader;
   }
-  if (seen == Format::unknown) {
-    if (!named.empty()) return entry(named.front()).reader;
-    file.fail("byte 0", "neither name nor content tells a mesh format",
-              "give a mesh (.obj .ply .stl .off .tab .icq .bmf)");
+  if (is_named && !may_end_in(*seen, extension)) {
+    file.fail("byte 0", "the name ends in " + extension + " but the content looks like " + seen->name,
+              "rename it to " + std::string(seen->extensions[0]));
   }
-  const bool agree = named.empty() || std::find(named.begin(), named.end(), seen) != named.end();
-  if (!agree) {
-    file.fail("byte 0",
-              "the name ends in " + mesh_extension(file.path) + " but the content looks like " +
-                  describe(file, seen),
-              std::string("rename it to ") + entry(seen).extension);
+  return seen->reader;
+}
+
+MeshWriter writer_for(const std::filesystem::path& file) {
+  const std::string extension = mesh_extension(file);
+  if (file.extension() == ".zst" && extension != ".ply") {
+    throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
   }
-  return entry(seen).reader;
+  for (const MeshFormat& format : kFormats) {
+    if (format.writer != nullptr && format.extensions[0] == extension) return format.writer;
+  }
+  throw InputError(file.string() + ": meshes are written as " + extensions_with(&MeshFormat::writer) +
+                   "; choose one of these");
+}
+
+bool has_mesh_extension(const std::filesystem::path& file) {
+  const std::string extension = mesh_extension(file);
+  return extension != ".txt" &&
+         std::any_of(std::begin(kFormats), std::end(kFormats),
+                     [&](const MeshFormat& f) { return f.reader != nullptr && may_end_in(f, extension); });
 }
 
 }  // namespace astrolith

@@ -1,7 +1,6 @@
 #include "geometry/io/mesh_io.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -82,24 +81,6 @@ void require_writable(const TriangleMesh& mesh, const std::filesystem::path& fil
   }
 }
 
-using MeshWriter = void (*)(const TriangleMesh&, const std::filesystem::path&, const MeshFileInfo&);
-
-MeshWriter writer_for(const std::filesystem::path& file) {
-  const std::string extension = mesh_extension(file);
-  if (extension == ".ply") return write_ply;
-  if (file.extension() == ".zst") {
-    throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
-  }
-  if (extension == ".obj") return write_obj;
-  if (extension == ".stl") return write_stl;
-  if (extension == ".glb") return write_glb;
-  if (extension == ".icq") return write_icq;
-  if (extension == ".tab") return write_plate;
-  throw InputError(file.string() +
-                   ": meshes are written as .ply, .obj, .stl, .glb, .icq or .tab; choose one of "
-                   "these");
-}
-
 }  // namespace
 
 MeshCounts counts_in_file(const MeshCounts& mesh, const std::filesystem::path& file) {
@@ -129,12 +110,6 @@ std::string mesh_extension(const std::filesystem::path& file) {
   std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
   for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return extension;
-}
-
-bool has_mesh_extension(const std::filesystem::path& file) {
-  static constexpr std::array<std::string_view, 8> kExtensions{".obj", ".ply", ".stl", ".off",
-                                                               ".tab", ".plt", ".icq", ".bmf"};
-  return std::find(kExtensions.begin(), kExtensions.end(), mesh_extension(file)) != kExtensions.end();
 }
 
 bool is_ply_name(const std::filesystem::path& file) { return mesh_extension(file) == ".ply"; }
