@@ -81,11 +81,11 @@ std::vector<Tile> read_tiles(const std::vector<fs::path>& files) {
 // Ends the reading of a mesh, which may be large.
 class StopByCtrlC : public MeshSink {
  public:
-  void add_vertices(std::span<const MeshVertex>) override { heed(); }
-  void add_triangles(std::span<const Triangle>) override { heed(); }
+  void add_vertices(std::span<const MeshVertex>) override { stop_if_asked(); }
+  void add_triangles(std::span<const Triangle>) override { stop_if_asked(); }
 
  private:
-  static void heed() {
+  static void stop_if_asked() {
     if (Program::interrupted()) throw WorkError("meshes: stopped before all were read");
   }
 };

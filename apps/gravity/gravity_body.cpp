@@ -11,7 +11,7 @@ namespace astrolith {
 GravityBody read_gravity_body(const Program& program, const std::filesystem::path& file,
                               const std::string& unit, int resolution) {
   if (!is_recipe_name(file)) {
-    GravityBody body = gravity_body(read_mesh(file), unit.empty() ? "km" : unit, file.string());
+    GravityBody body = body_of_mesh(read_mesh(file), unit.empty() ? "km" : unit, file.string());
     if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
       program.say(
           file.string() + ": holds " + std::to_string(surfaces) +
@@ -23,8 +23,8 @@ GravityBody read_gravity_body(const Program& program, const std::filesystem::pat
   if (!unit.empty() && unit != recipe.length_unit) {
     throw InputError("--unit: the recipe states " + recipe.length_unit + "; leave the option out");
   }
-  return gravity_body(recipe, resolution, file.string(),
-                      [&](const std::string& stage) { return program.progress(stage); });
+  return body_of_recipe(recipe, resolution, file.string(),
+                        [&](const std::string& stage) { return program.progress(stage); });
 }
 
 }  // namespace astrolith

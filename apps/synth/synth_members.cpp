@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "apps/counted.h"
-#include "apps/synth/synth_aside.h"
+#include "apps/synth/silenced_program.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/version/code_version.h"
@@ -181,7 +181,7 @@ class MemberMaker {
       if (recipe_.family->any_view) line["view"] = {member.view.x, member.view.y, member.view.z};
       if (recipe_.family->any_sun) line["sun"] = {member.sun.x, member.sun.y, member.sun.z};
     }
-    const Aside aside(program_);
+    const SilencedProgram silenced(program_);
     make_mesh(program_, request, member.recipe, file_, numbered(files_.mesh, number));
     for (const char* figure : {"vertices", "triangles", "closed", "manifold", "genus", "components"}) {
       if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];

@@ -37,11 +37,11 @@ void declare_members_options(Program& program, MembersRequest& request);
 // and for a name that would be the same for all members.
 void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files);
 
-// Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
-// the others go on. `file` is the recipe's, for messages. Throws InputError where no member can be made.
 // Makes the folder of the summary, and throws InputError where the summary cannot be written.
 void prepare_summary(const Program& program);
 
+// Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
+// the others go on. `file` is the recipe's, for messages. Throws InputError where no member can be made.
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
                   const MemberFiles& files, const Recipe& recipe, const std::filesystem::path& file);
 

@@ -14,7 +14,7 @@
 
 #include "apps/counted.h"
 #include "apps/memory_use.h"
-#include "apps/synth/synth_aside.h"
+#include "apps/synth/silenced_program.h"
 #include "numerics/errors.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/mesh_region.h"
@@ -70,7 +70,7 @@ class PassingFolder {
   fs::path path_;
 };
 
-struct Takes {
+struct MemberCost {
   double triangles = 0.0, file_bytes = 0.0, seconds = 0.0, peak_bytes = 0.0;
 };
 
@@ -82,7 +82,7 @@ class MemberPrediction {
     if (files_.mesh.empty() && files_.recipe.empty()) files_.mesh = "body.ply";
   }
 
-  Takes of(std::uint64_t number) const {
+  MemberCost of(std::uint64_t number) const {
     const auto start = std::chrono::steady_clock::now();
     const FamilyMember member = family_member(recipe_, number);
     const auto seconds = [&] {
@@ -93,22 +93,22 @@ class MemberPrediction {
       return {0.0, bytes, seconds(), static_cast<double>(peak_bytes())};
     }
     int resolution = 0;
-    Takes takes = predicted(member, resolution);
-    if (resolution > kSmall) return with_other_files(member, takes);
+    MemberCost cost = predicted(member, resolution);
+    if (resolution > kSmall) return with_other_files(member, cost);
     const auto begin = std::chrono::steady_clock::now();
-    takes.file_bytes = made(member, &mesh_);
-    takes.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    takes.peak_bytes = std::max(takes.peak_bytes, static_cast<double>(peak_bytes()));
-    return takes;
+    cost.file_bytes = made(member, &mesh_);
+    cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    cost.peak_bytes = std::max(cost.peak_bytes, static_cast<double>(peak_bytes()));
+    return cost;
   }
 
  private:
   // The mesh alone.
-  Takes predicted(const FamilyMember& member, int& resolution) const {
+  MemberCost predicted(const FamilyMember& member, int& resolution) const {
     MeshRequest request = mesh_;
     request.size.only_predict = true;
     const double before = std::min(program_.seconds(), static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
-    const Aside aside(program_);
+    const SilencedProgram silenced(program_);
     make_mesh(program_, request, member.recipe, file_, files_.mesh);
     const auto& figures = program_.summary["predicted"];
     resolution = program_.summary["resolution"].get<int>();
@@ -117,17 +117,17 @@ class MemberPrediction {
   }
 
   // Pictures, lists and recipes hardly depend on the resolution: those of a coarse mesh stand for them.
-  Takes with_other_files(const FamilyMember& member, Takes takes) const {
-    if (mesh_.preview.file.empty() && mesh_.landforms.empty() && files_.recipe.empty()) return takes;
+  MemberCost with_other_files(const FamilyMember& member, MemberCost cost) const {
+    if (mesh_.preview.file.empty() && mesh_.landforms.empty() && files_.recipe.empty()) return cost;
     MeshRequest coarse = mesh_;
     coarse.size = {};
     coarse.size.resolution = kSmall;
     coarse.gravity = {};
     coarse.labels = false;
     const auto begin = std::chrono::steady_clock::now();
-    takes.file_bytes += made(member, &coarse, false);
-    takes.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return takes;
+    cost.file_bytes += made(member, &coarse, false);
+    cost.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return cost;
   }
 
   // Makes the files of a member, without its mesh where none is asked for. Returns their bytes.
@@ -142,7 +142,7 @@ class MemberPrediction {
       request.landforms = folder.file("list", mesh->landforms);
       if (recipe_.family && !request.preview.file.empty())
         set_light_and_view(*recipe_.family, member, request.preview);
-      const Aside aside(program_);
+      const SilencedProgram silenced(program_);
       make_mesh(program_, request, member.recipe, file_, output);
       if (!counts_mesh) fs::remove(output);
     }
@@ -157,10 +157,10 @@ class MemberPrediction {
   const fs::path& file_;
 };
 
-Takes taken_by_all(const std::vector<Takes>& sample, double members) {
-  Takes all;
+MemberCost cost_of_all(const std::vector<MemberCost>& sample, double members) {
+  MemberCost all;
   const double share = members / static_cast<double>(sample.size());
-  for (const Takes& one : sample) {
+  for (const MemberCost& one : sample) {
     all.triangles += share * one.triangles;
     all.file_bytes += share * one.file_bytes;
     all.seconds += share * one.seconds;
@@ -180,7 +180,7 @@ void predict_members(Program& program, const MembersRequest& request, const Mesh
   const double start = program.seconds();
   const MemberPrediction prediction(program, mesh, files, recipe, file);
   const std::vector<std::uint64_t> numbers = sampled_members(range);
-  std::vector<Takes> sample;
+  std::vector<MemberCost> sample;
   for (const std::uint64_t number : numbers) {
     try {
       sample.push_back(prediction.of(number));
@@ -189,7 +189,7 @@ void predict_members(Program& program, const MembersRequest& request, const Mesh
     }
   }
   const std::uint64_t members = range.end - range.begin;
-  const Takes all = taken_by_all(sample, static_cast<double>(members));
+  const MemberCost all = cost_of_all(sample, static_cast<double>(members));
   program.summary["predicted"] = {{"triangles", all.triangles},
                                   {"file_bytes", all.file_bytes},
                                   {"peak_bytes", all.peak_bytes},

@@ -3,8 +3,9 @@
 //
 //   SurfaceStatisticsOptions options;
 //   options.points = common_points(measured, fitted);
-//   const SurfaceStatistics a = surface_statistics(measured, options), b = surface_statistics(fitted,
-//   options); RealismVerdict verdict = judge_realism(a, b, {});   // descriptor/surface/realism.h
+//   const SurfaceStatistics a = surface_statistics(measured, options);
+//   const SurfaceStatistics b = surface_statistics(fitted, options);
+//   const RealismVerdict verdict = judge_realism(a, b, {});   // descriptor/surface/realism.h
 #pragma once
 
 #include <cstdint>

@@ -45,9 +45,9 @@ GravityPlaces places_of(const GravityArguments& arguments, const TriangleMesh& m
 
 GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
   const StageProgress stage = [&](const std::string& name) { return state.progress(name); };
-  const GravityBody body = arguments.mesh ? gravity_body(*arguments.mesh, arguments.unit, arguments.name)
-                                          : gravity_body(loaded_recipe(arguments.json, arguments.name),
-                                                         arguments.resolution, arguments.name, stage);
+  const GravityBody body = arguments.mesh ? body_of_mesh(*arguments.mesh, arguments.unit, arguments.name)
+                                          : body_of_recipe(loaded_recipe(arguments.json, arguments.name),
+                                                           arguments.resolution, arguments.name, stage);
   const BodyGravity made = body_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
   GravityTable table{rows_of(made.columns), {}, made.figures.dump()};
   for (const GravityColumn& column : made.columns) table.names.push_back(column.name);

@@ -29,13 +29,13 @@ ExemplarLayer tile_layer(const GaborLayer& layer, const PhaseTile& tile, double 
 PhaseTileSet::Tile make_phase_tile(const GaborLayer& layer, const PhaseTile& tile, double share,
                                    std::uint32_t seed, ArrayStore& arrays) {
   const double height_rms = layer.height_rms * std::sqrt(share);
-  PhaseTileSet::Tile made{tile_layer(layer, tile, height_rms), {}, seed, share};
-  made.made.texture =
+  PhaseTileSet::Tile laid{tile_layer(layer, tile, height_rms), {}, seed, share};
+  laid.made.texture =
       make_gaussian_texture(tile.side, random_phase_tile(tile, hash_append(seed, 1)), height_rms, arrays);
-  made.made.exponent = kPhaseTileExponent;
-  made.made.height_bound = made.made.texture.greatest;
-  made.made.detail.finest = made.layer.pixel_size;
-  return made;
+  laid.made.exponent = kPhaseTileExponent;
+  laid.made.height_bound = laid.made.texture.greatest;
+  laid.made.detail.finest = laid.layer.pixel_size;
+  return laid;
 }
 
 // Joins the tiles of a layer, placed by placed_exemplar(), and the noise of its narrow lobes.

@@ -3,8 +3,8 @@
 // A type `Lists` tells which elements of the field reach the box:
 //   MetaballList metaballs(leaf)                  the metaballs of a leaf that reach leaf_box() of the box
 //   Interval bound_spots(noise, layer, box)       bounds of the heights of a layer of spots over a box
-//   for_each_crater(relief, box, visit)           visit(number) for every crater that reaches a box,
-//   ascending bool boulder_reaches(box)                     whether any boulder reaches a box
+//   for_each_crater(relief, box, visit)           visit(number) for each crater that reaches it, ascending
+//   bool boulder_reaches(box)                     whether any boulder reaches a box
 #pragma once
 
 #include "synthesis/body/body_bounds.h"

@@ -126,7 +126,7 @@ void LandformLayers::add_patch_boulders(const BoulderLayer& layer, std::vector<P
 // Where the drawn craters of a layer may lie. The base of a crater depends on older ones that cover its
 // centre, so that craters matter somewhat beyond what they cover.
 DrawingPlaces LandformLayers::crater_places(const CraterLayer& layer) {
-  constexpr double kBasesOfBases = 4.0;
+  constexpr double kReachOfBases = 4.0;  // extents of the largest crater
   if (!layer.population) return {};
   const Population& drawn = layer.population->drawn;
   DrawingPlaces places{weight_of(drawn), {}, 0.5, 0.0, {}};
@@ -134,7 +134,7 @@ DrawingPlaces LandformLayers::crater_places(const CraterLayer& layer) {
   report_sizes_left_out(drawn);
   if (!stack_.model.patch) return places;
   const double extent = std::max(layer.simple.extent, layer.complex_from ? layer.complex.extent : 0.0);
-  places.reach = kBasesOfBases * 0.5 * extent;
+  places.reach = kReachOfBases * 0.5 * extent;
   places.margin = height_reach() + widest_boulder();
   places.region = patch_box();
   return places;

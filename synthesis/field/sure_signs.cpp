@@ -87,7 +87,7 @@ struct OpenPoints {
   std::array<float, kBatch> x, y, z;
   std::array<float, kBatch> middle, half;  // bounds of s
   std::array<float, kBatch> elevation;     // the elevations by the layers so far
-  float rest = 0.0f;  // bound of the change of elevations by all later layers, length units
+  float rest = 0.0f;  // the most by which all later layers can change an elevation, length units
 
   PointArrays arrays() const { return {x.data(), y.data(), z.data()}; }
   // Makes point `from` the point `to`.

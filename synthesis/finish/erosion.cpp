@@ -152,7 +152,7 @@ class Slides {
   void slide_far() {
     for (int pass = 0; pass < kMostCoarsePasses; ++pass) {
       measure_areas(mesh_, up_, rock_, vertices_);
-      vertices_.height = coarse_slides(ground(), slope_, most_sweeps_, [&](int) { heed(0); });
+      vertices_.height = coarse_slides(ground(), slope_, most_sweeps_, [&](int) { report_or_stop(0); });
       if (!apply_heights()) return;
     }
   }
@@ -163,7 +163,8 @@ class Slides {
       measure_areas(mesh_, up_, rock_, vertices_);
       const std::vector<GroundEdge> edges = ground_edges(ground(), pairs_, slope_);
       const GroundSlides done = slide_ground(
-          edges, vertices_.area, most_sweeps_ - sweeps_, [&](int sweeps) { heed(sweeps); }, vertices_.height);
+          edges, vertices_.area, most_sweeps_ - sweeps_, [&](int sweeps) { report_or_stop(sweeps); },
+          vertices_.height);
       sweeps_ += done.sweeps;
       moves = done.any;
       apply_heights();
@@ -173,7 +174,7 @@ class Slides {
  private:
   Ground ground() const { return {mesh_.vertices, up_, vertices_.area, pairs_}; }
 
-  void heed(int more_sweeps) const {
+  void report_or_stop(int more_sweeps) const {
     if (report(progress_, double(sweeps_ + more_sweeps) / most_sweeps_, "erosion")) return;
     throw WorkError("erosion: stopped before the slopes had settled");
   }

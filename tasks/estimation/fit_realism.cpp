@@ -30,7 +30,7 @@ nlohmann::ordered_json fit_realism_json(const FitRealism& realism, const TargetB
   verdict.edge *= target.diagonal;
   nlohmann::ordered_json json = realism_json(verdict, words_for_lengths(unit, 3.0 * verdict.edge));
   nlohmann::ordered_json seeds = nlohmann::ordered_json::array();
-  for (const RealismVerdict& of_seed : realism.of_seeds) {
+  for (const RealismVerdict& of_seed : realism.verdict_of_seed) {
     seeds.push_back({{"p", of_seed.p}, {"largest_distance", of_seed.largest_distance}});
   }
   json["noise_seeds"] = seeds;

@@ -63,13 +63,13 @@ FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int see
     TriangleMesh mesh = mesh_of_triangles(target, with_noise_seed(recipe, which), triangles, part(k + 1.0));
     options.seed = seed + 3 * (which + 1);
     SurfaceStatistics fit = surface_statistics(mesh, options, part(k + 1.0));
-    result.of_seeds.push_back(
+    result.verdict_of_seed.push_back(
         judge_realism(result.target, fit, {.permutations = 999, .seed = seed}, part(k + 1.0)));
     if (k > 0) continue;
     result.mesh = std::move(mesh);
     result.fit = std::move(fit);
   }
-  result.verdict = median_verdict(result.of_seeds);
+  result.verdict = median_verdict(result.verdict_of_seed);
   return result;
 }
 

@@ -8,15 +8,15 @@
 namespace astrolith {
 
 // While it lives, the program says nothing and writes another summary.
-class Aside {
+class SilencedProgram {
  public:
-  explicit Aside(Program& program)
+  explicit SilencedProgram(Program& program)
       : program_(program),
         quiet_(std::exchange(program.quiet, true)),
         summary_(std::exchange(program.summary, {})) {}
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
-  ~Aside() {
+  SilencedProgram(const SilencedProgram&) = delete;
+  SilencedProgram& operator=(const SilencedProgram&) = delete;
+  ~SilencedProgram() {
     program_.quiet = quiet_;
     program_.summary = std::move(summary_);
   }
