@@ -1,38 +1,58 @@
 #include "estimation/gabor/image/image_decoder_internal.h"
 
-#include <fcntl.h>
 #include <tiffio.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
+#include <mutex>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
 
-// Image libraries print about damaged files on stderr, past every logger. While an object of this class
-// lives, stderr goes to /dev/null; our own error reports the damage.
+// Image libraries print about damaged files on the C library's stderr, past every logger; our own error
+// reports the damage. While an object of this class lives, stderr is a stream that drops what this thread
+// prints and passes on the rest, so that threads lose nothing of one another. Descriptor 2 stays as it is.
 class SilentStderr {
  public:
-  SilentStderr() : kept_(::dup(STDERR_FILENO)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (kept_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-    if (nowhere >= 0) ::close(nowhere);
+  SilentStderr() {
+    silent_ = true;
+    const std::lock_guard lock(mutex_);
+    if (living_++ == 0 && filter() != nullptr) before_ = std::exchange(stderr, filter());
   }
   SilentStderr(const SilentStderr&) = delete;
   SilentStderr& operator=(const SilentStderr&) = delete;
   ~SilentStderr() {
-    if (kept_ < 0) return;
-    ::dup2(kept_, STDERR_FILENO);
-    ::close(kept_);
+    silent_ = false;
+    const std::lock_guard lock(mutex_);
+    if (--living_ == 0 && filter() != nullptr) stderr = before_;
   }
 
  private:
-  int kept_;
+  static ssize_t pass_on(void*, const char* text, std::size_t size) {
+    return silent_ ? static_cast<ssize_t>(size) : ::write(STDERR_FILENO, text, size);
+  }
+  // Made once, and never closed: a thread may be about to print.
+  static std::FILE* filter() {
+    static std::FILE* const stream = [] {
+      std::FILE* made = ::fopencookie(nullptr, "w", {nullptr, pass_on, nullptr, nullptr});
+      if (made != nullptr) std::setvbuf(made, nullptr, _IONBF, 0);
+      return made;
+    }();
+    return stream;
+  }
+
+  static inline thread_local bool silent_ = false;
+  static inline std::mutex mutex_;
+  static inline int living_ = 0;
+  static inline std::FILE* before_ = nullptr;
 };
 
 struct CloseTiff {
@@ -72,6 +92,7 @@ cv::Mat decode_half_floats(const std::string& name) {
 }
 
 cv::Mat read_with_opencv(const std::string& name, int flags) {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // OpenCV's own words
   const SilentStderr silent;
   try {
     return cv::imread(name, flags);

@@ -1,10 +1,15 @@
 #include "estimation/gabor/image/image_reader.h"
 
 #include <png.h>
+#include <sys/stat.h>
 #include <tiffio.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <thread>
 
 #include "numerics/errors.h"
 #include "synthesis/picture/image_file.h"
@@ -166,6 +171,36 @@ TEST_F(ImageReaderTest, DamagedFilesAreErrors) {
   EXPECT_NE(error_of(folder.write("cut.tif", std::string("II*\0\xff\xff\xff\x7f", 8) + std::string(30, '\0')))
                 .find("cut.tif"),
             std::string::npos);
+}
+
+// libpng prints about each of these files. What others print meanwhile is neither lost nor held back.
+TEST_F(ImageReaderTest, DamagedFilesAreSilentInManyThreads) {
+  write_png8_grey(std::vector<std::uint8_t>(64, 7), 8, 8, folder / "whole.png");
+  std::string bytes = testing::text_of(folder / "whole.png");
+  bytes[bytes.find("IDAT") + 6] ^= 1;
+  const fs::path damaged = folder.write("damaged.png", bytes);
+  struct stat before {
+  }, after{};
+  ASSERT_EQ(::fstat(STDERR_FILENO, &before), 0);
+  std::FILE* const stream = stderr;
+  ::testing::internal::CaptureStderr();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int k = 0; k < 200; ++k) EXPECT_NE(error_of(damaged), "");
+    });
+  }
+  std::string expected;
+  for (int k = 0; k < 200; ++k) {
+    ASSERT_EQ(::write(STDERR_FILENO, "line\n", 5), 5);
+    expected += "line\n";
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), expected);
+  ASSERT_EQ(::fstat(STDERR_FILENO, &after), 0);
+  EXPECT_TRUE(before.st_dev == after.st_dev && before.st_ino == after.st_ino);
+  EXPECT_EQ(stderr, stream);
 }
 
 // The header alone decides, and nothing is allocated for a refused size.
