@@ -13,7 +13,7 @@
 #include "apps/program.h"
 #include "geometry/io/ply_stream_reader.h"
 #include "numerics/errors.h"
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "tasks/synthesis/tile_certificate.h"
 

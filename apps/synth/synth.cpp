@@ -16,7 +16,7 @@
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"

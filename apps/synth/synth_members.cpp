@@ -15,9 +15,9 @@
 #include "apps/synth/silenced_program.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/files/sha256.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/manifest.h"
 

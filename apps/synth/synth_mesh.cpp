@@ -23,7 +23,7 @@
 #include "geometry/io/ply_stream_writer.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 #include "synthesis/field/landform_list.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"

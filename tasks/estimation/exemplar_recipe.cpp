@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 #include "synthesis/picture/image_file.h"
 
 namespace astrolith {

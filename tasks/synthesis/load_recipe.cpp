@@ -11,8 +11,8 @@
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
+#include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 #include "synthesis/picture/image_file.h"
 #include "synthesis/picture/png_reader.h"
 

@@ -7,7 +7,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/append_line.h"
 #include "numerics/files/input_file.h"
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 
 namespace astrolith {
 namespace {

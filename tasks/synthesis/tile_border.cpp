@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 
 namespace astrolith {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
+#include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 
 namespace astrolith {
 namespace {

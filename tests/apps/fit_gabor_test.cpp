@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 #include "tests/apps/inputs.h"
 #include "tests/apps/program_runner.h"
 #include "tests/support/data.h"

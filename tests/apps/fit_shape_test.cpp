@@ -1,8 +1,8 @@
 // fit_shape, run as a user runs it.
 #include <algorithm>
 
+#include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 #include "tests/apps/inputs.h"
 #include "tests/apps/program_runner.h"
 #include "tests/support/data.h"

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "numerics/files/sha256.h"
 #include "recipe/recipe_json.h"
-#include "recipe/sha256.h"
 #include "tests/apps/synth_runner.h"
 
 namespace astrolith {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 #include "tests/apps/synth_runner.h"
 
 namespace astrolith {

@@ -3,8 +3,8 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_topology.h"
+#include "numerics/files/sha256.h"
 #include "numerics/files/zstd_stream.h"
-#include "recipe/sha256.h"
 #include "tests/apps/synth_runner.h"
 
 namespace astrolith {

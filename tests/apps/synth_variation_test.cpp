@@ -1,5 +1,5 @@
 // synth, run as a user runs it: variations.
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 #include "tests/apps/synth_runner.h"
 
 namespace astrolith {

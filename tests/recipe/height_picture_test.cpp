@@ -7,8 +7,8 @@
 #include <map>
 #include <string>
 
+#include "numerics/files/sha256.h"
 #include "numerics/hash_random.h"
-#include "recipe/sha256.h"
 
 namespace astrolith {
 namespace {

@@ -1,4 +1,4 @@
-#include "recipe/sha256.h"
+#include "numerics/files/sha256.h"
 
 #include <openssl/evp.h>
 
