@@ -2,7 +2,7 @@
 """Draws bodies of a kind: the meshes of recipes with a relief above, and below others with the heights drawn anew.
 
     likeness_figure.py RECIPE.astro [RECIPE.astro ...] -o docs/figures/likeness.jpg
-    likeness_figure.py ITOKAWA.astro --sheet 10 -o docs/figures/thousand.jpg     # the first 100 seeds of one body
+    likeness_figure.py ITOKAWA.astro --sheet 8 -o docs/figures/thousand.jpg      # the first 64 seeds of one body
 
 Needs the Python package (build/ci/python in PYTHONPATH) and Pillow. Recipes: fit_shape SHAPE.ply -o RECIPE.astro --spheres 80
 """
