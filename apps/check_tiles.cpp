@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "apps/counted.h"
-#include "apps/memory_use.h"
 #include "apps/program.h"
 #include "geometry/io/ply_stream_reader.h"
 #include "numerics/errors.h"
 #include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "tasks/synthesis/tile_certificate.h"
 

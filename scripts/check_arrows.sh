@@ -51,6 +51,7 @@ estimation/shape/relief    -> numerics recipe geometry synthesis
 estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
 tasks/gravity              -> numerics recipe geometry gravity synthesis
 tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda
+tasks/prediction           -> numerics recipe geometry gravity synthesis tasks/synthesis
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps
 python                     -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks python

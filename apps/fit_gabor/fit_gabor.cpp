@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "apps/counted.h"
-#include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
@@ -15,6 +14,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/exemplar_recipe.h"
 #include "tasks/estimation/photo_outputs.h"

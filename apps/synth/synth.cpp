@@ -5,7 +5,6 @@
 #include <string>
 
 #include "apps/density_question.h"
-#include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/synth/synth_finish.h"
@@ -17,6 +16,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
 #include "synthesis/finish/lay_on_base.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "apps/counted.h"
-#include "apps/memory_use.h"
 #include "apps/output_names.h"
 #include "apps/synth/synth_erosion.h"
 #include "apps/synth/synth_even.h"
@@ -24,6 +23,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
 #include "synthesis/field/landform_list.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"

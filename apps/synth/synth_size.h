@@ -4,8 +4,7 @@
 #include <filesystem>
 
 #include "apps/program.h"
-#include "apps/synth/synth_cost.h"
-#include "apps/synth/synth_region.h"
+#include "tasks/prediction/mesh_prediction.h"
 
 namespace astrolith {
 
@@ -17,15 +16,6 @@ struct MeshSizeRequest {
 };
 
 void declare_size_options(Program& program, MeshSizeRequest& request);
-
-// A mesh whose size is to be chosen.
-struct PlannedMesh {
-  const ImplicitField& field;
-  const Recipe& recipe;
-  Region region;
-  std::filesystem::path output;
-  MeshUse use;
-};
 
 // Returns the cells along the longest side. Large meshes are announced with triangles, bytes and seconds,
 // and stand as "predicted" in the summary. Throws InputError when the mesh needs more memory than allowed.

@@ -20,9 +20,9 @@
 #include "python/bindings/recipe_text.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
+#include "tasks/prediction/mesh_estimate.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
-#include "tasks/synthesis/mesh_estimate.h"
 
 namespace astrolith::python {
 namespace {

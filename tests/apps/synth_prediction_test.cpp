@@ -1,7 +1,7 @@
 // synth, run as a user runs it: resolutions by triangles, predictions and limits of memory.
 #include <algorithm>
 
-#include "apps/memory_use.h"
+#include "numerics/memory_use.h"
 #include "tests/apps/synth_runner.h"
 
 namespace astrolith {

@@ -1,4 +1,4 @@
-#include "tasks/synthesis/mesh_estimate.h"
+#include "tasks/prediction/mesh_estimate.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// What a mesh of synth costs: seconds and memory, counted from the estimate of its blocks.
+// What a mesh costs: seconds and memory, counted from the estimate of its blocks.
 #pragma once
 
 #include <filesystem>

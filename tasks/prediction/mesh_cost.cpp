@@ -1,4 +1,4 @@
-#include "apps/synth/synth_cost.h"
+#include "tasks/prediction/mesh_cost.h"
 
 #include <sys/mman.h>
 
@@ -11,12 +11,12 @@
 #include <memory>
 #include <string>
 
-#include "apps/memory_use.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "gravity/polyhedron_gravity.h"
 #include "gravity/vertical_directions.h"
 #include "numerics/files/sha256.h"
+#include "numerics/memory_use.h"
 #include "numerics/portable_double.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
@@ -24,7 +24,7 @@
 #include "synthesis/finish/erosion.h"
 #include "synthesis/gabor/gabor_tiles.h"
 #include "synthesis/mesh/manifold_check.h"
-#include "tasks/synthesis/mesh_estimate.h"
+#include "tasks/prediction/mesh_estimate.h"
 
 namespace astrolith {
 namespace {

@@ -1,0 +1,72 @@
+#include "tasks/prediction/mesh_prediction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <thread>
+
+#include "numerics/errors.h"
+#include "numerics/memory_use.h"
+#include "synthesis/mesh/processor_clock.h"
+
+namespace astrolith {
+namespace {
+
+int threads_of(const PlannedRun& run) {
+  return run.threads > 0 ? run.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+// Seconds of the work so far. Other programs on the machine slow its clock, and the threads of this one add
+// up on the processor's, so that the lower one counts.
+double seconds_so_far(const PlannedRun& run) {
+  return std::min(run.seconds, static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
+}
+
+}  // namespace
+
+MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const PlannedRun& run,
+                            const EstimateBudget& budget) {
+  const ProcessorClock clock;
+  const double seconds_before = seconds_so_far(run), peak_before = static_cast<double>(peak_bytes());
+  const MeshEstimate estimate = estimate_region(mesh.field, mesh.recipe, mesh.region, resolution, budget);
+  const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
+  const OutputCost output = output_cost(mesh.output, mesh.use, estimate.triangles);
+  const ErosionCost erosion =
+      mesh.use.erosion ? erosion_cost(mesh.field, mesh.recipe, estimate) : ErosionCost{};
+  // A peak that the sample made is one of blocks, which the mesh will have too.
+  const double peak_after = static_cast<double>(peak_bytes());
+  const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
+  const double labels = mesh.use.labels ? label_seconds(mesh.field, mesh.recipe, mesh.region, estimate) : 0.0;
+  const double gravity = mesh.use.gravity ? gravity_seconds(mesh.field, mesh.recipe, estimate) : 0.0;
+  const EvenCost even = mesh.use.even ? even_cost(estimate) : EvenCost{};
+  const double working = std::max({meshing_bytes(estimate), erosion.bytes, even.table_bytes}) +
+                         even.recorded_bytes +
+                         more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(run)) +
+                         output.memory * estimate.triangles;
+  const double times = mesh.use.twice ? 2.0 : 1.0;
+  MeshPrediction predicted;
+  predicted.triangles = estimate.triangles;
+  predicted.file_bytes = output.file * estimate.triangles;
+  predicted.peak_bytes = std::max(peak_after, held + working);
+  const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
+                          erosion.parallel_seconds + labels + gravity + even.seconds;
+  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
+  predicted.seconds = seconds_before + parallel / threads_of(run) + serial;
+  predicted.own_evaluations = estimate.spent_evaluations;
+  predicted.own_seconds = clock.seconds();
+  return predicted;
+}
+
+void require_memory(const PlannedMesh& mesh, int resolution, const MeshPrediction& predicted, double limit) {
+  if (predicted.peak_bytes <= limit) return;
+  const bool collected =
+      mesh.use.even || output_cost(mesh.output, mesh.use, predicted.triangles).memory > 0.0;
+  throw InputError(fmt::format(
+      "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
+      "lower the resolution, raise --max-memory{}",
+      mesh.output.string(), rounded_count(predicted.triangles), resolution, predicted.peak_bytes / 1e9,
+      limit / 1e9, collected ? ", or write .ply without --preview and --even, which is streamed" : ""));
+}
+
+}  // namespace astrolith
