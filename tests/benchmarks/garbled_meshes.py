@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Garbles meshes and gives them to every program that reads meshes: each must end in time, with status 0 or 2.
 
-    garbled_meshes.py BIN SHAPES [--meshes 200] [--only PROGRAM ...] [--keep FOLDER]
+    garbled_meshes.py BIN SHAPES [--meshes 200] [--first 0] [--only PROGRAM ...] [--keep FOLDER]
 
 BIN holds the programs, SHAPES the measured shapes as binary .ply; those of at most 100 kB are taken. Mesh number n is
 the same in every run: a shape, one of the ways to garble it below, and a share of its vertices or faces. check_tiles
 gets tiles of a ball, one of which is garbled and certified as it is; its status 1 says that tiles do not join. Prints
 a line for each run that breaks a limit and a table of the programs. Exit status 1 if a run took more than 20 s or 1 GB,
 ended with another status than 0 and 2, or said its refusal in more than one line. Where other work shares the machine,
-a run's time is what its threads took, if that is less. A fit has --time-limit 8.
+a run's time is what its threads took, if that is less. A fit has --time-limit 8. Ctrl-C prints the table so far.
 """
 
 import argparse
@@ -226,30 +226,35 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "ball.json").write_text(BODY)
-        for number in range(arguments.first, arguments.first + arguments.meshes):
-            shape, mesh = shapes[number % len(shapes)], folder / "garbled.ply"
-            what = f"{number}: {garble(shape, number, mesh)}"
-            runs = programs(arguments.bin, folder, str(mesh), str(shape))
-            runs["check_tiles"] = check_tiles_run(arguments.bin, folder, number)
-            for program, command in runs.items():
-                if arguments.only and program not in arguments.only:
-                    continue
-                status, seconds, size, lines = run(command)
-                statuses[program][status] += 1
-                most[program] = [max(most[program][0], seconds), max(most[program][1], size)]
-                told = program == "check_tiles" or len(lines) == (status == 2)
-                fine = status in (0, 2) or (program == "check_tiles" and status == 1)
-                if fine and told and seconds <= SECONDS and size <= BYTES:
-                    continue
-                broken += 1
-                print(f"{what}: {program}: status {status}, {seconds:.1f} s, {size / 1e6:.0f} MB, {lines[-1:]}", flush=True)
-                if arguments.keep:
-                    arguments.keep.mkdir(exist_ok=True)
-                    garble(shape, number, arguments.keep / f"{number}.ply")
+        try:
+            for number in range(arguments.first, arguments.first + arguments.meshes):
+                shape, mesh = shapes[number % len(shapes)], folder / "garbled.ply"
+                what = f"{number}: {garble(shape, number, mesh)}"
+                runs = programs(arguments.bin, folder, str(mesh), str(shape))
+                runs["check_tiles"] = check_tiles_run(arguments.bin, folder, number)
+                for program, command in runs.items():
+                    if arguments.only and program not in arguments.only:
+                        continue
+                    status, seconds, size, lines = run(command)
+                    statuses[program][status] += 1
+                    most[program] = [max(most[program][0], seconds), max(most[program][1], size)]
+                    told = program == "check_tiles" or len(lines) == (status == 2)
+                    fine = status in (0, 2) or (program == "check_tiles" and status == 1)
+                    if fine and told and seconds <= SECONDS and size <= BYTES:
+                        continue
+                    broken += 1
+                    figures = f"status {status}, {seconds:.1f} s, {size / 1e6:.0f} MB"
+                    print(f"{what}: {program}: {figures}, {lines[-1:]}", flush=True)
+                    if arguments.keep:
+                        arguments.keep.mkdir(exist_ok=True)
+                        garble(shape, number, arguments.keep / f"{number}.ply")
+        except KeyboardInterrupt:
+            print("stopped; the table holds the runs so far")
     print(f"\n{'program':26} {'status 0':>8} {'status 2':>8} {'other':>6} {'seconds':>8} {'MB':>6}")
     for program, counts in statuses.items():
         other = counts.total() - counts[0] - counts[2]
-        print(f"{program:26} {counts[0]:8} {counts[2]:8} {other:6} {most[program][0]:8.1f} {most[program][1] / 1e6:6.0f}")
+        seconds, megabytes = most[program][0], most[program][1] / 1e6
+        print(f"{program:26} {counts[0]:8} {counts[2]:8} {other:6} {seconds:8.1f} {megabytes:6.0f}")
     return 1 if broken else 0
 
 
