@@ -30,8 +30,8 @@ TEST(TurnableSurfaces, CaptionsAreEscapedAndScriptsEndWhereTheyShould) {
   std::size_t opened = 0, closed = 0;
   for (std::size_t i = 0; (i = html.find("<script>", i)) != std::string::npos; ++i) ++opened;
   for (std::size_t i = 0; (i = html.find("</script>", i)) != std::string::npos; ++i) ++closed;
-  EXPECT_EQ(opened, 3u);
-  EXPECT_EQ(closed, 3u);
+  EXPECT_EQ(opened, 4u);
+  EXPECT_EQ(closed, 4u);
 }
 
 TEST(TurnableSurfaces, AreNeitherEmptyNorTooLarge) {
