@@ -30,7 +30,7 @@ Summary summary_of(const LocalStatistic& statistic) {
   std::vector<double> sorted = statistic.values;
   std::sort(sorted.begin(), sorted.end());
   const double spread = quantile(sorted, 0.75) - quantile(sorted, 0.25);
-  if (statistic.quantity != SurfaceQuantity::skewness) return {median(sorted), spread};
+  if (!traits_of(statistic.quantity).has_mean) return {median(sorted), spread};
   double mean = 0.0;
   for (const double v : sorted) mean += v / static_cast<double>(sorted.size());
   return {mean, spread};
@@ -81,8 +81,7 @@ StatisticTest test_of(const LocalStatistic& a, const LocalStatistic& b, const Su
   c.radius = c.reach = a.radius;
   const double body_radius = std::min(of_a.body_radius, of_b.body_radius);
   c.counts_in_p = regions_hold(a.radius, body_radius);
-  // A slope has no radius: it follows the body's shape, which one draw does not share with another.
-  c.counts_in_distance = a.quantity != SurfaceQuantity::slope && body_holds_discs(a.radius, body_radius);
+  c.counts_in_distance = traits_of(a.quantity).counts_in_distance && body_holds_discs(a.radius, body_radius);
   const Summary sa = summary_of(a), sb = summary_of(b);
   c.middle_a = sa.middle, c.middle_b = sb.middle, c.spread_a = sa.spread, c.spread_b = sb.spread;
   test.distance = distance_of(a, b, of_a.regions, of_b.regions);

@@ -60,16 +60,10 @@ std::optional<std::string> roughness_words(const StatisticComparison& c) {
 }
 
 std::optional<std::string> radius_words(const StatisticComparison& c) {
-  switch (c.quantity) {
-    case SurfaceQuantity::roughness:
-      return roughness_words(c);
-    case SurfaceQuantity::normals:
-      return c.middle_b < c.middle_a ? "slopes too gentle" : "slopes too steep";
-    case SurfaceQuantity::kurtosis:
-      return c.middle_b < c.middle_a ? "too few single peaks or pits" : "too many single peaks or pits";
-    default:
-      return std::nullopt;
-  }
+  if (c.quantity == SurfaceQuantity::roughness) return roughness_words(c);
+  const SurfaceQuantityTraits& traits = traits_of(c.quantity);
+  const char* words = c.middle_b < c.middle_a ? traits.lower : traits.higher;
+  return words != nullptr ? std::optional<std::string>(words) : std::nullopt;
 }
 
 std::string length_range(const Band& band, const RealismVerdict& verdict, const LengthWords& lengths) {

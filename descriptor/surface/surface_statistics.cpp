@@ -256,21 +256,16 @@ std::vector<PlaceValues> measured_places(const EvenedSurface& even, std::span<co
 
 }  // namespace
 
-const char* name_of(SurfaceQuantity quantity) {
-  switch (quantity) {
-    case SurfaceQuantity::roughness:
-      return "roughness";
-    case SurfaceQuantity::skewness:
-      return "skewness";
-    case SurfaceQuantity::kurtosis:
-      return "kurtosis";
-    case SurfaceQuantity::normals:
-      return "normals";
-    case SurfaceQuantity::bend:
-      return "bend";
-    default:
-      return "slope";
-  }
+const SurfaceQuantityTraits& traits_of(SurfaceQuantity quantity) {
+  // A slope follows the body's shape, which one draw does not share with another.
+  static constexpr SurfaceQuantityTraits kTraits[] = {
+      {"roughness", "log roughness", false, true, nullptr, nullptr},
+      {"skewness", "skewness", true, true, nullptr, nullptr},
+      {"kurtosis", "kurtosis", false, true, "too few single peaks or pits", "too many single peaks or pits"},
+      {"normals", "spread of normals", false, true, "slopes too gentle", "slopes too steep"},
+      {"bend", "bend between facets, degrees", false, true, nullptr, nullptr},
+      {"slope", "slope, degrees", false, false, nullptr, nullptr}};
+  return kTraits[static_cast<std::size_t>(quantity)];
 }
 
 const LocalStatistic* SurfaceStatistics::find(SurfaceQuantity quantity, double radius) const {

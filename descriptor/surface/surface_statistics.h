@@ -28,8 +28,18 @@ enum class SurfaceQuantity {
   slope  // degrees between the normal and the vertical of gravity and rotation
 };
 
-// The word for a quantity, as in JSON: "roughness", "skewness", ...
-const char* name_of(SurfaceQuantity quantity);
+// What other code asks of a quantity.
+struct SurfaceQuantityTraits {
+  const char* name;     // as in JSON
+  const char* heading;  // of a plot
+  bool has_mean;        // the middle of its values is their mean, not their median
+  bool counts_in_distance;
+  // What is said of a surface whose middle is lower or higher; null where realism_words.cpp has words of its
+  // own.
+  const char *lower, *higher;
+};
+const SurfaceQuantityTraits& traits_of(SurfaceQuantity quantity);
+inline const char* name_of(SurfaceQuantity quantity) { return traits_of(quantity).name; }
 
 struct LocalStatistic {
   SurfaceQuantity quantity;

@@ -35,7 +35,7 @@ Json radii_json(const SurfaceStatistics& surface) {
   Json radii = Json::array();
   for (const LocalStatistic& statistic : surface.local) {
     if (!(statistic.radius > 0.0)) continue;
-    if (statistic.quantity == SurfaceQuantity::roughness) {
+    if (radii.empty() || radii.back()["edges"] != statistic.radius) {
       radii.push_back({{"edges", statistic.radius}, {"length", statistic.radius * surface.edge}});
     }
     radii.back()[name_of(statistic.quantity)] = distribution_json(statistic.values);

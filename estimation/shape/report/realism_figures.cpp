@@ -38,18 +38,8 @@ std::vector<std::pair<double, double>> quantile_curve(const std::vector<double>&
 }
 
 std::string heading_of(const LocalStatistic& statistic) {
-  switch (statistic.quantity) {
-    case SurfaceQuantity::roughness:
-      return fmt::format("log roughness, {:g} edges", statistic.radius);
-    case SurfaceQuantity::bend:
-      return "bend between facets, degrees";
-    case SurfaceQuantity::slope:
-      return "slope, degrees";
-    case SurfaceQuantity::normals:
-      return fmt::format("spread of normals, {:g} edges", statistic.radius);
-    default:
-      return fmt::format("{}, {:g} edges", name_of(statistic.quantity), statistic.radius);
-  }
+  const char* heading = traits_of(statistic.quantity).heading;
+  return statistic.radius > 0.0 ? fmt::format("{}, {:g} edges", heading, statistic.radius) : heading;
 }
 
 void draw_quantiles(Figure& page, const Rectangle& at, const LocalStatistic& a, const LocalStatistic& b) {
