@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -28,6 +29,12 @@ inline std::string byte_words(double bytes) {
     amount = bytes / 1e6;
   }
   return fmt::format("{:.{}f} {}", amount, amount < 9.95 && bytes >= 1e6 ? 1 : 0, unit);
+}
+
+// "about 6 s on idle cores, 11 s of the processor".
+inline std::string seconds_words(double on_idle_cores, double of_processor) {
+  return fmt::format("about {:.0f} s on idle cores, {:.0f} s of the processor", std::ceil(on_idle_cores),
+                     std::ceil(of_processor));
 }
 
 // "0.561 x 0.302 x 0.246 km": the sides of a box, in `unit`.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <new>
 
@@ -223,6 +224,8 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     return 1;
   }
 }
+
+double Program::processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 double Program::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();

@@ -71,6 +71,8 @@ class Program {
 
   // Wall-clock seconds since run() began the work.
   double seconds() const;
+  // Seconds that all threads of the program have spent so far, from its start.
+  static double processor_seconds();
 
   CommandLine app;
   nlohmann::ordered_json summary;

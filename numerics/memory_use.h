@@ -54,6 +54,13 @@ inline void return_freed_memory() {
 #endif
 }
 
+// Gives memory that was freed so far back to the system, as far as the C library can.
+inline void give_back_freed_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
+
 // The memory that --max-memory allows, bytes. 0 gigabytes stands for three quarters of the machine's memory.
 inline double memory_limit(double gigabytes) {
   if (gigabytes > 0.0) return 1e9 * gigabytes;

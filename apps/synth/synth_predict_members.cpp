@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <ctime>
 #include <string>
 
 #include "apps/counted.h"
@@ -57,13 +55,15 @@ class QuietMembers {
   PredictedMember predicted(std::uint64_t number) const {
     MeshRequest request = mesh_;
     request.size.only_predict = true;
-    const double before = std::min(program_.seconds(), static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
+    const double of_processor = Program::processor_seconds();
+    const double on_clock = std::min(program_.seconds(), of_processor);
     const SilencedProgram silenced(program_);
     make_mesh(program_, request, family_member(recipe_, number).recipe, file_, files_.mesh);
     const auto& figures = program_.summary["predicted"];
     return {program_.summary["resolution"].get<int>(),
             {figures["triangles"].get<double>(), figures["file_bytes"].get<double>(),
-             figures["seconds"].get<double>() - before, figures["peak_bytes"].get<double>()}};
+             figures["peak_bytes"].get<double>(), figures["seconds"].get<double>() - on_clock,
+             figures["processor_seconds"].get<double>() - of_processor}};
   }
 
   // Makes the files of a member. Returns the name of its mesh, empty where none is asked for.
@@ -108,13 +108,14 @@ void predict_members(Program& program, const MembersRequest& request, const Mesh
                                   {"file_bytes", all.file_bytes},
                                   {"peak_bytes", all.peak_bytes},
                                   {"seconds", all.seconds},
+                                  {"processor_seconds", all.processor_seconds},
                                   {"members", members},
                                   {"sampled_members", numbers},
                                   {"own_seconds", program.seconds() - start}};
-  program.say(
-      fmt::format("{} members: about {} triangles, {} of files, {} memory, about {:.0f} s; from {} of them",
-                  members, rounded_count(all.triangles), byte_words(all.file_bytes),
-                  byte_words(all.peak_bytes), std::ceil(all.seconds), numbers.size()));
+  program.say(fmt::format("{} members: about {} triangles, {} of files, {} memory, {}; from {} of them",
+                          members, rounded_count(all.triangles), byte_words(all.file_bytes),
+                          byte_words(all.peak_bytes), seconds_words(all.seconds, all.processor_seconds),
+                          numbers.size()));
 }
 
 }  // namespace astrolith

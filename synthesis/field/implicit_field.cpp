@@ -223,6 +223,19 @@ std::vector<GaborCacheUse> ImplicitField::gabor_caches() const {
   return uses;
 }
 
+std::vector<double> ImplicitField::gabor_tile_seconds() const {
+  const FieldView& f = model_->tables;
+  const BodyGround ground{model_->body, f.arrays, model_->metaballs.lists()};
+  const std::span<const ImpulseList> lists = f.arrays.span(f.gabor_lists);
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[lists[i].layer].noise);
+    const SurfaceBand& band = f.arrays[noise.bands][lists[i].element];
+    seconds.push_back(GaborTiles(band, ground, model_->gabor_caches[i]).seconds_of_tile());
+  }
+  return seconds;
+}
+
 std::span<const int> ImplicitField::recipe_layers() const { return model_->recipe_layers; }
 
 const FieldView& ImplicitField::tables() const { return model_->tables; }

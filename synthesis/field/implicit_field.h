@@ -179,6 +179,8 @@ class ImplicitField {
 
   // What the cache of each list of Gabor impulses holds; tables().gabor_lists says which bands these are.
   std::vector<GaborCacheUse> gabor_caches() const;
+  // Seconds of one processor to draw a tile of each list, from tiles that its cache holds.
+  std::vector<double> gabor_tile_seconds() const;
 
   // The place in the recipe of each layer of the tables, which lack boulders and layers that act on nothing.
   std::span<const int> recipe_layers() const;

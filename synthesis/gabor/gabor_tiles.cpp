@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "numerics/hash_random.h"
+#include "numerics/processor_clock.h"
 
 namespace astrolith {
 namespace {
@@ -15,6 +16,15 @@ std::uint64_t key_of(const std::array<int, 3>& index) {
   std::uint64_t key = 0;
   for (const int i : index) key = key << 21 | (static_cast<std::uint32_t>(i) & 0x1fffffu);
   return key;
+}
+
+std::array<int, 3> index_of(std::uint64_t key) {
+  std::array<int, 3> index;
+  for (int i = 2; i >= 0; --i, key >>= 21) {
+    const auto bits = static_cast<std::int32_t>(key & 0x1fffffu);
+    index[static_cast<std::size_t>(i)] = bits >= 0x100000 ? bits - 0x200000 : bits;
+  }
+  return index;
 }
 
 std::size_t bytes_of(const GaborTile& tile) {
@@ -59,6 +69,24 @@ std::shared_ptr<const GaborTile> GaborTiles::tile(const std::array<int, 3>& inde
     shelf.oldest_first.pop_front();
   }
   return made;
+}
+
+double GaborTiles::seconds_of_tile() const {
+  constexpr std::size_t kOfShelf = 6;
+  std::vector<std::uint64_t> keys;
+  for (GaborTileCache::Shelf& shelf : *cache_.shelves) {
+    const std::lock_guard lock(shelf.mutex);
+    for (std::size_t i = 0; i < std::min(kOfShelf, shelf.oldest_first.size()); ++i)
+      keys.push_back(shelf.oldest_first[i]);
+  }
+  if (keys.empty()) return 0.0;
+  const ProcessorClock clock;
+  {
+    const GaborTileCache empty;
+    const GaborTiles again(band_, ground_, empty);
+    for (const std::uint64_t key : keys) again.tile(index_of(key));
+  }
+  return clock.seconds() / double(keys.size());
 }
 
 std::shared_ptr<const GaborTile> GaborTiles::draw(const std::array<int, 3>& index) const {

@@ -59,6 +59,10 @@ class GaborTiles {
   // The tile whose first cell is kTileCells times the index. It is drawn unless the cache holds it.
   std::shared_ptr<const GaborTile> tile(const std::array<int, 3>& index) const;
 
+  // Seconds of one processor to draw a tile, keep it and let it go, from some of those in the cache, which
+  // are drawn again. 0 where the cache is empty.
+  double seconds_of_tile() const;
+
  private:
   std::shared_ptr<const GaborTile> draw(const std::array<int, 3>& index) const;
 

@@ -5,16 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "numerics/processor_clock.h"
 #include "synthesis/mesh/block_layer.h"
 #include "synthesis/mesh/block_polygons.h"
 #include "synthesis/mesh/block_sampling.h"
-#include "synthesis/mesh/processor_clock.h"
 
 namespace astrolith {
 
 struct BlockCost {
   double seconds = 0.0;            // of one processor
-  double caching_seconds = 0.0;    // by which meshing the block first took longer than again
   double spent_seconds = 0.0;      // of one processor, for finding these figures
   double spent_evaluations = 0.0;  // of the field, for finding these figures
   double evaluations = 0.0, list_bytes = 0.0;
@@ -75,7 +74,6 @@ BlockCost cost_of_block(const BlockGrid<B>& grid, int z, const BlockNode<Block>&
   if (warm_up) {
     const BlockCost first = cost;
     cost = cost_of_meshing(grid, z, node, with_neighbour);
-    cost.caching_seconds = std::max(first.seconds - cost.seconds, 0.0);
     cost.spent_seconds += first.spent_seconds;
     cost.spent_evaluations += first.spent_evaluations;
   }

@@ -45,7 +45,7 @@ MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)
                              const SampleBudget& budget) {
   // Probes tell the cost of a block, so that a sample needs few blocks, and squares for their number.
   constexpr int kMostNodes = 768, kMostBlocks = 24;
-  SampleSize size{3 * budget.first_blocks, budget.first_blocks, warm_up};
+  SampleSize size{budget.first_nodes, budget.first_blocks, warm_up};
   MeshEstimate estimate = sample(size);
   double spent = estimate.spent_seconds;
   while (!estimate.whole && size.nodes < kMostNodes) {
@@ -54,11 +54,10 @@ MeshEstimate estimate_within(const std::function<MeshEstimate(const SampleSize&)
     if (growth < 1.5) break;
     size.nodes = std::min(static_cast<int>(growth * size.nodes), kMostNodes);
     size.blocks = std::min(static_cast<int>(growth * size.blocks), kMostBlocks);
-    const double caching = estimate.caching_seconds, sampled = estimate.sampled_blocks;
-    const double evaluations = estimate.spent_evaluations;
+    const double sampled = estimate.sampled_blocks, evaluations = estimate.spent_evaluations;
     estimate = sample(size);
-    estimate.caching_seconds += caching;
     estimate.sampled_blocks += sampled;
+    estimate.sampled_windows += sampled;
     estimate.spent_evaluations += evaluations;
     spent += estimate.spent_seconds;
   }

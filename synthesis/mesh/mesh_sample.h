@@ -10,9 +10,9 @@
 #include <functional>
 #include <vector>
 
+#include "numerics/processor_clock.h"
 #include "synthesis/mesh/block_cost.h"
 #include "synthesis/mesh/mesher.h"
-#include "synthesis/mesh/processor_clock.h"
 
 namespace astrolith {
 
@@ -27,13 +27,14 @@ struct MeshEstimate {
   double step = 0.0;  // edge of a cell, length units
   double blocks = 0.0, evaluations = 0.0, vertices = 0.0, triangles = 0.0;
   double sampled_blocks = 0.0;     // blocks that were meshed by this sample and the smaller ones before it
+  double sampled_windows = 0.0;    // these, and blocks around places of the surface that were only sampled
   double seconds = 0.0;            // of one processor, for finding and meshing all blocks
+  double crossed_seconds = 0.0;    // the part of these for blocks that the surface crosses
   double finding_seconds = 0.0;    // the part of these for finding the blocks
   double spent_seconds = 0.0;      // of one processor, for the sample
   double spent_evaluations = 0.0;  // of the field, for the sample
-  double caching_seconds = 0.0;  // of one processor, by which meshing the sample first took longer than again
-  double list_bytes = 0.0;       // memory of the field narrowed to one block
-  double crossed_share = 1.0;    // share of the blocks that the surface crosses; the others it only might
+  double list_bytes = 0.0;         // memory of the field narrowed to one block
+  double crossed_share = 1.0;      // share of the blocks that the surface crosses; the others it only might
   // The most blocks in one layer, and in three successive layers.
   double blocks_of_layer = 0.0, blocks_of_three_layers = 0.0;
   int narrowed_squares = 0;     // most squares of one size that the sample narrowed
@@ -53,9 +54,9 @@ double most_in_layers(const std::vector<double>& profile, const std::vector<int>
 
 // What an estimate may take.
 struct SampleBudget {
-  int first_blocks = 6;       // of the first and smallest sample
-  double share = 0.03;        // of the seconds that are predicted for the mesh,
-  double free_seconds = 0.0;  // or this many seconds of one processor if these are more
+  int first_nodes = 18, first_blocks = 6;  // of the first and smallest sample
+  double share = 0.03;                     // of the seconds that are predicted for the mesh,
+  double free_seconds = 0.0;               // or this many seconds of one processor if these are more
 };
 
 // Calls sample() with growing sizes until the estimate has taken what it may.
@@ -176,13 +177,14 @@ class MeshSampler {
           cost_of_block(grid_, node.z, node.node, estimate_.with_neighbour, size_.warm_up);
     });
     double weights = 0.0, crossed = 0.0;
-    estimate_.sampled_blocks = double(nodes.size());
+    estimate_.sampled_blocks = estimate_.sampled_windows = double(nodes.size());
     estimate_.seconds = estimate_.finding_seconds;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const BlockCost& cost = costs[i];
       const double weight = nodes[i].weight;
       weights += weight;
       crossed += cost.counts.triangles > 0 ? weight : 0.0;
+      estimate_.crossed_seconds += cost.counts.triangles > 0 ? weight * cost.seconds : 0.0;
       estimate_.evaluations += weight * cost.evaluations;
       estimate_.vertices += weight * cost.counts.vertices;
       estimate_.triangles += weight * cost.counts.triangles;
@@ -190,7 +192,6 @@ class MeshSampler {
       estimate_.list_bytes += weight * cost.list_bytes;
       estimate_.spent_seconds += cost.spent_seconds;
       estimate_.spent_evaluations += cost.spent_evaluations;
-      estimate_.caching_seconds += cost.caching_seconds;
     }
     if (!(weights > 0.0)) return;
     estimate_.list_bytes /= weights;

@@ -29,10 +29,10 @@ struct ProbeSums {
   double blocks_of_square = 0.0;  // blocks for an area of the coarse mesh as large as a side of a block
   // These are sums over the blocks that were meshed, each weighted by the blocks for which it stands.
   double weights = 0.0, seconds = 0.0, evaluations = 0.0, list_bytes = 0.0;
-  double triangles = 0.0, squared_triangles = 0.0;
-  double crossed = 0.0;  // blocks that the surface crosses
+  double triangles = 0.0;
+  double crossed = 0.0, crossed_seconds = 0.0;  // of the blocks that the surface crosses
   int meshed_blocks = 0;
-  double caching_seconds = 0.0, spent_seconds = 0.0;
+  double spent_seconds = 0.0;
   double spent_evaluations = 0.0;  // of the field, for all probes
 };
 
@@ -169,14 +169,12 @@ class SurfaceProber {
     const BlockCost cost =
         cost_of_block(column.places[chosen].grid, 0, mixed[chosen], with_neighbour_, warm_up_);
     sums.weights += weight;
-    const double triangles = double(cost.counts.triangles);
-    sums.triangles += weight * triangles;
-    sums.squared_triangles += weight * triangles * triangles;
+    sums.triangles += weight * double(cost.counts.triangles);
     sums.crossed += cost.counts.triangles > 0 ? weight : 0.0;
+    sums.crossed_seconds += cost.counts.triangles > 0 ? weight * cost.seconds : 0.0;
     sums.seconds += weight * cost.seconds;
     sums.evaluations += weight * cost.evaluations;
     sums.list_bytes += weight * cost.list_bytes;
-    sums.caching_seconds += cost.caching_seconds;
     sums.spent_evaluations += cost.spent_evaluations;
     ++sums.meshed_blocks;
   }

@@ -55,14 +55,18 @@ double volume_of_blocks(const ImplicitField& field, const MeshEstimate& mesh) {
   return mesh.blocks * portable::whole_power(block, 3);
 }
 
-// The tiles of a band that a mesh draws, from those that its sample has drawn. Blocks in which the noise does
-// not count draw none.
+// The tiles of a band that a mesh draws, from the tiles that its sample has drawn. A block that is looked at
+// draws all tiles that reach it, so that a tile which k blocks need has been drawn with the probability
+// 1 - exp(-k looked / all). Blocks in which the noise does not count, as under a mask, draw none and count
+// alike.
 double tiles_of_mesh(const SurfaceBand& band, const ImplicitField& field, const MeshEstimate& mesh,
                      double drawn) {
-  const double most = drawn * std::max(mesh.blocks / mesh.sampled_blocks, 1.0);
-  const double tiles =
-      tiles_along_surface(band, mesh, volume_of_blocks(field, mesh), field.bounds().extent());
-  return std::clamp(tiles, drawn, most);
+  const double block = kBlockCells * mesh.step;
+  const double wide = 1.0 + (double{band.cell} * kTileCells + 2.0 * double{band.reach}) / block;
+  const double looked = mesh.sampled_windows / std::max(mesh.blocks, mesh.sampled_windows);
+  const double found = 1.0 - portable::exp(-wide * wide * looked);
+  const double most = tiles_along_surface(band, mesh, volume_of_blocks(field, mesh), field.bounds().extent());
+  return std::max(std::min(drawn / found, most), drawn);
 }
 
 // How often a tile is drawn. Tiles that find no room are drawn anew in each layer of blocks that needs them.
@@ -120,6 +124,20 @@ double bytes_of_blocks(const MeshEstimate& mesh) {
   return mesh.blocks_of_three_layers * (mesh.crossed_share * kWhole + (1.0 - mesh.crossed_share) * kTouched);
 }
 
+// What the slides of a mesh of so many cells take.
+struct SlideTime {
+  double triangles = 0.0, seconds = 0.0;
+};
+SlideTime slide_time(const ImplicitField& field, const Erosion& erosion, int cells) {
+  MeshCollector coarse;
+  mesh_field(field, field.bounds(), cells, coarse);
+  if (coarse.mesh.triangles.empty()) return {};
+  const std::vector<Vec3d> up = vertical_directions(coarse.mesh, {erosion.density, erosion.rotation_period});
+  const ProcessorClock clock;
+  erode(coarse.mesh, up, erosion.talus_angle, erosion.iterations);
+  return {static_cast<double>(coarse.mesh.triangles.size()), clock.seconds()};
+}
+
 Recipe ball() {
   Recipe recipe;
   recipe.body = MetaballBody{};
@@ -152,10 +170,10 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
   const FieldView& view = field.tables();
   const std::span<const ImpulseList> lists = view.arrays.span(view.gabor_lists);
   const std::vector<GaborCacheUse> caches = field.gabor_caches();
+  const std::vector<double> tile_seconds = field.gabor_tile_seconds();
   const Vec3d extent = field.bounds().extent();
   GaborCost cost;
   cost.bytes.resize(lists.size());
-  double drawn_bytes = 0.0, bytes_to_draw = 0.0;
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const GaborCacheUse& cache = caches[i];
     if (!(cache.drawn > 0.0) || !(mesh.sampled_blocks > 0.0))
@@ -164,10 +182,8 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
     const double tiles = tiles_of_mesh(band, field, mesh, cache.drawn);
     const double bytes = tiles * cache.drawn_bytes / cache.drawn;
     cost.bytes[i] = bytes;
-    drawn_bytes += cache.drawn_bytes;
-    bytes_to_draw += bytes * draws_of_tile(band, mesh, bytes, extent.z);
+    cost.seconds += tile_seconds[i] * tiles * draws_of_tile(band, mesh, bytes, extent.z);
   }
-  if (drawn_bytes > 0.0) cost.seconds = mesh.caching_seconds * bytes_to_draw / drawn_bytes;
   return cost;
 }
 
@@ -179,12 +195,12 @@ double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const d
 }
 
 ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const MeshEstimate& mesh) {
-  constexpr int kCoarser = 6, kFewestCells = 16;
+  constexpr int kCoarser = 5, kFewestCells = 16, kFewestOfHalf = 10;
   // Gravity is that of a lattice of this many cells; each triangle then adds a little.
   constexpr int kCellsOfGravity = 48;
   constexpr double kSecondsOfVertical = 8e-8;
-  // Each doubling of the triangles adds this share: sweeps are a few more, and tables outgrow the caches.
-  constexpr double kMoreOfDoubledSlides = 0.08;
+  // Each doubling of the triangles adds a share: sweeps are more, and tables outgrow the caches.
+  constexpr double kMoreOfDoubledSlides = 0.08, kMostOfDoubledSlides = 0.15;
   const Erosion& erosion = *recipe.erosion;
   const int cells = std::min(std::max(mesh.resolution / kCoarser, kFewestCells), mesh.resolution);
   MeshCollector coarse;
@@ -196,8 +212,16 @@ ErosionCost erosion_cost(const ImplicitField& field, const Recipe& recipe, const
   const double seconds_of_verticals = clock_of_verticals.seconds();
   const ProcessorClock clock;
   erode(coarse.mesh, up, erosion.talus_angle, erosion.iterations);
+  const double of_slides = clock.seconds();
   const double ratio = std::max(mesh.triangles / triangles, 1.0);
-  const double sliding = clock.seconds() * ratio * growth(ratio, kMoreOfDoubledSlides);
+  const SlideTime coarser = slide_time(field, erosion, cells / 2);
+  double more = kMoreOfDoubledSlides;
+  if (cells / 2 >= kFewestOfHalf && coarser.seconds > 0.0) {
+    const double doublings = portable::log(triangles / coarser.triangles) / portable::log(2.0);
+    const double slower = of_slides / triangles * coarser.triangles / coarser.seconds;
+    more = std::clamp((slower - 1.0) / doublings, kMoreOfDoubledSlides, kMostOfDoubledSlides);
+  }
+  const double sliding = of_slides * ratio * growth(ratio, more);
   const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
   // Facets of the lattice, each with its share of the tree of multipoles: 900 to 1,450 bytes. The tree is
   // gone before the tables of the slides are made.

@@ -131,11 +131,11 @@ double take_surface(RegionProbes& probes, int resolution, double allowed, double
 MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
                              int resolution, const EstimateBudget& budget) {
   constexpr double kOfSample = 0.25, kOfSurface = 0.4;  // parts of what the estimate may take
-  constexpr int kFirstProbes = 6, kFewestProbes = 4, kMostProbes = 1024;
+  constexpr int kAtOnce = 6, kFewestProbes = 4, kMostProbes = 1024;
   const bool gabor = field.tables().gabor_lists.count > 0;
-  const MeshEstimate sample =
-      estimate_within([&](const SampleSize& size) { return sample_region(field, region, resolution, size); },
-                      gabor, {2, kOfSample * budget.share, kOfSample * budget.free_seconds});
+  const MeshEstimate sample = estimate_within(
+      [&](const SampleSize& size) { return sample_region(field, region, resolution, size); }, gabor,
+      {budget.first_squares, budget.first_blocks, kOfSample * budget.share, kOfSample * budget.free_seconds});
   if (sample.whole) return sample;
   const auto allowed = [&](const MeshEstimate& estimate) {
     return std::max(budget.share * estimate.seconds, budget.free_seconds);
@@ -149,15 +149,20 @@ MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, c
   estimate.spent_seconds += of_surface;
   estimate.spent_evaluations += probes.coarse_evaluations();
   if (probes.surface().empty()) return estimate;
-  for (int more = kFirstProbes; more >= kFewestProbes;) {
+  for (int more = std::min(kAtOnce, budget.first_probes); more >= kFewestProbes;) {
     probes.add(more, sample.with_neighbour);
     estimate = improved_by_probes(sample, probes.surface(), probes.sums());
     estimate.spent_seconds += of_surface;
     estimate.spent_evaluations += probes.coarse_evaluations();
     const double of_probe = probes.sums().spent_seconds / probes.sums().probes;
-    const double left = allowed(estimate) - estimate.spent_seconds;
-    const int most = std::min(3 * probes.sums().probes, kMostProbes - probes.sums().probes);
-    more = std::min(int(std::clamp(left / std::max(of_probe, 1e-6), 0.0, 1e6)), most);
+    const auto number_within = [&](double seconds) {
+      const double left = seconds - estimate.spent_seconds;
+      return int(std::clamp(left / std::max(of_probe, 1e-6), 0.0, 1e6));
+    };
+    const int done = probes.sums().probes;
+    const int first =
+        std::min(budget.first_probes - done, number_within(budget.most_share * estimate.seconds));
+    more = std::min({std::max(number_within(allowed(estimate)), first), 3 * done, kMostProbes - done});
   }
   return estimate;
 }

@@ -9,10 +9,14 @@
 namespace astrolith {
 
 // What an estimate may take: a share of the seconds that are predicted for the mesh, or this many seconds of
-// one processor if these are more.
+// one processor if these are more. The first sample is taken at any cost. Where few blocks would tell little,
+// `most_share` of the seconds may go into the first probes.
 struct EstimateBudget {
   double share;
   double free_seconds;
+  int first_squares, first_blocks;  // of the first sample
+  int first_probes;
+  double most_share;
 };
 
 // The estimate of the mesh of a region from samples of its blocks, a coarse mesh, and probes along the

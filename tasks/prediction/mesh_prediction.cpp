@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <thread>
 
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
-#include "synthesis/mesh/processor_clock.h"
+#include "numerics/processor_clock.h"
 
 namespace astrolith {
 namespace {
@@ -17,26 +16,20 @@ int threads_of(const PlannedRun& run) {
   return run.threads > 0 ? run.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-// Seconds of the work so far. Other programs on the machine slow its clock, and the threads of this one add
-// up on the processor's, so that the lower one counts.
-double seconds_so_far(const PlannedRun& run) {
-  return std::min(run.seconds, static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
-}
-
 }  // namespace
 
 MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const PlannedRun& run,
                             const EstimateBudget& budget) {
   const ProcessorClock clock;
-  const double seconds_before = seconds_so_far(run), peak_before = static_cast<double>(peak_bytes());
+  const double peak_before = static_cast<double>(peak_bytes());
   const MeshEstimate estimate = estimate_region(mesh.field, mesh.recipe, mesh.region, resolution, budget);
   const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
   const OutputCost output = output_cost(mesh.output, mesh.use, estimate.triangles);
   const ErosionCost erosion =
       mesh.use.erosion ? erosion_cost(mesh.field, mesh.recipe, estimate) : ErosionCost{};
-  // A peak that the sample made is one of blocks, which the mesh will have too.
   const double peak_after = static_cast<double>(peak_bytes());
-  const double held = peak_after > peak_before ? peak_after : static_cast<double>(resident_bytes());
+  give_back_freed_memory();
+  const double held = static_cast<double>(resident_bytes());
   const double labels = mesh.use.labels ? label_seconds(mesh.field, mesh.recipe, mesh.region, estimate) : 0.0;
   const double gravity = mesh.use.gravity ? gravity_seconds(mesh.field, mesh.recipe, estimate) : 0.0;
   const EvenCost even = mesh.use.even ? even_cost(estimate) : EvenCost{};
@@ -48,11 +41,15 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const Plann
   MeshPrediction predicted;
   predicted.triangles = estimate.triangles;
   predicted.file_bytes = output.file * estimate.triangles;
-  predicted.peak_bytes = std::max(peak_after, held + working);
+  predicted.peak_bytes = std::max(run.goes_on ? peak_after : peak_before, held + working);
   const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
                           erosion.parallel_seconds + labels + gravity + even.seconds;
   const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
-  predicted.seconds = seconds_before + parallel / threads_of(run) + serial;
+  // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one
+  // is nearer to the clock on idle cores.
+  predicted.seconds =
+      std::min(run.clock_seconds, run.processor_seconds) + parallel / threads_of(run) + serial;
+  predicted.processor_seconds = run.processor_seconds + parallel + serial;
   predicted.own_evaluations = estimate.spent_evaluations;
   predicted.own_seconds = clock.seconds();
   return predicted;

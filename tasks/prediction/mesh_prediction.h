@@ -22,15 +22,24 @@ struct PlannedMesh {
 
 // The run that will make the mesh.
 struct PlannedRun {
-  int threads;           // 0 = all
-  double seconds = 0.0;  // on the clock, that the run has taken before the mesh is predicted
+  int threads;  // 0 = all
+  // What the run has taken before the mesh is predicted.
+  double clock_seconds = 0.0, processor_seconds = 0.0;
+  bool goes_on = false;  // this process makes the mesh next, with the memory that the prediction has taken
 };
 
 struct MeshPrediction {
-  double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0, seconds = 0.0;
-  double own_seconds = 0.0;      // that the prediction itself took
-  double own_evaluations = 0.0;  // of the field, by the estimate of its blocks and triangles
+  double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0;
+  double seconds = 0.0;            // on the clock, with all threads on cores that do nothing else
+  double processor_seconds = 0.0;  // of all threads together
+  double own_seconds = 0.0;        // that the prediction itself took
+  double own_evaluations = 0.0;    // of the field, by the estimate of its blocks and triangles
 };
+
+// What a prediction may take. The figures that a user asks for are worth 3 % of the mesh and at least some 30
+// milliseconds. Figures that guard the memory of a mesh should hardly keep it waiting.
+inline constexpr EstimateBudget kForFigures{0.025, 0.02, 96, 16, 32, 0.1},
+    kForMemory{0.015, 0.01, 24, 2, 12, 0.03};
 
 // Predicts the mesh of this resolution. Memory and seconds are those of this process, with what it has taken
 // so far. Throws what mesh_region throws.

@@ -10,7 +10,8 @@ namespace astrolith {
 
 // What one member takes, or a set of them: the peak is then the highest one.
 struct MemberTakes {
-  double triangles = 0.0, file_bytes = 0.0, seconds = 0.0, peak_bytes = 0.0;
+  double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0;
+  double seconds = 0.0, processor_seconds = 0.0;  // as MeshPrediction has them
 };
 
 struct PredictedMember {
