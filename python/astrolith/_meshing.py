@@ -9,6 +9,8 @@ from astrolith._mesh import Mesh
 from astrolith._options import Progress
 from astrolith._recipe import RecipeLike, Record, records
 
+_FORMATS = (".ply", ".obj", ".stl", ".glb", ".icq", ".tab")
+
 
 def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[int]]) -> tuple[Any, Any]:
     if patch is not None and tile is not None:
@@ -25,6 +27,34 @@ def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[in
     except (TypeError, ValueError):
         raise ValueError(f"tile: {tile!r} is no tile; give (I, N) with I from 1 to N, such as (3, 16)") from None
     return None, (_arrays.integer(number, "tile", 1, 2**31 - 1), _arrays.integer(count, "tile", 1, 2**31 - 1))
+
+
+def _mesh_arguments(
+    recipe: RecipeLike,
+    resolution: Optional[int],
+    triangles: Optional[float],
+    patch: Optional[Sequence[float]],
+    tile: Union[None, str, Sequence[int]],
+    seed: Optional[int],
+    min_component: float,
+    labels: bool,
+    even: bool,
+) -> tuple[str, str, int, float, Any, Any, float, bool, bool]:
+    """The checked arguments of the module's functions, of which the recipe's text and name come first."""
+    if resolution is not None and triangles is not None:
+        raise ValueError("triangles: excludes resolution; leave one of them out")
+    cells = 256 if resolution is None else _arrays.integer(resolution, "resolution", 4, 8192)
+    count = 0.0 if triangles is None else _arrays.number(triangles, "triangles", 100.0, 1e10)
+    cube, slab = _region(patch, tile)
+    json, name = _options.seeded(recipe, seed)
+    fields = records(json)
+    if fields.get("erosion") is not None and (cube is not None or slab is not None or labels):
+        culprit = "labels" if labels else "patch" if cube is not None else "tile"
+        raise ValueError(f"{name}: erosion: is of the whole mesh; leave out {culprit}, or take erosion out of the recipe")
+    if min_component and (cube is not None or slab is not None):
+        raise ValueError("min_component: the size of a piece that is cut is not known; leave out tile and patch")
+    share = _arrays.number(min_component, "min_component", 0.0, 1.0)
+    return json, name, cells, count, cube, slab, share, bool(labels), bool(even)
 
 
 def mesh(
@@ -83,31 +113,9 @@ def mesh(
     KeyboardInterrupt
         Ctrl-C was pressed; it is raised within a second.
     """
-    if resolution is not None and triangles is not None:
-        raise ValueError("triangles: excludes resolution; leave one of them out")
-    cells = 256 if resolution is None else _arrays.integer(resolution, "resolution", 4, 8192)
-    count = 0.0 if triangles is None else _arrays.number(triangles, "triangles", 100.0, 1e10)
-    cube, slab = _region(patch, tile)
-    json, name = _options.seeded(recipe, seed)
-    fields = records(json)
-    if fields.get("erosion") is not None and (cube is not None or slab is not None or labels):
-        culprit = "labels" if labels else "patch" if cube is not None else "tile"
-        raise ValueError(f"{name}: erosion: is of the whole mesh; leave out {culprit}, or take erosion out of the recipe")
-    if min_component and (cube is not None or slab is not None):
-        raise ValueError("min_component: the size of a piece that is cut is not known; leave out tile and patch")
-    made = _synthesis.mesh(
-        json,
-        name,
-        cells,
-        count,
-        cube,
-        slab,
-        _arrays.number(min_component, "min_component", 0.0, 1.0),
-        bool(labels),
-        bool(even),
-        _options.threads(threads),
-        progress,
-    )
+    arguments = _mesh_arguments(recipe, resolution, triangles, patch, tile, seed, min_component, labels, even)
+    fields = records(arguments[0])
+    made = _synthesis.mesh(*arguments, _options.threads(threads), progress)
     figures = Record(made["figures"])
     return Mesh(
         made["vertices"],
@@ -123,3 +131,45 @@ def mesh(
         legend=made.get("legend", []),
         figures=figures,
     )
+
+
+def predict(
+    recipe: RecipeLike,
+    *,
+    resolution: Optional[int] = None,
+    triangles: Optional[float] = None,
+    patch: Optional[Sequence[float]] = None,
+    tile: Union[None, str, Sequence[int]] = None,
+    seed: Optional[int] = None,
+    min_component: float = 0.0,
+    labels: bool = False,
+    even: bool = False,
+    format: str = ".ply",
+    threads: int = 0,
+) -> Record:
+    """Predict what the program ``synth`` takes for a mesh, as ``synth --predict`` does.
+
+    Parameters
+    ----------
+    recipe, resolution, triangles, patch, tile, seed, min_component, labels, even
+        As `mesh` has them.
+    format
+        The extension of the file: ".ply", ".obj", ".stl", ".glb", ".icq" or ".tab".
+    threads
+        Threads that make the mesh; 0: all.
+
+    Returns
+    -------
+    Record
+        resolution, triangles, file_bytes, peak_bytes (of this process, with what it holds already), seconds (on the
+        clock, on cores that do nothing else) and processor_seconds (of all threads together). Most are within 30 %.
+
+    Raises
+    ------
+    ValueError
+        The recipe or an argument is wrong, or there is no surface in the region.
+    """
+    if format not in _FORMATS:
+        raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
+    arguments = _mesh_arguments(recipe, resolution, triangles, patch, tile, seed, min_component, labels, even)
+    return Record(_synthesis.predict(*arguments, format, _options.threads(threads)))

@@ -6,7 +6,9 @@
 #include <nanobind/stl/vector.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,7 +22,7 @@
 #include "python/bindings/recipe_text.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
-#include "tasks/prediction/mesh_estimate.h"
+#include "tasks/prediction/mesh_prediction.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
 
@@ -141,6 +143,32 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   return made;
 }
 
+struct PredictedMesh {
+  MeshPrediction takes;
+  int resolution = 0;
+};
+
+PredictedMesh predict_of(const MeshArguments& arguments, const std::string& format, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor_start = std::clock();
+  const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
+  const Region region = arguments.region();
+  const ImplicitField field = field_of_region(recipe, arguments.name, region);
+  MeshUse use;
+  use.erosion = recipe.erosion.has_value();
+  use.twice = arguments.min_component > 0.0;
+  use.labels = arguments.labels;
+  use.even = arguments.even;
+  const int resolution = arguments.triangles > 0.0
+                             ? resolution_for_triangles(field, recipe, region, arguments.triangles)
+                             : arguments.resolution;
+  const PlannedRun run{threads,
+                       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                       static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
+  return {predict_mesh({field, recipe, region, "mesh" + format, use}, resolution, run, kForFigures),
+          resolution};
+}
+
 nb::dict quality_figures(const QualityFigures& quality) {
   nb::dict figures;
   figures["first_percentile"] = quality.first_percentile;
@@ -217,6 +245,22 @@ Fields mesh(const std::string& json, const std::string& name, int resolution, do
   return result;
 }
 
+Fields predict(const std::string& json, const std::string& name, int resolution, double triangles,
+               std::optional<std::array<double, 4>> patch, std::optional<std::array<int, 2>> tile,
+               double min_component, bool labels, bool even, const std::string& format, int threads) {
+  const MeshArguments arguments{json, name, resolution, triangles, patch, tile, min_component, labels, even};
+  const PredictedMesh predicted =
+      run_job(nb::none(), threads, [=](JobState&) { return predict_of(arguments, format, threads); });
+  Fields figures;
+  figures["resolution"] = predicted.resolution;
+  figures["triangles"] = predicted.takes.triangles;
+  figures["file_bytes"] = predicted.takes.file_bytes;
+  figures["peak_bytes"] = predicted.takes.peak_bytes;
+  figures["seconds"] = predicted.takes.seconds;
+  figures["processor_seconds"] = predicted.takes.processor_seconds;
+  return figures;
+}
+
 Fields read(const std::string& file, bool points_allowed, nb::object progress) {
   TriangleMesh mesh = run_job(std::move(progress), 0, [=](JobState&) {
     return points_allowed ? read_mesh_or_points(file) : read_mesh(file);
@@ -288,6 +332,9 @@ void bind_meshes(nb::module_& module) {
   module.def("mesh", &mesh, nb::arg("json"), nb::arg("name"), nb::arg("resolution"), nb::arg("triangles"),
              nb::arg("patch").none(), nb::arg("tile").none(), nb::arg("min_component"), nb::arg("labels"),
              nb::arg("even"), nb::arg("threads"), nb::arg("progress").none());
+  module.def("predict", &predict, nb::arg("json"), nb::arg("name"), nb::arg("resolution"),
+             nb::arg("triangles"), nb::arg("patch").none(), nb::arg("tile").none(), nb::arg("min_component"),
+             nb::arg("labels"), nb::arg("even"), nb::arg("format"), nb::arg("threads"));
   module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"), nb::arg("progress").none());
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),

@@ -48,6 +48,18 @@ def test_values_at_float64_points_take_no_temporary_arrays(ball):
     assert values.nbytes == 1_600_000 and peak < 200_000  # tracemalloc does not see the result, which is the module's
 
 
+def test_a_prediction_is_near_the_mesh(ball):
+    predicted = astrolith.predict(ball, resolution=64, threads=1)
+    made = astrolith.mesh(ball, resolution=64)
+    assert predicted.triangles == pytest.approx(len(made.faces), rel=0.1)
+    assert predicted.file_bytes == pytest.approx(25 * len(made.faces), rel=0.1)
+    assert 0 < predicted.seconds <= 1.01 * predicted.processor_seconds
+    chosen = astrolith.predict(ball, triangles=30_000)
+    assert chosen.triangles == pytest.approx(30_000, rel=0.1) and chosen.peak_bytes > 0
+    with pytest.raises(ValueError, match="format"):
+        astrolith.predict(ball, format=".png")
+
+
 def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):
     mesh = astrolith.mesh(ball, resolution=48)
     assert mesh.vertices.dtype == np.float32 and mesh.faces.dtype == np.uint32
