@@ -163,7 +163,10 @@ class SurfaceProber {
     const std::vector<BlockNode<Block>>& mixed = column.mixed;
     const double area = surface_.area_within(column.box);
     if (mixed.empty() || !(area > 0.0)) return;
-    const double weight = double(mixed.size()) * side() * side() / area;
+    // Where the surface lies off the coarse one, a column may hold a scrap of that. It does not count a
+    // hundred times.
+    constexpr double kLeastArea = 0.25;
+    const double weight = double(mixed.size()) / std::max(area / (side() * side()), kLeastArea);
     sums.blocks_of_square += weight;
     const std::size_t chosen = static_cast<std::size_t>(index) % mixed.size();
     const BlockCost cost =
