@@ -33,7 +33,8 @@ double variance_of_bias(double value, const Figure& without_bias, double least, 
 // The number of blocks. That of the sample has no bias, but scatters at each size of squares anew, by the
 // number of squares that it narrowed.
 Figure number_of_blocks(const MeshEstimate& sample, const ProbedSurface& surface, const ProbeSums& sums) {
-  constexpr double kOfSquare = 2.0, kOfProbe = 0.16, kOfBias = 0.01, kMostOfBias = 1.0;  // relative variances
+  constexpr double kOfSquare = 2.0, kOfProbe = 0.16, kOfBias = 0.01,
+                   kMostOfBias = 0.04;  // relative variances
   const double side = kBlockCells * sample.step, probes = double(sums.probes);
   const Figure by_squares{sample.blocks, kOfSquare / std::max(double(sample.narrowed_squares), 1.0)};
   const double by_probes = surface.area() * sums.blocks_of_square / probes / (side * side);
