@@ -97,6 +97,14 @@ INSTANTIATE_TEST_SUITE_P(
                       ComponentsCase{"Ring", [] { return testing::torus(1.0, 0.45); }, 1, 1}),
     [](const ::testing::TestParamInfo<ComponentsCase>& body) { return std::string(body.param.name); });
 
+// Dents eat bodies of few metaballs up.
+TEST(ShapeFit, FewMetaballsAreAllAdditive) {
+  const TargetBody target = prepare_target(testing::icosphere(3, 2.0), "sphere");
+  const ShapeFitResult fit = fit_shape(target, quick(5));
+  EXPECT_TRUE(fit.body.subtract.empty());
+  EXPECT_LT(fit.check.distance.mean, 0.01);
+}
+
 TEST(ShapeFit, SameBodyForOneAndTwoThreads) {
   const TargetBody target = prepare_target(testing::torus(1.0, 0.45), "torus");
   std::vector<MetaballBody> bodies;
