@@ -61,7 +61,11 @@ void check_model_edge(const ReliefLayer& layer, const Place& place) {
 }
 
 void check_donor(const ReliefLayer& layer, const Place& place) {
-  if (!layer.donor) return;
+  if (!layer.donor) {
+    if (layer.donor_scale != 1.0)
+      place.field("donor_scale").fail("is about a donor; take it out, or add one");
+    return;
+  }
   if (layer.arrangement != ReliefArrangement::kLike) {
     place.field("donor").fail("has heights for places of its own; take arrangement \"like\" with it");
   }
@@ -203,6 +207,7 @@ void visit_fields(FieldVisitor& v, ReliefLayer& layer) {
   v.field_if(!layer.is_embedded(), "image_sha256", layer.image_sha256);
   v.word("arrangement", layer.arrangement, kArrangements, arrangement_word);
   v.field("donor", layer.donor);
+  v.field_if(layer.donor_scale != 1.0, "donor_scale", layer.donor_scale, kPositive);
   v.rule(check_donor, layer);
   v.field_if(layer.edge != 0.0, "edge", layer.edge, kNotNegative);
   v.field_if(layer.reach != 0.3, "reach", layer.reach, range(0.01, 1.0));

@@ -45,6 +45,9 @@ struct ReliefLayer : NamedImage {
   ReliefArrangement arrangement = ReliefArrangement::kMeasured;
   // The body whose places have the heights, where it is not the recipe's own; with kLike only.
   std::optional<MetaballBody> donor;
+  // The length here of a unit of the donor, which keeps its own lengths, and with it those of this layer: its
+  // places could not be found again in another unit. 1 without a donor.
+  double donor_scale = 1.0;
   double edge = 0.0;         // mean edge of the model that was measured, length units; 0: 1.2 spacings
   double reach = 0.3;        // of donors with kLike, as a share of the body's diagonal
   bool fill_unseen = false;  // whether ground that no camera saw gets patches of seen ground
@@ -65,18 +68,19 @@ struct ReliefLayer : NamedImage {
     return static_cast<std::uint16_t>(1u + (code * 65534u + (levels - 1u) / 2u) / (levels - 1u));
   }
   double edge_length() const { return edge > 0.0 ? edge : 1.2 * spacing; }
-  StatedHeight stated_height() const { return {low < -high ? "low" : "high", low < -high ? low : high}; }
+  StatedHeight stated_height() const {
+    return {low < -high ? "low" : "high", donor_scale * (low < -high ? low : high)};
+  }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
+    if (donor) {
+      donor_scale *= ratio;
+      return;
+    }
     spacing *= ratio;
     edge *= ratio;
     low *= ratio;
     high *= ratio;
-    if (!donor) return;
-    for (Sphere& sphere : donor->spheres) {
-      sphere.center *= ratio;
-      sphere.radius *= ratio;
-    }
   }
 };
 

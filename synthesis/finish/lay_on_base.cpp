@@ -42,7 +42,7 @@ const ReliefLayer* relief_of(const Recipe& recipe) {
 
 double measured_edge(const Recipe& recipe, const std::string& name) {
   const ReliefLayer* relief = relief_of(recipe);
-  if (relief != nullptr) return relief->edge_length();
+  if (relief != nullptr) return relief->donor_scale * relief->edge_length();
   throw InputError(name +
                    ": layers: hold no relief, whose model has edges; take lengths by \"body\" or \"units\"");
 }

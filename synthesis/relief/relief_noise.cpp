@@ -62,6 +62,9 @@ struct DonorBody {
   BodyGround ground() const { return {body, arrays.view(), metaballs.lists()}; }
 };
 
+// Of the lattice over the recipe's body, length units.
+double spacing_of(const ReliefLayer& layer) { return layer.donor_scale * layer.spacing; }
+
 std::uint32_t hash_of(const LayerSource& source) {
   return hash_seed(source.recipe.seed, static_cast<std::uint32_t>(source.number));
 }
@@ -82,14 +85,15 @@ struct ReliefGround {
 namespace {
 
 // The heights as codes of their own range.
-void encode(const std::vector<double>& heights, ReliefGround& ground) {
+void encode(const std::vector<double>& heights, double scale, ReliefGround& ground) {
   ground.codes.resize(heights.size());
   if (heights.empty()) return;
   const auto [least, most] = std::minmax_element(heights.begin(), heights.end());
-  ground.low = static_cast<float>(*least);
-  ground.step = static_cast<float>((*most - *least) / 65535.0);
+  ground.low = static_cast<float>(scale * *least);
+  ground.step = static_cast<float>(scale * (*most - *least) / 65535.0);
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double code = ground.step > 0.0f ? (heights[i] - double{ground.low}) / double{ground.step} : 0.0;
+    const double code =
+        ground.step > 0.0f ? (scale * heights[i] - double{ground.low}) / double{ground.step} : 0.0;
     ground.codes[i] = static_cast<std::uint16_t>(std::clamp(std::floor(code + 0.5), 0.0, 65535.0));
   }
 }
@@ -100,18 +104,21 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const MeasuredRel
           ReliefGround& ground) {
   const ReliefPatches patches(measured, layer.spacing, layer.edge_length());
   std::vector<double> heights = measured.heights;
+  const double scale = layer.donor_scale;  // heights are in the unit of the donor
   const LikenessOptions options{layer.reach, layer.fill_unseen, hash_of(source)};
   if (layer.arrangement == ReliefArrangement::kLike) {
     heights =
         like_heights(ground.places, patches, layer.donor.has_value(), layer.spacing, options, source.place);
-    encode(heights, ground);
+    encode(heights, scale, ground);
   } else if (layer.fill_unseen) {
     heights = filled_heights(patches, layer.spacing, options);
-    encode(heights, ground);
+    encode(heights, scale, ground);
   }
   if (layer.finer == 0) return;
   const ReliefPoints points(ground.places, layer.spacing);
   ground.levels = level_ground(patches, points, heights, hash_append(hash_of(source), 4));
+  ground.levels.texture.pixel_size *= scale;
+  ground.levels.step *= static_cast<float>(scale);
 }
 
 // The bounds of the codes in each cell.
@@ -225,7 +232,7 @@ std::vector<std::uint32_t> words_of(const ReliefGround& ground, const std::vecto
 }  // namespace
 
 void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, const BodyGround& body) {
-  places = find_relief_places(body, layer.spacing, source.place);
+  places = find_relief_places(body, spacing_of(layer), source.place);
   tiles = make_relief_tiles(places, source.place);
   low = static_cast<float>(layer.low);
   step = static_cast<float>(layer.step());
@@ -242,8 +249,8 @@ void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, con
 
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {
   PreparedRelief prepared{{}, std::make_shared<ReliefGround>()};
-  prepared.noise.inverse_spacing = static_cast<float>(1.0 / layer.spacing);
-  prepared.noise.detail.finest = layer.spacing;
+  prepared.noise.inverse_spacing = static_cast<float>(1.0 / spacing_of(layer));
+  prepared.noise.detail.finest = spacing_of(layer);
   return prepared;
 }
 
@@ -255,7 +262,7 @@ ReliefNoise placed(const ReliefLayer& layer, const PreparedRelief& prepared, con
   const ReliefTiles& tiles = ground.tiles;
   noise.low = ground.low, noise.step = ground.step;
   noise.count_x = tiles.count[0], noise.count_y = tiles.count[1], noise.count_z = tiles.count[2];
-  const Vec3d origin = site.frame.origin * (1.0 / layer.spacing);
+  const Vec3d origin = site.frame.origin * (1.0 / spacing_of(layer));
   noise.origin = to_float(origin - Vec3d{static_cast<double>(tiles.low[0]), static_cast<double>(tiles.low[1]),
                                          static_cast<double>(tiles.low[2])} *
                                        static_cast<double>(kReliefCell));

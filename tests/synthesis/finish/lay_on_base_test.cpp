@@ -100,9 +100,10 @@ TEST(LayOnBase, ReliefsAreDrawnFromTheBodyThatWasMeasured) {
   const auto& relief = std::get<ReliefLayer>(laid.layers.back());
   EXPECT_EQ(relief.arrangement, ReliefArrangement::kLike);
   ASSERT_TRUE(relief.donor);
-  EXPECT_EQ(relief.donor->spheres[0].radius, 1000.0);
-  EXPECT_EQ(relief.spacing, 50.0);
-  EXPECT_EQ(relief.edge, 40.0);
+  EXPECT_EQ(relief.donor->spheres[0].radius, 1.0);  // the donor keeps its unit
+  EXPECT_EQ(relief.donor_scale, 1000.0);
+  EXPECT_EQ(relief.spacing, 0.05);
+  EXPECT_EQ(relief.edge, 0.04);
   const ImplicitField bare(ball("m", 700.0)), field(laid);
   double least = 0.0, most = 0.0;
   for (int i = 0; i < 100; ++i) {
@@ -133,7 +134,9 @@ TEST(LayOnBase, KeepsSharesOfTheBodyOrEdgesOfTheModel) {
   const auto edge_by = [&](const char* lengths) {
     const Recipe laid = lay_on_base(details, "details", base, "base", base_lengths_of(lengths));
     EXPECT_EQ(laid.layers.size(), 1u);  // the base's own relief is gone
-    return std::get<ReliefLayer>(laid.layers.back()).edge;
+    const auto& relief = std::get<ReliefLayer>(laid.layers.back());
+    EXPECT_FALSE(ImplicitField(laid).bounds().empty());  // its places are found again
+    return relief.donor_scale * relief.edge;
   };
   EXPECT_DOUBLE_EQ(edge_by("units"), 0.1);
   EXPECT_NEAR(edge_by("body"), 0.5, 1e-3);
