@@ -62,7 +62,7 @@ struct DonorBody {
   BodyGround ground() const { return {body, arrays.view(), metaballs.lists()}; }
 };
 
-// Of the lattice over the recipe's body, length units.
+// The spacing of the lattice over the recipe's body, length units.
 double spacing_of(const ReliefLayer& layer) { return layer.donor_scale * layer.spacing; }
 
 std::uint32_t hash_of(const LayerSource& source) {

@@ -26,7 +26,7 @@ struct AnchorSpacing {
 
   double distance() const { return edges * edge; }
   double radius() const { return 1.5 * distance(); }  // of patches
-  // Of the weights of narrow heights: patches change from one to the next within some 4 edges.
+  // The exponent of the weights of narrow heights: patches change from one to the next within some 4 edges.
   int high_exponent() const;
 };
 

@@ -38,7 +38,7 @@ struct MeshPrediction {
 
 // What a prediction may take. The figures that a user asks for are worth 3 % of the mesh and at least some 30
 // milliseconds. Figures that guard the memory of a mesh should hardly keep it waiting.
-inline constexpr EstimateBudget kForFigures{0.025, 0.01, 96, 16, 32, 0.1},
+inline constexpr EstimateBudget kForFigures{0.025, 0.01, 96, 32, 32, 0.1},
     kForMemory{0.015, 0.01, 24, 2, 12, 0.03};
 
 // Predicts the mesh of this resolution. Memory and seconds are those of this process, with what it has taken

@@ -18,14 +18,6 @@ using testing::WaveHeights;
 constexpr std::int64_t kPoints = 20000;
 const double kRadius = std::sqrt(std::sqrt(3.0) * kPoints / (8 * std::numbers::pi));  // edges
 
-template <typename Heights>
-TriangleMesh fine_sphere(const Heights& height) {
-  static const TriangleMesh sphere = icosphere(6);
-  TriangleMesh mesh = sphere;
-  for (Vec3d& p : mesh.vertices) p *= 1 + height(p);
-  return mesh;
-}
-
 HeightBands bands_of(const TriangleMesh& mesh, std::int64_t points = kPoints) {
   return height_bands(even_surface(mesh, points, 1));
 }
@@ -51,8 +43,8 @@ TEST(HeightBands, ARippleLiesInTheBandOfItsWavelength) {
   const double edge = 1 / kRadius;
   for (const auto& [degree, most] : {std::pair{60, 0}, {30, 1}, {15, 2}, {8, 3}}) {
     const double amplitude = 0.4 * edge;
-    const HeightBands found =
-        bands_of(fine_sphere([&, l = degree](const Vec3d& p) { return amplitude * sectoral(l, p); }));
+    const HeightBands found = bands_of(
+        testing::rough_sphere<6>([&, l = degree](const Vec3d& p) { return amplitude * sectoral(l, p); }));
     ASSERT_EQ(found.bands.size(), 4u);
     for (std::size_t k = 0; k < 4; ++k) {
       const double share = kept(degree, kBandScales[k]) - kept(degree, kBandScales[k + 1]);
@@ -73,7 +65,7 @@ TEST(HeightBands, ASphereHasNoRelief) {
 
 TEST(HeightBands, SizeAndPlaceDoNotMatter) {
   const WaveHeights waves(0.2, 1);
-  TriangleMesh mesh = fine_sphere([&](const Vec3d& p) { return 0.01 * waves(p); });
+  TriangleMesh mesh = testing::rough_sphere<6>([&](const Vec3d& p) { return 0.01 * waves(p); });
   const HeightBands one = bands_of(mesh);
   for (Vec3d& p : mesh.vertices) p = 1000 * p + Vec3d{3000, 200, 10};
   const HeightBands large = bands_of(mesh);
@@ -110,7 +102,7 @@ TEST(HeightBands, AreCoupledWhereTheyAreHighTogether) {
   const HarmonicHeights shorter(18, 1), longer(6, 2);
   const auto half = [](double along) { return 0.6 + 0.4 * std::clamp(3 * along, -1.0, 1.0); };
   const auto coupling = [&](const auto& where_longer) {
-    return *bands_of(fine_sphere([&](const Vec3d& p) {
+    return *bands_of(testing::rough_sphere<6>([&](const Vec3d& p) {
               return 0.007 * (where_longer(p) * longer(p) + half(p.z) * shorter(p));
             })).coupling;
   };
@@ -136,7 +128,7 @@ TEST(HeightBands, ASmallBodyHasFewer) {
 
 TEST(HeightBands, AreTheSameForAnyNumberOfThreads) {
   const WaveHeights waves(0.2, 1);
-  const TriangleMesh mesh = fine_sphere([&](const Vec3d& p) { return 0.01 * waves(p); });
+  const TriangleMesh mesh = testing::rough_sphere<6>([&](const Vec3d& p) { return 0.01 * waves(p); });
   const auto measured = [&](int threads) {
     const ThreadLimit limit(threads);
     return bands_of(mesh);

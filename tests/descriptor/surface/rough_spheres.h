@@ -57,10 +57,10 @@ class BumpHeights {
   std::vector<Vec3d> centers_;
 };
 
-// A unit sphere of 20,480 triangles, each vertex moved outwards by its height.
-template <typename Heights>
+// A unit sphere of 20 * 4^levels triangles, each vertex moved outwards by its height.
+template <int levels = 5, typename Heights>
 TriangleMesh rough_sphere(const Heights& height) {
-  static const TriangleMesh sphere = icosphere(5);
+  static const TriangleMesh sphere = icosphere(levels);
   TriangleMesh mesh = sphere;
   for (Vec3d& p : mesh.vertices) p *= 1 + height(p);
   return mesh;
