@@ -89,14 +89,17 @@ class Notebook:
         record.write_text(json.dumps({"command": command, "figures": figures}))
         return figures
 
-    def figure(self, name):
-        """Keeps the current figure: of full runs in docs/figures, of quick ones under OUT."""
+    def figure(self, name, photo=False):
+        """Keeps the current figure: of full runs in docs/figures, of quick ones under OUT; photo: pictures, as JPEG."""
         folder = ROOT / "docs/figures" if FULL else OUT / "figures"
         folder.mkdir(parents=True, exist_ok=True)
-        path = folder / f"{self.name[:2]}_{name}.png"
-        plt.savefig(path)
-        # A palette is as good in print, and half the bytes that the repository keeps for ever.
-        PIL.Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
+        path = folder / f"{self.name[:2]}_{name}.{'jpg' if photo else 'png'}"
+        if photo:
+            plt.savefig(path, pil_kwargs={"quality": 85})
+        else:
+            plt.savefig(path)
+            # A palette is as good in print, and half the bytes that the repository keeps for ever.
+            PIL.Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
         plt.show()
 
     def claim(self, what, thesis, ours, comment=""):
