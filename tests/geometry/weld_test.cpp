@@ -1,5 +1,6 @@
 #include "geometry/weld.h"
 
+#include <bit>
 #include <stdexcept>
 
 #include "geometry/io/mesh_io.h"
@@ -71,6 +72,41 @@ TEST(Weld, FirstOccurrenceStaysWithItsNormal) {
   EXPECT_EQ(welded.vertices.size(), 3u);  // zero and minus zero are one place
   EXPECT_TRUE((welded.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 1}}));
   EXPECT_TRUE((welded.normals == std::vector<Vec3d>{{0, 0, 1}, {0, 1, 0}, {0, 0, -1}}));
+}
+
+// The finaliser of splitmix64 (Steele, Lea and Flood 2014), and its inverse.
+std::uint64_t mixed(std::uint64_t z) {
+  z += 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+std::uint64_t unmixed(std::uint64_t z) {
+  z = (z ^ (z >> 31) ^ (z >> 62)) * 0x319642b2d24d8ec3u;
+  z = (z ^ (z >> 27) ^ (z >> 54)) * 0x96de1b173f119089u;
+  return (z ^ (z >> 30) ^ (z >> 60)) - 0x9e3779b97f4a7c15u;
+}
+
+// Places that a table of hashes puts into one slot if the hash is splitmix64 over the coordinates, as it once
+// was here: all end in 40 zeros.
+TriangleMesh places_of_one_slot(std::uint32_t count) {
+  TriangleMesh mesh;
+  for (std::uint64_t k = 1; mesh.vertices.size() < count; ++k) {
+    const double x = static_cast<double>(mesh.vertices.size()), y = 1.0;
+    const std::uint64_t before =
+        mixed(mixed(std::bit_cast<std::uint64_t>(x)) ^ std::bit_cast<std::uint64_t>(y));
+    const auto z = std::bit_cast<double>(unmixed(k << 40) ^ before);
+    if (std::abs(z) < 1e15 && std::abs(z) > 1e-15) mesh.vertices.push_back({x, y, z});
+  }
+  return mesh;
+}
+
+// By hash, this took a minute.
+TEST(Weld, NoChoiceOfPlacesIsSlow) {
+  TriangleMesh mesh = places_of_one_slot(400000);
+  const std::vector<Vec3d> once = mesh.vertices;
+  mesh.vertices.insert(mesh.vertices.end(), once.rbegin(), once.rend());
+  EXPECT_TRUE(weld_vertices(std::move(mesh), 0).vertices == once);
 }
 
 // A published model whose poles and date line are stored twice, with rounding between the copies.
