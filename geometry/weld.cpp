@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 
-// Vertices in the grid cells that they lie in. Cells are found by sorting, which no choice of coordinates makes
-// slow. They are a little wider than the radius: the 27 cells around a point then hold all vertices within the
-// radius, whichever way its cell was rounded. Radius 0 makes every triple of coordinates its own cell.
+// Vertices in the grid cells that they lie in. Cells are found by sorting, which no choice of coordinates
+// makes slow. They are a little wider than the radius: the 27 cells around a point then hold all vertices
+// within the radius, whichever way its cell was rounded. Radius 0 makes every triple of coordinates its own
+// cell.
 class VertexCells {
  public:
   VertexCells(const TriangleMesh& mesh, double radius)
