@@ -31,7 +31,8 @@ void relocate(const AdaptiveFitOptions& options, InsideWatch& watch, TrackedMode
     fit.grow(options.spheres, 1, before);
     watch.add_dips(fit.model(), fit.points().inside);
     fit.refine_for(options.relocation_iterations);
-    if (fit.best_distance() > (1.0 - options.relocation_gain) * before) count = 2 * count / 3;
+    if (fit.best_distance() > (1.0 - options.relocation_gain) * before)
+      count = 2 * count / options.fewer_relocated;
   }
   fit.return_to_best();
 }
@@ -58,6 +59,7 @@ AdaptiveFitOptions options_for(int spheres) {
   options.grown_iterations = times(options.grown_iterations, 1.0 + many);
   options.relocation_iterations = times(options.relocation_iterations, 1.0 + many);
   options.last_iterations = times(options.last_iterations, 1.0 + many);
+  options.fewer_relocated = times(options.fewer_relocated, 1.0 + many);
   return options;
 }
 

@@ -29,7 +29,8 @@ struct AdaptiveFitOptions {
   double subtractive = 0.5;        // share of the metaballs that may be subtractive, with the Gaussian kernel
   double relocated = 0.15;         // share of the metaballs that the first relocation moves
   double least_relocated = 0.01;   // share that a relocation moves at least; with fewer the fit goes on
-  double relocation_gain = 3e-3;   // share of the mean distance; a smaller gain lets fewer move
+  double relocation_gain = 3e-3;   // share of the mean distance; a smaller gain lets fewer move:
+  int fewer_relocated = 3;         // two parts of so many, > 2
   int samples_per_sphere = 60;     // used until the final refinement
   double tolerance = 0.0;          // growth stops at this mean |s| over the samples, fraction of the diagonal
   double loss_scale = 1e-3;        // fraction of the diagonal
@@ -39,7 +40,7 @@ struct AdaptiveFitOptions {
 
 // The default options for this number of metaballs, 1 to 10000. Fits with many metaballs converge slowly, and
 // each of their iterations costs more. From 250 to 1000 metaballs the refinements grow steadily to twice as
-// many iterations, and the rounds of relocation fall steadily from 40 to 13.
+// many iterations, the rounds of relocation fall from 40 to 13, and those that gain little end sooner.
 AdaptiveFitOptions options_for(int spheres);
 
 struct ConvergencePoint {

@@ -1,6 +1,7 @@
 #include "estimation/shape/fit/fit_check.h"
 
 #include "geometry/mesh_measure.h"
+#include "geometry/mesh_normals.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
@@ -22,21 +23,26 @@ FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resol
   return check;
 }
 
-FitPoints stray_points(const TargetBody& target, const TriangleMesh& mesh, double threshold) {
-  std::vector<double> distances(mesh.vertices.size());
+FitPoints stray_points(const TargetBody& target, const TriangleMesh& mesh, double threshold, double turned) {
+  constexpr double kTurned = 0.5;  // largest cosine between the normals
+  const std::vector<Vec3d> normals = vertex_normals(mesh);
+  std::vector<double> strays(mesh.vertices.size(), 0.0);  // signed distances of strays, else 0
   parallel_for(
-      0, static_cast<std::int64_t>(distances.size()),
+      0, static_cast<std::int64_t>(strays.size()),
       [&](std::int64_t i) {
-        distances[static_cast<std::size_t>(i)] =
-            target.tree.signed_distance(mesh.vertices[static_cast<std::size_t>(i)]);
+        const auto v = static_cast<std::size_t>(i);
+        const ClosestPoint closest = target.tree.closest(mesh.vertices[v]);
+        const bool far = closest.distance > threshold;
+        if (far || (closest.distance > turned && dot(normals[v], closest.normal) < kTurned))
+          strays[v] = target.tree.signed_distance(mesh.vertices[v]);
       },
       64);
-  FitPoints strays;
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    if (distances[i] > threshold) strays.inside.push_back(mesh.vertices[i]);
-    if (distances[i] < -threshold) strays.outside.push_back(mesh.vertices[i]);
+  FitPoints points;
+  for (std::size_t v = 0; v < strays.size(); ++v) {
+    if (strays[v] > 0.0) points.inside.push_back(mesh.vertices[v]);
+    if (strays[v] < 0.0) points.outside.push_back(mesh.vertices[v]);
   }
-  return strays;
+  return points;
 }
 
 }  // namespace astrolith

@@ -23,9 +23,10 @@ struct FitCheck {
 FitCheck check_fit(const TargetBody& target, const MetaballBody& body, int resolution, std::int64_t samples,
                    std::uint64_t seed);
 
-// Returns the vertices of the mesh that are farther than `threshold` from the target's surface. They belong
-// to cavities, islands and bridges, which no sample of the target constrains. Vertices inside the target
-// become points that must lie inside the model, and vertices outside become points that must lie outside.
-FitPoints stray_points(const TargetBody& target, const TriangleMesh& mesh, double threshold);
+// Returns the vertices of the mesh that are farther than `threshold` from the target's surface, or farther
+// than `turned` with a normal that is not the target's there. They belong to cavities, islands, bridges and
+// tunnels, which no sample of the target constrains. Vertices inside the target become points that must lie
+// inside the model, and vertices outside become points that must lie outside.
+FitPoints stray_points(const TargetBody& target, const TriangleMesh& mesh, double threshold, double turned);
 
 }  // namespace astrolith

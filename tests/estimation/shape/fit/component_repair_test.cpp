@@ -71,5 +71,18 @@ TEST(ComponentRepair, TheWatchFindsDipsOnce) {
   EXPECT_EQ(dips.size(), count);
 }
 
+// A bridge lies near the target, where only its normals tell it from the target's surface.
+TEST(SurfaceRepair, VerticesTurnedAwayAreStraysEarlier) {
+  const TargetBody target = ball();
+  const double radius = 0.5 / std::sqrt(3.0);
+  const TriangleMesh near = testing::icosphere(2, 0.004, {radius + 0.005, 0.0, 0.0});
+  EXPECT_TRUE(stray_points(target, near, 0.015, 0.015).outside.empty());
+  const FitPoints strays = stray_points(target, near, 0.015, 0.002);
+  EXPECT_TRUE(strays.inside.empty());
+  ASSERT_FALSE(strays.outside.empty());
+  for (const Vec3d& p : strays.outside) EXPECT_LT(p.x, radius + 0.005 + 0.004 * 0.6);
+  EXPECT_LT(strays.outside.size(), near.vertices.size());
+}
+
 }  // namespace
 }  // namespace astrolith
