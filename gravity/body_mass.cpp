@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gravity/gauss_rule.h"
+#include "gravity/solid_harmonics.h"
 #include "numerics/reported_loop.h"
 
 namespace astrolith {
@@ -21,39 +22,26 @@ Matrix3 inertia_of(const Matrix3& second) {
   return inertia;
 }
 
-// R_lm without the sign of Condon and Shortley, l <= degree: place l (l + 1) / 2 + m, real and imaginary
-// parts.
+// Sums of R_lm without the sign of Condon and Shortley, l <= degree, at the place l (l + 1) / 2 + m.
 struct RegularSums {
-  explicit RegularSums(int n) : degree(n), re(count(n)), im(count(n)) {}
+  explicit RegularSums(int n) : degree(n), values(count(n)) {}
   static std::size_t count(int n) { return static_cast<std::size_t>((n + 1) * (n + 2) / 2); }
   static std::size_t place(int l, int m) { return static_cast<std::size_t>(l * (l + 1) / 2 + m); }
 
   void add(const Vec3d& y, double weight) {
-    const double square = squared_norm(y);
-    double diagonal_re = weight, diagonal_im = 0.0;
+    HarmonicValue diagonal{weight, 0.0};
     for (int m = 0; m <= degree; ++m) {
       if (m > 0) {
-        const double c = 0.5 / m, x = diagonal_re;
-        diagonal_re = c * (y.x * x - y.y * diagonal_im);
-        diagonal_im = c * (y.y * x + y.x * diagonal_im);
+        const HarmonicValue turned = HarmonicValue{y.x, y.y} * diagonal;
+        diagonal = {0.5 / m * turned.re, 0.5 / m * turned.im};
       }
-      double now_re = diagonal_re, now_im = diagonal_im, last_re = 0.0, last_im = 0.0;
-      for (int l = m; l <= degree; ++l) {
-        if (l > m) {
-          const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale,
-                       down = square * scale;
-          const double next_re = up * now_re - down * last_re, next_im = up * now_im - down * last_im;
-          last_re = now_re, last_im = now_im;
-          now_re = next_re, now_im = next_im;
-        }
-        re[place(l, m)] += now_re;
-        im[place(l, m)] += now_im;
-      }
+      harmonics_of_order(y, m, degree, diagonal,
+                         [&](int l, const HarmonicValue& value) { values[place(l, m)] += value; });
     }
   }
 
   int degree;
-  std::vector<double> re, im;
+  std::vector<HarmonicValue> values;
 };
 
 // The integral of a homogeneous polynomial of degree l over the tetrahedron of a facet and the origin is that
@@ -92,7 +80,7 @@ RegularSums volume_sums(const TriangleMesh& mesh, const Vec3d& center, double ra
       }
     });
     for (const RegularSums& part : parts) {
-      for (std::size_t i = 0; i < sums.re.size(); ++i) sums.re[i] += part.re[i], sums.im[i] += part.im[i];
+      for (std::size_t i = 0; i < sums.values.size(); ++i) sums.values[i] += part.values[i];
     }
   }
   return sums;
@@ -102,25 +90,6 @@ double factorial(int n) {
   double product = 1.0;
   for (int i = 2; i <= n; ++i) product *= i;
   return product;
-}
-
-void rotate(Matrix3& m, Matrix3& vectors, std::size_t p, std::size_t q) {
-  if (m[p][q] == 0.0) return;
-  const double theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-  const double size =
-      std::fabs(theta) > 1e150 ? 2.0 * std::fabs(theta) : std::fabs(theta) + std::sqrt(theta * theta + 1.0);
-  const double t = (theta < 0.0 ? -1.0 : 1.0) / size;
-  const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double a = m[k][p], b = m[k][q];
-    m[k][p] = c * a - s * b, m[k][q] = s * a + c * b;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double a = m[p][k], b = m[q][k];
-    m[p][k] = c * a - s * b, m[q][k] = s * a + c * b;
-    const double v = vectors[k][p], w = vectors[k][q];
-    vectors[k][p] = c * v - s * w, vectors[k][q] = s * v + c * w;
-  }
 }
 
 }  // namespace
@@ -154,11 +123,11 @@ BodyMass body_mass(const TriangleMesh& mesh) {
 }
 
 PrincipalAxes principal_axes(const Matrix3& symmetric) {
-  Matrix3 m = symmetric, vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Matrix3 m = symmetric, vectors = kIdentity3;
   for (int sweep = 0; sweep < 30; ++sweep) {
-    rotate(m, vectors, 0, 1);
-    rotate(m, vectors, 0, 2);
-    rotate(m, vectors, 1, 2);
+    rotate_to_diagonal(m, vectors, 0, 1);
+    rotate_to_diagonal(m, vectors, 0, 2);
+    rotate_to_diagonal(m, vectors, 1, 2);
   }
   std::array<std::size_t, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return m[a][a] < m[b][b]; });
@@ -174,15 +143,15 @@ PrincipalAxes principal_axes(const Matrix3& symmetric) {
 std::vector<GravityCoefficient> gravity_coefficients(const TriangleMesh& mesh, const Vec3d& center,
                                                      double radius, int degree, const Progress& progress) {
   const RegularSums sums = volume_sums(mesh, center, radius, degree, progress);
-  const double volume = sums.re[0] / 3.0;
+  const double volume = sums.values[0].re / 3.0;
   std::vector<GravityCoefficient> coefficients;
   for (int l = 0; l <= degree; ++l) {
     for (int m = 0; m <= l; ++m) {
       const double twice = m == 0 ? 1.0 : 2.0;
       const double scale =
           std::sqrt(twice * factorial(l - m) * factorial(l + m) / (2 * l + 1)) / (l + 3) / volume;
-      const std::size_t i = RegularSums::place(l, m);
-      coefficients.push_back({l, m, scale * sums.re[i], scale * sums.im[i]});
+      const HarmonicValue& sum = sums.values[RegularSums::place(l, m)];
+      coefficients.push_back({l, m, scale * sum.re, scale * sum.im});
     }
   }
   return coefficients;

@@ -7,11 +7,10 @@
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
+#include "numerics/jacobi_rotation.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
-
-using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 struct BodyMass {
   double volume = 0.0;  // in cubic units of the mesh

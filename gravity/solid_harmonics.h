@@ -20,31 +20,43 @@ constexpr int harmonic_index(int l, int m) { return m * (kMostOrder + 1) - m * (
 struct HarmonicValue {
   double re = 0.0, im = 0.0;
 };
+inline HarmonicValue& operator+=(HarmonicValue& a, const HarmonicValue& b) {
+  a.re += b.re;
+  a.im += b.im;
+  return a;
+}
 inline HarmonicValue operator*(const HarmonicValue& a, const HarmonicValue& b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
 using Harmonics = std::array<HarmonicValue, kHarmonics>;
 
+// Calls visit(l, R_lm(y)) for l = m .. last, where R_mm(y) is given. Multiples of R_mm give multiples of all.
+template <typename Visit>
+inline void harmonics_of_order(const Vec3d& y, int m, int last, const HarmonicValue& diagonal,
+                               const Visit& visit) {
+  const double square = squared_norm(y);
+  HarmonicValue before{}, now = diagonal;
+  visit(m, now);
+  for (int l = m + 1; l <= last; ++l) {
+    const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale, down = square * scale;
+    const HarmonicValue next{up * now.re - down * before.re, up * now.im - down * before.im};
+    before = now;
+    visit(l, now = next);
+  }
+}
+
 // R_lm(y) for l <= order; the others are left as they are. order in [0, kMostOrder].
 inline void regular_harmonics(const Vec3d& y, int order, Harmonics& r) {
-  const double square = squared_norm(y);
   HarmonicValue diagonal{1.0, 0.0};
   for (int m = 0; m <= order; ++m) {
     if (m > 0) {
       const double c = -0.5 / m;
       diagonal = HarmonicValue{c * y.x, c * y.y} * diagonal;
     }
-    HarmonicValue last{}, now = diagonal;
-    for (int l = m; l <= order; ++l) {
-      if (l > m) {
-        const double scale = 1.0 / ((l + m) * (l - m)), up = (2 * l - 1) * y.z * scale, down = square * scale;
-        const HarmonicValue next{up * now.re - down * last.re, up * now.im - down * last.im};
-        last = now;
-        now = next;
-      }
-      r[static_cast<std::size_t>(harmonic_index(l, m))] = now;
-    }
+    harmonics_of_order(y, m, order, diagonal, [&](int l, const HarmonicValue& value) {
+      r[static_cast<std::size_t>(harmonic_index(l, m))] = value;
+    });
   }
 }
 

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
 
 #include "numerics/errors.h"
+#include "numerics/jacobi_rotation.h"
 
 namespace astrolith {
 namespace {
 
 constexpr double kFullScale = 65535.0;
 constexpr double kLeastDeviation = 1e-4;
-
-using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 // Red, green and blue of every pixel.
 std::vector<std::uint16_t> rgb_of(const ExemplarImage& image) {
@@ -53,23 +51,6 @@ ColorMoments color_moments(const std::vector<std::uint16_t>& rgb) {
   return m;
 }
 
-// Turns rows and columns p and q of a symmetric matrix by Jacobi's rotation, after which m[p][q] is 0.
-void rotate(Matrix3& m, Matrix3& axes, std::size_t p, std::size_t q) {
-  if (m[p][q] == 0.0) return;
-  const double theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-  const double t = (theta < 0.0 ? -1.0 : 1.0) / (std::fabs(theta) + std::sqrt(theta * theta + 1.0));
-  const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-  const auto turn = [c, s](double& a, double& b) {
-    const double old = a;
-    a = c * old - s * b;
-    b = s * old + c * b;
-  };
-  for (std::size_t k = 0; k < 3; ++k) turn(m[k][p], m[k][q]);
-  for (std::size_t k = 0; k < 3; ++k) turn(m[p][k], m[q][k]);
-  for (std::size_t k = 0; k < 3; ++k) turn(axes[k][p], axes[k][q]);
-  m[p][q] = m[q][p] = 0.0;
-}
-
 struct PrincipalAxis {
   double variance;
   std::array<double, 3> axis;
@@ -77,12 +58,14 @@ struct PrincipalAxis {
 
 // The eigenvectors of a covariance, the largest eigenvalue first. Each points towards brighter colours.
 std::array<PrincipalAxis, 3> principal_axes(Matrix3 m) {
-  Matrix3 axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   constexpr int kSweeps = 16;  // the matrix is diagonal to the last bit after six or fewer
+  constexpr std::pair<std::size_t, std::size_t> kPairs[] = {{0, 1}, {0, 2}, {1, 2}};
+  Matrix3 axes = kIdentity3;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    rotate(m, axes, 0, 1);
-    rotate(m, axes, 0, 2);
-    rotate(m, axes, 1, 2);
+    for (const auto& [p, q] : kPairs) {
+      rotate_to_diagonal(m, axes, p, q);
+      m[p][q] = m[q][p] = 0.0;
+    }
   }
   std::array<PrincipalAxis, 3> result{};
   for (std::size_t k = 0; k < 3; ++k) {
