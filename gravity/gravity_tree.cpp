@@ -42,8 +42,7 @@ class Splitter {
     const auto begin = tree_.facets.begin() + first;
     Box box;
     for (std::uint32_t i = 0; i < count; ++i) box.extend(begin[i][0] + begin[i][1] + begin[i][2]);
-    const Vec3d e = box.extent();
-    double Vec3d::*axis = e.x >= e.y && e.x >= e.z ? &Vec3d::x : e.y >= e.z ? &Vec3d::y : &Vec3d::z;
+    double Vec3d::*const axis = longest_axis(box.extent());
     std::nth_element(begin, begin + half, begin + count, [axis](const Corners& a, const Corners& b) {
       return a[0].*axis + a[1].*axis + a[2].*axis < b[0].*axis + b[1].*axis + b[2].*axis;
     });

@@ -29,8 +29,7 @@ void order_targets(std::span<Target> targets) {
   if (targets.size() <= kPointBatch) return;
   Box box;
   for (const Target& t : targets) box.extend(t.point);
-  const Vec3d e = box.extent();
-  double Vec3d::*axis = e.x >= e.y && e.x >= e.z ? &Vec3d::x : e.y >= e.z ? &Vec3d::y : &Vec3d::z;
+  double Vec3d::*const axis = longest_axis(box.extent());
   const std::size_t batches = (targets.size() + kPointBatch - 1) / kPointBatch,
                     half = batches / 2 * kPointBatch;
   std::nth_element(targets.begin(), targets.begin() + static_cast<std::ptrdiff_t>(half), targets.end(),

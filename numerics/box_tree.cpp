@@ -11,10 +11,6 @@ constexpr std::uint32_t kLeafBoxes = 4;
 // Halving 2^32 boxes gives at most 32 levels, and each level leaves one node pending.
 constexpr std::size_t kMaxDepth = 64;
 
-double coordinate(const Vec3d& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
-int longest_axis(const Vec3d& e) { return e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2; }
-
 }  // namespace
 
 BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(boxes.size()) {
@@ -36,10 +32,10 @@ void BoxTree::build(const std::vector<Box>& boxes, std::uint32_t first, std::uin
   }
   nodes_[self].box = box;
   if (count <= kLeafBoxes) return;
-  const int axis = longest_axis(centers.extent());
+  double Vec3d::*const axis = longest_axis(centers.extent());
   const auto begin = order_.begin() + first, middle = begin + count / 2;
   std::nth_element(begin, middle, begin + count, [&](std::uint32_t a, std::uint32_t b) {
-    const double ca = coordinate(boxes[a].center(), axis), cb = coordinate(boxes[b].center(), axis);
+    const double ca = boxes[a].center().*axis, cb = boxes[b].center().*axis;
     return ca != cb ? ca < cb : a < b;
   });
   nodes_[self].count = 0;

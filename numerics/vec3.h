@@ -71,6 +71,13 @@ ASTROLITH_HD Vec3<T> normalized(const Vec3<T>& a) {
   return n > T(0) ? a * (T(1) / n) : a;
 }
 
+// The member of the greatest coordinate, of a vector of T as well: the first of equal ones.
+template <typename T = double>
+T Vec3<T>::*longest_axis(const Vec3d& extent) {
+  const auto& [x, y, z] = extent;
+  return x >= y && x >= z ? &Vec3<T>::x : y >= z ? &Vec3<T>::y : &Vec3<T>::z;
+}
+
 // An axis-aligned box; empty until it has been extended.
 struct Box {
   Vec3d min{1e300, 1e300, 1e300};

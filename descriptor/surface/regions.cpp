@@ -67,10 +67,7 @@ void halve(std::span<std::uint8_t> regions, const Centers& centers, int groups, 
   }
   Box box;
   for (const std::uint8_t r : regions) box.extend(centers[r]);
-  const Vec3d extent = box.extent();
-  double Vec3d::*axis = extent.x >= extent.y && extent.x >= extent.z ? &Vec3d::x
-                        : extent.y >= extent.z                       ? &Vec3d::y
-                                                                     : &Vec3d::z;
+  double Vec3d::*const axis = longest_axis(box.extent());
   std::stable_sort(regions.begin(), regions.end(),
                    [&](std::uint8_t a, std::uint8_t b) { return centers[a].*axis < centers[b].*axis; });
   const std::size_t half = regions.size() / 2;

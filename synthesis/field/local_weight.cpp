@@ -49,8 +49,7 @@ void split_into_runs(std::span<WeightSphere> spheres, std::uint32_t first, std::
     run.largest_radius = std::max(run.largest_radius, double{s.radius});
   }
   if (spheres.size() <= most) return runs.push_back(run);
-  const Vec3d e = run.centers.extent();
-  float Vec3f::*const axis = e.x >= e.y && e.x >= e.z ? &Vec3f::x : (e.y >= e.z ? &Vec3f::y : &Vec3f::z);
+  float Vec3f::*const axis = longest_axis<float>(run.centers.extent());
   std::stable_sort(spheres.begin(), spheres.end(), [axis](const WeightSphere& a, const WeightSphere& b) {
     return a.center.*axis < b.center.*axis;
   });

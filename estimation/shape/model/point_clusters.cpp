@@ -1,7 +1,6 @@
 #include "estimation/shape/model/point_clusters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "numerics/parallel_for.h"
@@ -14,30 +13,16 @@ constexpr std::size_t kManyPoints = 2048;
 
 // A point that carries its index, so that the split reads memory in order.
 struct IndexedPoint {
-  std::array<double, 3> at;
+  Vec3d at;
   std::int32_t index;
 };
 
-struct Corners {
-  std::array<double, 3> low, high;
-
-  Vec3d center() const {
-    return {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])};
-  }
-  std::size_t longest_axis() const {
-    const double x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
-    if (x >= y && x >= z) return 0;
-    return y >= z ? 1 : 2;
-  }
-};
-
-Corners corners_of(std::span<const IndexedPoint> points) {
-  Corners box{points.front().at, points.front().at};
-  for (const IndexedPoint& p : points) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = p.at[axis] < box.low[axis] ? p.at[axis] : box.low[axis];
-      box.high[axis] = p.at[axis] > box.high[axis] ? p.at[axis] : box.high[axis];
-    }
+// As Box::extend(), which calls a function of the C library for each coordinate.
+Box box_of(std::span<const IndexedPoint> points) {
+  Box box;
+  for (const auto& [at, index] : points) {
+    box.min = {std::min(box.min.x, at.x), std::min(box.min.y, at.y), std::min(box.min.z, at.z)};
+    box.max = {std::max(box.max.x, at.x), std::max(box.max.y, at.y), std::max(box.max.z, at.z)};
   }
   return box;
 }
@@ -47,14 +32,14 @@ PointCluster cluster_of(std::span<const IndexedPoint> points, const Vec3d& cente
   cluster.points.reserve(points.size());
   for (const IndexedPoint& p : points) {
     cluster.points.push_back(p.index);
-    cluster.radius = std::max(cluster.radius, norm(Vec3d{p.at[0], p.at[1], p.at[2]} - center));
+    cluster.radius = std::max(cluster.radius, norm(p.at - center));
   }
   return cluster;
 }
 
 // Splits the points into all of these clusters.
 void split(std::span<IndexedPoint> points, std::span<PointCluster> clusters) {
-  const Corners box = corners_of(points);
+  const Box box = box_of(points);
   if (clusters.size() == 1) {
     clusters.front() = cluster_of(points, box.center());
     return;
@@ -63,10 +48,10 @@ void split(std::span<IndexedPoint> points, std::span<PointCluster> clusters) {
   const std::size_t first = clusters.size() / 2;
   const std::size_t half = (points.size() * first + clusters.size() - 1) / clusters.size();
   // Points with equal coordinates are ordered by index, so that the order does not depend on the library.
-  const std::size_t axis = box.longest_axis();
+  double Vec3d::*const axis = longest_axis(box.extent());
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half), points.end(),
                    [axis](const IndexedPoint& a, const IndexedPoint& b) {
-                     return a.at[axis] < b.at[axis] || (a.at[axis] == b.at[axis] && a.index < b.index);
+                     return a.at.*axis < b.at.*axis || (a.at.*axis == b.at.*axis && a.index < b.index);
                    });
   const auto split_side = [&](std::int64_t side) {
     if (side == 0) split(points.first(half), clusters.first(first));
@@ -86,9 +71,7 @@ std::vector<PointCluster> cluster_points(std::span<const Vec3d> points, std::siz
   if (points.empty()) return {};
   std::vector<IndexedPoint> indexed;
   indexed.reserve(points.size());
-  for (const Vec3d& p : points) {
-    indexed.push_back({{p.x, p.y, p.z}, static_cast<std::int32_t>(indexed.size())});
-  }
+  for (const Vec3d& p : points) indexed.push_back({p, static_cast<std::int32_t>(indexed.size())});
   std::vector<PointCluster> clusters((points.size() + size - 1) / size);
   split(indexed, clusters);
   return clusters;
