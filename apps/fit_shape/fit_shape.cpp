@@ -21,6 +21,7 @@
 #include "numerics/files/output_file.h"
 #include "numerics/files/output_folder.h"
 #include "numerics/files/sha256.h"
+#include "numerics/length_unit.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/detail_layers.h"
@@ -123,7 +124,7 @@ void say_size(const Program& program, const FitArguments& arguments, const Targe
 void say_wrong_unit(const Program& program, const FitArguments& arguments, const TargetBody& target) {
   const std::string name = std::filesystem::path(arguments.mesh).filename().string();
   const std::string remark =
-      unit_remark(name, target.volume * std::pow(target.diagonal, 3), arguments.unit == "km" ? 1000.0 : 1.0);
+      unit_remark(name, target.volume * std::pow(target.diagonal, 3), metres_of(arguments.unit));
   if (!remark.empty()) program.say("note: " + arguments.mesh + ": " + remark);
 }
 

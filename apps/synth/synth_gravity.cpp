@@ -4,6 +4,7 @@
 
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
+#include "numerics/length_unit.h"
 #include "tasks/gravity/gravity_table.h"
 
 namespace astrolith {

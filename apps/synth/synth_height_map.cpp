@@ -6,8 +6,8 @@
 #include "geometry/surface/height_map.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/length_unit.h"
 #include "synthesis/picture/geotiff.h"
-#include "tasks/gravity/gravity_table.h"
 
 namespace astrolith {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "geometry/io/longitude_latitude_internal.h"
 #include "geometry/io/mesh_writers_internal.h"
+#include "numerics/length_unit.h"
 #include "numerics/srgb.h"
 
 namespace astrolith {
@@ -16,14 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123;  // component types
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;          // targets of buffer views
-
-// Metres in one unit of length; 1 for units whose length is unknown.
-double metres_per(const std::string& length_unit) {
-  if (length_unit == "km") return 1000.0;
-  if (length_unit == "cm") return 0.01;
-  if (length_unit == "mm") return 0.001;
-  return 1.0;
-}
 
 Json vector_json(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -59,7 +52,7 @@ class GlbDocument {
   // The node turns the body about x, so that +z up becomes +y up. Quaternions are (x y z w).
   static Json node(const MeshFileInfo& info) {
     constexpr double kHalf = 0.70710678118654757;
-    const double scale = metres_per(info.length_unit);
+    const double scale = metres_of(info.length_unit);
     Json result = {{"mesh", 0}, {"name", "body"}, {"rotation", {-kHalf, 0.0, 0.0, kHalf}}};
     result["scale"] = {scale, scale, scale};
     return result;

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "geometry/surface/height_map.h"
+#include "numerics/length_unit.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
-#include "tasks/gravity/gravity_table.h"
 
 namespace astrolith::python {
 namespace {

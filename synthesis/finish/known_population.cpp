@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "numerics/errors.h"
+#include "numerics/length_unit.h"
 #include "numerics/portable_double.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/bare_body.h"
@@ -126,6 +127,13 @@ constexpr KnownBody kBodies[] = {{"itokawa", kItokawa, kFewCraters},
 // Random numbers of the layers that are added: the same whatever layers the recipe has.
 constexpr int kFirstSeed = 716'000;
 
+// The names, as a list for messages: itokawa, bennu, ...
+std::string known_body_names() {
+  std::string names;
+  for (const KnownBody& body : kBodies) names += (names.empty() ? "" : ", ") + std::string(body.name);
+  return names;
+}
+
 const KnownBody& body_named(const std::string& name) {
   for (const KnownBody& body : kBodies) {
     if (body.name == name) return body;
@@ -134,8 +142,7 @@ const KnownBody& body_named(const std::string& name) {
 }
 
 double meters_per_unit(const Recipe& recipe, const std::string& name) {
-  if (recipe.length_unit == "m") return 1.0;
-  if (recipe.length_unit == "km") return 1e3;
+  if (recipe.length_unit == "m" || recipe.length_unit == "km") return metres_of(recipe.length_unit);
   throw InputError(name + ": length_unit: \"" + recipe.length_unit +
                    "\" has no physical scale, which known bodies need; state lengths in m or km");
 }
@@ -207,12 +214,6 @@ class Finishing {
 }  // namespace
 
 std::span<const KnownBody> known_bodies() { return kBodies; }
-
-std::string known_body_names() {
-  std::string names;
-  for (const KnownBody& body : kBodies) names += (names.empty() ? "" : ", ") + std::string(body.name);
-  return names;
-}
 
 double known_number(const KnownLandforms& known, double diameter) {
   if (!known.weibull) {

@@ -41,8 +41,6 @@ struct KnownBody {
 
 // The known bodies, by name.
 std::span<const KnownBody> known_bodies();
-// The names, as a list for messages: itokawa, bennu, ...
-std::string known_body_names();
 
 // The number of landforms of at least `diameter` (metres) on a square kilometre.
 double known_number(const KnownLandforms& landforms, double diameter);

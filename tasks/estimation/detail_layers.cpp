@@ -9,6 +9,7 @@
 #include "estimation/shape/details/detailed_check.h"
 #include "estimation/shape/details/residual_texture.h"
 #include "numerics/errors.h"
+#include "numerics/length_unit.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/finish/lay_on_base.h"
@@ -97,7 +98,7 @@ double transfer_details(const Recipe& other, Recipe& recipe) {
 
 void add_micro_layers(const std::string& file, double mm_per_px, double height_mm, Recipe& recipe) {
   Recipe rock = load_recipe(file);
-  const double mm = recipe.length_unit == "km" ? 1e-6 : 1e-3;
+  const double mm = 1e-3 / metres_of(recipe.length_unit);
   const GaborLayer* first = nullptr;
   for (const Layer& layer : rock.layers) {
     const auto* gabor = std::get_if<GaborLayer>(&layer);
@@ -110,7 +111,7 @@ void add_micro_layers(const std::string& file, double mm_per_px, double height_m
   if (rock.length_unit == "px" && !(mm_per_px > 0.0 && height_mm > 0.0)) {
     throw InputError(file + ": lengths are pixels; give --mm-per-px and --micro-height");
   }
-  const double unit = rock.length_unit == recipe.length_unit ? 1.0 : rock.length_unit == "km" ? 1e3 : 1e-3;
+  const double unit = metres_of(rock.length_unit) / metres_of(recipe.length_unit);
   const double height = height_mm > 0.0 ? mm * height_mm / first->height_rms : unit;
   std::vector<Layer> added;
   for (std::size_t i = 0; i < rock.layers.size(); ++i) {

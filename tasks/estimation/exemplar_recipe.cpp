@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "numerics/files/sha256.h"
+#include "numerics/length_unit.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/picture/image_file.h"
 
@@ -19,14 +20,7 @@ void flatten_exemplar_photo(GreyImage& photo, int degree, TrendModel trend, cons
 }
 
 ColorImageFile read_exemplar_photo(const std::string& file, bool colors, int degree, TrendModel trend) {
-  ColorImageFile read;
-  if (colors) {
-    read = read_color_image(file);
-  } else {
-    ImageFile grey = read_grey_image(file);
-    read.planes.push_back(std::move(grey.image));
-    read.remarks = std::move(grey.remarks);
-  }
+  ColorImageFile read = read_image(file, colors);
   for (GreyImage& plane : read.planes) flatten_exemplar_photo(plane, degree, trend, file);
   return read;
 }
@@ -40,7 +34,7 @@ PreparedExemplar prepare_photo(const std::vector<GreyImage>& planes, const std::
 Recipe exemplar_recipe(const PreparedExemplar& prepared, const PhotoRecipeOptions& options) {
   ExemplarLayer layer = prepared.layer;
   layer.name = options.layer_name;
-  if (options.mm_per_px > 0.0) layer.pixel_size = options.mm_per_px / (options.unit == "km" ? 1e6 : 1e3);
+  if (options.mm_per_px > 0.0) layer.pixel_size = options.mm_per_px / (1e3 * metres_of(options.unit));
   if (options.height_rms >= 0.0) layer.height_rms = options.height_rms;
   Recipe recipe;
   recipe.length_unit = options.mm_per_px > 0.0 ? options.unit : "px";

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estimation/gabor/exemplar/tiled_spectrum.h"
+#include "numerics/length_unit.h"
 
 namespace astrolith {
 namespace {
@@ -11,8 +12,7 @@ GaborLayer make_layer(const PhotoRecipeOptions& o, const FittedChannel& channel,
   GaborLayer layer = layer_of(channel, first);
   layer.name = o.layer_name;
   layer.evaluation = o.evaluation;
-  const double per_unit = o.unit == "km" ? 1e6 : 1e3;  // millimetres
-  layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / per_unit : 1.0;
+  layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / (1e3 * metres_of(o.unit)) : 1.0;
   if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
   return layer;
 }

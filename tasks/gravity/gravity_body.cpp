@@ -5,8 +5,8 @@
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
+#include "numerics/length_unit.h"
 #include "synthesis/field/field_mesh.h"
-#include "tasks/gravity/gravity_table.h"
 
 namespace astrolith {
 namespace {

@@ -51,10 +51,6 @@ GravityPlaces vertex_places(const TriangleMesh& mesh) {
   return places;
 }
 
-double metres_of(const std::string& unit) {
-  return unit == "km" ? 1000.0 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : 1.0;
-}
-
 std::vector<Vec3d> in_metres(std::span<const Vec3d> points, double metres) {
   std::vector<Vec3d> scaled;
   for (const Vec3d& p : points) scaled.push_back(metres * p);

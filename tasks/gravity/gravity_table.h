@@ -30,9 +30,6 @@ struct GravityColumn {
 GravityPlaces facet_places(const TriangleMesh& mesh);
 GravityPlaces vertex_places(const TriangleMesh& mesh);
 
-// The metres of "m", "km", "cm" or "mm".
-double metres_of(const std::string& unit);
-
 std::vector<Vec3d> in_metres(std::span<const Vec3d> points, double metres);
 
 // x, y and z in the body's unit, then J/kg, m/s2, degrees and metres. Slopes and elevations where there are

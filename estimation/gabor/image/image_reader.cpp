@@ -119,4 +119,10 @@ ColorImageFile read_color_image(const std::filesystem::path& file) {
   return result;
 }
 
+ColorImageFile read_image(const std::filesystem::path& file, bool colors) {
+  if (colors) return read_color_image(file);
+  ImageFile grey = read_grey_image(file);
+  return {{std::move(grey.image)}, std::move(grey.remarks)};
+}
+
 }  // namespace astrolith

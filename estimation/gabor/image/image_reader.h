@@ -15,7 +15,7 @@ struct ImageFile {
 };
 
 struct ColorImageFile {
-  std::vector<GreyImage> planes;  // red, green and blue, of the same size
+  std::vector<GreyImage> planes;  // red, green and blue, of the same size, or grey alone
   std::vector<std::string> remarks;
 };
 
@@ -44,5 +44,8 @@ ImageFile read_grey_image(const std::filesystem::path& file);
 
 // Reads a colour image. If the file is grey, the three planes are equal.
 ColorImageFile read_color_image(const std::filesystem::path& file);
+
+// Reads a colour image, or a grey one as the only plane.
+ColorImageFile read_image(const std::filesystem::path& file, bool colors);
 
 }  // namespace astrolith

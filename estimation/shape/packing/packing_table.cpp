@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "numerics/files/output_file.h"
+#include "numerics/length_unit.h"
 
 namespace astrolith {
 namespace {
@@ -10,8 +11,7 @@ namespace {
 double cube(double x) { return x * x * x; }
 
 double kilograms(const PackingTable& table) {
-  const double metres = table.length_unit == "km" ? 1000.0 : 1.0;
-  return table.density * table.body_volume * cube(metres);
+  return table.density * table.body_volume * cube(metres_of(table.length_unit));
 }
 
 }  // namespace

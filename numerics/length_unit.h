@@ -1,0 +1,13 @@
+// Units of length by their names.
+#pragma once
+
+#include <string_view>
+
+namespace astrolith {
+
+// The metres of "m", "km", "cm" or "mm"; 1 for a unit whose length is unknown.
+constexpr double metres_of(std::string_view unit) {
+  return unit == "km" ? 1000.0 : unit == "cm" ? 0.01 : unit == "mm" ? 0.001 : 1.0;
+}
+
+}  // namespace astrolith
