@@ -8,6 +8,8 @@
 #include <cstdint>
 
 #include "numerics/host_device.h"
+#include "numerics/portable_angles.h"
+#include "numerics/portable_double.h"
 
 namespace astrolith::branch_free {
 
@@ -29,18 +31,8 @@ ASTROLITH_KERNEL double log_ratio(double above, double below, double difference,
   const double divisor = sum > kTiny ? sum : kTiny;
   const double s = (near_one ? difference : mantissa - 1.0) / (near_one ? divisor : mantissa + 1.0),
                z = s * s;
-  double p = 1.0 / 21.0;  // 2 atanh(s), |s| <= 0.172; leaves a remainder below 1e-17 of s
-  p = p * z + 1.0 / 19.0;
-  p = p * z + 1.0 / 17.0;
-  p = p * z + 1.0 / 15.0;
-  p = p * z + 1.0 / 13.0;
-  p = p * z + 1.0 / 11.0;
-  p = p * z + 1.0 / 9.0;
-  p = p * z + 1.0 / 7.0;
-  p = p * z + 1.0 / 5.0;
-  p = p * z + 1.0 / 3.0;
-  const double log_mantissa = 2.0 * s * z * p + 2.0 * s;
-  return k * 6.93147180369123816490e-01 + (k * 1.90821492927058770002e-10 + log_mantissa);
+  // |s| <= 0.172 leaves a remainder below 1e-17 of s.
+  return k * portable::kLn2High + (k * portable::kLn2Low + portable::atanh_series(1.0 / 21.0, s, z));
 }
 
 // The angle of the point (x, y) in [-pi, pi]; 0 at the origin. The error is at most 2 ulp, or 1e-290 where
@@ -54,20 +46,8 @@ ASTROLITH_KERNEL double atan2(double y, double x) {
   const double begin = third ? kPi / 4 : second ? kPi / 8 : 0.0;
   const double under = high + c * low;
   const double u = (low - c * high) / (under > 1e-290 ? under : 1e-290), z = u * u;
-  double p = -1.0 / 27.0;  // Taylor; |u| <= 0.2553 leaves a remainder below 1e-17 of u
-  p = p * z + 1.0 / 25.0;
-  p = p * z - 1.0 / 23.0;
-  p = p * z + 1.0 / 21.0;
-  p = p * z - 1.0 / 19.0;
-  p = p * z + 1.0 / 17.0;
-  p = p * z - 1.0 / 15.0;
-  p = p * z + 1.0 / 13.0;
-  p = p * z - 1.0 / 11.0;
-  p = p * z + 1.0 / 9.0;
-  p = p * z - 1.0 / 7.0;
-  p = p * z + 1.0 / 5.0;
-  p = p * z - 1.0 / 3.0;
-  const double octant = begin + (u + u * z * p);
+  // Taylor; |u| <= 0.2553 leaves a remainder below 1e-17 of u.
+  const double octant = begin + portable::atan_series((-1.0 / 27.0 * z + 1.0 / 25.0) * z - 1.0 / 23.0, u, z);
   const double quadrant = a < b ? kPi / 2 - octant : octant;
   const double half = x < 0.0 ? kPi - quadrant : quadrant;
   return y < 0.0 ? -half : half;

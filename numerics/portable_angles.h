@@ -61,15 +61,8 @@ ASTROLITH_HD inline double tan(double angle) {
   return both.sine / both.cosine;
 }
 
-// atan(t) for t in [0, 1], within 3e-16.
-ASTROLITH_HD inline double atan_of_unit(double t) {
-  // atan(t) = atan(c) + atan((t - c) / (1 + t c)), where c is the tangent of a multiple of pi/8. What is left
-  // is at most tan(pi/16) = 0.199.
-  constexpr double kTangent = 0.41421356237309504880;  // of pi/8
-  const double c = t > 0.66817863791929891999 ? 1.0 : t > 0.19891236737965800691 ? kTangent : 0.0;
-  const double begin = c == 1.0 ? std::numbers::pi / 4.0 : c > 0.0 ? std::numbers::pi / 8.0 : 0.0;
-  const double u = (t - c) / (1.0 + t * c), z = u * u;
-  double p = -1.0 / 23.0;  // Taylor; leaves a remainder below 2e-19
+// atan(u). With z = u^2, `p` is the sum of the terms (-z)^k / (2 k + 1) from k = 11 on over z^11.
+ASTROLITH_KERNEL double atan_series(double p, double u, double z) {
   p = p * z + 1.0 / 21.0;
   p = p * z - 1.0 / 19.0;
   p = p * z + 1.0 / 17.0;
@@ -80,7 +73,18 @@ ASTROLITH_HD inline double atan_of_unit(double t) {
   p = p * z - 1.0 / 7.0;
   p = p * z + 1.0 / 5.0;
   p = p * z - 1.0 / 3.0;
-  return begin + (u + u * z * p);
+  return u + u * z * p;
+}
+
+// atan(t) for t in [0, 1], within 3e-16.
+ASTROLITH_HD inline double atan_of_unit(double t) {
+  // atan(t) = atan(c) + atan((t - c) / (1 + t c)), where c is the tangent of a multiple of pi/8. What is left
+  // is at most tan(pi/16) = 0.199.
+  constexpr double kTangent = 0.41421356237309504880;  // of pi/8
+  const double c = t > 0.66817863791929891999 ? 1.0 : t > 0.19891236737965800691 ? kTangent : 0.0;
+  const double begin = c == 1.0 ? std::numbers::pi / 4.0 : c > 0.0 ? std::numbers::pi / 8.0 : 0.0;
+  const double u = (t - c) / (1.0 + t * c), z = u * u;
+  return begin + atan_series(-1.0 / 23.0, u, z);  // Taylor; leaves a remainder below 2e-19
 }
 
 // The angle of the point (x, y) in [-pi, pi], within 1e-15; 0 at the origin. Zeros have no sign here: points

@@ -31,14 +31,8 @@ ASTROLITH_HD inline double double_of(std::int64_t bits) {
 // ln 2 in two parts, so that whole multiples of the first are exact (Cody and Waite).
 inline constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
 
-// e^x within 2e-15 of itself for x in [-708, 709]; 0 below, the value at 709 above.
-ASTROLITH_HD inline double exp(double x) {
-  const double clamped = x < -708.0 ? -708.0 : x > 709.0 ? 709.0 : x;
-  const double n = std::floor(clamped * 1.44269504088896340736 + 0.5);
-  const double r = (clamped - n * kLn2High) - n * kLn2Low;
-  // Taylor coefficients 1/k!; |r| <= ln(2)/2 leaves a remainder below 5e-18.
-  double p = 1.0 / 6227020800.0;
-  p = p * r + 1.0 / 479001600.0;
+// The first twelve terms of e^r, r^k / k!, where `p` is the sum of those from r^12 on over r^12.
+ASTROLITH_KERNEL double exp_series(double p, double r) {
   p = p * r + 1.0 / 39916800.0;
   p = p * r + 1.0 / 3628800.0;
   p = p * r + 1.0 / 362880.0;
@@ -50,7 +44,31 @@ ASTROLITH_HD inline double exp(double x) {
   p = p * r + 1.0 / 6.0;
   p = p * r + 0.5;
   p = p * r + 1.0;
-  p = p * r + 1.0;
+  return p * r + 1.0;
+}
+
+// 2 atanh(s), which is log((1 + s) / (1 - s)). With z = s^2, `p` is the sum of the terms z^k / (2 k + 1) from
+// k = 10 on over z^10.
+ASTROLITH_KERNEL double atanh_series(double p, double s, double z) {
+  p = p * z + 1.0 / 19.0;
+  p = p * z + 1.0 / 17.0;
+  p = p * z + 1.0 / 15.0;
+  p = p * z + 1.0 / 13.0;
+  p = p * z + 1.0 / 11.0;
+  p = p * z + 1.0 / 9.0;
+  p = p * z + 1.0 / 7.0;
+  p = p * z + 1.0 / 5.0;
+  p = p * z + 1.0 / 3.0;
+  return 2.0 * s * z * p + 2.0 * s;
+}
+
+// e^x within 2e-15 of itself for x in [-708, 709]; 0 below, the value at 709 above.
+ASTROLITH_HD inline double exp(double x) {
+  const double clamped = x < -708.0 ? -708.0 : x > 709.0 ? 709.0 : x;
+  const double n = std::floor(clamped * 1.44269504088896340736 + 0.5);
+  const double r = (clamped - n * kLn2High) - n * kLn2Low;
+  // Taylor coefficients 1/k!; |r| <= ln(2)/2 leaves a remainder below 5e-18.
+  const double p = exp_series(1.0 / 6227020800.0 * r + 1.0 / 479001600.0, r);
   // The power of two is applied in two factors, so that neither factor leaves the range of doubles (2^1024
   // does).
   const auto whole = static_cast<std::int64_t>(n);
@@ -71,18 +89,7 @@ ASTROLITH_HD inline BinaryParts binary_parts(double x) {
   const double m = double_of(i - e * (std::int64_t{1} << 52));
   // log(m) = 2 atanh(s), |s| <= 0.172; the series leaves a remainder below 1e-18.
   const double s = (m - 1.0) / (m + 1.0), z = s * s;
-  double p = 1.0 / 23.0;
-  p = p * z + 1.0 / 21.0;
-  p = p * z + 1.0 / 19.0;
-  p = p * z + 1.0 / 17.0;
-  p = p * z + 1.0 / 15.0;
-  p = p * z + 1.0 / 13.0;
-  p = p * z + 1.0 / 11.0;
-  p = p * z + 1.0 / 9.0;
-  p = p * z + 1.0 / 7.0;
-  p = p * z + 1.0 / 5.0;
-  p = p * z + 1.0 / 3.0;
-  return {static_cast<double>(e), 2.0 * s * z * p + 2.0 * s};
+  return {static_cast<double>(e), atanh_series(1.0 / 23.0 * z + 1.0 / 21.0, s, z)};
 }
 
 // Natural logarithm of a normal positive x, with an error of at most 2e-15, absolute near 1 and relative

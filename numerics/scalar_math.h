@@ -70,13 +70,8 @@ ASTROLITH_HD inline float floor(float x) {
 #endif
 }
 
-// e^x within 2 ulp for x in [-87, 88]; 0 below -87, the value at 88 above.
-ASTROLITH_HD inline float exp(float x) {
-  const float clamped = clamp(x, -87.0f, 88.0f);
-  const float n = round_even(clamped * 1.44269504088896341f);
-  // ln 2 in two parts, so that the reduced argument keeps all its bits (Cody and Waite).
-  const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, clamped));
-  // Taylor coefficients 1/k!; |r| <= ln(2)/2 leaves a remainder below 2e-8.
+// The terms r^k / k! of e^r up to k = 7; |r| <= ln(2)/2 leaves a remainder below 2e-8.
+ASTROLITH_KERNEL float exp_series(float r) {
   float p = 1.0f / 5040.0f;
   p = fma(p, r, 1.0f / 720.0f);
   p = fma(p, r, 1.0f / 120.0f);
@@ -84,9 +79,17 @@ ASTROLITH_HD inline float exp(float x) {
   p = fma(p, r, 1.0f / 6.0f);
   p = fma(p, r, 0.5f);
   p = fma(p, r, 1.0f);
-  p = fma(p, r, 1.0f);
+  return fma(p, r, 1.0f);
+}
+
+// e^x within 2 ulp for x in [-87, 88]; 0 below -87, the value at 88 above.
+ASTROLITH_HD inline float exp(float x) {
+  const float clamped = clamp(x, -87.0f, 88.0f);
+  const float n = round_even(clamped * 1.44269504088896341f);
+  // ln 2 in two parts, so that the reduced argument keeps all its bits (Cody and Waite).
+  const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, clamped));
   const float scale = float_of((static_cast<std::int32_t>(n) + 127) << 23);
-  return x < -87.0f ? 0.0f : p * scale;
+  return x < -87.0f ? 0.0f : exp_series(r) * scale;
 }
 ASTROLITH_HD inline double exp(double x) { return portable::exp(x); }
 
@@ -96,16 +99,8 @@ ASTROLITH_HD inline float exp_within_range(float x) {
   const float shifted = x * 1.44269504088896341f + kMagic;
   const float n = shifted - kMagic;
   const float r = fma(n, -1.42860677e-6f, fma(n, -0.693145751953125f, x));
-  float p = 1.0f / 5040.0f;
-  p = fma(p, r, 1.0f / 720.0f);
-  p = fma(p, r, 1.0f / 120.0f);
-  p = fma(p, r, 1.0f / 24.0f);
-  p = fma(p, r, 1.0f / 6.0f);
-  p = fma(p, r, 0.5f);
-  p = fma(p, r, 1.0f);
-  p = fma(p, r, 1.0f);
   const auto power = static_cast<std::uint32_t>(bits_of(shifted)) + 127u;
-  return p * float_of(static_cast<std::int32_t>(power << 23));
+  return exp_series(r) * float_of(static_cast<std::int32_t>(power << 23));
 }
 ASTROLITH_HD inline double exp_within_range(double x) { return portable::exp(x); }
 

@@ -22,20 +22,8 @@ ASTROLITH_KERNEL double lane_exp(double x) {
   const double n = shifted - kMagic;
   const double r = (x - n * portable::kLn2High) - n * portable::kLn2Low;
   // Taylor coefficients 1/k!; |r| <= ln(2)/2 leaves a remainder below 2e-16.
-  double p = 1.0 / 479001600.0;
-  p = p * r + 1.0 / 39916800.0;
-  p = p * r + 1.0 / 3628800.0;
-  p = p * r + 1.0 / 362880.0;
-  p = p * r + 1.0 / 40320.0;
-  p = p * r + 1.0 / 5040.0;
-  p = p * r + 1.0 / 720.0;
-  p = p * r + 1.0 / 120.0;
-  p = p * r + 1.0 / 24.0;
-  p = p * r + 1.0 / 6.0;
-  p = p * r + 0.5;
-  p = p * r + 1.0;
-  p = p * r + 1.0;
-  return p * portable::double_of((portable::bits_of(shifted) + 1023) << 52);
+  return portable::exp_series(1.0 / 479001600.0, r) *
+         portable::double_of((portable::bits_of(shifted) + 1023) << 52);
 }
 
 // The coordinates of a block's points.
