@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Optional
 
 import numpy as np
 
 from astrolith.bridges._optional import required
-from astrolith.bridges.datasets import Bodies
-from astrolith.bridges.finished_set import FinishedSet
 
 torch = required("torch", "torch")
 _Dataset: Any = torch.utils.data.Dataset
@@ -21,9 +19,9 @@ def _tensors(value: Any) -> Any:
 
 
 class TorchBodies(_Dataset):  # type: ignore[misc]
-    """Bodies whose arrays are tensors."""
+    """The items of ``Bodies`` or of a ``FinishedSet``, whose arrays become tensors."""
 
-    def __init__(self, bodies: Union[Bodies, FinishedSet], transform: Optional[Callable[[dict[str, Any]], Any]]) -> None:
+    def __init__(self, bodies: Any, transform: Optional[Callable[[dict[str, Any]], Any]]) -> None:
         self._bodies = bodies
         self._transform = transform
 
