@@ -2,7 +2,8 @@
 
 #include <limits>
 
-#include "synthesis/body/metaball_body.h"
+#include "numerics/scalar_math.h"
+#include "synthesis/body/local_metaballs.h"
 #include "synthesis/body/surface_projection.h"
 
 namespace astrolith {
@@ -16,12 +17,25 @@ GroundPoints::GroundPoints(const std::vector<Vec3d>& points) : GroundPoints(poin
 }
 
 void evaluate(const BodyGround& ground, GroundPoints& points) {
-  Box box;
-  for (std::size_t i = 0; i < points.size(); ++i) box.extend({points.x[i], points.y[i], points.z[i]});
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Vec3f low{kInfinity, kInfinity, kInfinity}, high = low * -1.0f;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f p = points.at(i);
+    low = {math::min(low.x, p.x), math::min(low.y, p.y), math::min(low.z, p.z)};
+    high = {math::max(high.x, p.x), math::max(high.y, p.y), math::max(high.z, p.z)};
+  }
+  const Vec3d origin = ground.origin != nullptr ? *ground.origin : Vec3d{};
+  const Box box{Vec3d{low.x, low.y, low.z} + origin, Vec3d{high.x, high.y, high.z} + origin};
   const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, box);
-  evaluate_body(ground.body, ground.arrays, reaching.lists(), static_cast<int>(points.size()),
-                points.x.data(), points.y.data(), points.z.data(), points.distance.data(), points.gx.data(),
-                points.gy.data(), points.gz.data());
+  const int n = static_cast<int>(points.size());
+  auto& [x, y, z, distance, gx, gy, gz] = points;
+  if (ground.origin != nullptr) {
+    evaluate_local_metaballs(metaballs_of_plain(ground.body, ground.arrays, reaching.lists()), origin, n,
+                             x.data(), y.data(), z.data(), distance.data(), gx.data(), gy.data(), gz.data());
+  } else {
+    evaluate_body(ground.body, ground.arrays, reaching.lists(), n, x.data(), y.data(), z.data(),
+                  distance.data(), gx.data(), gy.data(), gz.data());
+  }
 }
 
 void project(const BodyGround& ground, GroundPoints& points) {

@@ -13,12 +13,16 @@ struct GroundPoints {
 
   explicit GroundPoints(std::size_t n) : x(n), y(n), z(n), distance(n), gx(n), gy(n), gz(n) {}
   explicit GroundPoints(const std::vector<Vec3d>& points);
+  void resize(std::size_t n) {
+    for (std::vector<float>* v : {&x, &y, &z, &distance, &gx, &gy, &gz}) v->resize(n);
+  }
   std::size_t size() const { return x.size(); }
   Vec3f at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  Vec3f gradient(std::size_t i) const { return {gx[i], gy[i], gz[i]}; }
 };
 
-// Evaluates the body at the points. They should lie close together: the metaballs that reach the box around
-// them are visited for each.
+// Evaluates the bare body at the points, which are relative to ground.origin where there is one. They should
+// lie close together: the metaballs that reach the box around them are visited for each.
 void evaluate(const BodyGround& ground, GroundPoints& points);
 
 // Moves the points, which were evaluated, to their first-order projections (surface_projection.h). Distances

@@ -8,46 +8,18 @@
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_angles.h"
-#include "synthesis/body/local_metaballs.h"
+#include "synthesis/body/ground_points.h"
 #include "synthesis/exemplar/exemplar_ground.h"
 
 namespace astrolith {
 namespace {
 
-// The anchors of a row of cells along x, for the evaluation of the body.
-struct AnchorRow {
-  std::vector<float> x, y, z, distance, gx, gy, gz;
-
-  explicit AnchorRow(std::size_t n) {
-    for (std::vector<float>* v : {&x, &y, &z, &distance, &gx, &gy, &gz}) v->resize(n);
-  }
-  std::size_t size() const { return x.size(); }
-};
-
-// Finds the distance and the gradient of the bare body at the points of a row.
-void evaluate_row(const BodyGround& ground, AnchorRow& row) {
-  Box box;
-  for (std::size_t i = 0; i < row.size(); ++i) box.extend({row.x[i], row.y[i], row.z[i]});
-  const int n = static_cast<int>(row.size());
-  if (ground.origin != nullptr) {
-    const Box at{box.min + *ground.origin, box.max + *ground.origin};
-    const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, at);
-    evaluate_local_metaballs(metaballs_of_plain(ground.body, ground.arrays, reaching.lists()), *ground.origin,
-                             n, row.x.data(), row.y.data(), row.z.data(), row.distance.data(), row.gx.data(),
-                             row.gy.data(), row.gz.data());
-    return;
-  }
-  const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, box);
-  evaluate_body(ground.body, ground.arrays, reaching.lists(), n, row.x.data(), row.y.data(), row.z.data(),
-                row.distance.data(), row.gx.data(), row.gy.data(), row.gz.data());
-}
-
 float length_of(const Vec3f& v) { return math::sqrt(dot(v, v)); }
 
 // Moves the points to the surface, to first order and at most `longest` far.
-void move_to_surface(float longest, AnchorRow& row) {
+void move_to_surface(float longest, GroundPoints& row) {
   for (std::size_t i = 0; i < row.size(); ++i) {
-    const float length = length_of({row.gx[i], row.gy[i], row.gz[i]});
+    const float length = length_of(row.gradient(i));
     if (!(length > 1e-18f)) continue;
     const float step = -math::clamp(row.distance[i], -longest, longest) / length;
     row.x[i] = math::fma(step, row.gx[i], row.x[i]);
@@ -110,26 +82,25 @@ class BodyRow {
 
   // The gradients at the nearest points of the surface. Where the field is flat, they point to `middle`.
   void find_gradients(const BodyGround& ground, float longest, const Vec3f& middle) {
-    evaluate_row(ground, row_);
-    const AnchorRow at_anchors = row_;
+    evaluate(ground, row_);
+    const GroundPoints at_anchors = row_;
     distance_ = at_anchors.distance;
     move_to_surface(longest, row_);
-    evaluate_row(ground, row_);
+    evaluate(ground, row_);
     for (std::size_t i = 0; i < row_.size(); ++i) {
       if (length_of(gradient(i)) > 1e-18f) continue;
-      set_gradient(i, {at_anchors.gx[i], at_anchors.gy[i], at_anchors.gz[i]});
+      set_gradient(i, at_anchors.gradient(i));
       if (length_of(gradient(i)) > 1e-18f) continue;
-      set_gradient(i, middle - Vec3f{at_anchors.x[i], at_anchors.y[i], at_anchors.z[i]});
+      set_gradient(i, middle - at_anchors.at(i));
     }
   }
-  Vec3f gradient(std::size_t i) const { return {row_.gx[i], row_.gy[i], row_.gz[i]}; }
+  Vec3f gradient(std::size_t i) const { return row_.gradient(i); }
 
   // The tangent frame of an anchor. `longest` is that of find_gradients().
   TangentFrame frame(const ExemplarGround& ground, float longest, std::size_t i) const {
     const TangentFrame bare = tangent_frame(gradient(i));
     if (!ground.below || !serves_surface(ground, longest, i)) return bare;
-    const Vec3f foot{row_.x[i], row_.y[i], row_.z[i]};
-    return turned_frame(bare, inward_of_layered(ground, foot, gradient(i), kSlopeRadius * longest));
+    return turned_frame(bare, inward_of_layered(ground, row_.at(i), gradient(i), kSlopeRadius * longest));
   }
   std::size_t size() const { return row_.size(); }
 
@@ -144,7 +115,7 @@ class BodyRow {
   }
   void set_gradient(std::size_t i, const Vec3f& g) { row_.gx[i] = g.x, row_.gy[i] = g.y, row_.gz[i] = g.z; }
 
-  AnchorRow row_;
+  GroundPoints row_;
   std::vector<float> distance_;  // of the anchors from the bare surface, to first order, length units
 };
 

@@ -1,39 +1,21 @@
 #include "synthesis/gabor/gabor_cells.h"
 
 #include <cmath>
-#include <limits>
 
 #include "numerics/hash_random.h"
-#include "synthesis/body/local_metaballs.h"
 
 namespace astrolith {
 
 void GaborCellCenters::find(std::span<const GaborCell> cells, const SurfaceBand& band,
                             const BodyGround& ground) {
-  for (std::vector<float>* v : {&x, &y, &z, &distance, &gx, &gy, &gz}) v->resize(cells.size());
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Vec3f low{kInfinity, kInfinity, kInfinity}, high = low * -1.0f;
+  resize(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const Vec3f p = gabor_cell_center(band, cells[i][0], cells[i][1], cells[i][2]);
-    low = {math::min(low.x, p.x), math::min(low.y, p.y), math::min(low.z, p.z)};
-    high = {math::max(high.x, p.x), math::max(high.y, p.y), math::max(high.z, p.z)};
     x[i] = p.x;
     y[i] = p.y;
     z[i] = p.z;
   }
-  const Box box{{low.x, low.y, low.z}, {high.x, high.y, high.z}};
-  const int n = static_cast<int>(cells.size());
-  if (ground.origin != nullptr) {
-    const Box at{box.min + *ground.origin, box.max + *ground.origin};
-    const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, at);
-    evaluate_local_metaballs(metaballs_of_plain(ground.body, ground.arrays, reaching.lists()), *ground.origin,
-                             n, x.data(), y.data(), z.data(), distance.data(), gx.data(), gy.data(),
-                             gz.data());
-    return;
-  }
-  const ReachingMetaballs reaching = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, box);
-  evaluate_body(ground.body, ground.arrays, reaching.lists(), n, x.data(), y.data(), z.data(),
-                distance.data(), gx.data(), gy.data(), gz.data());
+  evaluate(ground, *this);
 }
 
 namespace {
@@ -49,7 +31,7 @@ struct NearCells {
       z[count] = c[2];
       hash[count] = gabor_cell_hash(band, c[0], c[1], c[2]);
       height[count] = -centers.distance[i];
-      frame[count] = tangent_frame({centers.gx[i], centers.gy[i], centers.gz[i]});
+      frame[count] = tangent_frame(centers.gradient(i));
       nx[count] = frame[count].n.x;
       ny[count] = frame[count].n.y;
       nz[count] = frame[count].n.z;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "synthesis/body/body_ground.h"
+#include "synthesis/body/ground_points.h"
 #include "synthesis/gabor/gabor_draw.h"
 
 namespace astrolith {
@@ -19,8 +19,8 @@ struct SurfaceBand : GaborDraw {
 using GaborCell = std::array<int, 3>;
 
 // The centres of cells, and the distance and gradient of the body there.
-struct GaborCellCenters {
-  std::vector<float> x, y, z, distance, gx, gy, gz;
+struct GaborCellCenters : GroundPoints {
+  GaborCellCenters() : GroundPoints(std::size_t{0}) {}
 
   // Replaces the centres by those of other cells, in the same memory.
   void find(std::span<const GaborCell> cells, const SurfaceBand& band, const BodyGround& ground);
