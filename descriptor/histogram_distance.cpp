@@ -6,6 +6,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/portable_double.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
@@ -99,10 +100,7 @@ double earth_movers_distance(std::span<const double> f, std::span<const double> 
 double circular_earth_movers_distance(std::span<const double> f, std::span<const double> g) {
   const std::vector<double> differences = cumulative_differences(f, g);
   if (differences.empty()) return 0;
-  std::vector<double> sorted = differences;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return mean_distance_from(*middle, differences);
+  return mean_distance_from(upper_median(differences), differences);
 }
 
 std::vector<double> marginal(std::span<const double> frequencies, int bins, int axis) {

@@ -1,11 +1,12 @@
 #include "geometry/triangle_quality.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "numerics/parallel_for.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 
@@ -30,9 +31,8 @@ QualityFigures quality_of(std::span<const MeshVertex> vertices, std::span<const 
       },
       kGrain);
   const double mean = std::accumulate(quality.begin(), quality.end(), 0.0) / double(quality.size());
-  const auto first = quality.begin() + static_cast<std::ptrdiff_t>(quality.size() / kPercent);
-  std::nth_element(quality.begin(), first, quality.end());
-  return {double{*first}, mean};
+  const std::size_t first = quality.size() / kPercent;
+  return {double{ranked_value(std::move(quality), first)}, mean};
 }
 
 }  // namespace astrolith

@@ -9,6 +9,7 @@
 #include "geometry/points/point_tree_internal.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/sample_statistics.h"
 #include "numerics/tangent_frame.h"
 
 namespace astrolith {
@@ -151,12 +152,6 @@ Smoothings smoothings(const EvenedSurface& even, const SmoothingStep& step, std:
     if (!report(progress, 0.0, "bands of heights")) throw WorkError("bands of heights: stopped");
   }
   return result;
-}
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
 }
 
 double mean_product(const std::vector<double>& a, const std::vector<double>& b) {

@@ -7,14 +7,10 @@
 #include "descriptor/surface/block_permutations.h"
 #include "numerics/errors.h"
 #include "numerics/reported_loop.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
-
-// A value of the sorted sample below which a share of it lies.
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -29,7 +25,7 @@ struct Summary {
 Summary summary_of(const LocalStatistic& statistic) {
   std::vector<double> sorted = statistic.values;
   std::sort(sorted.begin(), sorted.end());
-  const double spread = quantile(sorted, 0.75) - quantile(sorted, 0.25);
+  const double spread = quantile_of_sorted(sorted, 0.75) - quantile_of_sorted(sorted, 0.25);
   if (!traits_of(statistic.quantity).has_mean) return {median(sorted), spread};
   double mean = 0.0;
   for (const double v : sorted) mean += v / static_cast<double>(sorted.size());
@@ -67,7 +63,7 @@ std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, 
   }
   std::vector<double> sorted = a.values;
   std::sort(sorted.begin(), sorted.end());
-  const double limit = quantile(sorted, kFlatShare);
+  const double limit = quantile_of_sorted(sorted, kFlatShare);
   const std::vector<double> flat_a = flat_part(a.values, limit), flat_b = flat_part(b.values, limit);
   const KolmogorovSmirnov distance({flat_a, regions_a.of_place}, {flat_b, regions_b.of_place});
   return [distance](const RegionLabels& first) { return std::max(0.0, distance(first) - kFlatTolerance); };
@@ -150,7 +146,7 @@ void add_ratios(double own, const std::vector<double>& exchanged, LargestRatios&
   std::sort(sorted.begin(), sorted.end());
   // A distance that no exchange reaches is large, and not undefined.
   constexpr double kLeastUsual = 1e-3;
-  const double usual = std::max(quantile(sorted, 0.95), kLeastUsual);
+  const double usual = std::max(quantile_of_sorted(sorted, 0.95), kLeastUsual);
   largest.own = std::max(largest.own, own / usual);
   for (std::size_t k = 0; k < exchanged.size(); ++k) {
     largest.exchanged[k] = std::max(largest.exchanged[k], exchanged[k] / usual);

@@ -10,6 +10,7 @@
 #include "estimation/gabor/lobes/lobe_selection.h"
 #include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -29,12 +30,6 @@ void require_texture(const GreyImage& exemplar, const std::string& name) {
   if (*high - *low <= 1e-9 * std::max(std::abs(*high), std::abs(*low))) {
     throw InputError(name + ": all pixels have the same value; give an image with texture");
   }
-}
-
-double mean_grey(const GreyImage& image) {
-  double sum = 0.0;
-  for (const double v : image.values) sum += v;
-  return sum / static_cast<double>(image.values.size());
 }
 
 // The weights W of the dictionary's rows. With 1 / sqrt(S) a small error of the spectrum counts as twice the
@@ -111,7 +106,7 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
       options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
   GaborFit fit = fit_gabor_spectrum(exemplar_periodogram(exemplar, options.largest_side, borders, progress),
                                     name, options, progress);
-  fit.exemplar_mean = mean_grey(exemplar);
+  fit.exemplar_mean = mean_of(exemplar.values);
   return fit;
 }
 

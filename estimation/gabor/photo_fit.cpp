@@ -8,6 +8,7 @@
 #include "estimation/gabor/image/image_channels.h"
 #include "estimation/gabor/image/image_reader.h"
 #include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -76,14 +77,7 @@ std::size_t PhotoFit::lobes() const {
   return count;
 }
 
-double FittedChannel::pixel_variance() const {
-  const auto n = static_cast<double>(exemplar.values.size());
-  double mean = 0.0, sum = 0.0;
-  for (const double v : exemplar.values) mean += v;
-  mean /= n;
-  for (const double v : exemplar.values) sum += (v - mean) * (v - mean);
-  return sum / n;
-}
+double FittedChannel::pixel_variance() const { return variance_of(exemplar.values); }
 
 double PhotoFit::pursuit_gap() const {
   double largest = 0.0;
@@ -168,14 +162,7 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
 
 PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& options,
                    const Progress& progress) {
-  ColorImageFile read;
-  if (options.colors) {
-    read = read_color_image(file);
-  } else {
-    ImageFile grey = read_grey_image(file);
-    read.planes.push_back(std::move(grey.image));
-    read.remarks = std::move(grey.remarks);
-  }
+  ColorImageFile read = read_image(file, options.colors);
   if (!report(progress, 0.0, "photo read")) throw WorkError(file.string() + ": stopped; nothing is written");
   PhotoFit photo = fit_planes(std::move(read.planes), file.string(), options, progress);
   photo.remarks = std::move(read.remarks);

@@ -8,6 +8,7 @@
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/reported_loop.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
@@ -27,10 +28,8 @@ DistanceFigures figures(std::vector<double> d) {
   const double count = static_cast<double>(d.size());
   DistanceFigures f;
   f.mean = std::accumulate(d.begin(), d.end(), 0.0) / count;
-  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.99 * count)) - 1;
-  std::nth_element(d.begin(), d.begin() + rank, d.end());
-  f.p99 = d[static_cast<std::size_t>(rank)];
   f.max = *std::max_element(d.begin(), d.end());
+  f.p99 = ranked_value(std::move(d), static_cast<std::size_t>(std::ceil(0.99 * count)) - 1);
   return f;
 }
 

@@ -8,6 +8,7 @@
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "numerics/sample_statistics.h"
 #include "synthesis/relief/relief_anchors.h"
 #include "synthesis/relief/relief_shares.h"
 #include "synthesis/relief/relief_values.h"
@@ -100,12 +101,7 @@ double typical_rms(const ReliefPoints& points, const std::vector<double>& height
   if (!(largest > 0.0)) return 0.0;
   double total = 0.0, logarithms = 0.0, least = 0.0;
   const std::vector<double> around = smoothed_heights(points, squares, kAround * edge);
-  if (seen_alone) {
-    std::vector<double> sorted = around;
-    const auto quartile = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 3 / 4);
-    std::nth_element(sorted.begin(), quartile, sorted.end());
-    least = *quartile / 49.0;
-  }
+  if (seen_alone) least = ranked_value(around, around.size() * 3 / 4) / 49.0;
   for (std::size_t i = 0; i < around.size(); ++i) {
     if (around[i] < least) continue;
     total += points.weight(i);

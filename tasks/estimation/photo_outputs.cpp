@@ -8,19 +8,11 @@
 #include "estimation/gabor/gabor_page.h"
 #include "estimation/gabor/gabor_report.h"
 #include "numerics/files/npy_file.h"
+#include "numerics/sample_statistics.h"
 #include "synthesis/gabor/gabor_texture.h"
 
 namespace astrolith {
 namespace {
-
-double variance_of(const std::vector<float>& values) {
-  double mean = 0.0;
-  for (const float v : values) mean += v;
-  mean /= static_cast<double>(values.size());
-  double square = 0.0;
-  for (const float v : values) square += (v - mean) * (v - mean);
-  return square / static_cast<double>(values.size());
-}
 
 // A layer at unit variance and the exemplar's size: for pictures, and to measure what synthesis keeps.
 std::vector<float> synthesize_like(const GreyImage& exemplar, GaborLayer layer, std::uint64_t seed,

@@ -8,6 +8,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
@@ -20,8 +21,7 @@ Json distribution_json(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   Json quantiles = Json::array();
   for (const double share : kShares) {
-    quantiles.push_back(
-        values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)]);
+    quantiles.push_back(quantile_of_sorted(values, share));
   }
   const auto n = static_cast<double>(values.size());
   double mean = 0.0, squares = 0.0;
@@ -90,6 +90,34 @@ Json statistic_json(const StatisticComparison& c, double edge) {
   entry["a"] = c.middle_a;
   entry["b"] = c.middle_b;
   return entry;
+}
+
+// The verdict for people, some lines: whether b passes, the figures that decide it, and the relief by scale.
+std::vector<std::string> realism_lines(const RealismVerdict& verdict, const LengthWords& lengths) {
+  const auto length = [&](double edges) { return length_in_words(edges, verdict, lengths); };
+  const std::vector<std::string> words = realism_words(verdict, lengths);
+  std::vector<std::string> lines{
+      fmt::format("surface: {}{}",
+                  verdict.passes || verdict.too_coarse ? "" : "does not pass: ", fmt::join(words, "; "))};
+  lines.push_back(fmt::format("p {:.3f}; at least {} to pass", verdict.p, kPassingP));
+  if (const StatisticComparison* c = verdict.farthest()) {
+    const std::string within = c->radius > 0.0 ? " within " + length(c->radius) + " " + lengths.unit : "";
+    lines.push_back(fmt::format("largest distance {:.3f}, of {}{}; at most {} to pass", c->distance,
+                                name_of(c->quantity), within, kPassingDistance));
+  } else {
+    lines.emplace_back("no distance counts on so few points");
+  }
+  std::string ratios;
+  for (const BandRatio& band : verdict.bands) {
+    ratios += fmt::format("{}{:.2f} ({} to {} {})", ratios.empty() ? "" : ", ", band.ratio, length(band.from),
+                          length(band.to), lengths.unit);
+  }
+  if (!ratios.empty()) lines.push_back("relief over A's, by scale: " + ratios);
+  if (verdict.coupling_ratio) {
+    lines.push_back(fmt::format("coupling of scales over A's: {:.2f}", *verdict.coupling_ratio));
+  }
+  for (const std::string& said : band_words(verdict, lengths)) lines.push_back("note: " + said);
+  return lines;
 }
 
 }  // namespace
@@ -166,33 +194,6 @@ nlohmann::ordered_json realism_json(const RealismVerdict& verdict, const LengthW
   if (verdict.coupling_ratio) entry["coupling_ratio"] = *verdict.coupling_ratio;
   entry["statistics"] = statistics;
   return entry;
-}
-
-std::vector<std::string> realism_lines(const RealismVerdict& verdict, const LengthWords& lengths) {
-  const auto length = [&](double edges) { return length_in_words(edges, verdict, lengths); };
-  const std::vector<std::string> words = realism_words(verdict, lengths);
-  std::vector<std::string> lines{
-      fmt::format("surface: {}{}",
-                  verdict.passes || verdict.too_coarse ? "" : "does not pass: ", fmt::join(words, "; "))};
-  lines.push_back(fmt::format("p {:.3f}; at least {} to pass", verdict.p, kPassingP));
-  if (const StatisticComparison* c = verdict.farthest()) {
-    const std::string within = c->radius > 0.0 ? " within " + length(c->radius) + " " + lengths.unit : "";
-    lines.push_back(fmt::format("largest distance {:.3f}, of {}{}; at most {} to pass", c->distance,
-                                name_of(c->quantity), within, kPassingDistance));
-  } else {
-    lines.emplace_back("no distance counts on so few points");
-  }
-  std::string ratios;
-  for (const BandRatio& band : verdict.bands) {
-    ratios += fmt::format("{}{:.2f} ({} to {} {})", ratios.empty() ? "" : ", ", band.ratio, length(band.from),
-                          length(band.to), lengths.unit);
-  }
-  if (!ratios.empty()) lines.push_back("relief over A's, by scale: " + ratios);
-  if (verdict.coupling_ratio) {
-    lines.push_back(fmt::format("coupling of scales over A's: {:.2f}", *verdict.coupling_ratio));
-  }
-  for (const std::string& said : band_words(verdict, lengths)) lines.push_back("note: " + said);
-  return lines;
 }
 
 SurfaceComparison judge_surfaces(const NamedMesh& a, const NamedMesh& b, SurfaceStatisticsOptions options,

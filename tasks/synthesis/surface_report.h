@@ -34,12 +34,9 @@ void write_surface_table(const SurfaceStatistics& surface, const std::filesystem
 // The verdict with its words. Lengths are in the unit of the first mesh.
 nlohmann::ordered_json realism_json(const RealismVerdict& verdict, const LengthWords& lengths);
 
-// The verdict for people, some lines: whether b passes, the figures that decide it, and the relief by scale.
-std::vector<std::string> realism_lines(const RealismVerdict& verdict, const LengthWords& lengths);
-
 struct SurfaceComparison {
   RealismVerdict verdict;
-  std::vector<std::string> lines;  // realism_lines(), with the floor where it is asked for
+  std::vector<std::string> lines;  // for people, with the floor where it is asked for
   nlohmann::ordered_json figures;  // realism_json(), with the floor where it is asked for
   SurfaceStatistics a, b;
 };

@@ -11,6 +11,7 @@
 
 #include "estimation/gabor/spectrum/periodic_component.h"
 #include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 #include "numerics/srgb.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/exemplar/plane_exemplar.h"
@@ -28,18 +29,6 @@ void check_photo(const GreyImage& photo, const std::string& name) {
   if (!(*brightest - *darkest > 1e-6 * std::max(std::fabs(*darkest), std::fabs(*brightest)))) {
     throw InputError(name + ": has one grey value only; use another image");
   }
-}
-
-struct PhotoMoments {
-  double mean, deviation;
-};
-PhotoMoments photo_moments(const GreyImage& photo) {
-  const auto n = static_cast<double>(photo.values.size());
-  double mean = 0.0, square = 0.0;
-  for (const double v : photo.values) mean += v;
-  mean /= n;
-  for (const double v : photo.values) square += (v - mean) * (v - mean);
-  return {mean, std::sqrt(square / n)};
 }
 
 // The image whose ranks are those of `ranks` and whose values are those of `values`.
@@ -100,7 +89,7 @@ ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, const GreyI
   ExemplarLayer layer;
   layer.pixels = std::make_shared<const ExemplarImage>(image_of_variant(planes, variant));
   layer.border = variant == ExemplarVariant::kMirrored ? ExemplarBorder::kMirror : ExemplarBorder::kRepeat;
-  layer.height_rms = round_to_seven_digits(photo_moments(photo).deviation);
+  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(photo.values)));
   layer.color = planes.size() == 3;
   return layer;
 }
@@ -145,7 +134,7 @@ std::string_view variant_word(ExemplarVariant variant) {
 GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed) {
   const std::vector<float> heights =
       synthesize_exemplar(layer, "exemplar", photo.width, photo.height, {seed, 0, false});
-  const double mean = photo_moments(photo).mean;
+  const double mean = mean_of(photo.values);
   GreyImage texture{photo.width, photo.height, {}};
   for (const float height : heights) texture.values.push_back(mean + double{height});
   return texture;

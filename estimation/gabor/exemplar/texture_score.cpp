@@ -6,23 +6,15 @@
 #include <vector>
 
 #include "numerics/portable_double.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
 
-double deviation_of(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0.0, square = 0.0;
-  for (const double v : values) mean += v;
-  mean /= n;
-  for (const double v : values) square += (v - mean) * (v - mean);
-  return std::sqrt(square / n);
-}
-
 // The Wasserstein-1 distance over the deviation of `reference`: the mean difference of 4096 quantiles.
 double relative_distance(std::vector<double> values, std::vector<double> reference) {
   constexpr int kQuantiles = 4096;
-  const double deviation = deviation_of(reference);
+  const double deviation = std::sqrt(variance_of(reference));
   std::sort(values.begin(), values.end());
   std::sort(reference.begin(), reference.end());
   const auto quantile = [](const std::vector<double>& sorted_values, double share) {

@@ -3,14 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "numerics/sample_statistics.h"
+
 namespace astrolith {
 namespace {
-
-double mean_of(const GreyImage& image) {
-  double sum = 0.0;
-  for (const double v : image.values) sum += v;
-  return sum / static_cast<double>(image.values.size());
-}
 
 Eigen::Vector3d pixel(const std::vector<GreyImage>& planes, std::size_t i) {
   return {planes[0].values[i], planes[1].values[i], planes[2].values[i]};
@@ -47,7 +43,7 @@ GreyImage project(const std::vector<GreyImage>& planes, const Eigen::Vector3d& a
 }  // namespace
 
 Vec3d mean_color(const std::vector<GreyImage>& planes) {
-  return {mean_of(planes[0]), mean_of(planes[1]), mean_of(planes[2])};
+  return {mean_of(planes[0].values), mean_of(planes[1].values), mean_of(planes[2].values)};
 }
 
 std::vector<ImageChannel> principal_channels(const std::vector<GreyImage>& planes,

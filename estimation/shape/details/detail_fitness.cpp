@@ -9,6 +9,7 @@
 #include "descriptor/surflet_histogram.h"
 #include "geometry/surface/sample_curvature.h"
 #include "numerics/parallel_for.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
@@ -31,14 +32,6 @@ double root_mean_square(std::span<const double> values) {
   double sum = 0.0;
   for (const double v : values) sum += v * v;
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
-}
-
-double median_magnitude(std::span<const double> values) {
-  std::vector<double> sizes;
-  for (const double v : values) sizes.push_back(std::fabs(v));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
 }
 
 double curvature_radius(const SurfaceSamples& samples) {
@@ -130,7 +123,7 @@ std::vector<double> DetailFitness::layers_roughness(std::span<const FractalLayer
   return roughness(layout_.at_places(probe_.heights(layers, options_.recipe_seed)), layout_.triples);
 }
 
-void DetailFitness::leave_out_strays(std::span<const double> heights) {
+void DetailFitness::leave_out_strays(const std::vector<double>& heights) {
   const double most = std::max(kStrayLine * median_magnitude(heights), kTiniestAmplitude);
   for (std::vector<HeightTriple>& triples : layout_.triples) {
     std::erase_if(triples, [&](const HeightTriple& t) {

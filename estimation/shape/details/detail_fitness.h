@@ -72,7 +72,7 @@ class DetailFitness {
   std::vector<double> layers_roughness(std::span<const FractalLayer> layers) const;
 
  private:
-  void leave_out_strays(std::span<const double> heights);
+  void leave_out_strays(const std::vector<double>& heights);
   std::vector<Vec3d> moved_vertices(const std::vector<double>& heights) const;
   ShapeHistogram histogram(const std::vector<double>& heights) const;
   DetailScore score_of(const ShapeHistogram& histogram, const std::vector<double>& heights,

@@ -11,6 +11,7 @@
 #include "estimation/shape/model/isosurface_projection.h"
 #include "estimation/shape/model/metaball_model.h"
 #include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 
 namespace astrolith {
@@ -59,13 +60,6 @@ Patch make_patch(const MetaballModel& base, const Vec3d& q, const Vec3d& n, int 
   }
   patch.flat = least >= kLeastCosine;
   return patch;
-}
-
-double median_magnitude(std::vector<double> values) {
-  for (double& v : values) v = std::fabs(v);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The detrended heights of every patch that is flat and has no strays.

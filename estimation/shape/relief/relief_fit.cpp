@@ -11,6 +11,7 @@
 #include "estimation/shape/relief/relief_solver.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 #include "synthesis/relief/relief_picture.h"
 
 namespace astrolith {
@@ -21,12 +22,6 @@ constexpr int kMostLevels = 65535;
 // Places for each vertex of the surface; models of few vertices get more, since their facets are what is to
 // be kept.
 constexpr double kPlacesOfVertex = 1.2, kMostPlacesOfVertex = 12.0, kPlacesOfSmallModel = 20000.0;
-
-double mean_of(const std::vector<double>& values) {
-  return values.empty()
-             ? 0.0
-             : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 // The spacing whose square holds one place, where a surface of this area faces an axis.
 double default_spacing(const TriangleMesh& surface) {

@@ -11,6 +11,7 @@
 #include "estimation/shape/report/captioned_picture.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_double.h"
+#include "numerics/sample_statistics.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/preview.h"
 
@@ -25,14 +26,10 @@ std::vector<double> sorted_values(const LocalStatistic& statistic) {
   return sorted;
 }
 
-double value_at(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
 std::vector<std::pair<double, double>> quantile_curve(const std::vector<double>& sorted) {
   std::vector<std::pair<double, double>> curve;
   for (int percent = 1; percent <= 99; ++percent) {
-    curve.emplace_back(percent, value_at(sorted, 0.01 * percent));
+    curve.emplace_back(percent, quantile_of_sorted(sorted, 0.01 * percent));
   }
   return curve;
 }
@@ -44,8 +41,8 @@ std::string heading_of(const LocalStatistic& statistic) {
 
 void draw_quantiles(Figure& page, const Rectangle& at, const LocalStatistic& a, const LocalStatistic& b) {
   const std::vector<double> of_a = sorted_values(a), of_b = sorted_values(b);
-  const double low = std::min(value_at(of_a, 0.01), value_at(of_b, 0.01)),
-               high = std::max(value_at(of_a, 0.99), value_at(of_b, 0.99));
+  const double low = std::min(quantile_of_sorted(of_a, 0.01), quantile_of_sorted(of_b, 0.01)),
+               high = std::max(quantile_of_sorted(of_a, 0.99), quantile_of_sorted(of_b, 0.99));
   const double room = std::max(0.05 * (high - low), 1e-9);
   const Axis x = linear_axis(0.0, 100.0, ""), y = linear_axis(low - room, high + room, "");
   page.text(at.x, at.y - 5.0, heading_of(a), 8.0);
@@ -119,7 +116,8 @@ void write_quantile_curves(const NamedSurface& a, const NamedSurface& b, const s
 
 void write_roughness_maps(const NamedSurface& a, const NamedSurface& b, const std::filesystem::path& file) {
   const std::vector<double> sorted = sorted_values(mapped_roughness(a.statistics));
-  const double low = value_at(sorted, 0.05), high = std::max(value_at(sorted, 0.95), low + 1e-6);
+  const double low = quantile_of_sorted(sorted, 0.05),
+               high = std::max(quantile_of_sorted(sorted, 0.95), low + 1e-6);
   const double radius = mapped_roughness(a.statistics).radius;
   CaptionedPicture left = roughness_map(a, low, high), right = roughness_map(b, low, high);
   left.caption += fmt::format(": roughness within {:g} edges, dark {:.2g} %, light {:.2g} % of that radius",
