@@ -161,27 +161,7 @@ template <class Backend>
 std::vector<std::uint64_t> count_sets_on(Backend& backend, std::span<const SurfletArrays> arrays, int bins,
                                          const Progress& progress) {
   const SurfletSets sets(arrays);
-  static_assert(kMinBins == 2 && kMaxBins == 10);
-  switch (bins) {
-    case 2:
-      return count_tiles<2>(backend, sets, progress);
-    case 3:
-      return count_tiles<3>(backend, sets, progress);
-    case 4:
-      return count_tiles<4>(backend, sets, progress);
-    case 6:
-      return count_tiles<6>(backend, sets, progress);
-    case 7:
-      return count_tiles<7>(backend, sets, progress);
-    case 8:
-      return count_tiles<8>(backend, sets, progress);
-    case 9:
-      return count_tiles<9>(backend, sets, progress);
-    case 10:
-      return count_tiles<10>(backend, sets, progress);
-    default:
-      return count_tiles<5>(backend, sets, progress);
-  }
+  return with_bins(bins, [&]<int kBins>() { return count_tiles<kBins>(backend, sets, progress); });
 }
 
 // The counts of count_pairs (descriptor/pair_count.h), found on a backend.

@@ -143,27 +143,7 @@ std::vector<std::uint64_t> count_pairs(std::span<const Vec3d> points, std::span<
                                        std::span<const std::int32_t> local, int num_local, int bins,
                                        const Progress& progress) {
   const SurfletArrays s(points, normals, local, num_local);
-  static_assert(kMinBins == 2 && kMaxBins == 10);
-  switch (bins) {
-    case 2:
-      return count_with<2>(s, num_local, progress);
-    case 3:
-      return count_with<3>(s, num_local, progress);
-    case 4:
-      return count_with<4>(s, num_local, progress);
-    case 6:
-      return count_with<6>(s, num_local, progress);
-    case 7:
-      return count_with<7>(s, num_local, progress);
-    case 8:
-      return count_with<8>(s, num_local, progress);
-    case 9:
-      return count_with<9>(s, num_local, progress);
-    case 10:
-      return count_with<10>(s, num_local, progress);
-    default:
-      return count_with<5>(s, num_local, progress);
-  }
+  return with_bins(bins, [&]<int kBins>() { return count_with<kBins>(s, num_local, progress); });
 }
 
 }  // namespace astrolith

@@ -24,6 +24,15 @@ constexpr std::int64_t bin_count(PairFeatures features, int bins) {
 inline constexpr int kDefaultBins = 5;
 inline constexpr int kMinBins = 2, kMaxBins = 10;
 
+// count.operator()<bins>() for kMinBins <= bins <= kMaxBins, which the compiler then knows.
+template <int kBins = kMinBins, typename Count>
+auto with_bins(int bins, const Count& count) {
+  if constexpr (kBins < kMaxBins) {
+    if (bins != kBins) return with_bins<kBins + 1>(bins, count);
+  }
+  return count.template operator()<kBins>();
+}
+
 struct ShapeHistogram {
   PairFeatures features = PairFeatures::wahl;
   int bins = kDefaultBins;            // along each axis

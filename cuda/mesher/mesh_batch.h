@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "synthesis/mesh/block_layer.h"
 #include "synthesis/mesh/mesher.h"
 
 namespace astrolith {
@@ -40,28 +41,6 @@ struct BlockPlace {
     return kRows * kRows * first_of_layer + z_row * kRows * blocks_of_layer +
            kRows * (first_of_row - first_of_layer) + y_row * blocks_of_row + (block - first_of_row);
   }
-};
-
-// The numbers of a layer's active blocks, by their places.
-class LayerIndex {
- public:
-  LayerIndex() = default;
-  LayerIndex(int width, int height)
-      : width_(width), height_(height), numbers_(static_cast<std::size_t>(width) * height, kAbsent) {}
-
-  void set(int x, int y, std::int32_t number) { numbers_[slot(x, y)] = number; }
-  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-  bool has(int x, int y) const { return contains(x, y) && numbers_[slot(x, y)] != kAbsent; }
-  // The number of the block at x, y, which must be active.
-  std::int32_t at(int x, int y) const { return numbers_[slot(x, y)]; }
-
- private:
-  static constexpr std::int32_t kAbsent = -1;
-  std::size_t slot(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-  }
-  int width_ = 0, height_ = 0;
-  std::vector<std::int32_t> numbers_;
 };
 
 // A block's place in its layer, in blocks.

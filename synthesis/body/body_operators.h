@@ -56,8 +56,9 @@ ASTROLITH_KERNEL T bulge(const OperatorParameters<T>& o, T f, T g) {
   return o.bulge / math::fma(u, u, math::fma(v, v, T(1)));
 }
 
+// The operator without the bulge, which is the only part that is not monotone in its operands.
 template <typename T>
-ASTROLITH_KERNEL T combined(const OperatorParameters<T>& o, T f, T g) {
+ASTROLITH_KERNEL T monotone_combined(const OperatorParameters<T>& o, T f, T g) {
   switch (o.kind) {
     case Operator::kIntersection:
       return -r_union(-f, -g, o.alpha);
@@ -66,10 +67,16 @@ ASTROLITH_KERNEL T combined(const OperatorParameters<T>& o, T f, T g) {
     case Operator::kBlend:
       return super_elliptic(f, g, o.exponent, o.width);
     case Operator::kCleanUnion:
-      return r_union(f, g, T(0)) + bulge(o, f, g);
+      return r_union(f, g, T(0));
     default:
       return r_union(f, g, o.alpha);
   }
+}
+
+template <typename T>
+ASTROLITH_KERNEL T combined(const OperatorParameters<T>& o, T f, T g) {
+  const T monotone = monotone_combined(o, f, g);
+  return o.kind == Operator::kCleanUnion ? monotone + bulge(o, f, g) : monotone;
 }
 
 // The signed distance of a body at a point, and the gradient of this distance, which has about unit length.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "numerics/interval.h"
-#include "numerics/portable_double.h"
 #include "synthesis/body/body_operators.h"
 #include "synthesis/body/metaball_body.h"
 
@@ -32,32 +31,6 @@ ASTROLITH_HD inline Interval reach_squares(const Interval& v, double inverse_rea
   const double a = v.low * inverse_reach, b = v.high * inverse_reach;
   const double nearest = a > 0.0 ? a : b < 0.0 ? b : 0.0, farthest = std::max(std::fabs(a), std::fabs(b));
   return {nearest * nearest, farthest * farthest};
-}
-
-// super_elliptic() with the portable elementary functions, which give the same bits on CPU and GPU.
-ASTROLITH_HD inline double blended_distance(double f, double g, double exponent, double width) {
-  const double high = larger(f, g), low = f > g ? g : f;
-  const double a = larger(1.0 + high / width, 0.0), b = larger(1.0 + low / width, 0.0);
-  const double ratio = b / larger(a, 1e-30);
-  const double power = ratio > 0.0 ? portable::exp(exponent * portable::log(larger(ratio, 1e-30))) : 0.0;
-  const double factor = portable::exp(portable::log(1.0 + power) / exponent);
-  return high + width * a * (factor - 1.0);
-}
-
-// The operator without the bulge, which is the only part that is not monotone in its operands.
-ASTROLITH_HD inline double monotone_combined(const OperatorParameters<double>& o, double f, double g) {
-  switch (o.kind) {
-    case Operator::kIntersection:
-      return -r_union(-f, -g, o.alpha);
-    case Operator::kDifference:
-      return -r_union(-f, g, o.alpha);
-    case Operator::kBlend:
-      return blended_distance(f, g, o.exponent, o.width);
-    case Operator::kCleanUnion:
-      return r_union(f, g, 0.0);
-    default:
-      return r_union(f, g, o.alpha);
-  }
 }
 
 // An interval that holds the combined distance for all operands in f and g, with float rounding.

@@ -46,38 +46,51 @@ struct LayerBlock {
   std::array<std::uint32_t, 3 * kSamples> vertices;
 };
 
-template <int B>
-class BlockLayer {
+// The numbers of a layer's active blocks, by their places.
+class LayerIndex {
  public:
-  BlockLayer() = default;
-  BlockLayer(int width, int height)
+  LayerIndex() = default;
+  LayerIndex(int width, int height)
       : width_(width),
         height_(height),
-        index_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kAbsent) {}
+        numbers_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), kAbsent) {}
 
-  void add(int x, int y) {
-    index_[slot(x, y)] = static_cast<std::int32_t>(blocks.size());
-    blocks.emplace_back(x, y);
-  }
-
+  void set(int x, int y, std::int32_t number) { numbers_[slot(x, y)] = number; }
   bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
-  // The active block at x, y; null where there is none.
-  const LayerBlock<B>* find(int x, int y) const {
-    if (!contains(x, y)) return nullptr;
-    const std::int32_t i = index_[slot(x, y)];
-    return i == kAbsent ? nullptr : &blocks[static_cast<std::size_t>(i)];
-  }
-
-  std::vector<LayerBlock<B>> blocks;  // the active blocks, sorted by y and then x
+  bool has(int x, int y) const { return contains(x, y) && numbers_[slot(x, y)] != kAbsent; }
+  // The number of the block at x, y, which must be active.
+  std::int32_t at(int x, int y) const { return numbers_[slot(x, y)]; }
 
  private:
   static constexpr std::int32_t kAbsent = -1;
   std::size_t slot(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
-
   int width_ = 0, height_ = 0;
-  std::vector<std::int32_t> index_;  // (height x width) into blocks
+  std::vector<std::int32_t> numbers_;
+};
+
+template <int B>
+class BlockLayer {
+ public:
+  BlockLayer() = default;
+  BlockLayer(int width, int height) : index_(width, height) {}
+
+  void add(int x, int y) {
+    index_.set(x, y, static_cast<std::int32_t>(blocks.size()));
+    blocks.emplace_back(x, y);
+  }
+
+  bool contains(int x, int y) const { return index_.contains(x, y); }
+  // The active block at x, y; null where there is none.
+  const LayerBlock<B>* find(int x, int y) const {
+    return index_.has(x, y) ? &blocks[static_cast<std::size_t>(index_.at(x, y))] : nullptr;
+  }
+
+  std::vector<LayerBlock<B>> blocks;  // the active blocks, sorted by y and then x
+
+ private:
+  LayerIndex index_;
 };
 
 // The blocks that own the samples a block sees. In the index, bit 0 stands for one block lower in x, bit 1 in
