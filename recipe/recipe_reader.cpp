@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "numerics/edit_distance.h"
 #include "recipe/compact_document_internal.h"
 #include "recipe/fields_internal.h"
 #include "recipe/json_document_internal.h"
@@ -46,22 +47,6 @@ double integral(const json& value, const Place& place, double low, double high) 
     fail_type(value, place, fmt::format("an integer from {:.0f} to {:.0f}", low, high));
   }
   return number;
-}
-
-// Levenshtein's edit distance.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 // Names in the list of fields of an object that is being read.

@@ -92,17 +92,14 @@ void require_no_output(const fs::path& manifest, const std::vector<fs::path>& pa
 std::string hash_of_family(const Program& program, const Recipe& recipe) {
   constexpr std::array kNoEffect{"base",         "device",       "members",    "manifest", "preview",
                                  "preview-maps", "feature-list", "max-memory", "out"};
-  Sha256 hash;
   Recipe undescribed = recipe;
   undescribed.description.clear();
-  const std::string text = recipe_to_json(undescribed);
-  hash.update(text.data(), text.size());
+  std::string text = recipe_to_json(undescribed);
   for (const auto& [name, value] : program.given_options()) {
     if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
-    const std::string line = name + "=" + value + "\n";
-    hash.update(line.data(), line.size());
+    text += name + "=" + value + "\n";
   }
-  return hash.hex();
+  return sha256_of(text);
 }
 
 class MemberMaker {

@@ -17,11 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file of the folder with the extension of `like`; no file where `like` is none.
+// A file of the folder with the extensions of `like`; no file where `like` is none.
 fs::path file_in(const fs::path& folder, const char* stem, const fs::path& like) {
-  const bool packed = like.extension() == ".zst";
-  const std::string extension = (packed ? like.stem() : like).extension().string() + (packed ? ".zst" : "");
-  return like.empty() ? fs::path() : folder / (stem + extension);
+  return like.empty() ? fs::path()
+                      : folder / (stem + like.stem().extension().string() + like.extension().string());
 }
 
 // Predicts and makes members of a recipe, without a word and without a summary.

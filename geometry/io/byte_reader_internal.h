@@ -31,6 +31,10 @@ class ByteReader {
     }
     return value;
   }
+  Vec3d read_floats_xyz() {
+    const float x = read<float>("x"), y = read<float>("y"), z = read<float>("z");
+    return {x, y, z};
+  }
   void skip(std::size_t bytes, std::string_view what) {
     need(bytes, what);
     at_ += bytes;

@@ -20,10 +20,7 @@ void read_vertices(ByteReader& bytes, TriangleMesh& mesh) {
   bytes.need_rows(count, kVertexBytes, "vertices");
   for (std::uint32_t i = 0; i < count; ++i) {
     bytes.skip(5 * sizeof(float), "u v nx ny nz");
-    const float x = bytes.read<float>("x");
-    const float y = bytes.read<float>("y");
-    const float z = bytes.read<float>("z");
-    mesh.vertices.push_back({x, y, z});
+    mesh.vertices.push_back(bytes.read_floats_xyz());
   }
 }
 

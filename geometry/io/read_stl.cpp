@@ -55,10 +55,7 @@ TriangleMesh read_stl_binary(const MeshFile& file) {
   for (std::uint32_t i = 0; i < count; ++i) {
     bytes.skip(12, "a normal");
     for (int corner = 0; corner < 3; ++corner) {
-      const float x = bytes.read<float>("x");
-      const float y = bytes.read<float>("y");
-      const float z = bytes.read<float>("z");
-      mesh.vertices.push_back({x, y, z});
+      mesh.vertices.push_back(bytes.read_floats_xyz());
     }
     bytes.skip(2, "an attribute");
     add_corner_triangle(mesh);

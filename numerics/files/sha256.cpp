@@ -54,6 +54,12 @@ std::string Sha256::hex() const {
   return text;
 }
 
+std::string sha256_of(std::string_view bytes) {
+  Sha256 hash;
+  hash.update(bytes.data(), bytes.size());
+  return hash.hex();
+}
+
 std::string sha256_of_file(const std::filesystem::path& file) {
   const auto refuse = [&] {
     throw InputError(file.string() + ": cannot read (" + std::strerror(errno) + "); check the name");

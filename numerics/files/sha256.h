@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace astrolith {
 
@@ -28,7 +29,9 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-// 64 lower-case hexadecimal digits. Throws InputError when the file cannot be read, as a pipe cannot.
+// 64 lower-case hexadecimal digits.
+std::string sha256_of(std::string_view bytes);
+// The same of a file's content. Throws InputError when the file cannot be read, as a pipe cannot.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -50,12 +50,10 @@ void load_image(NamedImage& named, bool keeps_colors, const std::filesystem::pat
                 const std::string& place) {
   const std::filesystem::path file = folder / named.image;
   const std::vector<std::uint8_t> bytes = read_bytes(file, place + ".image");
-  Sha256 hash;
-  hash.update(bytes.data(), bytes.size());
-  if (!same_digits(hash.hex(), named.image_sha256)) {
+  const std::string digits = sha256_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  if (!same_digits(digits, named.image_sha256)) {
     throw InputError(place + ".image: " + file.string() +
-                     " has changed since the recipe was written; restore it, or state its SHA-256 " +
-                     hash.hex());
+                     " has changed since the recipe was written; restore it, or state its SHA-256 " + digits);
   }
   GreyPng png =
       decode_grey_png(bytes, place + ".image: " + file.string(), kLeastExemplarSide, kMostExemplarSide);

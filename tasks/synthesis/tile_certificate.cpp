@@ -30,10 +30,7 @@ Json side_to_json(const TileSide& side) {
 std::string checksum_of(const Json& certificate) {
   Json stated = certificate;
   stated.erase("checksum");
-  const std::string text = stated.dump(-1, ' ', false, Json::error_handler_t::replace);
-  Sha256 hash;
-  hash.update(text.data(), text.size());
-  return hash.hex();
+  return sha256_of(stated.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 // Reads the fields of an object of a summary. Failures name the file and the field.
@@ -162,10 +159,7 @@ TilePlanes planes_of_tile(const ImplicitField& field, int resolution, MeshTile t
 
 std::string hash_of_recipe(Recipe recipe) {
   recipe.description.clear();
-  const std::string text = recipe_to_json(recipe);
-  Sha256 hash;
-  hash.update(text.data(), text.size());
-  return hash.hex();
+  return sha256_of(recipe_to_json(recipe));
 }
 
 Json to_json(const TileCertificate& tile) {
