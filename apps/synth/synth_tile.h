@@ -7,8 +7,8 @@
 #include "apps/program.h"
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
+#include "synthesis/mesh/tile_border.h"
 #include "tasks/synthesis/mesh_region.h"
-#include "tasks/synthesis/tile_border.h"
 
 namespace astrolith {
 

@@ -10,7 +10,7 @@
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesher.h"
-#include "tasks/synthesis/tile_border.h"
+#include "synthesis/mesh/tile_border.h"
 
 namespace astrolith {
 

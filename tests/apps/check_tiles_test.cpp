@@ -6,7 +6,7 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/files/sha256.h"
-#include "tasks/synthesis/tile_border.h"
+#include "synthesis/mesh/tile_border.h"
 #include "tests/apps/synth_runner.h"
 #include "tests/support/meshes.h"
 

@@ -1,4 +1,4 @@
-#include "tasks/synthesis/tile_border.h"
+#include "synthesis/mesh/tile_border.h"
 
 #include <algorithm>
 #include <bit>
