@@ -30,12 +30,6 @@ RegionLabels exchanged_regions(const RegionGroups& of_first, const RegionGroups&
   return labels;
 }
 
-double kolmogorov_smirnov_distance(std::span<const double> a, std::span<const double> b) {
-  const std::vector<std::uint8_t> one(std::max(a.size(), b.size()), 0);
-  return KolmogorovSmirnov({a, std::span(one).first(a.size())},
-                           {b, std::span(one).first(b.size())})(own_regions());
-}
-
 KolmogorovSmirnov::KolmogorovSmirnov(const RegionalValues& a, const RegionalValues& b) {
   sorted_.reserve(a.values.size() + b.values.size());
   for (std::size_t i = 0; i < a.values.size(); ++i) sorted_.push_back({a.values[i], a.regions[i]});

@@ -29,8 +29,6 @@ struct RegionalValues {
 
 // The Kolmogorov-Smirnov distance: the largest difference of the two distribution functions, 0 to 1. Neither
 // sample is empty.
-double kolmogorov_smirnov_distance(std::span<const double> a, std::span<const double> b);
-
 class KolmogorovSmirnov {
  public:
   KolmogorovSmirnov(const RegionalValues& a, const RegionalValues& b);

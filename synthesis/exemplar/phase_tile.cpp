@@ -73,6 +73,25 @@ double spline_response(double t) {
 // A frequency of a side, in cycles per side, as a signed number.
 int signed_frequency(int k, int side) { return k < (side + 1) / 2 ? k : k - side; }
 
+// A line of a tile's spectrum along one axis of one lobe: shares of the lobe's power at the frequencies
+// 0, 1 .. side - 1 in cycles per side (the upper half is negative). `frequency` is in cycles per pixel of the
+// layer. The shares sum to 1.
+std::vector<double> tile_line(const PhaseTile& tile, int bandwidth, double frequency) {
+  const double length = tile.side * tile.pixel, own = deviation_of(bandwidth),
+               blur = kPhaseTileBlur / tile.spacing();
+  const double deviation = length * std::sqrt(own * own - blur * blur), middle = length * frequency;
+  std::vector<double> line(static_cast<std::size_t>(tile.side));
+  double sum = 0.0;
+  for (int k = 0; k < tile.side; ++k) {
+    const double d = (signed_frequency(k, tile.side) - middle) / deviation;
+    const double share = std::fabs(d) < 8.0 ? portable::exp(-0.5 * d * d) : 0.0;
+    line[static_cast<std::size_t>(k)] = share;
+    sum += share;
+  }
+  for (double& share : line) share /= sum;
+  return line;
+}
+
 }  // namespace
 
 double PhaseTile::variance() const {
@@ -118,22 +137,6 @@ PhaseTilePlan plan_phase_tiles(const std::vector<GaborLobe>& lobes) {
     plan.tiles.pop_back();
   }
   return plan;
-}
-
-std::vector<double> tile_line(const PhaseTile& tile, int bandwidth, double frequency) {
-  const double length = tile.side * tile.pixel, own = deviation_of(bandwidth),
-               blur = kPhaseTileBlur / tile.spacing();
-  const double deviation = length * std::sqrt(own * own - blur * blur), middle = length * frequency;
-  std::vector<double> line(static_cast<std::size_t>(tile.side));
-  double sum = 0.0;
-  for (int k = 0; k < tile.side; ++k) {
-    const double d = (signed_frequency(k, tile.side) - middle) / deviation;
-    const double share = std::fabs(d) < 8.0 ? portable::exp(-0.5 * d * d) : 0.0;
-    line[static_cast<std::size_t>(k)] = share;
-    sum += share;
-  }
-  for (double& share : line) share /= sum;
-  return line;
 }
 
 std::vector<double> tile_power(const PhaseTile& tile) {

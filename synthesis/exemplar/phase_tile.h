@@ -43,11 +43,6 @@ struct PhaseTilePlan {
 // 0.3 cycles per pixel of the tile up to two deviations, and so coarse that all of them are wide.
 PhaseTilePlan plan_phase_tiles(const std::vector<GaborLobe>& lobes);
 
-// A line of a tile's spectrum along one axis of one lobe: shares of the lobe's power at the frequencies
-// 0, 1 .. side - 1 in cycles per side (the upper half is negative). `frequency` is in cycles per pixel of the
-// layer. The shares sum to 1.
-std::vector<double> tile_line(const PhaseTile& tile, int bandwidth, double frequency);
-
 // The power of a tile's cosines, side x side, row-major along x; total 1. There is no power at frequency 0:
 // its four neighbours have it instead.
 std::vector<double> tile_power(const PhaseTile& tile);

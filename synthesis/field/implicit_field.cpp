@@ -84,23 +84,6 @@ void FieldBlock::find_signs(std::span<const float> x, std::span<const float> y, 
   });
 }
 
-void FieldBlock::evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                               std::span<float> value) const {
-  const FieldView& f = model_->tables;
-  const BodyLeaf& first = f.leaf(0);
-  std::array<float, kBatch> wx, wy, wz, gx, gy, gz;
-  for_each_batch(value.size(), [&](std::size_t i, std::size_t batch) {
-    const int n = static_cast<int>(batch);
-    PointArrays at{&x[i], &y[i], &z[i]};
-    if (f.body.plain() && first.warped) {
-      warp_points(first.warp, f.arrays, n, at.x, at.y, at.z, wx.data(), wy.data(), wz.data());
-      at = {wx.data(), wy.data(), wz.data()};
-    }
-    evaluate_body(f.body, f.arrays, metaballs_.lists(), n, at.x, at.y, at.z, &value[i], gx.data(), gy.data(),
-                  gz.data());
-  });
-}
-
 void FieldBlock::evaluate_tetrahedra(std::span<const float> x, std::span<const float> y,
                                      std::span<const float> z, std::span<float> value) const {
   for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {

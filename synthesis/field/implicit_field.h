@@ -99,10 +99,6 @@ class FieldBlock {
   void evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
                                  std::span<const float> z, std::span<float> value) const;
 
-  // value[i] = F of the body without layers and boulders, at points within the box.
-  void evaluate_bare(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                     std::span<float> value) const;
-
   // Calls visit(first, stage) for the stages of F at points first, first + 1, ... within the box: all stages
   // of some points, then all stages of the next points. Layers without heights have no stage. With `origin`,
   // points are relative to it as in evaluate_local(); it is null for points of the body's frame.

@@ -163,15 +163,12 @@ void place_uniformly(const BareSurface& surface, std::vector<DrawnLandform>& lan
   for (std::size_t i = 0; i < points.size(); ++i) landforms[i].position = points[i];
 }
 
-}  // namespace
-
+// The diameter at quantile u in [0, 1) of the population's law N(> D) ~ D^-exponent between its limits.
 double power_law_diameter(const Population& population, double u) {
   const double ratio = population.greatest_diameter / population.least_diameter;
   const double left_out = 1.0 - portable::pow(ratio, -population.exponent);
   return population.least_diameter * portable::pow(1.0 - u * left_out, -1.0 / population.exponent);
 }
-
-namespace {
 
 // Weibull's exponent (D / scale)^shape.
 double weibull_exponent(const WeibullSizes& sizes, double diameter) {

@@ -33,9 +33,6 @@ struct DrawingPlaces {
   Progress progress = {};  // asked some times a second
 };
 
-// The diameter at quantile u in [0, 1) of the population's law N(> D) ~ D^-exponent between its limits.
-double power_law_diameter(const Population& population, double u);
-
 // The diameter at quantile u of the population's law, the power law or Weibull's. A u from 0 to 1 gives one
 // within the limits. One below 0 gives the diameter that the law continued below the least has there.
 double diameter_at(const Population& population, double u);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -27,6 +28,32 @@ struct Options {
   int side = 256;
   GaborFitOptions fit;
 };
+
+// |a - truth| / |truth| over all frequencies but 0. The peaks dominate it.
+double relative_l2_distance(const PowerSpectrum& a, const PowerSpectrum& truth) {
+  double difference = 0.0, norm = 0.0;
+  for (std::size_t i = 1; i < truth.power.size(); ++i) {
+    const double t = truth.power[i], d = a.power[i] - t;
+    difference += d * d;
+    norm += t * t;
+  }
+  return norm > 0.0 ? std::sqrt(difference / norm) : 0.0;
+}
+
+// The root mean square of ln(a / truth) over the frequencies where the truth is at least 1e-3 of its mean,
+// since weaker frequencies are invisible in a texture. `a` is raised to at least 1e-6 of the truth's mean.
+double log_spectral_distance(const PowerSpectrum& a, const PowerSpectrum& truth) {
+  const double mean = truth.variance();
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < truth.power.size(); ++i) {
+    if (truth.power[i] < 1e-3 * mean || truth.power[i] <= 0.0) continue;
+    const double ratio = std::log(std::max(a.power[i], 1e-6 * mean) / truth.power[i]);
+    sum += ratio * ratio;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0;
+}
 
 struct Distances {
   double transport = 0.0, l2 = 0.0, log = 0.0;

@@ -26,8 +26,7 @@ Progress part_of(const Progress& progress, double begin, double end) {
   };
 }
 
-}  // namespace
-
+// The mesh of a recipe in the target's frame, with about so many triangles.
 TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
                                const Progress& progress) {
   constexpr int kFirst = 64, kLeast = 16, kMost = 1024;
@@ -43,6 +42,8 @@ TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, d
   for (Vec3d& p : mesh.vertices) p = (p - target.center) * (1.0 / target.diagonal);
   return mesh;
 }
+
+}  // namespace
 
 FitRealism check_realism(const TargetBody& target, const Recipe& recipe, int seeds, std::uint64_t seed,
                          const Progress& progress) {

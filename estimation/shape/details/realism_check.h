@@ -20,10 +20,6 @@ struct FitRealism {
   SurfaceStatistics target, fit;                // of the target, and of that mesh
 };
 
-// The mesh of a recipe in the target's frame, with about so many triangles.
-TriangleMesh mesh_of_triangles(const TargetBody& target, const Recipe& recipe, double triangles,
-                               const Progress& progress = {});
-
 // Meshes the recipe (in the file's frame) with twice the target's triangles, at most 240,000, once for each
 // seed; a body without layers has one mesh. Marching cubes need so many, since part of their triangles are
 // slivers: the target itself, meshed anew with as many triangles as it has, is a little too smooth. Both

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "numerics/hash_random.h"
@@ -22,7 +23,11 @@ constexpr RegionGroups kGroups = [] {
 }();
 
 TEST(KolmogorovSmirnovDistance, OfSamplesWithKnownDistances) {
-  const auto distance = [](const Values& a, const Values& b) { return kolmogorov_smirnov_distance(a, b); };
+  const std::vector<std::uint8_t> region(4, 0);
+  const auto distance = [&](const Values& a, const Values& b) {
+    return KolmogorovSmirnov({a, std::span(region).first(a.size())},
+                             {b, std::span(region).first(b.size())})(own_regions());
+  };
   EXPECT_EQ(distance({1, 2, 3}, {4, 5, 6, 7}), 1);
   EXPECT_EQ(distance({1, 2, 3, 4}, {3, 4, 5, 6}), 0.5);
   EXPECT_EQ(distance({1, 2, 2, 3}, {1, 2, 2, 3}), 0);
