@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,13 @@ double variance_of(const std::vector<T>& values) {
   double sum = 0.0;
   for (const T v : values) sum += (v - mean) * (v - mean);
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+// The sum of the products, in the order of the elements; `b` has as many as `a`.
+inline double sum_of_products(std::span<const double> a, std::span<const double> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
 // The value of sorted numbers below which a share of them lies, 0 to 1.

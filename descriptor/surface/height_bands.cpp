@@ -155,9 +155,7 @@ Smoothings smoothings(const EvenedSurface& even, const SmoothingStep& step, std:
 }
 
 double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum / static_cast<double>(a.size());
+  return sum_of_products(a, b) / static_cast<double>(a.size());
 }
 
 void subtract_mean(std::vector<double>& values) {

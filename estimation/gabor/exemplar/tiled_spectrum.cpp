@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "estimation/gabor/spectrum/spectrum_distance.h"
 #include "numerics/hash_random.h"
@@ -46,6 +47,14 @@ double shared_weights(const BlendedAnchors& a, const BlendedAnchors& b) {
   return shared;
 }
 
+// Between the values at i and beside it; 0 from the last value on.
+double interpolated(std::span<const double> values, double i) {
+  if (!(i < static_cast<double>(values.size() - 1))) return 0.0;
+  const auto below = static_cast<std::size_t>(i);
+  const double part = i - static_cast<double>(below);
+  return (1.0 - part) * values[below] + part * values[below + 1];
+}
+
 // The Bessel function J0 by the mean of a cosine over half a turn.
 double bessel_j0(double x) {
   constexpr int kSteps = 32;  // exact to 1e-9 for |x| below 35
@@ -76,13 +85,7 @@ class AnchorBlur {
     }
   }
   // At q cycles per spacing from a line.
-  double at(double q) const {
-    const double i = q * (kValues / kReach);
-    if (!(i < kValues)) return 0.0;
-    const auto below = static_cast<std::size_t>(i);
-    const double part = i - static_cast<double>(below);
-    return (1.0 - part) * values_[below] + part * values_[below + 1];
-  }
+  double at(double q) const { return interpolated(values_, q * (kValues / kReach)); }
 
  private:
   static constexpr int kValues = 100;
@@ -235,11 +238,7 @@ AnchorCorrelation::AnchorCorrelation() : values_(kDistances + 1) {
 }
 
 double AnchorCorrelation::at(double distance) const {
-  const double i = distance * (kDistances / kFarthestShared);
-  if (!(i < kDistances)) return 0.0;
-  const auto below = static_cast<std::size_t>(i);
-  const double part = i - static_cast<double>(below);
-  return (1.0 - part) * values_[below] + part * values_[below + 1];
+  return interpolated(values_, distance * (kDistances / kFarthestShared));
 }
 
 PowerSpectrum lobe_spectrum(const std::vector<GaborLobe>& lobes, int width, int height) {

@@ -4,17 +4,9 @@
 #include <cmath>
 
 #include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
-namespace {
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-}  // namespace
 
 double largest_penalty(const GaborDictionary& dictionary, std::span<const double> target) {
   std::vector<double> correlations(dictionary.size());
@@ -27,14 +19,14 @@ double largest_penalty(const GaborDictionary& dictionary, std::span<const double
 DualityCertificate::DualityCertificate(const BasisPursuitProblem& problem)
     : problem_(problem),
       column_sums_(problem.dictionary.size()),
-      squared_target_(dot(problem.target, problem.target)) {
+      squared_target_(sum_of_products(problem.target, problem.target)) {
   problem.dictionary.analyze(std::vector<double>(problem.dictionary.rows(), 1.0), column_sums_);
 }
 
 double DualityCertificate::scaled_bound(std::span<const double> r,
                                         std::span<const double> correlations) const {
-  const double squared_r = dot(r, r);
-  const double target_r = dot(problem_.target, r);
+  const double squared_r = sum_of_products(r, r);
+  const double target_r = sum_of_products(problem_.target, r);
   if (squared_r == 0.0) return 0.0;
   double largest = 0.0;
   for (const double c : correlations) largest = std::max(largest, c);
@@ -62,7 +54,7 @@ double DualityCertificate::translated_bound(std::span<const double> r,
 
 double DualityCertificate::check(std::span<const double> r, std::span<const double> correlations,
                                  double sum_x) {
-  primal_ = 0.5 * dot(r, r) + problem_.penalty * sum_x;
+  primal_ = 0.5 * sum_of_products(r, r) + problem_.penalty * sum_x;
   best_dual_ = std::max({best_dual_, scaled_bound(r, correlations), translated_bound(r, correlations)});
   const double rounding = 1e-10 * (primal_ + 0.5 * squared_target_);
   if (!(primal_ - best_dual_ >= -rounding)) {

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "numerics/sample_statistics.h"
+
 namespace astrolith {
 namespace {
 
@@ -14,12 +16,6 @@ namespace {
 double squared_difference(int k, int n, double step) {
   const double s = 2.0 * std::sin(std::numbers::pi * k / n) / step;
   return s * s;
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 std::vector<double> log_periodogram(const PowerSpectrum& periodogram) {
@@ -72,7 +68,7 @@ class WhittleFit {
   double objective(const Spline& s) const {
     double sum = 0.0;
     for (std::size_t i = 1; i < s.g.size(); ++i) sum += s.g[i] + periodogram_.power[i] * std::exp(-s.g[i]);
-    return looks_ * sum + 0.5 * dot(s.g, s.rough);
+    return looks_ * sum + 0.5 * sum_of_products(s.g, s.rough);
   }
 
   std::vector<double> gradient(const Spline& s) const {
@@ -89,7 +85,7 @@ class WhittleFit {
     const std::vector<double> gradient = this->gradient(now);
     std::vector<double> step(gradient.size());
     divide_by_hessian(gradient, step);
-    const double slope = dot(gradient, step);
+    const double slope = sum_of_products(gradient, step);
     double trial_value = value;
     for (double length = 1.0; length > 1e-3; length *= 0.5) {
       for (std::size_t i = 0; i < step.size(); ++i) trial.g[i] = now.g[i] - length * step[i];

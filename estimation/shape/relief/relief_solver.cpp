@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "numerics/parallel_for.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
@@ -66,13 +67,6 @@ std::vector<double> collected(const SharesOfPlaces& t, const std::vector<double>
   return sums;
 }
 
-// The sum of the products, in the order of the elements.
-double product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
 std::vector<double> relief_residuals(const ReliefSamples& samples, const std::vector<double>& heights) {
@@ -110,19 +104,19 @@ std::vector<double> solve_relief(const ReliefSamples& samples, std::size_t num_p
   };
   scale();
   std::vector<double> direction = scaled;
-  double energy = product(residual, scaled);
+  double energy = sum_of_products(residual, scaled);
   const double enough = 1e-12 * energy;
   for (int i = 0; i < kIterations && energy > enough; ++i) {
     if (!report(progress, static_cast<double>(i) / kIterations, "relief")) break;
     std::vector<double> image = collected(transposed, blended(samples, direction));
     for (std::size_t p = 0; p < num_places; ++p) image[p] += pull * direction[p];
-    const double step = energy / product(direction, image);
+    const double step = energy / sum_of_products(direction, image);
     for (std::size_t p = 0; p < num_places; ++p) {
       change[p] += step * direction[p];
       residual[p] -= step * image[p];
     }
     scale();
-    const double next = product(residual, scaled);
+    const double next = sum_of_products(residual, scaled);
     for (std::size_t p = 0; p < num_places; ++p) direction[p] = scaled[p] + next / energy * direction[p];
     energy = next;
   }
