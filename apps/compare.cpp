@@ -59,12 +59,6 @@ std::string text_of(const nlohmann::ordered_json& result) {
   return result.dump(2, ' ', false, replace) + "\n";
 }
 
-void write(const std::string& text, const std::string& output) {
-  OutputFile file(output);
-  file.write(text.data(), text.size());
-  file.commit();
-}
-
 SurfaceComparison judge(const Program& program, const Arguments& arguments, const TriangleMesh& a,
                         const TriangleMesh& b) {
   SurfaceComparison made =
@@ -110,7 +104,7 @@ void run(Program& program, const Arguments& arguments) {
     lines = std::move(judged.lines);
   }
   program.summary = result;
-  if (!arguments.output.empty()) write(text_of(result), arguments.output);
+  if (!arguments.output.empty()) write_file(arguments.output, text_of(result));
   if (arguments.realism && !arguments.json) {
     print_result(lines_of(result, lines));
   } else if (arguments.output.empty()) {

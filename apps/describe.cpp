@@ -60,10 +60,7 @@ void summarize(Program& program, const ShapeDescription& shape, const std::strin
 
 void write_surface(const SurfaceStatistics& surface, const std::string& file) {
   if (std::filesystem::path(file).extension() == ".csv") return write_surface_table(surface, file);
-  const std::string text = surface_json(surface).dump(2) + "\n";
-  OutputFile output(file);
-  output.write(text.data(), text.size());
-  output.commit();
+  write_file(file, surface_json(surface).dump(2) + "\n");
 }
 
 void run_surface(Program& program, const Arguments& arguments) {

@@ -62,12 +62,9 @@ std::string bar(double fraction) {
 }
 
 void write_summary(const std::string& file_name, const nlohmann::ordered_json& summary) {
-  OutputFile file(file_name);
   // File names need not be UTF-8.
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  const std::string text = summary.dump(2, ' ', false, replace) + "\n";
-  file.write(text.data(), text.size());
-  file.commit();
+  write_file(file_name, summary.dump(2, ' ', false, replace) + "\n");
 }
 
 // Name of an option whose number is NaN or infinite, which CLI11's ranges let through; empty when there is

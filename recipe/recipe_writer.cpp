@@ -105,10 +105,7 @@ bool is_recipe_name(const std::filesystem::path& file) {
 }
 
 void write_recipe(const Recipe& recipe, const std::filesystem::path& file) {
-  const std::string text = is_compact_name(file) ? recipe_to_compact(recipe) : recipe_to_json(recipe);
-  OutputFile output(file);
-  output.write(text.data(), text.size());
-  output.commit();
+  write_file(file, is_compact_name(file) ? recipe_to_compact(recipe) : recipe_to_json(recipe));
 }
 
 double round_to_seven_digits(double x) {

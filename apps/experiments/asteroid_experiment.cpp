@@ -13,7 +13,6 @@
 
 #include "apps/evaluation_json.h"
 #include "apps/experiments/noisy_bodies.h"
-#include "apps/experiments/results_file.h"
 #include "apps/program.h"
 #include "descriptor/classification/shape_classifier.h"
 #include "numerics/errors.h"
@@ -217,7 +216,7 @@ void run(Program& program, Arguments& a) {
     entry["projection"] = projection(kind, levels.front());
     result["descriptors"].push_back(entry);
   }
-  write_results(result, a.output);
+  write_file(a.output, result.dump(1) + "\n");
 }
 
 void declare_options(Program& program, Arguments& a) {

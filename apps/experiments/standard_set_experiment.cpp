@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "apps/evaluation_json.h"
-#include "apps/experiments/results_file.h"
 #include "apps/program.h"
 #include "descriptor/classification/cross_validation.h"
 #include "descriptor/classification/feature_table.h"
@@ -181,7 +180,7 @@ void run(Program& program, Arguments& a) {
                   100 * d["retrieval"]["mean_average_precision"].get<double>());
     program.say(line);
   }
-  write_results(result, a.output);
+  write_file(a.output, result.dump(1) + "\n");
 }
 
 void declare_options(Program& program, Arguments& a) {

@@ -59,12 +59,9 @@ void write_height_map(Program& program, const std::filesystem::path& file, const
   const double metres = metres_of(recipe.length_unit);
   const HeightMap map = height_map(mesh, region.size, resolution, metres);
   const Json frame = frame_json(map, region, recipe);
-  const std::string text = frame.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   write_geotiff(map.heights, map.side, map.side, metres * map.pixel,
                 frame.dump(-1, ' ', true, Json::error_handler_t::replace), file);
-  OutputFile out(frame_file(file));
-  out.write(text.data(), text.size());
-  out.commit();
+  write_file(frame_file(file), frame.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   program.summary["height_map"] = frame;
 }
 

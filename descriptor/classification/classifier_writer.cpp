@@ -57,9 +57,7 @@ void write_classifier(const ShapeClassifier& classifier, const std::string& tool
     throw InputError(file.string() + ": would be larger than " + std::to_string(kMaxClassifierBytes >> 20) +
                      " MiB; take fewer trees, bins or components");
   }
-  OutputFile out(file);
-  out.write(text.data(), text.size());
-  out.commit();
+  write_file(file, text);
 }
 
 }  // namespace astrolith

@@ -54,9 +54,7 @@ void write_report_page(const ReportPage& page, const std::filesystem::path& file
     html += "</table>\n";
   }
   html += "</body>\n</html>\n";
-  OutputFile output(file);
-  output.write(html.data(), html.size());
-  output.commit();
+  write_file(file, html);
 }
 
 }  // namespace astrolith

@@ -189,6 +189,12 @@ void OutputFile::fail() const {
   throw WorkError(target_.string() + ": writing failed (" + std::strerror(errno) + "); is the disk full?");
 }
 
+void write_file(const fs::path& target, std::string_view content) {
+  OutputFile file(target);
+  file.write(content.data(), content.size());
+  file.commit();
+}
+
 UnsyncedOutputs::UnsyncedOutputs() { ++g_unsynced; }
 UnsyncedOutputs::~UnsyncedOutputs() { --g_unsynced; }
 

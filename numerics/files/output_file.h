@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "numerics/errors.h"
 
@@ -91,6 +92,9 @@ class OutputFile {
   std::unique_ptr<TemporaryName> temporary_;  // null while the file has no name
   FileHandle file_;
 };
+
+// Writes the file as an OutputFile, whole or not at all, and throws as one.
+void write_file(const std::filesystem::path& target, std::string_view content);
 
 // While an object of this class lives, or where the environment has ASTROLITH_NO_SYNC, no commit() of the
 // process waits for the disk. It is meant for sets of thousands of small files, whose maker can tell a file

@@ -139,10 +139,7 @@ void write_landform_list(const ImplicitField& field, const Recipe& recipe,
   const Vec3d origin = patch ? patch->center : Vec3d{};
   std::vector<Row> rows = rows_of(field, bare, patch);
   find_surface_points(field, bare, origin, rows);
-  const std::string text = file.extension() == ".json" ? json_of(rows, recipe, origin) : csv_of(rows, recipe);
-  OutputFile output(file);
-  output.write(text.data(), text.size());
-  output.commit();
+  write_file(file, file.extension() == ".json" ? json_of(rows, recipe, origin) : csv_of(rows, recipe));
 }
 
 }  // namespace astrolith

@@ -160,10 +160,7 @@ void FitCheckpoint::save() {
   ordered_json json{{"astrolith_checkpoint", kFormat}, {"of", key_json(key_)}};
   if (has_base_) json["base"] = base_json(base_);
   json["evaluations"] = log_json(log_);
-  const std::string text = json.dump() + "\n";
-  OutputFile file(file_);
-  file.write(text.data(), text.size());
-  file.commit();
+  write_file(file_, json.dump() + "\n");
   saved_evaluations_ = log_.size();
 }
 

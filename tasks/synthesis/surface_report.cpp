@@ -167,9 +167,7 @@ void write_surface_table(const SurfaceStatistics& surface, const std::filesystem
     }
     text += "\n";
   }
-  OutputFile output(file);
-  output.write(text.data(), text.size());
-  output.commit();
+  write_file(file, text);
 }
 
 nlohmann::ordered_json realism_json(const RealismVerdict& verdict, const LengthWords& lengths) {

@@ -37,9 +37,7 @@ void write_packing_table(const std::vector<Sphere>& spheres, const PackingTable&
     text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", s.center.x, s.center.y, s.center.z, s.radius);
     text += with_mass ? fmt::format(",{:.9g}\n", masses[i]) : "\n";
   }
-  OutputFile out(file);
-  out.write(text.data(), text.size());
-  out.commit();
+  write_file(file, text);
 }
 
 }  // namespace astrolith
