@@ -18,6 +18,7 @@ if(ASTROLITH_ESTIMATION)
   find_package(NLopt REQUIRED)             # global optimisers
   find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs ml)  # images in, random forests
   find_package(Spectra REQUIRED)           # eigenvalues of large matrices
+  find_package(CGAL REQUIRED)              # repair of meshes
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3 fftw3f)  # Fourier transforms
   pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)  # figures
   find_path(THREE_JS_FOLDER build/three.min.js PATHS /usr/share/javascript/three REQUIRED NO_CACHE)  # reports in 3-D (libjs-three)

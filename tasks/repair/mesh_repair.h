@@ -1,0 +1,79 @@
+// Makes a closed body of a mesh that is open, not manifold, wound both ways or in several pieces, and says
+// what was done.
+//
+//   const MeshRepair repair = repair_mesh(read_mesh("eros.obj"), "eros.obj", {});
+//   if (repair.changed) std::cerr << repair_words(repair, "km") << "\n";   // tasks/repair/repair_words.h
+//
+// The steps, each of which leaves alone what needs no repair:
+//   1. vertices at one place become one, repeated and empty facets go, facets are wound alike and outwards;
+//   2. fins go: patches with a free border that hang on an edge of three or more facets; so does debris, open
+//      pieces of less than 1 % of the surface;
+//   3. borders are stitched: vertices within 0.45 of the shortest border edge at both become one, and a facet
+//      is split where another's vertex lies on its border edge;
+//   4. CGAL winds the rest, cuts it open at edges of three or more facets, stitches equal places, fills
+//   holes;
+//   5. where the caller found that the mesh passes through itself, CGAL replaces the facets that cross.
+// A wrap is the last resort: a surface around the mesh through which balls of 1/200 of the diagonal do not
+// pass, whose vertices then move back onto the mesh.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "geometry/triangle_mesh.h"
+#include "numerics/progress.h"
+
+namespace astrolith {
+
+// A repair that moves the surface farther than this share of the diagonal of the bounding box, or that fills
+// holes of more than this share of the surface, is refused unless a wrap is allowed.
+inline constexpr double kMostMoved = 0.01, kMostFilled = 0.05;
+
+// Lengths of the wrap, as shares of the diagonal of the bounding box.
+inline constexpr double kWrapAlpha = 1.0 / 200.0, kWrapOffset = 1.0 / 2000.0;
+
+struct RepairOptions {
+  bool wrap = false;       // where the steps fail or move or fill too much, the mesh is wrapped
+  bool all_parts = false;  // keep all bodies of a scene; otherwise the largest
+  // The caller welds vertices and turns facets itself: a mesh that needs no more comes back unchanged.
+  bool caller_welds = false;
+  // The caller found that the mesh passes through itself.
+  bool crossings = false;
+  // What messages say to do where a wrap would help.
+  std::string remedy = "repair it, or add --wrap";
+};
+
+// All counts are 0 where nothing was done. Shares are of the area of the surface.
+struct MeshRepair {
+  TriangleMesh mesh;  // closed, every edge has two facets, wound alike and outwards
+  bool changed = false;
+  double diagonal = 0.0;  // of the mesh as it was, in its unit
+  std::int64_t merged_vertices = 0;
+  std::int64_t turned_facets = 0;
+  std::int64_t dropped_facets = 0;  // repeated, empty, of fins and of debris
+  double dropped_share = 0.0;       // of fins and debris
+  std::int64_t stitched_edges = 0;
+  std::int64_t split_facets = 0;  // facets whose border edge held another's vertex
+  std::int64_t holes = 0;
+  double filled_share = 0.0, largest_hole = 0.0;
+  std::int64_t crossing_facets = 0;
+  // The greatest distance by which a vertex left the surface as it was, in its unit. Vertices that fill holes
+  // are not counted, but those of a wrap are.
+  double moved = 0.0;
+  bool wrapped = false;
+  double wrap_alpha = 0.0, wrap_offset = 0.0;  // in the unit of the mesh
+  std::int64_t bodies = 1;                     // bodies of the scene, apart from one another
+  double kept_volume = 1.0;                    // share of the volume of all bodies that the mesh has
+};
+
+// Whether every edge has two facets wound alike, and the volume is positive.
+bool is_closed_body(const TriangleMesh& mesh);
+
+// Repairs a mesh, or wraps points where it has no triangles and a wrap is allowed. A mesh that is a closed
+// body of one part comes back as it is. Throws InputError "NAME: what is wrong; what to do" for what cannot
+// be repaired, and WorkError where progress asks to stop. The result depends on the mesh and the options
+// alone. The work is bounded by the number of facets: a mesh too damaged for that is refused.
+MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairOptions& options,
+                       const Progress& progress = {});
+
+}  // namespace astrolith

@@ -1,0 +1,79 @@
+#include "tasks/repair/repair_words.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <vector>
+
+namespace astrolith {
+namespace {
+
+std::string count_words(std::int64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string moved_words(const MeshRepair& repair, const std::string& unit) {
+  if (!(repair.moved > 0.0)) return "nothing moved";
+  // A tenth above, so that the rounded figure is a bound too.
+  const double bound = repair.moved * 1.05;
+  if (unit == "km" && bound < 1.0) return fmt::format("nothing moved by more than {:.2g} m", 1000.0 * bound);
+  if (!unit.empty()) return fmt::format("nothing moved by more than {:.2g} {}", bound, unit);
+  return fmt::format("nothing moved by more than {:.2g} % of the diagonal", 100.0 * bound / repair.diagonal);
+}
+
+}  // namespace
+
+std::string repair_words(const MeshRepair& repair, const std::string& unit) {
+  std::vector<std::string> done;
+  const auto add = [&](std::int64_t count, std::string_view verb, std::string_view one, std::string_view many,
+                       const std::string& more = "") {
+    if (count > 0) done.push_back(fmt::format("{} {}{}", verb, count_words(count, one, many), more));
+  };
+  if (repair.wrapped) {
+    done.push_back(
+        fmt::format("wrapped at {:.3g} % of the diagonal", 100.0 * repair.wrap_alpha / repair.diagonal));
+  } else {
+    add(repair.merged_vertices, "merged", "repeated or unused vertex", "repeated or unused vertices");
+    add(repair.dropped_facets, "dropped", "facet", "facets",
+        repair.dropped_share > 0.0 ? fmt::format(" ({:.2g} % of the surface)", 100.0 * repair.dropped_share)
+                                   : "");
+    add(repair.turned_facets, "turned", "facet", "facets");
+    add(repair.stitched_edges, "stitched", "edge", "edges");
+    add(repair.split_facets, "split", "facet", "facets");
+    add(repair.holes, "filled", "hole", "holes",
+        fmt::format(" (largest {:.2g} % of the surface)", 100.0 * repair.largest_hole));
+    add(repair.crossing_facets, "replaced", "facet that crossed others", "facets that crossed others");
+  }
+  std::string words;
+  for (const std::string& item : done) words += item + ", ";
+  if (!words.empty()) words += moved_words(repair, unit);
+  if (repair.bodies > 1) {
+    if (!words.empty()) words += "; ";
+    words += fmt::format("holds {} bodies apart from one another", repair.bodies);
+    words += repair.kept_volume < 1.0
+                 ? fmt::format(", the largest is taken ({:.3g} % of the volume)", 100.0 * repair.kept_volume)
+                 : ", all are taken";
+  }
+  return words;
+}
+
+nlohmann::ordered_json repair_json(const MeshRepair& repair) {
+  return {{"merged_vertices", repair.merged_vertices},
+          {"dropped_facets", repair.dropped_facets},
+          {"dropped_share", repair.dropped_share},
+          {"turned_facets", repair.turned_facets},
+          {"stitched_edges", repair.stitched_edges},
+          {"split_facets", repair.split_facets},
+          {"holes", repair.holes},
+          {"filled_share", repair.filled_share},
+          {"largest_hole", repair.largest_hole},
+          {"crossing_facets", repair.crossing_facets},
+          {"moved", repair.moved},
+          {"wrapped", repair.wrapped},
+          {"wrap_alpha", repair.wrap_alpha},
+          {"wrap_offset", repair.wrap_offset},
+          {"bodies", repair.bodies},
+          {"kept_volume", repair.kept_volume}};
+}
+
+}  // namespace astrolith
