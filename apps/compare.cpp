@@ -9,6 +9,7 @@
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
+#include "apps/shape_repair.h"
 #include "apps/surface_options.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/output_file.h"
@@ -21,6 +22,7 @@ namespace {
 struct Arguments {
   std::string a, b, output;
   ShapeOptions options;
+  ShapeRepair repair;
   std::int64_t samples = 100000;
   bool floor = false, realism = false, json = false;
   std::string unit;
@@ -35,6 +37,7 @@ void add_options(Program& program, Arguments& arguments) {
   app.add_option("-o,--output", arguments.output, "write the JSON here rather than to stdout")
       .placeholder("FILE.json");
   arguments.options.add_to(app);
+  arguments.repair.add_to(app, false);
   app.add_option("--samples", arguments.samples,
                  "samples of each surface, for the distances between the surfaces")
       .check(in_range(std::int64_t{100}, std::int64_t{10000000}));
@@ -80,12 +83,19 @@ std::string lines_of(const nlohmann::ordered_json& result, const std::vector<std
   return text + "--json prints all figures\n";
 }
 
+TriangleMesh read_shape(Program& program, const Arguments& arguments, const std::string& file,
+                        nlohmann::ordered_json& figures) {
+  return arguments.repair.mended_surface(program, arguments.repair.read(file), file, figures);
+}
+
 void run(Program& program, const Arguments& arguments) {
   if (!arguments.output.empty()) {
     require_extension(arguments.output, {".json"});
     require_writable(arguments.output);
   }
-  const TriangleMesh a = read_mesh(arguments.a), b = read_mesh(arguments.b);
+  nlohmann::ordered_json repair_of_a, repair_of_b;
+  const TriangleMesh a = read_shape(program, arguments, arguments.a, repair_of_a);
+  const TriangleMesh b = read_shape(program, arguments, arguments.b, repair_of_b);
   const DescriptionOptions options = arguments.options.with_seed(program.seed);
   nlohmann::ordered_json result{{"a", arguments.a},
                                 {"b", arguments.b},
@@ -103,6 +113,8 @@ void run(Program& program, const Arguments& arguments) {
     result["realism"] = std::move(judged.figures);
     lines = std::move(judged.lines);
   }
+  if (!repair_of_a.is_null()) result["repair_of_a"] = repair_of_a;
+  if (!repair_of_b.is_null()) result["repair_of_b"] = repair_of_b;
   program.summary = result;
   if (!arguments.output.empty()) write_file(arguments.output, text_of(result));
   if (arguments.realism && !arguments.json) {

@@ -2,11 +2,13 @@
 // surface.
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "apps/device_option.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
+#include "apps/shape_repair.h"
 #include "apps/surface_options.h"
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
@@ -21,6 +23,7 @@ namespace {
 struct Arguments {
   std::string shape, output;
   ShapeOptions options;
+  ShapeRepair repair;
   DeviceOption device;
   bool surface = false;
   SurfaceOptions surface_options;
@@ -39,6 +42,7 @@ void add_options(Program& program, Arguments& arguments) {
       .required()
       .placeholder("H.npy");
   arguments.options.add_to(app);
+  arguments.repair.add_to(app, false);
   arguments.device.add_to(app);
   const Option surface =
       app.add_flag("--surface", arguments.surface,
@@ -63,10 +67,20 @@ void write_surface(const SurfaceStatistics& surface, const std::string& file) {
   write_file(file, surface_json(surface).dump(2) + "\n");
 }
 
+// Points with normals are described as they are, and wrapped where --wrap is given.
+TriangleMesh read_shape(Program& program, const Arguments& arguments, bool or_points) {
+  const bool plain = or_points && !arguments.repair.wrap;
+  TriangleMesh mesh = plain ? read_mesh_or_points(arguments.shape) : arguments.repair.read(arguments.shape);
+  nlohmann::ordered_json figures;
+  mesh = arguments.repair.mended_surface(program, std::move(mesh), arguments.shape, figures);
+  if (!figures.is_null()) program.summary["repair"] = figures;
+  return mesh;
+}
+
 void run_surface(Program& program, const Arguments& arguments) {
   require_extension(arguments.output, {".json", ".csv"});
   require_writable(arguments.output);
-  const TriangleMesh mesh = read_mesh(arguments.shape);
+  const TriangleMesh mesh = read_shape(program, arguments, false);
   const SurfaceStatistics surface = describe_surface(
       {arguments.shape, mesh}, arguments.surface_options.of(program), program.progress("surface"));
   for (const std::string& remark : surface.remarks) program.say(arguments.shape + ": " + remark);
@@ -80,7 +94,7 @@ void run(Program& program, const Arguments& arguments) {
   if (arguments.surface) return run_surface(program, arguments);
   require_extension(arguments.output, {".npy"});
   require_writable(arguments.output);
-  const TriangleMesh mesh = read_mesh_or_points(arguments.shape);
+  const TriangleMesh mesh = read_shape(program, arguments, true);
   DescriptionOptions options = arguments.options.with_seed(program.seed);
   const ChosenDevice chosen = arguments.device.choose(program);
   if (chosen) options.count_pairs = count_pairs_on_gpu;

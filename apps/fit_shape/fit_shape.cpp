@@ -16,7 +16,6 @@
 #include "estimation/shape/details/imaged_ground.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
-#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/output_folder.h"
@@ -28,6 +27,7 @@
 #include "tasks/estimation/fit_checkpoint.h"
 #include "tasks/estimation/fit_realism.h"
 #include "tasks/estimation/fit_time_limit.h"
+#include "tasks/estimation/repaired_target.h"
 #include "tasks/estimation/shape_recipe.h"
 #include "tasks/synthesis/load_recipe.h"
 
@@ -181,6 +181,18 @@ Progress heeding_ctrl_c(Progress progress) {
   };
 }
 
+// The target of a mesh. Says what was mended.
+TargetBody target_of(Program& program, const FitArguments& arguments, TriangleMesh mesh,
+                     const Progress& preparing) {
+  const ShapeRepair& repair = arguments.repair;
+  RepairedTarget made = repaired_target(std::move(mesh), arguments.mesh, arguments.unit, repair.strict,
+                                        repair.options(), program.progress("repair"), preparing);
+  for (const std::string& words : made.words) program.say(arguments.mesh + ": " + words);
+  for (const std::string& remark : made.target.remarks) program.say(arguments.mesh + ": " + remark);
+  if (!made.figures.is_null()) program.summary["repair"] = made.figures;
+  return std::move(made.target);
+}
+
 void run(Program& program, FitArguments& arguments) {
   // A result that cannot be written should be refused before minutes of work.
   if (arguments.packing_only) {
@@ -204,14 +216,13 @@ void run(Program& program, FitArguments& arguments) {
   // Reading takes about as long as a quarter of the checks.
   constexpr double kReadShare = 0.2;
   arguments.mesh_sha256 = sha256_of_file(arguments.mesh);
-  TriangleMesh mesh = read_mesh(arguments.mesh);
+  TriangleMesh mesh = arguments.repair.read(arguments.mesh);
   if (sha256_of_file(arguments.mesh) != arguments.mesh_sha256) {
     throw InputError(arguments.mesh + ": changed while it was read; run again when it is whole");
   }
   report(heeding_ctrl_c(limit.preparation(0.0)), kReadShare, "read");
   const TargetBody target =
-      prepare_target(std::move(mesh), arguments.mesh, heeding_ctrl_c(limit.preparation(kReadShare)));
-  for (const std::string& remark : target.remarks) program.say(arguments.mesh + ": " + remark);
+      target_of(program, arguments, std::move(mesh), heeding_ctrl_c(limit.preparation(kReadShare)));
   say_wrong_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
   if (asks_for_relief) expect_relief(target);

@@ -16,9 +16,10 @@ Kernel kernel_named(const std::string& word) {
 
 // The input, the output and the fit of the metaballs.
 void declare_base_options(CommandLine& app, FitArguments& arguments) {
-  app.add_option("mesh", arguments.mesh,
-                 "closed mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
-                 "memory a facet")
+  app.add_option(
+         "mesh", arguments.mesh,
+         "mesh of a closed body: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
+         "memory a facet")
       .required()
       .placeholder("MESH");
   app.add_option("-o,--output", arguments.output,
@@ -77,6 +78,7 @@ void declare_run_options(CommandLine& app, FitArguments& arguments) {
   app.add_option("--unit", arguments.unit,
                  "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
       .check(one_of({"km", "m"}));
+  arguments.repair.add_to(app);
 }
 
 // The packing of spheres, and the report, which a packing does not have.

@@ -5,6 +5,7 @@
 
 #include "apps/fit_shape/fit_shape_details.h"
 #include "apps/program.h"
+#include "apps/shape_repair.h"
 #include "estimation/shape/fit/shape_fit.h"
 
 namespace astrolith {
@@ -21,6 +22,7 @@ struct FitArguments {
   double density = 0.0;  // kg / m^3; 0 = no masses
   ShapeFitOptions fit;
   DetailArguments details;
+  ShapeRepair repair;
 };
 
 // Declares the options that fill in the arguments.

@@ -8,6 +8,7 @@
 #include "apps/gravity/gravity_parts.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
+#include "apps/shape_repair.h"
 #include "geometry/io/points_io.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
@@ -23,6 +24,7 @@ struct Arguments {
   std::tuple<double, double, double> axis{0, 0, 1};
   int resolution = 128, degree = 4, sample = 100;
   bool exact = false;
+  ShapeRepair repair;
 };
 
 void add_options(Program& program, Arguments& a) {
@@ -49,6 +51,7 @@ void add_options(Program& program, Arguments& a) {
   app.add_option("--unit", a.unit, "length unit of the mesh's coordinates; km where nothing is said")
       .check(one_of({"m", "km", "cm", "mm"}))
       .default_text("");
+  a.repair.add_to(app);
   app.add_option("--at", a.at, "places: centres of facets, or vertices")
       .check(one_of({"facets", "vertices"}));
   app.add_option("--points", a.points, "places: lines of x, y, z in the body's unit, inside or outside")
@@ -119,7 +122,7 @@ BodyGravityOptions options_of(const Program& program, const Arguments& a, const 
           axis_of(a),   a.tolerance,
           a.exact,      a.sample,
           program.seed, a.degree,
-          a.radius,     read_parts(program, a.parts, body, a.density, a.resolution)};
+          a.radius,     read_parts(program, a.parts, body, a.density, a.resolution, a.repair)};
 }
 
 void write_outputs(Program& program, const Arguments& a, const GravityBody& body,
@@ -133,12 +136,14 @@ void write_outputs(Program& program, const Arguments& a, const GravityBody& body
 
 void run(Program& program, const Arguments& a) {
   check(program, a);
-  const GravityBody body = read_gravity_body(program, a.shape, a.unit, a.resolution);
+  nlohmann::ordered_json repair;
+  const GravityBody body = read_gravity_body(program, a.shape, a.unit, a.resolution, a.repair, repair);
   const GravityPlaces places = places_of(a, body.mesh);
   const BodyGravity made = body_gravity(body, places, options_of(program, a, body),
                                         [&](const std::string& stage) { return program.progress(stage); });
   nlohmann::ordered_json result{{"shape", a.shape}};
   result.update(made.figures);
+  if (!repair.is_null()) result["repair"] = repair;
   write_outputs(program, a, body, made.columns);
   print(result);
   program.summary = result;

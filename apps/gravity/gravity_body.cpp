@@ -1,6 +1,7 @@
 #include "apps/gravity/gravity_body.h"
 
-#include "geometry/io/mesh_io.h"
+#include <utility>
+
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
@@ -9,9 +10,18 @@
 namespace astrolith {
 
 GravityBody read_gravity_body(const Program& program, const std::filesystem::path& file,
-                              const std::string& unit, int resolution) {
+                              const std::string& unit, int resolution, const ShapeRepair& repair,
+                              nlohmann::ordered_json& figures) {
   if (!is_recipe_name(file)) {
-    GravityBody body = body_of_mesh(read_mesh(file), unit.empty() ? "km" : unit, file.string());
+    const std::string stated = unit.empty() ? "km" : unit;
+    TriangleMesh mesh = repair.read(file);
+    // Edges of four facets, two each way, are no trouble for gravity.
+    const MeshTopology topology = analyze_topology(mesh);
+    const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0;
+    if (!touches) {
+      mesh = repair.closed_body(program, std::move(mesh), file.string(), stated, repair.options(), figures);
+    }
+    GravityBody body = body_of_mesh(std::move(mesh), stated, file.string());
     if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
       program.say(
           file.string() + ": holds " + std::to_string(surfaces) +

@@ -39,18 +39,21 @@ bool holds(const Box& outer, const Box& inner) {
 }  // namespace
 
 std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const GravityBody& whole,
-                                 double density, int resolution) {
+                                 double density, int resolution, ShapeRepair repair) {
+  repair.all_parts = true;
   std::vector<BodyPart> parts;
   std::istringstream all(words);
   for (std::string word; std::getline(all, word, ',');) {
     const PartWord read = parse(word);
     question_density(program, read.density);
     const bool recipe = is_recipe_name(read.file);
-    BodyPart part{read.file,
-                  read_gravity_body(program, read.file, recipe ? "" : whole.unit, resolution),
-                  read.density,
-                  (read.density - density) / density,
-                  {}};
+    nlohmann::ordered_json figures;  // the body's are those of the summary
+    BodyPart part{
+        read.file,
+        read_gravity_body(program, read.file, recipe ? "" : whole.unit, resolution, repair, figures),
+        read.density,
+        (read.density - density) / density,
+        {}};
     if (part.body.unit != whole.unit) {
       throw InputError("--density-of " + read.file + ": is in " + part.body.unit + ", the body in " +
                        whole.unit + "; give it the same unit");

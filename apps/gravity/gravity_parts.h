@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "apps/program.h"
+#include "apps/shape_repair.h"
 #include "tasks/gravity/body_parts.h"
 
 namespace astrolith {
 
 // Reads parts given as FILE=DENSITY,FILE=DENSITY. A file is a closed mesh in the body's unit and frame, or a
 // recipe of that unit. Throws InputError for a word of another form, a negative density, and a part whose box
-// leaves that of the body.
+// leaves that of the body. All bodies of a file count.
 std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const GravityBody& whole,
-                                 double density, int resolution);
+                                 double density, int resolution, ShapeRepair repair);
 
 }  // namespace astrolith

@@ -10,8 +10,8 @@ Arrays are NumPy arrays. Lengths are in the recipe's ``length_unit``. Positions 
 options and seed give the bytes that the programs ``synth``, ``fit_shape``, ``fit_gabor``, ``describe``, ``compare``
 and ``gravity`` give, for any number of threads.
 
-``astrolith.synthesis`` needs no library of the fits. ``astrolith.estimation`` links FFTW, which is under the GPL; it is
-loaded when one of its names is first used.
+``astrolith.synthesis`` needs no library of the fits. ``astrolith.estimation`` links FFTW and CGAL, which are under the
+GPL; it is loaded when one of its names is first used.
 """
 
 from __future__ import annotations
@@ -54,6 +54,7 @@ if TYPE_CHECKING:
         fit_shape,
         fit_texture,
         pack_spheres,
+        repair_mesh,
         train_classifier,
     )
 
@@ -85,6 +86,7 @@ __all__ = [
     "read_mesh",
     "realism",
     "render",
+    "repair_mesh",
     "texture",
     "train_classifier",
     "vary",
@@ -99,6 +101,7 @@ _ESTIMATION = (
     "fit_shape",
     "fit_texture",
     "pack_spheres",
+    "repair_mesh",
     "train_classifier",
 )
 

@@ -160,7 +160,8 @@ def gravity(
     Raises
     ------
     ValueError
-        The mesh is open or has faces of opposite senses, the recipe has no body, or an argument is out of range.
+        The mesh is open or has faces of opposite senses, which ``astrolith.repair_mesh`` mends; the recipe has no body,
+        or an argument is out of range.
     RuntimeError
         `progress` returned False.
 

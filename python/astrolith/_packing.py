@@ -53,10 +53,13 @@ def pack_spheres(
     density: Optional[float] = None,
     unit: Optional[str] = None,
     output: Optional[PathLike] = None,
+    strict: bool = False,
+    wrap: bool = False,
+    all_parts: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> Packing:
-    """Fill a closed mesh with spheres that do not overlap, as ``fit_shape --packing-only`` does.
+    """Fill the mesh of a body with spheres that do not overlap, as ``fit_shape --packing-only`` does.
 
     Parameters
     ----------
@@ -71,6 +74,9 @@ def pack_spheres(
     output
         Write the table of ``fit_shape --packing-only`` to this file (.csv). The table of a file's mesh has the bytes
         that the program writes.
+    strict, wrap, all_parts
+        As of ``fit_shape``: refuse a mesh that is not closed; wrap one that a repair cannot close; take all bodies of a
+        mesh that holds several.
     progress
         Called with the share done and a few words. Returning False ends the packing with the spheres so far.
 
@@ -81,7 +87,7 @@ def pack_spheres(
     Raises
     ------
     ValueError
-        The mesh is open, not manifold, flat or passes through itself; an argument is out of range; the table cannot
+        The mesh is flat, or open, not manifold or crossing beyond repair; an argument is out of range; the table cannot
         be written.
 
     Examples
@@ -106,6 +112,9 @@ def pack_spheres(
         _arrays.integer(spheres, "spheres", 1, 10000),
         0.0 if density is None else _arrays.positive(density, "density", 1e18),
         length_unit,
+        bool(strict),
+        bool(wrap),
+        bool(all_parts),
         table,
         _options.threads(threads),
         progress,

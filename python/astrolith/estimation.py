@@ -1,7 +1,7 @@
 """Fits: shapes to recipes of metaballs and noise, photos to layers of Gabor noise, meshes to classes.
 
-This module's extension links FFTW, which is under the GPL-2.0-or-later: whoever passes on a program together with it
-does so under the GPL. ``astrolith.synthesis`` alone is free of it.
+This module's extension links FFTW (GPL-2.0-or-later) and CGAL (GPL-3.0-or-later): whoever passes on a program
+together with it does so under the GPL. ``astrolith.synthesis`` alone is free of it.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _estimation, _options
-from astrolith._mesh import MeshLike, arrays_of, unit_of
+from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of
 from astrolith._options import Progress
 from astrolith._packing import Packing, pack_spheres
 from astrolith._recipe import PathLike, Recipe, Record, records
 
-__all__ = ["Packing", "ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "pack_spheres", "train_classifier"]
+__all__ = ["Packing", "ShapeFit", "TextureFit", "classify", "fit_shape", "fit_texture", "pack_spheres", "repair_mesh", "train_classifier"]
 
 
 @dataclasses.dataclass(eq=False)
@@ -106,10 +106,13 @@ def fit_shape(
     seed: Optional[int] = None,
     checkpoint: Optional[PathLike] = None,
     report: Optional[PathLike] = None,
+    strict: bool = False,
+    wrap: bool = False,
+    all_parts: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> ShapeFit:
-    """Fit metaballs and details to a closed mesh, as the program ``fit_shape`` does.
+    """Fit metaballs and details to the mesh of a body, as the program ``fit_shape`` does.
 
     Parameters
     ----------
@@ -157,6 +160,9 @@ def fit_shape(
         Keep the progress in this file; where it exists, go on from there.
     report
         A folder for a page, index.html, with target and fit to turn, and pictures of both.
+    strict, wrap, all_parts
+        As of the program: refuse a mesh that is not closed; wrap one that a repair cannot close; take all bodies of a
+        mesh that holds several. figures.repair and figures.remarks say what was done.
     progress
         Called with the share done of a stage and a few words. Returning False ends the fit with its best so far.
 
@@ -167,7 +173,7 @@ def fit_shape(
     Raises
     ------
     ValueError
-        The mesh is open, not manifold, flat or passes through itself; an argument is out of range; the checkpoint
+        The mesh is flat, or open, not manifold or crossing beyond repair; an argument is out of range; the checkpoint
         belongs to another fit.
     KeyboardInterrupt
         Ctrl-C was pressed. It is raised within a second; the checkpoint is whole then.
@@ -180,7 +186,7 @@ def fit_shape(
         spheres=spheres, bytes=bytes, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
         population=population, generations=generations, base_only=base_only, unit=unit, seed=seed,
         details=_name(details), micro=_name(micro), mm_per_px=mm_per_px, micro_height=micro_height, device=device,
-        time_limit=time_limit,
+        time_limit=time_limit, strict=strict, wrap=wrap, all_parts=all_parts,
     )  # fmt: skip
     if details is not None and base_only:
         raise ValueError("details: base_only leaves them out; leave out one of both")
@@ -215,12 +221,63 @@ def fit_shape(
         unit_of(mesh, unit, ("km", "m")),
         _name(checkpoint) or "",
         _name(report) or "",
+        bool(strict),
+        bool(wrap),
+        bool(all_parts),
         given,
         1 if seed is None else _options.seed(seed),
         _options.threads(threads),
         progress,
     )
     return ShapeFit(Recipe(records(json)), records(figures))
+
+
+def repair_mesh(
+    mesh: Union[MeshLike, npt.ArrayLike],
+    faces: Optional[npt.ArrayLike] = None,
+    *,
+    wrap: bool = False,
+    all_parts: bool = False,
+    progress: Progress = None,
+) -> tuple[Mesh, Record]:
+    """Close a mesh that is open, not manifold or wound both ways, as ``gravity`` and ``fit_shape`` do.
+
+    A mesh that is closed, of one body, comes back as it is.
+
+    Parameters
+    ----------
+    mesh
+        The name of a file, a mesh, or (n, 3) float vertices; then `faces` are (m, 3) indices.
+    wrap
+        Where a repair moves the surface by more than 1 % of the diagonal, fills more than 5 % of it, or fails: wrap the
+        mesh at 1/200 of the diagonal.
+    all_parts
+        Keep all bodies of a mesh that holds several; otherwise the largest.
+
+    Returns
+    -------
+    The mesh, and the fields repair.* of ``fit_shape --summary`` with a sentence, `words`.
+
+    Raises
+    ------
+    ValueError
+        The mesh cannot be repaired.
+
+    Examples
+    --------
+    >>> import astrolith
+    >>> ball = {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2, "spheres": [[0, 0, 0, 1]]}
+    >>> body = astrolith.mesh({"format_version": 1, "length_unit": "km", "body": ball}, resolution=24)
+    >>> closed, figures = astrolith.repair_mesh(body.vertices, body.faces[5:])
+    >>> figures.holes >= 1, len(closed.faces) == len(body.faces)
+    (True, True)
+    """
+    arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
+    unit = mesh.length_unit if isinstance(mesh, Mesh) else ""
+    vertices, triangles, figures = _estimation.repair_mesh(
+        arrays.name, arrays.vertices, arrays.faces, bool(wrap), bool(all_parts), unit, progress
+    )
+    return Mesh(vertices, triangles, length_unit=unit), records(figures)
 
 
 def _planes(image: npt.ArrayLike) -> npt.NDArray[np.float64]:

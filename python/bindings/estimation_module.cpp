@@ -1,9 +1,10 @@
-// The module astrolith._estimation: fits of shapes and photos, classes of shapes. It links FFTW, which is
-// under the GPL.
+// The module astrolith._estimation: fits of shapes and photos, classes of shapes. It links FFTW and
+// CGAL, which are under the GPL.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,6 @@
 #include "descriptor/classification/classifier_file.h"
 #include "descriptor/classification/feature_table.h"
 #include "estimation/shape/report/fit_report.h"
-#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_folder.h"
 #include "numerics/files/sha256.h"
@@ -33,7 +34,9 @@
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/detail_layers.h"
 #include "tasks/estimation/fit_time_limit.h"
+#include "tasks/estimation/repaired_target.h"
 #include "tasks/estimation/shape_recipe.h"
+#include "tasks/repair/repair_words.h"
 
 namespace astrolith::python {
 
@@ -72,6 +75,7 @@ struct ShapeArguments {
   double time_limit = 0.0;  // seconds; 0 = none
   std::string unit, checkpoint, report;
   Options options;
+  Repair repair;
 };
 
 // What a checkpoint knows a mesh by that has no file.
@@ -151,7 +155,10 @@ Progress preparation(const TimeLimit& limit, const JobState& state) {
 
 Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& limit, JobState& state) {
   const std::string array_hash = arguments.file.empty() ? hash_of(mesh) : "";
-  const TargetBody target = prepare_target(std::move(mesh), arguments.name, preparation(limit, state));
+  const RepairedTarget made =
+      repaired_target(std::move(mesh), arguments.name, arguments.unit, arguments.repair.strict,
+                      arguments.repair.options(), state.progress("repair"), preparation(limit, state));
+  const TargetBody& target = made.target;
   Provenance provenance = provenance_of("fit_shape", arguments.file, arguments.options);
   FitCheckpoint checkpoint(arguments.checkpoint, {provenance.tool, kCodeVersion.changes,
                                                   provenance.input_sha256 + array_hash, arguments.options});
@@ -183,7 +190,10 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
   nlohmann::ordered_json figures = fit_figures(fit);
   figures["stopped_early"] = stopped() || limit.reached();
   figures["diagonal"] = target.diagonal;
-  figures["remarks"] = target.remarks;
+  std::vector<std::string> remarks = made.words;
+  remarks.insert(remarks.end(), target.remarks.begin(), target.remarks.end());
+  figures["remarks"] = remarks;
+  if (!made.figures.is_null()) figures["repair"] = made.figures;
   if (!details.is_null()) figures[arguments.details.keeps_relief() ? "relief" : "details"] = details;
   return {recipe_to_json(recipe), figures.dump()};
 }
@@ -195,11 +205,11 @@ std::pair<std::string, std::string> fit_shape_in_job(
     double subtract, std::int64_t points, double tolerance, const std::string& optimizer, int population,
     int generations, bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
     double micro_height, const std::string& device, double time_limit, const std::string& unit,
-    const std::string& checkpoint, const std::string& report, const Options& options, std::uint64_t seed,
-    int threads, nb::object progress) {
+    const std::string& checkpoint, const std::string& report, bool strict, bool wrap, bool all_parts,
+    const Options& options, std::uint64_t seed, int threads, nb::object progress) {
   const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device};
-  ShapeArguments arguments{name, vertices ? "" : name, {},     layers, time_limit,
-                           unit, checkpoint,           report, options};
+  ShapeArguments arguments{name, vertices ? "" : name, {},     layers,  time_limit,
+                           unit, checkpoint,           report, options, {strict, wrap, all_parts}};
   arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
                                        [&](Kernel k) { return kernel_word(k) == kernel; });
   arguments.fit.spheres = spheres > 0 ? spheres : spheres_for_bytes(bytes);
@@ -217,7 +227,7 @@ std::pair<std::string, std::string> fit_shape_in_job(
       run_job(std::move(progress), threads, [arguments, mesh = std::move(mesh)](JobState& state) {
         check_files(arguments);
         TimeLimit limit(arguments.time_limit, "time_limit");
-        return fit_shape(mesh ? *mesh : read_mesh(arguments.name), arguments, limit, state);
+        return fit_shape(mesh ? *mesh : arguments.repair.read(arguments.name), arguments, limit, state);
       });
   return {fitted.json, fitted.figures};
 }
@@ -241,6 +251,21 @@ void train_classifier_file(const std::vector<std::string>& folders, const std::s
     write_classifier(classifier, tool_named("classify"), output);
     return true;
   });
+}
+
+// The repaired vertices and faces, and the figures.
+std::tuple<NumpyArray<double>, NumpyArray<std::uint32_t>, std::string> repair_in_job(
+    const std::string& name, const Rows<double>& vertices, const Rows<std::uint32_t>& faces, bool wrap,
+    bool all_parts, const std::string& unit, nb::object progress) {
+  MeshRepair repair =
+      run_job(std::move(progress), 0, [=, mesh = mesh_of(vertices, faces, {})](JobState& state) {
+        return repair_mesh(mesh, name, Repair{false, wrap, all_parts}.options(), state.progress("repair"));
+      });
+  nlohmann::ordered_json figures = repair_json(repair);
+  figures["words"] = repair_words(repair, unit);
+  const std::size_t n = repair.mesh.vertices.size(), m = repair.mesh.triangles.size();
+  return {array_of<double>(std::move(repair.mesh.vertices), {n, 3}),
+          array_of<std::uint32_t>(std::move(repair.mesh.triangles), {m, 3}), figures.dump()};
 }
 
 std::pair<std::vector<std::string>, std::vector<double>> classify(const std::string& model,
@@ -269,7 +294,11 @@ NB_MODULE(_estimation, module) {
              nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"),
              nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"),
              nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"),
-             nb::arg("options"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("strict"), nb::arg("wrap"), nb::arg("all_parts"), nb::arg("options"), nb::arg("seed"),
+             nb::arg("threads"), nb::arg("progress").none());
+  module.def("repair_mesh", &repair_in_job, nb::arg("name"), nb::arg("vertices").noconvert(),
+             nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("all_parts"), nb::arg("unit"),
+             nb::arg("progress").none());
   module.def("train_classifier", &train_classifier_file, nb::arg("folders"), nb::arg("output"),
              nb::arg("kind"), nb::arg("bins"), nb::arg("points"), nb::arg("eigenvalues"), nb::arg("trees"),
              nb::arg("depth"), nb::arg("components"), nb::arg("seed"), nb::arg("threads"),

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/fit_bindings.h"
 #include "python/bindings/job.h"
 #include "tasks/estimation/body_packing.h"
+#include "tasks/estimation/repaired_target.h"
 
 namespace astrolith::python {
 namespace {
@@ -39,17 +39,20 @@ Progress heeding_a_stop(const JobState& state) {
 std::tuple<NumpyArray<double>, std::vector<double>, double, bool> pack_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, int spheres, double density, const std::string& unit,
-    const std::string& output, int threads, nb::object progress) {
+    bool strict, bool wrap, bool all_parts, const std::string& output, int threads, nb::object progress) {
   const std::string title = vertices ? name : std::filesystem::path(name).filename().string();
   const BodyPackingOptions options{spheres, unit, density, title, tool_named("fit_shape"), output};
+  const Repair repair{strict, wrap, all_parts};
   std::optional<TriangleMesh> given;
   if (vertices && faces) given = mesh_of(*vertices, *faces, {});
-  BodyPacking packing =
-      run_job(std::move(progress), threads, [name, options, given = std::move(given)](JobState& state) {
+  BodyPacking packing = run_job(
+      std::move(progress), threads, [name, options, repair, given = std::move(given)](JobState& state) {
         if (!options.to.empty()) require_writable(options.to);
-        TriangleMesh mesh = given ? *given : read_mesh(name);
-        const TargetBody target = prepare_target(std::move(mesh), name, heeding_a_stop(state));
-        return pack_body(target, options, state.progress("pack"));
+        TriangleMesh mesh = given ? *given : repair.read(name);
+        const RepairedTarget made =
+            repaired_target(std::move(mesh), name, options.unit, repair.strict, repair.options(),
+                            state.progress("repair"), heeding_a_stop(state));
+        return pack_body(made.target, options, state.progress("pack"));
       });
   const std::size_t count = packing.spheres.size();
   return {array_of<double>(std::move(packing.spheres), {count, 4}), std::move(packing.masses),
@@ -61,7 +64,8 @@ std::tuple<NumpyArray<double>, std::vector<double>, double, bool> pack_in_job(
 void declare_packing(nb::module_& module) {
   module.def("pack_spheres", &pack_in_job, nb::arg("name"), nb::arg("vertices").noconvert().none(),
              nb::arg("faces").noconvert().none(), nb::arg("spheres"), nb::arg("density"), nb::arg("unit"),
-             nb::arg("output"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("strict"), nb::arg("wrap"), nb::arg("all_parts"), nb::arg("output"), nb::arg("threads"),
+             nb::arg("progress").none());
 }
 
 }  // namespace astrolith::python

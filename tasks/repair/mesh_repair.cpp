@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/io/mesh_io.h"
+#include "geometry/io/points_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/orient_faces.h"
@@ -30,6 +32,8 @@ namespace {
 constexpr double kMostBadEdges = 0.2;
 // A component with less than this share of its diagonal's cube is flat: two facets on one another.
 constexpr double kFlat = 1e-12;
+// A finer wrap that keeps less than this share of the volume has entered the body.
+constexpr double kStillFilled = 0.7;
 // Vertices at one place that belong to different parts of the surface are drawn apart by this share of the
 // diagonal, so that nobody who welds equal vertices joins them again.
 constexpr double kApart = 1e-7;
@@ -246,7 +250,8 @@ void require_within_limits(const MeshRepair& repair, const std::string& name) {
   }
 }
 
-void mend(MeshRepair& repair, const std::string& name, bool crossings, const Progress& progress) {
+void mend(MeshRepair& repair, const std::string& name, const RepairOptions& options,
+          const Progress& progress) {
   const MeshTopology topology = analyze_topology(repair.mesh);
   require_few_bad_edges(topology, repair.mesh, name);
   tell(progress, 0.1, "welded");
@@ -257,13 +262,13 @@ void mend(MeshRepair& repair, const std::string& name, bool crossings, const Pro
       return report(progress, 0.3 + 0.4 * fraction, words);
     });
   }
-  if (crossings) {
+  if (options.crossings) {
     uncross(repair, name, [&](double fraction, std::string_view words) {
       return report(progress, 0.7 + 0.3 * fraction, words);
     });
   }
   require_sound(repair.mesh, name);
-  require_within_limits(repair, name);
+  if (!options.wrap) require_within_limits(repair, name);
 }
 
 // Step 1 alone. Whether it made a closed body.
@@ -307,6 +312,9 @@ void move_onto(TriangleMesh& wrap, const SurfaceTree& tree, double offset) {
       64);
 }
 
+// Wraps by balls of 27, 9 and 3 times the finest radius, and by the finest. Once the ball passes through a
+// hole, the wrap follows the surface inside, and most of its volume is gone: the wrap before it is taken
+// then.
 MeshRepair wrapped(const TriangleMesh& mesh, const std::string& name, const Progress& progress) {
   MeshRepair repair;
   repair.changed = repair.wrapped = true;
@@ -322,8 +330,17 @@ MeshRepair wrapped(const TriangleMesh& mesh, const std::string& name, const Prog
     constexpr double kSpacings = 3.0;  // a ball of this radius does not fall between neighbours
     repair.wrap_alpha = std::max(repair.wrap_alpha, kSpacings * spacing_of(mesh.vertices));
   }
-  tell(progress, 0.0, "wrap");
-  repair.mesh = alpha_wrapped(mesh, repair.wrap_alpha, repair.wrap_offset, name);
+  const double finest = repair.wrap_alpha;
+  double inside = 0.0;  // volume of the wrap so far
+  for (const double alpha : {27.0 * finest, 9.0 * finest, 3.0 * finest, finest}) {
+    tell(progress, 0.5 * finest / alpha, "wrap");
+    TriangleMesh wrap = alpha_wrapped(mesh, alpha, repair.wrap_offset, name);
+    const double volume_of_wrap = wrap.triangles.empty() ? 0.0 : std::abs(volume(wrap));
+    if (volume_of_wrap <= kStillFilled * inside) break;
+    inside = volume_of_wrap;
+    repair.wrap_alpha = alpha;
+    repair.mesh = std::move(wrap);
+  }
   if (repair.mesh.triangles.empty()) throw InputError(name + ": its wrap is empty; give a body");
   tell(progress, 0.9, "wrap");
   const TriangleMesh surface = as_surface(mesh);
@@ -365,6 +382,12 @@ bool is_closed_body(const TriangleMesh& mesh) {
   return !mesh.triangles.empty() && is_sound(analyze_topology(mesh)) && volume(mesh) > 0.0;
 }
 
+TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap) {
+  if (!wrap) return read_mesh(file);
+  if (mesh_extension(file) == ".xyz") return {read_points(file), {}, {}};
+  return read_mesh_or_points(file);
+}
+
 MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairOptions& options,
                        const Progress& progress) {
   if (mesh.triangles.empty() && !options.wrap) {
@@ -382,11 +405,11 @@ MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairO
   try {
     const bool closed = !mesh.triangles.empty() && weld_and_orient(repair);
     if (mesh.triangles.empty() || repair.mesh.triangles.empty()) {
-      if (!mesh.triangles.empty()) throw InputError(name + ": no face with an area; give a closed mesh");
+      if (!mesh.triangles.empty()) throw InputError(name + ": has no face with an area");
       repair = wrapped(mesh, name, progress);
     } else if (!closed || options.crossings) {
       repair.changed = true;
-      mend(repair, name, options.crossings, progress);
+      mend(repair, name, options, progress);
     } else if (!options.caller_welds) {
       repair.changed = true;
     }
@@ -395,8 +418,12 @@ MeshRepair repair_mesh(TriangleMesh mesh, const std::string& name, const RepairO
     repair = wrapped(mesh, name, progress);
   }
   keep_largest(repair, options.all_parts);
-  if (!repair.changed) repair.mesh = std::move(mesh);
-  return repair;
+  if (repair.changed) return repair;
+  MeshRepair untouched;
+  untouched.mesh = std::move(mesh);
+  untouched.diagonal = repair.diagonal;
+  untouched.bodies = repair.bodies;
+  return untouched;
 }
 
 }  // namespace astrolith

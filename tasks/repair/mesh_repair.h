@@ -14,10 +14,12 @@
 //   holes;
 //   5. where the caller found that the mesh passes through itself, CGAL replaces the facets that cross.
 // A wrap is the last resort: a surface around the mesh through which balls of 1/200 of the diagonal do not
-// pass, whose vertices then move back onto the mesh.
+// pass, whose vertices then move back onto the mesh. Where such balls pass through a hole, they are larger:
+// 3, 9 or 27 times.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "geometry/triangle_mesh.h"
@@ -26,14 +28,15 @@
 namespace astrolith {
 
 // A repair that moves the surface farther than this share of the diagonal of the bounding box, or that fills
-// holes of more than this share of the surface, is refused unless a wrap is allowed.
+// holes of more than this share of the surface, is refused unless RepairOptions::wrap lifts the limits.
 inline constexpr double kMostMoved = 0.01, kMostFilled = 0.05;
 
 // Lengths of the wrap, as shares of the diagonal of the bounding box.
 inline constexpr double kWrapAlpha = 1.0 / 200.0, kWrapOffset = 1.0 / 2000.0;
 
 struct RepairOptions {
-  bool wrap = false;       // where the steps fail or move or fill too much, the mesh is wrapped
+  bool wrap =
+      false;  // the steps may move and fill more than the limits; where they fail, the mesh is wrapped
   bool all_parts = false;  // keep all bodies of a scene; otherwise the largest
   // The caller welds vertices and turns facets itself: a mesh that needs no more comes back unchanged.
   bool caller_welds = false;
@@ -68,6 +71,10 @@ struct MeshRepair {
 
 // Whether every edge has two facets wound alike, and the volume is positive.
 bool is_closed_body(const TriangleMesh& mesh);
+
+// Reads a mesh. Where a wrap is allowed also points: .xyz, or a file of points with normals. Throws
+// InputError as read_mesh does.
+TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap);
 
 // Repairs a mesh, or wraps points where it has no triangles and a wrap is allowed. A mesh that is a closed
 // body of one part comes back as it is. Throws InputError "NAME: what is wrong; what to do" for what cannot

@@ -117,9 +117,9 @@ void require_no_crossing(const TriangleMesh& mesh, const TriangleMesh& surface, 
                          const Progress& progress) {
   const double share = share_of_wrong_windings(mesh, surface, progress);
   if (share <= kWrongWindings) return;
-  throw InputError(name + ": mesh passes through itself or has parts inside out (about " +
-                   std::to_string(static_cast<int>(std::lround(100.0 * share))) +
-                   " % of its surface does not bound the body); repair it first");
+  throw CrossingMesh(name + ": mesh passes through itself or has parts inside out (about " +
+                     std::to_string(static_cast<int>(std::lround(100.0 * share))) +
+                     " % of its surface does not bound the body); repair it first");
 }
 
 // Where the surface bends back, a point offset from it may lie too near to the surface or on its other side.

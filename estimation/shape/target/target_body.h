@@ -10,10 +10,17 @@
 #include "estimation/shape/target/fit_points.h"
 #include "geometry/surface/surface_tree.h"
 #include "geometry/triangle_mesh.h"
+#include "numerics/errors.h"
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
 
 namespace astrolith {
+
+// A mesh that passes through itself.
+class CrossingMesh : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 struct TargetBody {
   TriangleMesh mesh;     // closed, manifold edges, oriented, positive volume; diagonal 1, centred on the box
@@ -30,10 +37,10 @@ struct TargetBody {
 };
 
 // Throws InputError "name: what is wrong; what to do" if the mesh has no faces, is open, is not manifold, is
-// flat, or passes through itself. Whole components may overlap. Repeated vertices and faces and faces that
-// look inwards are mended, with a remark each. Between its steps the preparation calls `progress` with the
-// share of its time that is over, of a usual mesh. It cannot give half a target: a progress that asks to stop
-// throws, or is not heeded.
+// flat, or passes through itself (CrossingMesh). Whole components may overlap. Repeated vertices and faces
+// and faces that look inwards are mended, with a remark each. Between its steps the preparation calls
+// `progress` with the share of its time that is over, of a usual mesh. It cannot give half a target: a
+// progress that asks to stop throws, or is not heeded.
 TargetBody prepare_target(TriangleMesh mesh, const std::string& name, const Progress& progress = {});
 
 // Moves a body from the file's frame and unit into the target's.
