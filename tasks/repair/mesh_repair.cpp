@@ -239,8 +239,8 @@ std::string percent(double share) {
   return text;
 }
 
-void require_within_limits(const MeshRepair& repair, const std::string& name) {
-  if (repair.filled_share > kMostFilled) {
+void require_within_limits(const MeshRepair& repair, const std::string& name, double most_filled) {
+  if (repair.filled_share > most_filled) {
     throw InputError(name + ": its holes are " + percent(repair.filled_share) +
                      " of the surface, which is more than a guess can fill");
   }
@@ -268,7 +268,7 @@ void mend(MeshRepair& repair, const std::string& name, const RepairOptions& opti
     });
   }
   require_sound(repair.mesh, name);
-  if (!options.wrap) require_within_limits(repair, name);
+  require_within_limits(repair, name, options.wrap ? kMostFilledBeforeWrap : kMostFilled);
 }
 
 // Step 1 alone. Whether it made a closed body.

@@ -28,15 +28,16 @@
 namespace astrolith {
 
 // A repair that moves the surface farther than this share of the diagonal of the bounding box, or that fills
-// holes of more than this share of the surface, is refused unless RepairOptions::wrap lifts the limits.
+// holes of more than this share of the surface, is refused.
 inline constexpr double kMostMoved = 0.01, kMostFilled = 0.05;
+// Where a wrap is allowed, holes up to this share are filled, and the mesh is wrapped where they are larger.
+inline constexpr double kMostFilledBeforeWrap = 0.2;
 
 // Lengths of the wrap, as shares of the diagonal of the bounding box.
 inline constexpr double kWrapAlpha = 1.0 / 200.0, kWrapOffset = 1.0 / 2000.0;
 
 struct RepairOptions {
-  bool wrap =
-      false;  // the steps may move and fill more than the limits; where they fail, the mesh is wrapped
+  bool wrap = false;       // where the steps fail, move or fill too much, the mesh is wrapped
   bool all_parts = false;  // keep all bodies of a scene; otherwise the largest
   // The caller welds vertices and turns facets itself: a mesh that needs no more comes back unchanged.
   bool caller_welds = false;
