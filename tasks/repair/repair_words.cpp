@@ -13,8 +13,9 @@ std::string count_words(std::int64_t count, std::string_view one, std::string_vi
 }
 
 std::string moved_words(const MeshRepair& repair, const std::string& unit) {
-  if (!(repair.moved > 0.0)) return "nothing moved";
-  // A tenth above, so that the rounded figure is a bound too.
+  // The last bits of coordinates are no move.
+  if (!(repair.moved > 1e-9 * repair.diagonal)) return "nothing moved";
+  // Somewhat above, so that the rounded figure is a bound, too.
   const double bound = repair.moved * 1.05;
   if (unit == "km" && bound < 1.0) return fmt::format("nothing moved by more than {:.2g} m", 1000.0 * bound);
   if (!unit.empty()) return fmt::format("nothing moved by more than {:.2g} {}", bound, unit);

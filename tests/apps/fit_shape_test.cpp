@@ -268,6 +268,34 @@ TEST_F(FitShape, MeshesThatCanBeMendedAreFitted) {
   said("v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nv 0 0 1e-6\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
 }
 
+TEST_F(FitShape, DamagedMeshesAreRepaired) {
+  const std::string egg = testing::ellipsoid_obj(1.2, 1, 0.9, 24, 36);
+  const std::string end = " -o t.csv --packing-only --spheres 4 --summary s.json";
+  write("holed.obj", egg.substr(0, egg.rfind("f ")));
+  EXPECT_TRUE(has(succeed("holed.obj" + end), "holed.obj: filled 1 hole (largest"));
+  EXPECT_EQ(json("s.json")["repair"]["holes"], 1);
+  refuse("holed.obj --strict" + end, "holed.obj");
+  succeed(write("whole.obj", egg) + end);
+  EXPECT_FALSE(json("s.json").contains("repair"));
+  // A third of the facets, all at one end.
+  std::size_t cut = egg.find("f ");
+  for (int line = 0; line < 500; ++line) cut = egg.find("f ", cut + 1);
+  write("half.obj", egg.substr(0, cut));
+  refuse("half.obj" + end, "add --wrap");
+}
+
+TEST_F(FitShape, PointsAreWrappedLong) {
+  std::string points;
+  std::istringstream egg(testing::ellipsoid_obj(1.2, 1, 0.9, 40, 60));
+  for (std::string line; std::getline(egg, line);) {
+    if (line.starts_with("v ")) points += line.substr(2) + "\n";
+  }
+  write("egg.xyz", points);
+  const std::string end = " -o t.csv --packing-only --spheres 4";
+  refuse("egg.xyz" + end, "egg.xyz");
+  EXPECT_TRUE(has(succeed("egg.xyz --wrap" + end), "egg.xyz: wrapped at"));
+}
+
 TEST_F(FitShape, BadMeshesAreRefused) {
   for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{
            {"cut.ply", testing::truncated_ply()},

@@ -54,7 +54,9 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
   write_mesh(testing::two_spheres(2, 1, 2.5), folder_ / "two.ply", {});
   const Outcome two = run("two.ply --density 2000");
   EXPECT_EQ(two.status, 0) << two.errors;
-  EXPECT_TRUE(has(two.errors, "two.ply: holds 2 surfaces apart from one another"));
+  EXPECT_TRUE(has(two.errors, "two.ply: holds 2 bodies apart from one another, the largest is taken"));
+  const Outcome both = run("two.ply --density 2000 --all-parts");
+  EXPECT_TRUE(has(both.errors, "two.ply: holds 2 surfaces apart from one another"));
 }
 
 // A ball of 1 km, 2,000 kg/m3: mass and fields within the error of its polyhedron.
@@ -222,6 +224,22 @@ TEST_F(Gravity, CtrlCStopsItWithinASecondAndLeavesNoFile) {
   }
 }
 
+// A ball that lacks a facet, one whose facets look inwards, and the ball itself have one mass.
+TEST_F(Gravity, DamagedMeshesAreRepaired) {
+  const std::string ball = ellipsoid_obj(1, 1, 1, 24, 36);
+  write("whole.obj", ball);
+  write("holed.obj", ball.substr(0, ball.rfind("f ")));
+  const auto mass = [&](const std::string& file, const std::string& words) {
+    const Outcome outcome = run(file + " --density 2000 --sample 0 --degree 0");
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_TRUE(has(outcome.errors, words));
+    return nlohmann::json::parse(outcome.output)["body"]["mass_kg"].get<double>();
+  };
+  const double whole = mass("whole.obj", "");
+  EXPECT_NEAR(mass("holed.obj", "holed.obj: filled 1 hole (largest"), whole, 1e-9 * whole);
+  refuse("holed.obj --density 2000 --strict", "holed.obj");
+}
+
 TEST_F(Gravity, BadInputIsRefused) {
   write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   write("empty.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
@@ -242,7 +260,8 @@ TEST_F(Gravity, BadInputIsRefused) {
                                        {"ball.obj -o ball.obj", "ball.obj"},
                                        {"open.obj", "open.obj"},
                                        {"empty.obj", "empty.obj"},
-                                       {"turned.obj", "turned.obj"},
+                                       {"turned.obj --strict", "turned.obj"},
+                                       {"turned.obj --strict --wrap", "--wrap"},
                                        {"ball.obj --density-of ball.obj", "--density-of"},
                                        {"ball.obj --density-of ball.obj=-1", "0 to 1e6"},
                                        {"ball.obj --density-of ball.obj=1e3x", "0 to 1e6"},

@@ -53,6 +53,8 @@ def runs(folder):
     write_ball(ball)
     write_ball(fine, 1.4, 24, 40)
     write_ball(finer, 1.4, 30, 50)
+    holed = folder / "holed.obj"
+    holed.write_text(fine.read_text().rstrip().rpartition("\n")[0] + "\n")
     grey, color = folder / "grey.png", folder / "color.png"
     write_photo(grey, 1)
     write_photo(color, 3)
@@ -85,6 +87,10 @@ def runs(folder):
     yield ["fit_shape", ball, *fit, folder / "fit.json", *search]
     yield ["fit_shape", fine, *fit, folder / "relief.json", "--noise-seeds", "1"]
     yield ["fit_shape", ball, "--spheres", "6", "-o", folder / "packing.csv", "--packing-only"]
+    yield ["fit_shape", holed, "--spheres", "6", "-o", folder / "packing.csv", "--packing-only"]
+    yield ["describe", holed, "-o", folder / "description.npy", "--points", "1000"]
+    yield ["compare", holed, holed, "-o", folder / "compared.json", "--points", "1000"]
+    yield ["gravity", holed, "--density", "2000"]
     yield ["describe", fine, "--surface", "-o", folder / "surface.json"]
     yield ["describe", ball, "-o", folder / "description.npy", "--points", "1000"]
     yield ["compare", fine, finer, "--floor", "--realism", "-o", folder / "realism.json", "--points", "1000"]
