@@ -229,11 +229,25 @@ def test_wrong_images(image):
 
 def test_wrong_meshes(worm):
     with pytest.raises(ValueError, match="^mesh: .*open"):
-        astrolith.fit_shape(worm.vertices, worm.faces[1:], base_only=True)
+        astrolith.fit_shape(worm.vertices, worm.faces[1:], base_only=True, strict=True)
+    with pytest.raises(ValueError, match="^mesh: .*pass wrap=True"):
+        astrolith.fit_shape(worm.vertices, worm.faces[: len(worm.faces) // 2], base_only=True)
     with pytest.raises(ValueError, match=r"^mesh\.faces: "):
         astrolith.fit_shape(worm.vertices, worm.faces.astype(np.int64) - 1)
     with pytest.raises(ValueError, match="^spheres: "):
         astrolith.fit_shape(worm, spheres=0)
+
+
+def test_damaged_meshes_are_repaired(worm):
+    closed, figures = astrolith.repair_mesh(worm.vertices, worm.faces[1:])
+    assert figures.holes == 1 and figures.words.startswith("filled 1 hole")
+    assert len(closed.faces) == len(worm.faces)
+    same, figures = astrolith.repair_mesh(worm)
+    assert figures.words == "" and (same.faces == worm.faces).all()
+    packing = astrolith.pack_spheres(worm.vertices, worm.faces[1:], spheres=4)
+    assert len(packing.radii) == 4
+    mass = astrolith.gravity(closed, density=2000).figures.body.mass_kg
+    assert abs(mass / astrolith.gravity(worm, density=2000).figures.body.mass_kg - 1) < 1e-3
 
 
 def test_options_of_another_search_for_details_are_refused(worm):
