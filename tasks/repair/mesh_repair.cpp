@@ -137,7 +137,7 @@ void drop_flat_components(MeshRepair& repair) {
     const auto corner = [&](std::size_t k) { return mesh.vertices[mesh.triangles[f][k]] - origin; };
     volumes[number[f]] += dot(corner(0), cross(corner(1), corner(2))) / 6.0;
   }
-  const double least = kFlat * std::pow(repair.diagonal, 3);
+  const double least = kFlat * repair.diagonal * repair.diagonal * repair.diagonal;
   std::vector<Triangle> kept;
   for (std::size_t f = 0; f < number.size(); ++f) {
     if (std::abs(volumes[number[f]]) > least) kept.push_back(mesh.triangles[f]);
