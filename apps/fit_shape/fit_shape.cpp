@@ -10,9 +10,9 @@
 #include "apps/fit_shape/fit_shape_details.h"
 #include "apps/fit_shape/fit_shape_options.h"
 #include "apps/fit_shape/fit_shape_packing.h"
-#include "apps/fit_shape/known_bodies.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
+#include "apps/unit_question.h"
 #include "estimation/shape/details/imaged_ground.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
@@ -121,11 +121,10 @@ void say_size(const Program& program, const FitArguments& arguments, const Targe
   program.say(arguments.mesh + ": " + size_words(box.extent(), arguments.unit));
 }
 
-void say_wrong_unit(const Program& program, const FitArguments& arguments, const TargetBody& target) {
-  const std::string name = std::filesystem::path(arguments.mesh).filename().string();
-  const std::string remark =
-      unit_remark(name, target.volume * std::pow(target.diagonal, 3), metres_of(arguments.unit));
-  if (!remark.empty()) program.say("note: " + arguments.mesh + ": " + remark);
+void question_unit(const Program& program, const FitArguments& arguments, const TargetBody& target) {
+  const double volume = target.volume * std::pow(target.diagonal, 3);
+  const std::string asked = unit_question(arguments.mesh, volume, metres_of(arguments.unit));
+  if (!asked.empty()) program.say(asked);
 }
 
 // Says and sums up whether the surface of the fit passes for the target's.
@@ -223,7 +222,7 @@ void run(Program& program, FitArguments& arguments) {
   report(heeding_ctrl_c(limit.preparation(0.0)), kReadShare, "read");
   const TargetBody target =
       target_of(program, arguments, std::move(mesh), heeding_ctrl_c(limit.preparation(kReadShare)));
-  say_wrong_unit(program, arguments, target);
+  question_unit(program, arguments, target);
   if (arguments.packing_only) return write_packing(program, arguments, target);
   if (asks_for_relief) expect_relief(target);
 

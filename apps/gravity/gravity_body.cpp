@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "apps/unit_question.h"
+#include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
@@ -22,6 +24,8 @@ GravityBody read_gravity_body(const Program& program, const std::filesystem::pat
       mesh = repair.closed_body(program, std::move(mesh), file.string(), stated, repair.options(), figures);
     }
     GravityBody body = body_of_mesh(std::move(mesh), stated, file.string());
+    if (const std::string asked = unit_question(file, volume(body.mesh), body.metres); !asked.empty())
+      program.say(asked);
     if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
       program.say(
           file.string() + ": holds " + std::to_string(surfaces) +

@@ -57,6 +57,14 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
   EXPECT_TRUE(has(two.errors, "two.ply: holds 2 bodies apart from one another, the largest is taken"));
   const Outcome both = run("two.ply --density 2000 --all-parts");
   EXPECT_TRUE(has(both.errors, "two.ply: holds 2 surfaces apart from one another"));
+  write("metres.obj", ellipsoid_obj(2000, 2000, 1500, 31, 64));
+  EXPECT_TRUE(
+      has(run("metres.obj --density 2000").errors,
+          "note: metres.obj: a mean radius of 1816 km is above that of any asteroid or comet; is --unit km"));
+  EXPECT_EQ(run("metres.obj --density 2000 --unit m").errors, "");
+  write("bennu_v20.obj", ellipsoid_obj(280, 270, 250, 31, 64));
+  EXPECT_TRUE(
+      has(run("bennu_v20.obj --density 1190").errors, "km is not that of bennu (0.245 km); is --unit km"));
 }
 
 // A ball of 1 km, 2,000 kg/m3: mass and fields within the error of its polyhedron.

@@ -1,11 +1,14 @@
-// Mean radii of bodies whose names file names often hold: enough to tell metres from kilometres.
+// The question that a size raises which its body, or no body at all, has. Bodies are known by the names that
+// file names often hold, with radii that tell metres from kilometres.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -44,20 +47,22 @@ inline std::optional<KnownBody> known_body(std::string_view file_name) {
   return std::nullopt;
 }
 
-// A remark when the file's name says which body it is and its volume, in cubic units, says that the unit is
-// another; else empty. `metres_per_unit` is 1 or 1000.
-inline std::string unit_remark(std::string_view file_name, double volume, double metres_per_unit) {
-  constexpr double kClearlyWrong = 30.0;
-  const std::optional<KnownBody> body = known_body(file_name);
-  if (!body) return {};
-  const double radius = std::cbrt(volume * 3.0 / (4.0 * std::numbers::pi)) * metres_per_unit / 1000.0;
-  if (radius < kClearlyWrong * body->radius && body->radius < kClearlyWrong * radius) return {};
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "a mean radius of %.4g km is not that of %.*s (%.4g km); is --unit right, or the mesh scaled?", radius,
-      static_cast<int>(body->name.size()), body->name.data(), body->radius);
-  return text;
+// A question where a mesh of this volume, in cubic units, is not of the size of the body that its file is
+// named after, or larger or smaller than any small body; else empty. `metres_per_unit` is 1 or 1000.
+inline std::string unit_question(const std::filesystem::path& file, double volume, double metres_per_unit) {
+  constexpr double kClearlyWrong = 30.0, kLargest = 600.0, kSmallest = 0.00025;  // km: Ceres has 470
+  const double radius =
+      std::cbrt(std::abs(volume) * 3.0 / (4.0 * std::numbers::pi)) * metres_per_unit / 1000.0;
+  const auto asked = [&](const std::string& is_not) {
+    return fmt::format("note: {}: a mean radius of {:.4g} km is {}; is --unit {} right, or the mesh scaled?",
+                       file.string(), radius, is_not, metres_per_unit == 1.0 ? "m" : "km");
+  };
+  if (const std::optional<KnownBody> body = known_body(file.filename().string())) {
+    if (radius < kClearlyWrong * body->radius && body->radius < kClearlyWrong * radius) return {};
+    return asked(fmt::format("not that of {} ({:.4g} km)", body->name, body->radius));
+  }
+  if (radius > kLargest) return asked("above that of any asteroid or comet");
+  return radius < kSmallest ? asked("below that of any asteroid known") : std::string();
 }
 
 }  // namespace astrolith
