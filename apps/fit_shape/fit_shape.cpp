@@ -16,6 +16,7 @@
 #include "estimation/shape/details/imaged_ground.h"
 #include "estimation/shape/fit/shape_fit.h"
 #include "estimation/shape/report/fit_report.h"
+#include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/output_folder.h"
@@ -108,9 +109,13 @@ void say_result(const Program& program, const TargetBody& target, const ShapeFit
                   counted(fit.body.num_metaballs(), "metaball"), fit.body.subtract.size(),
                   with_details ? " and details" : "", 100 * d.mean, 100 * d.p99, 100 * d.max, without,
                   100 * fit.similarity, 100 * fit.similarity_floor));
-  if (fit.check.topology.components != target.components) {
-    program.say("note: the fit has " + std::to_string(fit.check.topology.components) + " parts, the target " +
-                std::to_string(target.components) + "; give it more --spheres");
+  const MeshTopology& made = fit.check.topology;
+  const std::int64_t handles = analyze_topology(target.mesh).genus;
+  if (made.components != target.components || made.genus != handles) {
+    program.say(fmt::format(
+        "note: the fit has {} and {}, the target {} and {}; give it more --spheres, or another --seed",
+        counted(made.components, "part"), counted(made.genus, "handle"), counted(target.components, "part"),
+        counted(handles, "handle")));
   }
 }
 

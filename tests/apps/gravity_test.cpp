@@ -60,7 +60,7 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
   write("metres.obj", ellipsoid_obj(2000, 2000, 1500, 31, 64));
   EXPECT_TRUE(
       has(run("metres.obj --density 2000").errors,
-          "note: metres.obj: a mean radius of 1816 km is above that of any asteroid or comet; is --unit km"));
+          "note: metres.obj: a mean radius of 1815 km is above that of any asteroid or comet; is --unit km"));
   EXPECT_EQ(run("metres.obj --density 2000 --unit m").errors, "");
   write("bennu_v20.obj", ellipsoid_obj(280, 270, 250, 31, 64));
   EXPECT_TRUE(
