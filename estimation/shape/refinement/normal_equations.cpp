@@ -5,8 +5,25 @@
 #include "numerics/host_device.h"
 #include "numerics/parallel_for.h"
 
+// Of libgomp, which CHOLMOD brings along. Its header is not everywhere: clang has another.
+extern "C" void omp_set_max_active_levels(int levels);
+extern "C" int omp_get_max_active_levels();
+
 namespace astrolith {
 namespace {
+
+// CHOLMOD starts four threads for each of its many small loops, on any machine. Here its loops run on the
+// calling thread, which takes a sixth less of the processor's time and a quarter less on the clock.
+class NoThreadsOfOpenMp {
+ public:
+  NoThreadsOfOpenMp() { omp_set_max_active_levels(0); }
+  NoThreadsOfOpenMp(const NoThreadsOfOpenMp&) = delete;
+  NoThreadsOfOpenMp& operator=(const NoThreadsOfOpenMp&) = delete;
+  ~NoThreadsOfOpenMp() { omp_set_max_active_levels(before_); }
+
+ private:
+  int before_ = omp_get_max_active_levels();
+};
 
 // Every entry of D is at least this part of the largest, so that idle spheres do not move freely.
 constexpr double kLeastDiagonal = 1e-8;
@@ -200,6 +217,7 @@ const Eigen::SparseMatrix<double>& NormalEquations::damped(double damping) {
 }
 
 bool NormalEquations::solve(double damping, Eigen::VectorXd& step) {
+  const NoThreadsOfOpenMp alone;
   factor_.factorize(damped(damping));
   if (factor_.info() != Eigen::Success) return false;
   step = factor_.solve(-gradient_);
