@@ -83,7 +83,7 @@ ASTROLITH_KERNEL float exp_series(float r) {
 }
 
 // e^x within 2 ulp for x in [-87, 88]; 0 below -87, the value at 88 above.
-ASTROLITH_HD inline float exp(float x) {
+ASTROLITH_KERNEL float exp(float x) {
   const float clamped = clamp(x, -87.0f, 88.0f);
   const float n = round_even(clamped * 1.44269504088896341f);
   // ln 2 in two parts, so that the reduced argument keeps all its bits (Cody and Waite).
@@ -94,7 +94,7 @@ ASTROLITH_HD inline float exp(float x) {
 ASTROLITH_HD inline double exp(double x) { return portable::exp(x); }
 
 // e^x with the bits of exp(x) for x in [-87, 88], at a lower cost; any float for other x.
-ASTROLITH_HD inline float exp_within_range(float x) {
+ASTROLITH_KERNEL float exp_within_range(float x) {
   constexpr float kMagic = 12582912.0f;  // as in round_even(): the last bits of the sum are the integer
   const float shifted = x * 1.44269504088896341f + kMagic;
   const float n = shifted - kMagic;
@@ -105,7 +105,7 @@ ASTROLITH_HD inline float exp_within_range(float x) {
 ASTROLITH_HD inline double exp_within_range(double x) { return portable::exp(x); }
 
 // Natural logarithm within 2 ulp for normal positive x; about -87.3 for zero and subnormals.
-ASTROLITH_HD inline float log(float x) {
+ASTROLITH_KERNEL float log(float x) {
   const float normal = max(x, 1.17549435e-38f);
   const std::int32_t i = bits_of(normal);
   // Exponent such that the mantissa lies in [sqrt(1/2), sqrt(2)).

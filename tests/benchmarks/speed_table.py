@@ -168,9 +168,11 @@ class Benchmark:
     def pursuit(self):
         print("\nGabor pursuit of a photo's 32 x 32 corner, seconds to within 1e-3 and 1e-5 of the least, over ours\n")
         os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+        problems = self.folder / "problems"
+        problems.mkdir()
         Run(self.tools / "basis_pursuit_benchmark", ROOT / "data-cache/gravel.png", "--side", 32, "--fista-seconds", 0,
-            "--export", self.folder)
-        run = Run(sys.executable, HERE / "pursuit_peers.py", self.folder, check=False)
+            "--export", problems)
+        run = Run(sys.executable, HERE / "pursuit_peers.py", problems, check=False)
         print(run.errors if run.failed else run.output, end="")
 
     def asteroid(self, kind, targets):
