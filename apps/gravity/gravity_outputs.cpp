@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "geometry/io/ply_values.h"
 #include "numerics/files/npy_file.h"
+#include "numerics/sample_statistics.h"
 #include "synthesis/picture/color_bar.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/preview.h"
@@ -69,16 +71,23 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
 void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
                            const std::filesystem::path& file) {
   const std::vector<double> values = values_of_vertices(body.mesh, column.values);
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  const double low = *least, high = *most > *least ? *most : *least + 1.0;
+  // A few extremes would leave all others one colour.
+  std::vector<double> sorted = values;
+  std::erase_if(sorted, [](double value) { return std::isnan(value); });
+  if (sorted.empty()) sorted = {0.0};
+  std::sort(sorted.begin(), sorted.end());
+  const double low = quantile_of_sorted(sorted, 0.01), most = quantile_of_sorted(sorted, 0.99);
+  const double high = most > low ? most : low + 1.0;
   PreviewOptions options;
   options.seed = program.seed;
   options.fill_light = 0.5;
   options.vertex_colors = sequential_colors(values, low, high);
   RgbImage image = render_preview(body.mesh, options, program.progress("preview"));
-  draw_color_bar(image, low, high);
+  add_color_bar(image, low, high);
   write_png8_rgb(image, file);
-  program.say(fmt::format("{}: {} from {:.4g} to {:.4g}", file.string(), column.name, low, high));
+  program.say(
+      fmt::format("{}: {}; colours from {:.4g} to {:.4g}, the 1st and 99th percentile, of {:.4g} to {:.4g}",
+                  file.string(), column.name, low, high, sorted.front(), sorted.back()));
 }
 
 }  // namespace astrolith

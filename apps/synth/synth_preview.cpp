@@ -1,6 +1,7 @@
 #include "apps/synth/synth_preview.h"
 
 #include "apps/output_names.h"
+#include "apps/synth/pixel_size.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/srgb.h"
@@ -14,6 +15,10 @@ Vec3f linear_color(const VertexColor& color) {
   return {linear(color[0]), linear(color[1]), linear(color[2])};
 }
 
+PixelSize picture_size(const std::string& text) {
+  return parse_pixel_size("--picture-size", text, kLeastPictureSide, kMostPictureSide);
+}
+
 Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
 
 }  // namespace
@@ -21,8 +26,12 @@ Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), st
 void declare_preview_options(Program& program, PreviewRequest& request) {
   program.app
       .add_option("--preview", request.file,
-                  "also a picture of the mesh under sunlight, with shadows, from +x, +y, +z and obliquely")
+                  "also a picture of the mesh under sunlight, with shadows: from +x, +y, +z and obliquely, a "
+                  "patch from above its ground and obliquely")
       .placeholder("FILE.png");
+  program.app.add_option("--picture-size", request.size, "pixels of the picture and its maps")
+      .placeholder("WxH (default 1280x960)")
+      .default_text("");
   program.app
       .add_option("--preview-maps", request.maps,
                   "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
@@ -41,13 +50,14 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
 
 void check_preview(const Program& program, const PreviewRequest& request) {
   if (request.file.empty()) {
-    for (const char* name : {"--preview-maps", "--view", "--sun"}) {
+    for (const char* name : {"--preview-maps", "--picture-size", "--view", "--sun"}) {
       if (program.app.option(name).count() > 0) {
         throw InputError(std::string(name) + ": is about a picture; add --preview FILE.png");
       }
     }
     return;
   }
+  if (!request.size.empty()) picture_size(request.size);
   require_extension(request.file, {".png"});
   require_writable(request.file);
   if (!request.maps.empty()) {
@@ -62,19 +72,27 @@ void check_preview(const Program& program, const PreviewRequest& request) {
     throw InputError("--sun: 0 0 0 is no direction; give another");
 }
 
-PreviewOptions preview_options(const Program& program, const PreviewRequest& request) {
+PreviewOptions preview_options(const Program& program, const PreviewRequest& request,
+                               const TriangleMesh& mesh) {
   PreviewOptions options;
+  if (!request.size.empty()) {
+    const PixelSize size = picture_size(request.size);
+    options.width = size.width;
+    options.height = size.height;
+  }
   options.seed = program.seed;
   options.sun = vector_of(request.sun);
-  if (!request.views.empty()) {
-    options.views.clear();
+  options.views.clear();
+  if (request.views.empty()) {
+    options.views = usual_views(mesh);
+  } else {
     for (const Direction& view : request.views) options.views.push_back(view_from(vector_of(view)));
   }
   return options;
 }
 
 void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
-  PreviewOptions options = preview_options(program, request);
+  PreviewOptions options = preview_options(program, request, mesh);
   for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
   write_png8_rgb(render_preview(mesh, options, program.progress("preview")), request.file);
 }

@@ -78,7 +78,8 @@ std::vector<double> flat(const std::vector<Vec3d>& vectors) {
 
 void write_preview_maps(Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
                         const MapsSource& source) {
-  const PictureMaps maps = render_maps(mesh, preview_options(program, request), program.progress("maps"));
+  const PictureMaps maps =
+      render_maps(mesh, preview_options(program, request, mesh), program.progress("maps"));
   const int h = maps.height, w = maps.width, views = static_cast<int>(maps.from.size());
   const std::vector<double> right = flat(maps.right), up = flat(maps.up), from = flat(maps.from),
                             corner = flat(maps.corner), pixel{maps.pixel};

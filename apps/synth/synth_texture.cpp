@@ -21,22 +21,6 @@ namespace fs = std::filesystem;
 // PNG heights map this many standard deviations either way to the full range.
 constexpr double kTextureRange = 4.0;
 
-struct TextureSize {
-  int width, height;
-};
-
-TextureSize parse_size(const std::string& text) {
-  TextureSize size{};
-  char cross = 0, rest = 0;
-  const int fields = std::sscanf(text.c_str(), "%6d%c%6d%c", &size.width, &cross, &size.height, &rest);
-  const auto fits = [](int side) { return side >= 1 && side <= kMaxTextureSide; };
-  if (fields != 3 || (cross != 'x' && cross != 'X') || !fits(size.width) || !fits(size.height)) {
-    throw InputError("--texture: \"" + text + "\" is not a size; write WxH with sides of 1 to " +
-                     std::to_string(kMaxTextureSide) + ", such as 1024x1024");
-  }
-  return size;
-}
-
 // Turns values into whole numbers from 0 to `top`: offset + scale * value, clamped to [0, 1], times `top`.
 template <typename Integer>
 std::vector<Integer> quantised(std::span<const float> values, double offset, double scale, double top) {
@@ -50,7 +34,7 @@ std::vector<Integer> quantised(std::span<const float> values, double offset, dou
 }
 
 struct Picture {
-  TextureSize size;
+  PixelSize size;
   int channels;  // 1 or 3
   const std::vector<float>& values;
   double offset, scale;  // offset + scale * value lies in [0, 1] for a PNG
@@ -70,7 +54,7 @@ void write_picture(const Picture& p, int bits, const fs::path& output) {
 }
 
 void write_heights(Program& program, const TextureRequest& request, const Recipe& recipe,
-                   const PlaneTexture& texture, const TextureSize& size, const fs::path& output) {
+                   const PlaneTexture& texture, const PixelSize& size, const fs::path& output) {
   const double rms = texture.height_rms;
   write_picture({size, 1, texture.values, 0.5, 0.5 / (kTextureRange * rms)}, request.bits, output);
   program.summary["content"] = "height";
@@ -84,7 +68,7 @@ void write_heights(Program& program, const TextureRequest& request, const Recipe
 }
 
 void write_colors(Program& program, const TextureRequest& request, const PlaneTexture& texture,
-                  const TextureSize& size, const fs::path& output) {
+                  const PixelSize& size, const fs::path& output) {
   const std::vector<float>& rgb = texture.values;
   write_picture({size, 3, rgb, 0.0, 1.0}, request.bits, output);
   const auto outside = std::count_if(rgb.begin(), rgb.end(), [](float v) { return v < 0.0f || v > 1.0f; });
@@ -130,7 +114,7 @@ void summarize_material(Program& program, const Recipe& recipe, const PlaneMater
 }
 
 void write_material(Program& program, const TextureRequest& request, const Recipe& recipe,
-                    const fs::path& file, const fs::path& output, const TextureSize& size) {
+                    const fs::path& file, const fs::path& output, const PixelSize& size) {
   const MaterialFiles files(output);
   const PlaneMaterial material = draw_material(
       recipe, file.string(), {size.width, size.height, "", request.tileable}, program.progress("texture"));
@@ -175,7 +159,7 @@ void declare_texture_options(Program& program, TextureRequest& request) {
 
 void write_texture(Program& program, const TextureRequest& request, const Recipe& recipe,
                    const fs::path& file, const fs::path& output) {
-  const TextureSize size = parse_size(request.size);
+  const PixelSize size = parse_pixel_size("--texture", request.size, 1, kMaxTextureSide);
   program.summary["width"] = size.width;
   program.summary["height"] = size.height;
   program.summary["tileable"] = request.tileable;

@@ -29,7 +29,7 @@ def render(
     Parameters
     ----------
     views
-        Directions from the body to the viewer, one tile each; empty: +x, +y, +z and obliquely.
+        Directions from the body to the viewer, one tile each; empty: +x, +y, +z and obliquely, a patch from above.
     sun
         The direction towards the sun in the axes of each view: right, up, to the viewer.
     width, height

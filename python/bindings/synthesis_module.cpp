@@ -212,7 +212,7 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
   options.height = height;
   options.seed = seed;
   options.sun = {sun[0], sun[1], sun[2]};
-  if (!views.empty()) options.views.clear();
+  options.views.clear();
   for (const auto& view : views) options.views.push_back(view_from({view[0], view[1], view[2]}));
   if (colors) {
     for (const Vec3d& c : points_of(*colors)) {
@@ -221,7 +221,8 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
     }
   }
   RgbImage image = run_job(std::move(progress), threads,
-                           [options, mesh = mesh_of(vertices, faces, normals)](JobState& state) {
+                           [options, mesh = mesh_of(vertices, faces, normals)](JobState& state) mutable {
+                             if (options.views.empty()) options.views = usual_views(mesh);
                              return render_preview(mesh, options, state.progress("preview"));
                            });
   return array_of<std::uint8_t>(std::move(image.pixels), {static_cast<std::size_t>(image.height),

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include "synthesis/picture/colormap.h"
 
@@ -51,11 +52,16 @@ void draw_text(RgbImage& image, int left, int top, int dot, const std::string& t
 
 }  // namespace
 
-void draw_color_bar(RgbImage& image, double low, double high) {
+void add_color_bar(RgbImage& image, double low, double high) {
   if (image.width < 160 || image.height < 120) return;
   const int dot = image.height / 320 + 1, left = image.width / 4, right = image.width - left;
-  const int text_top = image.height - (kGlyphHeight + 2) * dot, bottom = text_top - 2 * dot,
-            top = bottom - 6 * dot;
+  const int top = image.height + 2 * dot, bottom = top + 6 * dot, text_top = bottom + 2 * dot;
+  const int before = std::exchange(image.height, text_top + (kGlyphHeight + 2) * dot);
+  image.pixels.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  for (int y = before; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x)
+      put(image, x, y, {image.pixels[0], image.pixels[1], image.pixels[2]});
+  }
   for (int x = left; x < right; ++x) {
     const Vec3<float> c = sequential_color((x - left) / (right - left - 1.0));
     for (int y = top; y < bottom; ++y) put(image, x, y, {srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});

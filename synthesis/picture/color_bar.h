@@ -7,8 +7,8 @@
 
 namespace astrolith {
 
-// Draws the colours of sequential_color() from `low` at the left to `high` at the right along the lower edge
-// of the picture, with both numbers below, to four digits. Does nothing to pictures under 160 x 120 pixels.
-void draw_color_bar(RgbImage& image, double low, double high);
+// Adds a strip below the picture with the colours of sequential_color() from `low` at the left to `high` at
+// the right, and both numbers below them, to four digits. Does nothing to pictures under 160 x 120 pixels.
+void add_color_bar(RgbImage& image, double low, double high);
 
 }  // namespace astrolith

@@ -166,6 +166,23 @@ std::vector<PreviewView> standard_views() {
       {{1, 0, 0}, {0, 0, 1}}, {{0, 1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}}, {{1.0, -1.2, 0.8}, {0, 0, 1}}};
 }
 
+std::vector<PreviewView> usual_views(const TriangleMesh& mesh) {
+  // The areas of a closed surface, as vectors, add up to nothing; those of a plane to its whole area.
+  constexpr double kFacesOneWay = 0.5;
+  Vec3d facing{0, 0, 0};
+  double area = 0.0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d& p = mesh.vertices[t[0]];
+    const Vec3d twice = cross(mesh.vertices[t[1]] - p, mesh.vertices[t[2]] - p);
+    facing += twice;
+    area += norm(twice);
+  }
+  if (!(norm(facing) > kFacesOneWay * area)) return standard_views();
+  const PreviewView above = view_from(facing);
+  const Vec3d north = normalized(above.up - dot(above.up, above.from) * above.from);
+  return {above, {above.from - 1.2 * north, above.from}};
+}
+
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
   check_preview_options(options, mesh);
   const Painter painter(mesh, options);

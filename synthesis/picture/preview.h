@@ -21,13 +21,18 @@ struct PreviewView {
 // The views from +x, from +y, from above the +z pole, and obliquely, as readers of shape models expect them.
 std::vector<PreviewView> standard_views();
 
+// The standard views; of a patch of ground, which is open and faces one way, the view from above its mean
+// plane and one obliquely.
+std::vector<PreviewView> usual_views(const TriangleMesh& mesh);
+
 // The view from a direction of any length above 0. North is up, or +y where the view is along the pole.
 PreviewView view_from(const Vec3d& direction);
 
+inline constexpr int kLeastPictureSide = 16, kMostPictureSide = 16384;  // pixels
+
 struct PreviewOptions {
-  int width = 1280;      // pixels, 16 .. 16384
-  int height = 960;      // pixels, 16 .. 16384
-  int oversampling = 3;  // rays along a pixel's side, 1 .. 16
+  int width = 1280, height = 960;  // kLeastPictureSide .. kMostPictureSide
+  int oversampling = 3;            // rays along a pixel's side, 1 .. 16
   // Each view gets one tile, in rows. All tiles have one scale, chosen such that every view fits.
   std::vector<PreviewView> views = standard_views();
   // The direction towards the sun in the axes of each view (right, up, to the viewer), of any length.

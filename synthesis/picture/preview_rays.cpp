@@ -34,7 +34,8 @@ PreviewCamera make_camera(const PreviewView& view, const RayScene& scene, const 
 
 void check_preview_options(const PreviewOptions& options, const TriangleMesh& mesh) {
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
-  if (!within(options.width, 16, 16384) || !within(options.height, 16, 16384)) {
+  if (!within(options.width, kLeastPictureSide, kMostPictureSide) ||
+      !within(options.height, kLeastPictureSide, kMostPictureSide)) {
     throw InputError("preview: the picture's sides must be 16 .. 16384 pixels");
   }
   if (!within(options.oversampling, 1, 16)) throw InputError("preview: oversampling must be 1 .. 16");

@@ -28,6 +28,27 @@ TEST_F(SynthPicture, PicturesCanBeTakenFromElsewhere) {
   refuse("r.json -o x.ply --preview p.png --sun 0 0 0", "--sun");
 }
 
+// The width and height of a PNG, from its header.
+std::pair<int, int> size_of_png(const std::string& png) {
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t k = 0; k < 4; ++k) value = 256 * value + static_cast<unsigned char>(png[at + k]);
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST_F(SynthPicture, SizesOfPictures) {
+  succeed("rod.json -o out.ply --resolution 32 --preview p.png --picture-size 320x200");
+  EXPECT_EQ(size_of_png(text("p.png")), std::pair(320, 200));
+  const std::string line = "r.json -o x.ply --preview q.png --picture-size ";
+  refuse(line + "0x100", "--picture-size: \"0x100\" is not a size; write WxH with sides of 16 to 16384");
+  refuse(line + "100000x100", "--picture-size");
+  refuse(line + "large", "--picture-size");
+  refuse("r.json -o x.ply --picture-size 64x64",
+         "--picture-size: is about a picture; add --preview FILE.png");
+}
+
 TEST_F(SynthPicture, MapsAreOfAPicture) {
   refuse("r.json -o x.ply --preview-maps p.npz",
          "--preview-maps: is about a picture; add --preview FILE.png");

@@ -42,6 +42,19 @@ TEST(Preview, SphereIsLitFromTheSunAndDarkBehind) {
   EXPECT_LT(grey(image, 1, 1), 20);  // background
 }
 
+// A patch of ground that faces +x: it is seen from there, and its shadows fall on ground that faces the
+// viewer.
+TEST(Preview, PatchesAreSeenFromAboveTheirGround) {
+  EXPECT_EQ(usual_views(sphere_mesh()).size(), standard_views().size());
+  const TriangleMesh patch{{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0.1, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  const std::vector<PreviewView> views = usual_views(patch);
+  ASSERT_EQ(views.size(), 2u);
+  EXPECT_GT(normalized(views[0].from).x, 0.99);
+  EXPECT_GT(normalized(views[1].from).x, 0.6);
+  EXPECT_LT(normalized(views[1].from).z, -0.6);
+  EXPECT_GT(dot(views[1].up, views[0].from), 0.99);
+}
+
 TEST(Preview, DiskHasTheAreaOfTheSphere) {
   PreviewOptions options = one_view();
   options.sun = {0, 0, 1};
