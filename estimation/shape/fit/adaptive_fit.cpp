@@ -55,7 +55,7 @@ AdaptiveFitOptions options_for(int spheres) {
   const auto times = [](int count, double factor) { return static_cast<int>(std::lround(count * factor)); };
   AdaptiveFitOptions options;
   options.spheres = spheres;
-  options.relocations = times(options.relocations, 1.0 / (1.0 + 2.0 * many));
+  options.relocations = times(options.relocations, 1.0 / (1.0 + 2.0 * many) / std::max(1.0, spheres / kMany));
   options.grown_iterations = times(options.grown_iterations, 1.0 + many);
   options.relocation_iterations = times(options.relocation_iterations, 1.0 + many);
   options.last_iterations = times(options.last_iterations, 1.0 + many);
