@@ -60,4 +60,4 @@ def test_wrong_packings(peanut, tmp_path):
         with pytest.raises(ValueError, match=message):
             astrolith.pack_spheres(peanut, **wrong)
     with pytest.raises(ValueError, match="^mesh: .*open"):
-        astrolith.pack_spheres(peanut.vertices, peanut.faces[1:])
+        astrolith.pack_spheres(peanut.vertices, peanut.faces[1:], strict=True)
