@@ -383,8 +383,10 @@ bool is_closed_body(const TriangleMesh& mesh) {
 }
 
 TriangleMesh read_mesh_to_repair(const std::filesystem::path& file, bool wrap) {
+  const bool points = mesh_extension(file) == ".xyz";
+  if (points && !wrap) throw InputError(file.string() + ": holds points without faces; add --wrap");
   if (!wrap) return read_mesh(file);
-  if (mesh_extension(file) == ".xyz") return {read_points(file), {}, {}};
+  if (points) return {read_points(file), {}, {}};
   return read_mesh_or_points(file);
 }
 
