@@ -5,7 +5,7 @@
 #include <string>
 #include <tuple>
 
-#include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_edges.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_edges.h"
 
 namespace astrolith {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/text_scanner_internal.h"
-#include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_edges.h"
 #include "geometry/orient_faces.h"
 
 namespace astrolith {

@@ -1,4 +1,4 @@
-#include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_edges.h"
 #include "geometry/surface/half_edge_mesh_internal.h"
 #include "numerics/errors.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/mesh_edges_internal.h"
+#include "geometry/mesh_edges.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_normals.h"
 #include "geometry/mesh_topology.h"

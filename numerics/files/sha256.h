@@ -31,7 +31,7 @@ class Sha256 {
 
 // 64 lower-case hexadecimal digits.
 std::string sha256_of(std::string_view bytes);
-// The same of a file's content. Throws InputError when the file cannot be read, as a pipe cannot.
+// The SHA-256 of a file, as of a text. Throws InputError when the file cannot be read, as a pipe cannot.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/mesh_edges.h"
 #include "geometry/weld.h"
 #include "numerics/box_tree.h"
 #include "numerics/errors.h"
 #include "tasks/repair/border_repair_internal.h"
-#include "tasks/repair/soup_edges_internal.h"
 
 namespace astrolith {
 namespace {
@@ -30,7 +30,7 @@ constexpr double kOnePlace = 1e-6;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 struct Border {
-  std::vector<FacetSide> sides;         // edges of one facet
+  std::vector<TriangleSide> sides;      // edges of one facet
   std::vector<std::uint32_t> vertices;  // ascending
   std::vector<double> reach;            // (#V of the mesh) how far a border vertex may be joined
   BoxTree tree;                         // of the places of `vertices`
@@ -41,7 +41,7 @@ Box box_of(const Vec3d& p, double reach) { return widened(Box{p, p}, reach); }
 Border border_of(const TriangleMesh& mesh, double most_reach) {
   Border border;
   border.reach.assign(mesh.vertices.size(), most_reach);
-  for_each_soup_edge(sorted_facet_sides(mesh), [&](std::span<const FacetSide> edge) {
+  for_each_edge(sorted_sides(mesh), [&](std::span<const TriangleSide> edge) {
     if (edge.size() != 1) return;
     border.sides.push_back(edge[0]);
     const double length = norm(mesh.vertices[edge[0].low] - mesh.vertices[edge[0].high]);
@@ -142,10 +142,11 @@ struct VertexOnEdge {
 };
 
 // The border vertices on one border edge, in their order along it.
-std::vector<VertexOnEdge> vertices_on(const TriangleMesh& mesh, const Border& border, const FacetSide& side,
-                                      double most_reach, Crowd& crowd, double& moved) {
-  const Triangle& facet = mesh.triangles[side.facet];
-  const Vec3d a = mesh.vertices[facet[side.corner]], b = mesh.vertices[facet[(side.corner + 1) % 3]];
+std::vector<VertexOnEdge> vertices_on(const TriangleMesh& mesh, const Border& border,
+                                      const TriangleSide& side, double most_reach, Crowd& crowd,
+                                      double& moved) {
+  const Triangle& facet = mesh.triangles[side.triangle];
+  const Vec3d a = mesh.vertices[facet[side.corner]], b = mesh.vertices[facet[(side.corner + 1u) % 3]];
   const double length = norm(b - a);
   const double reach = std::min(kBesideEdge * length, most_reach);
   Box box = box_of(a, reach);
@@ -177,14 +178,14 @@ std::int64_t split_facets(JoinedBorders& joined, double most_reach, const std::s
   const Border border = border_of(mesh, most_reach);
   Crowd crowd(name, border.sides.size());
   std::map<std::uint32_t, std::vector<Triangle>> parts;  // by facet
-  for (const FacetSide& side : border.sides) {
-    if (parts.contains(side.facet)) continue;
+  for (const TriangleSide& side : border.sides) {
+    if (parts.contains(side.triangle)) continue;
     const std::vector<VertexOnEdge> on = vertices_on(mesh, border, side, most_reach, crowd, joined.moved);
     if (on.empty()) continue;
-    const Triangle facet = mesh.triangles[side.facet];
-    const std::uint32_t end = facet[(side.corner + 1) % 3], apex = facet[(side.corner + 2) % 3];
+    const Triangle facet = mesh.triangles[side.triangle];
+    const std::uint32_t end = facet[(side.corner + 1u) % 3], apex = facet[(side.corner + 2u) % 3];
     std::uint32_t last = facet[side.corner];
-    std::vector<Triangle>& fan = parts[side.facet];
+    std::vector<Triangle>& fan = parts[side.triangle];
     for (const VertexOnEdge& v : on) {
       fan.push_back({apex, last, v.vertex});
       last = v.vertex;

@@ -1,9 +1,9 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/mesh_edges.h"
 #include "geometry/mesh_measure.h"
 #include "tasks/repair/fin_repair_internal.h"
-#include "tasks/repair/soup_edges_internal.h"
 
 namespace astrolith {
 namespace {
@@ -13,7 +13,7 @@ constexpr int kFinRounds = 8;                                // a fin may stand 
 
 // Where a facet's patch is open, and where it hangs on an edge of more than two facets.
 struct Patches {
-  FacetSets sets;
+  DisjointSets sets;
   std::vector<char> open, hangs;  // (#F) valid at each set's first facet
   std::vector<double> area;       // (#F) likewise
   double whole = 0.0;
@@ -21,17 +21,17 @@ struct Patches {
 
 Patches patches_of(const TriangleMesh& mesh, bool across_all_edges) {
   const std::size_t count = mesh.triangles.size();
-  Patches patches{FacetSets(count), std::vector<char>(count), std::vector<char>(count),
+  Patches patches{DisjointSets(count), std::vector<char>(count), std::vector<char>(count),
                   std::vector<double>(count), 0.0};
-  const std::vector<FacetSide> sides = sorted_facet_sides(mesh);
-  for_each_soup_edge(sides, [&](std::span<const FacetSide> edge) {
+  const std::vector<TriangleSide> sides = sorted_sides(mesh);
+  for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
     if (edge.size() != 2 && !across_all_edges) return;
-    for (const FacetSide& side : edge.subspan(1)) patches.sets.unite(edge[0].facet, side.facet);
+    for (const TriangleSide& side : edge.subspan(1)) patches.sets.unite(edge[0].triangle, side.triangle);
   });
-  for_each_soup_edge(sides, [&](std::span<const FacetSide> edge) {
-    for (const FacetSide& side : edge) {
-      if (edge.size() == 1) patches.open[patches.sets.find(side.facet)] = 1;
-      if (edge.size() > 2) patches.hangs[patches.sets.find(side.facet)] = 1;
+  for_each_edge(sides, [&](std::span<const TriangleSide> edge) {
+    for (const TriangleSide& side : edge) {
+      if (edge.size() == 1) patches.open[patches.sets.find(side.triangle)] = 1;
+      if (edge.size() > 2) patches.hangs[patches.sets.find(side.triangle)] = 1;
     }
   });
   for (std::uint32_t f = 0; f < count; ++f) {

@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/mesh_edges.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/surface/winding_number.h"
 #include "tasks/repair/scene_bodies_internal.h"
-#include "tasks/repair/soup_edges_internal.h"
 
 namespace astrolith {
 namespace {
@@ -69,7 +69,7 @@ std::vector<std::uint32_t> bodies_of(const std::vector<Component>& components) {
   std::stable_sort(by_volume.begin(), by_volume.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::abs(components[a].volume) > std::abs(components[b].volume);
   });
-  FacetSets sets(components.size());
+  DisjointSets sets(components.size());
   double angles_left = kMostAngles;
   for (std::size_t i = 0; i < std::min(by_volume.size(), kMostComponents); ++i) {
     for (std::size_t j = i + 1; j < by_volume.size(); ++j) {

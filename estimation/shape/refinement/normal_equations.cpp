@@ -5,7 +5,8 @@
 #include "numerics/host_device.h"
 #include "numerics/parallel_for.h"
 
-// Of libgomp, which CHOLMOD brings along. Its header is not everywhere: clang has another.
+// These two functions are libgomp's, which CHOLMOD brings along. They are declared here since clang's <omp.h>
+// is that of another library.
 extern "C" void omp_set_max_active_levels(int levels);
 extern "C" int omp_get_max_active_levels();
 
