@@ -32,13 +32,15 @@ void require_texture(const GreyImage& exemplar, const std::string& name) {
   }
 }
 
-// The weights W of the dictionary's rows. With 1 / sqrt(S) a small error of the spectrum counts as twice the
-// error of its square root, which the optimal-transport distance measures. Frequency 0 holds no data.
-std::vector<double> row_weights(const PowerSpectrum& estimate, SpectrumTarget target) {
-  std::vector<double> weight(estimate.power.size(), 1.0);
-  if (target == SpectrumTarget::kSmoothed) {
-    const double floor = 1e-4 * estimate.variance();
-    for (std::size_t i = 1; i < weight.size(); ++i) weight[i] = 1.0 / std::sqrt(estimate.power[i] + floor);
+// The weights W of the dictionary's rows, for a spectrum S of unit variance. With sqrt(w / S) a small error
+// of the spectrum counts as twice the error of its square root, which the weighted optimal-transport distance
+// measures. Frequency 0 holds no data.
+std::vector<double> row_weights(const SpectrumEstimate& estimate) {
+  const std::vector<double>& w = estimate.weights;
+  std::vector<double> weight(estimate.spectrum.power.size(), 1.0);
+  const double unit = estimate.spectrum.variance(), floor = 1e-4;
+  for (std::size_t i = 1; i < w.size(); ++i) {
+    weight[i] = w[i] / std::sqrt(w[i] * estimate.spectrum.power[i] / unit + floor);
   }
   weight[0] = 0.0;
   return weight;
@@ -52,7 +54,7 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   for (double& p : scaled.power) p /= unit;
   const GaborDictionary dictionary(target.width, target.height, kWidestBandwidth,
                                    narrowest_bandwidth(target.width, target.height),
-                                   row_weights(scaled, options.target));
+                                   row_weights(fit.estimate));
   BasisPursuitProblem problem{dictionary, std::move(scaled.power), 0.0};
   for (std::size_t i = 0; i < problem.target.size(); ++i) problem.target[i] *= dictionary.weight()[i];
   problem.penalty = options.penalty_ratio * largest_penalty(dictionary, problem.target);
@@ -77,6 +79,15 @@ std::vector<SpectralLobe> refined(const std::vector<SpectralLobe>& lobes, const 
 // of the range of a recipe.
 constexpr double kSmallestContrast = 1e-4;
 
+// The variance of a lobe at frequencies other than 0, which is all of it that a photo shows.
+double shown_variance(const SpectralLobe& lobe, int width, int height) {
+  const auto at_zero = [&](int n, double center) {
+    return periodic_gaussian(n, center * n, lobe_deviation(lobe.bandwidth) * n).front();
+  };
+  return lobe_variance(lobe, width, height) -
+         2.0 * lobe.height / width / height * at_zero(width, lobe.x) * at_zero(height, lobe.y);
+}
+
 // Lobes with variances instead of heights. The variances are scaled so that their sum is the exemplar's
 // variance.
 std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, GaborFit& fit) {
@@ -84,7 +95,7 @@ std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, Ga
   std::vector<GaborLobe> result;
   double total = 0.0;
   for (const SpectralLobe& lobe : lobes) {
-    const double variance = lobe_variance(lobe, grid.width, grid.height);
+    const double variance = shown_variance(lobe, grid.width, grid.height);
     total += variance;
     result.push_back(
         {lobe.bandwidth, round_to_seven_digits(lobe.x), round_to_seven_digits(lobe.y), variance});
@@ -119,8 +130,9 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   if (!(fit.exemplar_rms > kSmallestContrast))
     throw InputError(name +
                      ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
-  fit.estimate = options.target == SpectrumTarget::kSmoothed ? estimate_spectrum(fit.periodogram, progress)
-                                                             : SpectrumEstimate{fit.periodogram, {}, 0.0};
+  fit.estimate = options.target == SpectrumTarget::kSmoothed
+                     ? estimate_spectrum(fit.periodogram, progress)
+                     : SpectrumEstimate{fit.periodogram, {}, 0.0, {}, 0.0};
   bool stopped = false;
   const auto heeded = [&](double fraction, std::string_view words) {
     const bool goes_on = report(progress, fraction, words);
@@ -130,7 +142,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   std::vector<SpectralLobe> lobes;
   if (heeded(0.0, "starting")) lobes = pursue(fit, options, heeded);
   fit.pursuit_lobes = static_cast<int>(lobes.size());
-  const std::vector<double> weight = row_weights(fit.estimate.spectrum, options.target);
+  const std::vector<double> weight = row_weights(fit.estimate);
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
   if (options.target == SpectrumTarget::kSmoothed) lobes = refined(lobes, weight, heeded, fit);
   if (lobes.empty()) {

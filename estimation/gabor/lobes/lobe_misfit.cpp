@@ -6,6 +6,7 @@
 
 #include "estimation/gabor/pursuit/gabor_dictionary.h"
 #include "numerics/parallel_for.h"
+#include "numerics/sample_statistics.h"
 
 namespace astrolith {
 namespace {
@@ -99,13 +100,17 @@ double wrapped(double frequency) { return frequency - std::floor(frequency + 0.5
 
 }  // namespace
 
-LobeMisfit::LobeMisfit(std::vector<SpectralLobe> start, const PowerSpectrum& target)
+LobeMisfit::LobeMisfit(std::vector<SpectralLobe> start, const PowerSpectrum& target,
+                       const std::vector<double>& weights)
     : start_(std::move(start)),
       width_(target.width),
       height_(target.height),
-      offset_(1e-6 * target.variance()),
-      total_(target.variance() * static_cast<double>(target.power.size())) {
-  for (const double p : target.power) target_roots_.push_back(std::sqrt(p + offset_));
+      total_(sum_of_products(weights, target.power)),
+      weights_(weights) {
+  offset_ = 1e-6 * total_ / static_cast<double>(target.power.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    target_roots_.push_back(std::sqrt(weights[i] * target.power[i] + offset_));
+  }
 }
 
 std::vector<SpectralLobe> LobeMisfit::lobes_at(std::span<const double> parameters) const {
@@ -132,10 +137,10 @@ double LobeMisfit::operator()(std::span<const double> parameters, std::span<doub
   const auto h = static_cast<std::size_t>(height_);
   for (std::size_t i = 1; i < halves.size(); ++i) {
     const std::size_t mirror = (h - i / w) % h * w + (w - i % w) % w;
-    const double root = std::sqrt(halves[i] + halves[mirror] + offset_);
+    const double root = std::sqrt(weights_[i] * (halves[i] + halves[mirror]) + offset_);
     const double difference = root - target_roots_[i];
     misfit += difference * difference;
-    weight[i] = difference / root;
+    weight[i] = weights_[i] * difference / root;
   }
   if (!gradient.empty()) {
     parallel_for(0, static_cast<std::int64_t>(lobes.size()), [&](std::int64_t i) {

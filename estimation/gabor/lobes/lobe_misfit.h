@@ -11,15 +11,16 @@ namespace astrolith {
 
 // The squared optimal-transport distance, relative to the spectrum's power,
 //
-//   sum over f != 0 of (sqrt(S(f) + e) - sqrt(target(f) + e))^2 / sum of target,
+//   sum over f != 0 of w(f) (sqrt(S(f) + e(f)) - sqrt(target(f) + e(f)))^2 / sum of w target,
 //
-// of S = sum_j height_j (g(f - c_j) + g(f + c_j)). e is 1e-6 of the mean power and keeps the roots smooth.
-// Each lobe has three parameters: the motion of its centre along x and y, in deviations of the lobe, and the
-// logarithm of its height over its height at the start. All parameters are 0 at the start. Bandwidths do not
-// change.
+// of S = sum_j height_j (g(f - c_j) + g(f + c_j)), with weights w. w e is 1e-6 of the mean of w target and
+// keeps the roots smooth. Each lobe has three parameters: the motion of its centre along x and y, in
+// deviations of the lobe, and the logarithm of its height over its height at the start. All parameters are 0
+// at the start. Bandwidths do not change.
 class LobeMisfit {
  public:
-  LobeMisfit(std::vector<SpectralLobe> start, const PowerSpectrum& target);
+  LobeMisfit(std::vector<SpectralLobe> start, const PowerSpectrum& target,
+             const std::vector<double>& weights);
 
   int parameters() const { return 3 * static_cast<int>(start_.size()); }
   // The misfit, and its derivatives by the parameters in `gradient`, which is empty or has as many values as
@@ -34,9 +35,10 @@ class LobeMisfit {
   std::vector<SpectralLobe> start_;
   int width_;
   int height_;
-  double offset_;                     // e
-  double total_;                      // sum of target
-  std::vector<double> target_roots_;  // sqrt(target + e)
+  double offset_;                     // w e
+  double total_;                      // sum of w target
+  std::vector<double> weights_;       // w
+  std::vector<double> target_roots_;  // sqrt(w (target + e))
 };
 
 }  // namespace astrolith

@@ -39,19 +39,19 @@ class StopWhenAsked : public ceres::IterationCallback {
   const Progress& progress_;
 };
 
-// The optimal-transport distance: the root of the misfit, whose small offset e is neglected.
-double distance_of(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target) {
-  const LobeMisfit misfit(lobes, target);
+// The weighted optimal-transport distance: the root of the misfit, whose small offset e is neglected.
+double distance_of(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate) {
+  const LobeMisfit misfit(lobes, estimate.spectrum, estimate.weights);
   const std::vector<double> start(static_cast<std::size_t>(misfit.parameters()), 0.0);
   return std::sqrt(misfit(start, {}));
 }
 
 }  // namespace
 
-RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpectrum& target,
+RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& target,
                           const Progress& progress) {
   if (lobes.empty()) return {};
-  const LobeMisfit misfit(lobes, target);
+  const LobeMisfit misfit(lobes, target.spectrum, target.weights);
   std::vector<double> parameters(static_cast<std::size_t>(misfit.parameters()), 0.0);
   const ceres::GradientProblem problem(new MisfitFunction(misfit));
   ceres::GradientProblemSolver::Options options;
@@ -68,13 +68,13 @@ RefinedLobes refine_lobes(const std::vector<SpectralLobe>& lobes, const PowerSpe
 RefinedLobes fewest_lobes(const std::vector<SpectralLobe>& lobes, const SpectrumEstimate& estimate,
                           const std::vector<double>& weight, const Progress& progress) {
   if (!report(progress, 1.0, kRefining)) return {lobes, false};
-  const double allowed = estimate.standard_error / 3.0;
-  RefinedLobes best = refine_lobes(lobes, estimate.spectrum, progress);
+  const double allowed = estimate.weighted_error / 3.0;
+  RefinedLobes best = refine_lobes(lobes, estimate, progress);
   while (best.lobes.size() > 1 && report(progress, 1.0, kRefining)) {
     const auto fewer = static_cast<int>(0.75 * static_cast<double>(best.lobes.size()));
     RefinedLobes candidate = refine_lobes(
-        select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate.spectrum, progress);
-    if (candidate.lobes.empty() || distance_of(candidate.lobes, estimate.spectrum) > allowed) break;
+        select_lobes(best.lobes, estimate.spectrum, weight, std::max(1, fewer)), estimate, progress);
+    if (candidate.lobes.empty() || distance_of(candidate.lobes, estimate) > allowed) break;
     best = std::move(candidate);
   }
   return best;

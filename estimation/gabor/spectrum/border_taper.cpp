@@ -84,6 +84,18 @@ double independent_share(const std::vector<double>& taper) {
   return square * square / (static_cast<double>(taper.size()) * fourth);
 }
 
+double sum_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return sum;
+}
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v * v;
+  return sum / static_cast<double>(values.size());
+}
+
 double weighted_sum(const GreyImage& image, const std::vector<double>& wx, const std::vector<double>& wy) {
   double sum = 0.0;
   for (int y = 0; y < image.height; ++y) {
@@ -92,15 +104,6 @@ double weighted_sum(const GreyImage& image, const std::vector<double>& wx, const
     sum += wy[static_cast<std::size_t>(y)] * row;
   }
   return sum;
-}
-
-double variance_of(const GreyImage& image) {
-  const auto n = static_cast<double>(image.values.size());
-  double mean = 0.0;
-  for (const double v : image.values) mean += v / n;
-  double sum = 0.0;
-  for (const double v : image.values) sum += (v - mean) * (v - mean);
-  return sum / n;
 }
 
 }  // namespace
@@ -115,25 +118,22 @@ bool tiles_along_y(const GreyImage& image) {
 
 std::vector<double> border_fading(int n) { return fading(n, false); }
 
-TaperedImage taper_borders(const GreyImage& image) {
-  const std::vector<double> wx = fading(image.width, tiles_along_x(image));
-  const std::vector<double> wy = fading(image.height, tiles_along_y(image));
-  double total_x = 0.0;
-  double total_y = 0.0;
-  for (const double w : wx) total_x += w;
-  for (const double w : wy) total_y += w;
-  const double mean = weighted_sum(image, wx, wy) / (total_x * total_y);
-  TaperedImage result{image, independent_share(wx) * independent_share(wy)};
-  double power = 0.0;
+double BorderTaper::looks() const { return independent_share(columns) * independent_share(rows); }
+
+BorderTaper taper_of(const GreyImage& image) {
+  const bool x = tiles_along_x(image), y = tiles_along_y(image);
+  return {fading(image.width, x), fading(image.height, y), x, y};
+}
+
+GreyImage faded(const GreyImage& image, const BorderTaper& taper) {
+  const double mean =
+      weighted_sum(image, taper.columns, taper.rows) / (sum_of(taper.columns) * sum_of(taper.rows));
+  const double gain = 1.0 / std::sqrt(mean_square(taper.columns) * mean_square(taper.rows));
+  GreyImage result = image;
+  const auto width = static_cast<std::size_t>(image.width);
   for (std::size_t i = 0; i < image.values.size(); ++i) {
-    const auto width = static_cast<std::size_t>(image.width);
-    double& v = result.image.values[i];
-    v = wx[i % width] * wy[i / width] * (v - mean);
-    power += v * v;
+    result.values[i] = gain * taper.columns[i % width] * taper.rows[i / width] * (image.values[i] - mean);
   }
-  const double tapered_variance = power / static_cast<double>(image.values.size());
-  const double gain = tapered_variance > 0.0 ? std::sqrt(variance_of(image) / tapered_variance) : 0.0;
-  for (double& v : result.image.values) v *= gain;
   return result;
 }
 

@@ -15,22 +15,21 @@ namespace astrolith {
 bool tiles_along_x(const GreyImage& image);
 bool tiles_along_y(const GreyImage& image);
 
-struct TaperedImage {
-  GreyImage image;     // taper * (exemplar - its weighted mean), scaled to the variance of the exemplar
-  double looks = 1.0;  // share of independent values in its periodogram, (0, 1]
-};
-
-// The weights of n columns (or rows) that taper_borders uses where borders do not match.
+// The weights of n columns (or rows) where borders do not match: a raised cosine (Tukey 1967) over a tenth at
+// each end.
 std::vector<double> border_fading(int n);
 
-// Fades the image to its mean by a raised cosine (Tukey 1967), over a tenth of each side at borders that do
-// not match. Along an axis that tiles, the image does not change.
-//
-// Moisan's periodic component removes some of the lowest frequencies of a texture together with the jumps. On
-// 128 x 128 squares cut out of larger textures the taper's estimate is nearer to the truth: its relative
-// optimal-transport distance is 0.118 against 0.143 on the four-lobe spectrum, and 0.085 against 0.120 on the
-// ring. On the steep spectrum it is 0.18 against 0.16, which is within chance. The taper's estimate is also
-// nearer to held-out squares of height maps.
-TaperedImage taper_borders(const GreyImage& image);
+// A taper is the product of the weights of columns and of rows. Along an axis that tiles all weights are 1.
+struct BorderTaper {
+  std::vector<double> columns, rows;
+  bool tiles_x = false, tiles_y = false;
+
+  double looks() const;  // share of independent values in the periodogram of a tapered image, (0, 1]
+};
+BorderTaper taper_of(const GreyImage& image);
+
+// taper * (image - its weighted mean) / (root mean square of the taper). A stationary texture keeps its power
+// at every frequency, up to leakage from its neighbours; its variance in this window may change.
+GreyImage faded(const GreyImage& image, const BorderTaper& taper);
 
 }  // namespace astrolith

@@ -4,10 +4,12 @@
 #include <complex>
 #include <cstdint>
 #include <cstdlib>
+#include <utility>
 
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/periodic_component.h"
+#include "estimation/gabor/spectrum/tapered_periodogram.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -53,12 +55,9 @@ GreyImage cut(const GreyImage& image, int x0, int y0, int width, int height) {
   return tile;
 }
 
-PowerSpectrum periodogram_of(const GreyImage& image, Borders borders) {
-  if (borders == Borders::kPeriodicComponent) return power_spectrum(decompose_periodic(image).periodic);
-  const TaperedImage tapered = taper_borders(image);
-  PowerSpectrum spectrum = power_spectrum(tapered.image);
-  spectrum.averages = tapered.looks;
-  return spectrum;
+TaperedPower power_of(const GreyImage& image, Borders borders) {
+  if (borders == Borders::kTaper) return tapered_power(image);
+  return {power_spectrum(decompose_periodic(image).periodic), {}, 0.0};
 }
 
 }  // namespace
@@ -97,21 +96,19 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
   const int tile_height = std::min(image.height, largest_side);
   const std::vector<int> xs = tile_starts(image.width, tile_width);
   const std::vector<int> ys = tile_starts(image.height, tile_height);
-  if (xs.size() * ys.size() == 1) return periodogram_of(image, borders);
-
-  PowerSpectrum mean{tile_width, tile_height, {}};
-  mean.power.assign(static_cast<std::size_t>(tile_width) * static_cast<std::size_t>(tile_height), 0.0);
+  TaperedPower sum;
   for (const int y : ys) {
     for (const int x : xs) {
       if (!report(progress, 0.0, "spectrum of the photo")) {
         throw WorkError("stopped before the spectrum was known; nothing is written");
       }
-      const PowerSpectrum one = periodogram_of(cut(image, x, y, tile_width, tile_height), borders);
-      for (std::size_t i = 0; i < mean.power.size(); ++i) mean.power[i] += one.power[i];
+      sum.add(power_of(cut(image, x, y, tile_width, tile_height), borders));
     }
   }
-  const double tiles = static_cast<double>(xs.size() * ys.size());
-  for (double& p : mean.power) p /= tiles;
+  const std::size_t tiles = xs.size() * ys.size();
+  sum.divide(static_cast<double>(tiles));
+  PowerSpectrum mean = borders == Borders::kTaper ? least_leaky(sum) : std::move(sum.values);
+  if (tiles == 1) return mean;
   // Tiles that overlap share pixels, so the number of independent looks is that of tiles side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());
   mean.scatter = scatter_along(xs, tile_width, borders) * scatter_along(ys, tile_height, borders);

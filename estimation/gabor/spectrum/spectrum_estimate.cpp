@@ -6,26 +6,13 @@
 
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/gabor/spectrum/log_spectrum_spline.h"
+#include "estimation/gabor/spectrum/octaves.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
 
 double bins_per_cycle(const PowerSpectrum& s) { return std::sqrt(static_cast<double>(s.width) * s.height); }
-
-// log2 |f| of every grid point, with |f| in bins and at least 1.
-std::vector<double> octave_positions(const PowerSpectrum& s) {
-  std::vector<double> positions;
-  positions.reserve(s.power.size());
-  for (int y = 0; y < s.height; ++y) {
-    const double fy = static_cast<double>(signed_frequency(y, s.height)) / s.height;
-    for (int x = 0; x < s.width; ++x) {
-      const double fx = static_cast<double>(signed_frequency(x, s.width)) / s.width;
-      positions.push_back(std::log2(std::max(1.0, std::hypot(fx, fy) * bins_per_cycle(s))));
-    }
-  }
-  return positions;
-}
 
 // Smoothing widths in bins, a factor of sqrt(2) apart. They reach from no smoothing to an eighth of the
 // distance to the Nyquist frequency.
@@ -125,32 +112,64 @@ std::vector<OctaveSmoothing> smoothing_of(const std::vector<std::size_t>& best,
   return smoothing;
 }
 
-void scale_to_variance(PowerSpectrum& spectrum, double variance) {
+// Gives the spectrum S the variance by the most likely change of ln S. The error of ln S is equally large at
+// every frequency, so the change of least squares with a given sum of S is proportional to S: what is lacking
+// goes to the peaks, which the spline had lowered.
+void raise_to_variance(PowerSpectrum& spectrum, double variance) {
+  constexpr int kSteps = 30;
+  constexpr double kMost = 3.0;  // change of ln S at the peak
+  const double peak = *std::max_element(spectrum.power.begin(), spectrum.power.end());
+  const double wanted = variance * static_cast<double>(spectrum.power.size());
+  double change = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    double sum = 0.0, slope = 0.0;
+    for (const double p : spectrum.power) {
+      const double raised = p * std::exp(change * p / peak);
+      sum += raised;
+      slope += raised * p / peak;
+    }
+    const double next = std::clamp(change + (wanted - sum) / slope, -kMost, kMost);
+    const bool settled = std::fabs(next - change) < 1e-9;
+    change = next;
+    if (settled) break;
+  }
+  for (double& p : spectrum.power) p *= std::exp(change * p / peak);
   const double gain = variance / spectrum.variance();
   for (double& p : spectrum.power) p *= gain;
 }
 
 }  // namespace
 
-SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress) {
+SpectrumEstimate estimate_spectrum(const PowerSpectrum& whole, const Progress& progress) {
+  // The variance of wider features is no part of a smooth spectrum.
+  PowerSpectrum periodogram = whole;
+  add_to_lowest_octave(periodogram, -whole.wider_variance);
   const std::vector<double> positions = octave_positions(periodogram);
   const std::vector<TriedSpline> tried = try_widths(periodogram, positions, progress);
   const std::vector<std::size_t> best = best_by_octave(tried);
-  SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0};
+  SpectrumEstimate estimate{periodogram, smoothing_of(best, tried, periodogram), 0.0, {}, 0.0};
   std::vector<double>& power = estimate.spectrum.power;
   const double floor = 1e-12 * periodogram.variance();
-  double error = 0.0;
+  std::vector<double> variance(power.size(), 0.0);  // of ln S
   power[0] = 0.0;
   for (std::size_t i = 1; i < power.size(); ++i) {
     const Between spline(spline_index(positions[i], best), tried.size());
     const TriedSpline& rough = tried[spline.lower];
     const double g = std::lerp(rough.g[i], tried[spline.upper].g[i], spline.fraction);
     power[i] = std::max(floor, std::exp(g));
-    error += power[i] * rough.freedom.variance / 4.0;
+    variance[i] = rough.freedom.variance;
   }
-  estimate.standard_error =
-      std::sqrt(error / (estimate.spectrum.variance() * static_cast<double>(power.size())));
-  scale_to_variance(estimate.spectrum, periodogram.variance());
+  raise_to_variance(estimate.spectrum, periodogram.variance());
+  add_to_lowest_octave(estimate.spectrum, whole.wider_variance);
+  estimate.weights = octave_weights(estimate.spectrum);
+  double error = 0.0, weighted = 0.0;
+  for (std::size_t i = 1; i < power.size(); ++i) {
+    error += power[i] * variance[i] / 4.0;
+    weighted += estimate.weights[i] * power[i] * variance[i] / 4.0;
+  }
+  const double total = estimate.spectrum.variance() * static_cast<double>(power.size());
+  estimate.standard_error = std::sqrt(error / total);
+  estimate.weighted_error = std::sqrt(weighted / total);
   return estimate;
 }
 

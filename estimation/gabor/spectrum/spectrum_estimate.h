@@ -20,6 +20,9 @@ struct SpectrumEstimate {
   // The optimal-transport distance from the truth that is expected from speckle alone: the root of
   // sum S var(ln S) / 4 over sum S. It is 0 for an estimate that is a raw periodogram.
   double standard_error = 0.0;
+  std::vector<double> weights;  // octave_weights of the spectrum; empty for a raw periodogram
+  double weighted_error =
+      0.0;  // standard_error with these weights: the root of sum w S var(ln S) / 4 over sum w S
 };
 
 // The periodogram I of a Gaussian texture is its spectrum times exponential speckle. The log spectrum g is
@@ -29,7 +32,8 @@ struct SpectrumEstimate {
 //   sum over the octave of n (g + I exp(-g)) + effective parameters per bin,
 //
 // and w is interpolated between octaves. Peaks near frequency 0 thus stay narrow, while flat regions are
-// smoothed widely. Frequency 0 holds no data and is left out. Throws WorkError when progress asks to stop.
+// smoothed widely. Frequency 0 holds no data and is left out, and so is PowerSpectrum::wider_variance, which the
+// lowest octave of the estimate has again. Throws WorkError when progress asks to stop.
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress = {});
 
 }  // namespace astrolith

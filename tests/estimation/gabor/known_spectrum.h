@@ -139,14 +139,13 @@ inline GreyImage realisation_of(const PowerSpectrum& spectrum, std::uint64_t see
   return image;
 }
 
-// A 128 x 128 corner of a realisation four times as large, so that its borders do not match. `truth` is the
-// true spectrum on the corner's grid, scaled to the variance of the corner.
+// A 128 x 128 corner of a realisation four times as large, so that its borders do not match, and the true
+// spectrum on the corner's grid.
 struct CutTexture {
   GreyImage image;
   PowerSpectrum truth;
 };
-inline CutTexture cut_realisation(const std::function<double(double fx, double fy)>& power,
-                                  std::uint64_t seed) {
+inline CutTexture unscaled_cut(const std::function<double(double fx, double fy)>& power, std::uint64_t seed) {
   constexpr int n = 128;
   constexpr int large = 4 * n;
   PowerSpectrum whole{large, large, {}};
@@ -157,10 +156,21 @@ inline CutTexture cut_realisation(const std::function<double(double fx, double f
     }
   }
   const GreyImage texture = realisation_of(whole, seed);
-  CutTexture cut{{n, n, {}}, spectrum_from(power)};
+  CutTexture cut{{n, n, {}}, {n, n, {}}};
   for (int y = 0; y < n; ++y) {
-    for (int x = 0; x < n; ++x) cut.image.values.push_back(texture.at(x, y));
+    for (int x = 0; x < n; ++x) {
+      cut.image.values.push_back(texture.at(x, y));
+      cut.truth.power.push_back(x + y == 0 ? 0.0 : power(signed_frequency(x, n), signed_frequency(y, n)));
+    }
   }
+  return cut;
+}
+
+// A cut whose truth is scaled to the variance of the image, and 0 at half a cycle per pixel.
+inline CutTexture cut_realisation(const std::function<double(double fx, double fy)>& power,
+                                  std::uint64_t seed) {
+  CutTexture cut = unscaled_cut(power, seed);
+  cut.truth = spectrum_from(power);
   const double variance = power_spectrum(cut.image).variance();
   for (double& p : cut.truth.power) p *= variance;
   return cut;

@@ -1,0 +1,78 @@
+#include "estimation/gabor/spectrum/tapered_periodogram.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/spectrum_estimate.h"
+#include "numerics/sample_statistics.h"
+#include "tests/estimation/gabor/known_spectrum.h"
+
+namespace astrolith {
+namespace {
+
+// The mean power of an octave, from `lowest` to twice as many cycles a side.
+double power_of_octave(const PowerSpectrum& s, double lowest) {
+  double sum = 0.0;
+  int bins = 0;
+  for (int y = 0; y < s.height; ++y) {
+    for (int x = 0; x < s.width; ++x) {
+      const double r = std::hypot(signed_frequency(x, s.width), signed_frequency(y, s.height));
+      if (r < lowest || r >= 2.0 * lowest) continue;
+      sum += s.power[static_cast<std::size_t>(y * s.width + x)];
+      ++bins;
+    }
+  }
+  return sum / bins;
+}
+
+// Spectra with most power below three cycles an image, and white noise, on squares cut out of larger
+// textures.
+TEST(TaperedPeriodogram, DoesNotLeak) {
+  const auto falling = [](double exponent) {
+    return [exponent](double fx, double fy) { return std::pow(0.1 + fx * fx + fy * fy, -0.5 * exponent); };
+  };
+  for (const double exponent : {0.0, 2.0, 3.0, 4.0, 5.0}) {
+    const auto truth = falling(exponent);
+    std::vector<double> ratio(4);
+    constexpr int kSeeds = 12;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const testing::CutTexture cut = testing::unscaled_cut(truth, seed);
+      const PowerSpectrum spectrum = least_leaky(tapered_power(cut.image));
+      for (std::size_t k = 0; k < ratio.size(); ++k) {
+        const double lowest = std::ldexp(4.0, static_cast<int>(k));
+        ratio[k] += power_of_octave(spectrum, lowest) / power_of_octave(cut.truth, lowest) / kSeeds;
+      }
+    }
+    for (const double r : ratio) EXPECT_NEAR(std::log(r), 0.0, 0.3) << "f^-" << exponent;
+  }
+}
+
+TEST(TaperedPeriodogram, HasTheVarianceOfThePixels) {
+  GreyImage image = testing::realisation_of(testing::ring_spectrum(), 3);
+  const double before = power_of_octave(least_leaky(tapered_power(image)), 16.0);
+  for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] += 0.1 * static_cast<double>(i % 128);
+  const PowerSpectrum spectrum = least_leaky(tapered_power(image));
+  EXPECT_NEAR(spectrum.variance(), variance_of(image.values), 1e-9);
+  // The ramp, of ten times the texture's variance, does not enter the texture's octave.
+  EXPECT_NEAR(power_of_octave(spectrum, 16.0) / before, 1.0, 0.1);
+}
+
+// On cuts of a larger texture the estimate is nearer to the truth than that from the periodic component.
+TEST(TaperedPeriodogram, ServesCutsBetterThanThePeriodicComponent) {
+  double taper = 0.0, periodic = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const testing::CutTexture cut = testing::cut_realisation(testing::ring_power, seed);
+    const auto distance = [&](Borders borders) {
+      return optimal_transport_distance(
+          estimate_spectrum(exemplar_periodogram(cut.image, 1024, borders)).spectrum, cut.truth);
+    };
+    taper += distance(Borders::kTaper);
+    periodic += distance(Borders::kPeriodicComponent);
+  }
+  EXPECT_LT(taper, 0.9 * periodic);
+}
+
+}  // namespace
+}  // namespace astrolith
