@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/gabor/exemplar/exemplar_pixels.h"
 #include "estimation/gabor/exemplar/texture_score.h"
 #include "estimation/gabor/image/grey_image.h"
 #include "numerics/progress.h"
@@ -28,21 +29,17 @@ struct PreparedExemplar {
 };
 
 // Makes an exemplar of a photo by the variant whose textures are nearest to the photo. `name` is the photo's
-// name in messages. Throws InputError for sides outside kLeastTextureSide to kMostTextureSide, and for a
-// photo of one grey value. Throws WorkError when `progress` asks to stop.
-inline constexpr int kLeastTextureSide = 32, kMostTextureSide = 4096;
+// name in messages. Throws InputError as require_exemplar() does. Throws WorkError when `progress` asks to
+// stop.
 PreparedExemplar prepare_exemplar(const GreyImage& photo, const std::string& name, std::uint64_t seed,
                                   const Progress& progress = {});
 
 // Prepares a photo in colour alike: red, green and blue of one size, full scale = 1. The layer has the
 // colours and paints. Its height is that of their luma, and the scores are those of the luma. The variant
-// changes each plane by itself; values beyond 0 to 1 are cut off. Throws InputError also for a photo with
-// values beyond -1 to 2, which are no colours.
+// changes each plane by itself; values beyond 0 to 1 are cut off. Throws InputError also as require_colors()
+// does.
 PreparedExemplar prepare_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
                                   std::uint64_t seed, const Progress& progress = {});
-
-// The luma of three planes: 0.2126 R + 0.7152 G + 0.0722 B.
-GreyImage luma_of(const std::vector<GreyImage>& planes);
 
 // A texture of an exemplar layer, in the grey values of the photo that it was made from.
 GreyImage exemplar_texture_like(const ExemplarLayer& layer, const GreyImage& photo, std::uint64_t seed);

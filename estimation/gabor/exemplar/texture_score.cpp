@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "numerics/portable_double.h"
@@ -11,25 +12,7 @@
 namespace astrolith {
 namespace {
 
-// The Wasserstein-1 distance over the deviation of `reference`: the mean difference of 4096 quantiles.
-double relative_distance(std::vector<double> values, std::vector<double> reference) {
-  constexpr int kQuantiles = 4096;
-  const double deviation = std::sqrt(variance_of(reference));
-  std::sort(values.begin(), values.end());
-  std::sort(reference.begin(), reference.end());
-  const auto quantile = [](const std::vector<double>& sorted_values, double share) {
-    const double at = share * static_cast<double>(sorted_values.size() - 1);
-    const auto i = static_cast<std::size_t>(at);
-    const double next = sorted_values[std::min(i + 1, sorted_values.size() - 1)];
-    return sorted_values[i] + (at - static_cast<double>(i)) * (next - sorted_values[i]);
-  };
-  double sum = 0.0;
-  for (int q = 0; q < kQuantiles; ++q) {
-    const double share = (q + 0.5) / kQuantiles;
-    sum += std::fabs(quantile(values, share) - quantile(reference, share));
-  }
-  return sum / kQuantiles / deviation;
-}
+constexpr int kQuantiles = 4096;
 
 // A Gaussian blur, cut at 3 sigma. The borders, where the blur is not whole, go: the result is smaller.
 GreyImage blurred_inside(const GreyImage& image, double sigma) {
@@ -75,21 +58,44 @@ std::array<std::vector<double>, 3> responses(const GreyImage& image, double sigm
 
 }  // namespace
 
-TextureScore texture_score(const GreyImage& texture, const GreyImage& photo) {
-  TextureScore score;
-  score.values = relative_distance(texture.values, photo.values);
-  const int side = std::min({texture.width, texture.height, photo.width, photo.height});
-  int filters = 0;
+TextureDistributions::Distribution TextureDistributions::distribution_of(std::vector<double> values) {
+  Distribution result{{}, std::sqrt(variance_of(values))};
+  std::sort(values.begin(), values.end());
+  for (int q = 0; q < kQuantiles; ++q) {
+    const double at = (q + 0.5) / kQuantiles * static_cast<double>(values.size() - 1);
+    const auto i = static_cast<std::size_t>(at);
+    const double next = values[std::min(i + 1, values.size() - 1)];
+    result.quantiles.push_back(values[i] + (at - static_cast<double>(i)) * (next - values[i]));
+  }
+  return result;
+}
+
+TextureDistributions::TextureDistributions(const GreyImage& image, int side) {
+  distributions_.push_back(distribution_of(image.values));
   for (const double sigma : {1.0, 2.0, 4.0, 8.0}) {
     if (!(side > 8.0 * sigma)) break;
-    const std::array<std::vector<double>, 3> of_texture = responses(texture, sigma),
-                                             of_photo = responses(photo, sigma);
-    for (std::size_t k = 0; k < 3; ++k, ++filters) {
-      score.filters += relative_distance(of_texture[k], of_photo[k]);
+    for (std::vector<double>& response : responses(image, sigma)) {
+      distributions_.push_back(distribution_of(std::move(response)));
     }
   }
-  score.filters /= filters;
+}
+
+// The Wasserstein-1 distance of two distributions is the mean difference of their quantiles.
+TextureScore TextureDistributions::score_against(const TextureDistributions& photo) const {
+  TextureScore score;
+  for (std::size_t k = 0; k < distributions_.size(); ++k) {
+    const Distribution &a = distributions_[k], &b = photo.distributions_[k];
+    double sum = 0.0;
+    for (std::size_t q = 0; q < a.quantiles.size(); ++q) sum += std::fabs(a.quantiles[q] - b.quantiles[q]);
+    (k == 0 ? score.values : score.filters) += sum / kQuantiles / b.deviation;
+  }
+  score.filters /= static_cast<double>(distributions_.size() - 1);
   return score;
+}
+
+TextureScore texture_score(const GreyImage& texture, const GreyImage& photo) {
+  const int side = std::min({texture.width, texture.height, photo.width, photo.height});
+  return TextureDistributions(texture, side).score_against(TextureDistributions(photo, side));
 }
 
 }  // namespace astrolith

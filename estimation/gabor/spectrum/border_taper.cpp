@@ -118,6 +118,16 @@ bool tiles_along_y(const GreyImage& image) {
 
 std::vector<double> border_fading(int n) { return fading(n, false); }
 
+void BorderTaper::fade_columns() {
+  columns = border_fading(static_cast<int>(columns.size()));
+  tiles_x = false;
+}
+
+void BorderTaper::fade_rows() {
+  rows = border_fading(static_cast<int>(rows.size()));
+  tiles_y = false;
+}
+
 double BorderTaper::looks() const { return independent_share(columns) * independent_share(rows); }
 
 BorderTaper taper_of(const GreyImage& image) {

@@ -24,6 +24,8 @@ struct BorderTaper {
   std::vector<double> columns, rows;
   bool tiles_x = false, tiles_y = false;
 
+  void fade_columns();
+  void fade_rows();
   double looks() const;  // share of independent values in the periodogram of a tapered image, (0, 1]
 };
 BorderTaper taper_of(const GreyImage& image);

@@ -1,6 +1,7 @@
 #include "estimation/gabor/spectrum/power_spectrum.h"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <cstdint>
 #include <cstdlib>
@@ -56,7 +57,7 @@ GreyImage cut(const GreyImage& image, int x0, int y0, int width, int height) {
 }
 
 TaperedPower power_of(const GreyImage& image, Borders borders) {
-  if (borders == Borders::kTaper) return tapered_power(image);
+  if (borders == Borders::kTaper) return tapered_power(image, image.width, image.height);
   return {power_spectrum(decompose_periodic(image).periodic), {}, 0.0};
 }
 
@@ -107,7 +108,9 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
   }
   const std::size_t tiles = xs.size() * ys.size();
   sum.divide(static_cast<double>(tiles));
-  PowerSpectrum mean = borders == Borders::kTaper ? least_leaky(sum) : std::move(sum.values);
+  PowerSpectrum mean = borders == Borders::kTaper
+                           ? least_leaky(sum, std::sqrt(static_cast<double>(tile_width) * tile_height))
+                           : std::move(sum.values);
   if (tiles == 1) return mean;
   // Tiles that overlap share pixels, so the number of independent looks is that of tiles side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());

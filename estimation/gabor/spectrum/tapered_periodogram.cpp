@@ -35,15 +35,29 @@ double squared_sine(int bin, int n) {
   return s * s;
 }
 
-PowerSpectrum slope_power(const GreyImage& image, const BorderTaper& taper) {
-  PowerSpectrum sum = power_spectrum(faded(differences(image, 1, 0, taper.tiles_x), taper));
-  const PowerSpectrum down = power_spectrum(faded(differences(image, 0, 1, taper.tiles_y), taper));
-  std::size_t i = 0;
+// The power of an image in the corner of an empty grid, per pixel of the image.
+PowerSpectrum power_on_grid(const GreyImage& image, int width, int height) {
+  GreyImage grid{width, height,
+                 std::vector<double>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x, ++i) {
+    const auto row = image.values.begin() + static_cast<std::ptrdiff_t>(y) * image.width;
+    std::copy(row, row + image.width, grid.values.begin() + static_cast<std::ptrdiff_t>(y) * width);
+  }
+  PowerSpectrum spectrum = power_spectrum(grid);
+  const double gain = static_cast<double>(grid.values.size()) / static_cast<double>(image.values.size());
+  for (double& p : spectrum.power) p *= gain;
+  return spectrum;
+}
+
+PowerSpectrum slope_power(const GreyImage& image, const BorderTaper& taper, int width, int height) {
+  PowerSpectrum sum = power_on_grid(faded(differences(image, 1, 0, taper.tiles_x), taper), width, height);
+  const PowerSpectrum down =
+      power_on_grid(faded(differences(image, 0, 1, taper.tiles_y), taper), width, height);
+  std::size_t i = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x, ++i) {
       if (i > 0)
-        sum.power[i] =
-            (sum.power[i] + down.power[i]) / (squared_sine(x, image.width) + squared_sine(y, image.height));
+        sum.power[i] = (sum.power[i] + down.power[i]) / (squared_sine(x, width) + squared_sine(y, height));
     }
   }
   return sum;
@@ -56,14 +70,15 @@ void add_power(PowerSpectrum& sum, const PowerSpectrum& other) {
   for (std::size_t i = 0; i < sum.power.size(); ++i) sum.power[i] += other.power[i];
 }
 
-// Brings the variance to that of the pixels. A difference that chance explains, and a surplus, is spread over
-// all frequencies. Chance moves the sum of the power by some root of the sum of its squares.
-void scale_to_pixels(PowerSpectrum& spectrum, double variance) {
+// Brings the variance to that of the pixels, by power below the frequency. A difference that chance explains,
+// and a surplus, is spread over all frequencies. Chance moves the sum of the power by some root of the sum of
+// its squares.
+void scale_to_pixels(PowerSpectrum& spectrum, double variance, double frequency) {
   const double lacking = variance - spectrum.variance();
   double squares = 0.0;
   for (const double p : spectrum.power) squares += p * p;
   if (lacking > std::sqrt(squares) / static_cast<double>(spectrum.power.size())) {
-    add_to_lowest_octave(spectrum, lacking);
+    add_below(frequency, lacking, spectrum);
     spectrum.wider_variance = lacking;
     return;
   }
@@ -89,15 +104,17 @@ void TaperedPower::divide(double count) {
   variance /= count;
 }
 
-TaperedPower tapered_power(const GreyImage& image) {
-  const BorderTaper taper = taper_of(image);
-  TaperedPower result{power_spectrum(faded(image, taper)), slope_power(image, taper),
-                      variance_of(image.values)};
+TaperedPower tapered_power(const GreyImage& image, int width, int height) {
+  BorderTaper taper = taper_of(image);
+  if (width > image.width) taper.fade_columns();
+  if (height > image.height) taper.fade_rows();
+  TaperedPower result{power_on_grid(faded(image, taper), width, height),
+                      slope_power(image, taper, width, height), variance_of(image.values)};
   result.values.averages = result.slopes.averages = taper.looks();
   return result;
 }
 
-PowerSpectrum least_leaky(const TaperedPower& power) {
+PowerSpectrum least_leaky(const TaperedPower& power, double side) {
   const std::vector<double> positions = octave_positions(power.values);
   const std::vector<double> values = power_by_octave(power.values, positions),
                             slopes = power_by_octave(power.slopes, positions);
@@ -106,7 +123,7 @@ PowerSpectrum least_leaky(const TaperedPower& power) {
     const auto octave = static_cast<std::size_t>(positions[i]);
     if (slopes[octave] < (1.0 - kNegligibleLeakage) * values[octave]) best.power[i] = power.slopes.power[i];
   }
-  scale_to_pixels(best, power.variance);
+  scale_to_pixels(best, power.variance, 2.0 / side);
   return best;
 }
 

@@ -18,7 +18,9 @@ struct TaperedPower {
   void add(const TaperedPower& other);
   void divide(double count);
 };
-TaperedPower tapered_power(const GreyImage& image);
+// On the frequencies of a grid of width x height pixels, at least the image's: a larger grid has finer
+// frequencies. Along such an axis the image is faded even if it tiles.
+TaperedPower tapered_power(const GreyImage& image, int width, int height);
 
 // The spectrum of less leakage. Differences whiten a steep spectrum before it is tapered (prewhitening,
 // Blackman and Tukey 1958). Leakage adds power and never takes any, so in each octave of |f| that one of the
@@ -27,6 +29,7 @@ TaperedPower tapered_power(const GreyImage& image);
 //
 // Its variance is that of the pixels. Of what it lacks, more than chance explains is
 // PowerSpectrum::wider_variance.
-PowerSpectrum least_leaky(const TaperedPower& power);
+// `side` is the (geometric mean) side of the image, in pixels, below two cycles of which that variance lies.
+PowerSpectrum least_leaky(const TaperedPower& power, double side);
 
 }  // namespace astrolith

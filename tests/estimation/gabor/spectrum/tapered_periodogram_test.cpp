@@ -27,6 +27,10 @@ double power_of_octave(const PowerSpectrum& s, double lowest) {
   return sum / bins;
 }
 
+PowerSpectrum spectrum_of_square(const GreyImage& image) {
+  return least_leaky(tapered_power(image, image.width, image.height), image.width);
+}
+
 // Spectra with most power below three cycles an image, and white noise, on squares cut out of larger
 // textures.
 TEST(TaperedPeriodogram, DoesNotLeak) {
@@ -39,7 +43,7 @@ TEST(TaperedPeriodogram, DoesNotLeak) {
     constexpr int kSeeds = 12;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       const testing::CutTexture cut = testing::unscaled_cut(truth, seed);
-      const PowerSpectrum spectrum = least_leaky(tapered_power(cut.image));
+      const PowerSpectrum spectrum = spectrum_of_square(cut.image);
       for (std::size_t k = 0; k < ratio.size(); ++k) {
         const double lowest = std::ldexp(4.0, static_cast<int>(k));
         ratio[k] += power_of_octave(spectrum, lowest) / power_of_octave(cut.truth, lowest) / kSeeds;
@@ -51,12 +55,23 @@ TEST(TaperedPeriodogram, DoesNotLeak) {
 
 TEST(TaperedPeriodogram, HasTheVarianceOfThePixels) {
   GreyImage image = testing::realisation_of(testing::ring_spectrum(), 3);
-  const double before = power_of_octave(least_leaky(tapered_power(image)), 16.0);
+  const double before = power_of_octave(spectrum_of_square(image), 16.0);
   for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] += 0.1 * static_cast<double>(i % 128);
-  const PowerSpectrum spectrum = least_leaky(tapered_power(image));
+  const PowerSpectrum spectrum = spectrum_of_square(image);
   EXPECT_NEAR(spectrum.variance(), variance_of(image.values), 1e-9);
   // The ramp, of ten times the texture's variance, does not enter the texture's octave.
   EXPECT_NEAR(power_of_octave(spectrum, 16.0) / before, 1.0, 0.1);
+}
+
+// A grid of finer frequencies shows the same spectrum.
+TEST(TaperedPeriodogram, OnAFinerGridIsTheSame) {
+  const GreyImage cut =
+      testing::unscaled_cut([](double fx, double fy) { return 1.0 / (1.0 + fx * fx + fy * fy); }, 4).image;
+  const PowerSpectrum coarse = spectrum_of_square(cut), fine = least_leaky(tapered_power(cut, 256, 256), 128);
+  EXPECT_NEAR(fine.variance(), coarse.variance(), 1e-9);
+  for (const double lowest : {4.0, 8.0, 16.0, 32.0}) {
+    EXPECT_NEAR(power_of_octave(fine, 2.0 * lowest) / power_of_octave(coarse, lowest), 1.0, 0.1) << lowest;
+  }
 }
 
 // On cuts of a larger texture the estimate is nearer to the truth than that from the periodic component.

@@ -1,0 +1,109 @@
+#include "estimation/gabor/exemplar/phase_exemplar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <numbers>
+
+#include "estimation/gabor/exemplar/exemplar_pixels.h"
+#include "estimation/gabor/image/image_channels.h"
+#include "estimation/gabor/spectrum/border_taper.h"
+#include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/gabor/spectrum/tapered_periodogram.h"
+#include "numerics/hash_random.h"
+#include "numerics/portable_double.h"
+#include "numerics/sample_statistics.h"
+#include "recipe/recipe_json.h"
+
+namespace astrolith {
+namespace {
+
+constexpr int kPreferredSide = 1024;
+
+int image_side(int side, bool tiles) {
+  return tiles ? side : std::min(2 * side, std::max(side, kPreferredSide));
+}
+
+// The wave of random phase at a frequency. Its opposite has the conjugate, and a frequency that is its own
+// opposite a random sign.
+std::complex<double> random_wave(int kx, int ky, int width, int height, std::uint32_t seed) {
+  const int opposite_x = (width - kx) % width, opposite_y = (height - ky) % height;
+  const bool mirrored = opposite_y < ky || (opposite_y == ky && opposite_x < kx);
+  const auto x = static_cast<std::uint32_t>(mirrored ? opposite_x : kx),
+             y = static_cast<std::uint32_t>(mirrored ? opposite_y : ky);
+  const double turn = double{unit_float(hash_append(hash_append(seed, y), x))};
+  if (opposite_x == kx && opposite_y == ky) return turn < 0.5 ? 1.0 : -1.0;
+  const portable::SineCosine angle = portable::sine_and_cosine(2.0 * std::numbers::pi * turn);
+  return {angle.cosine, mirrored ? -angle.sine : angle.sine};
+}
+
+// The spectrum of a plane on the frequencies of the layer's image.
+PowerSpectrum spectrum_of_plane(const GreyImage& plane) {
+  const int width = image_side(plane.width, tiles_along_x(plane)),
+            height = image_side(plane.height, tiles_along_y(plane));
+  return least_leaky(tapered_power(plane, width, height),
+                     std::sqrt(static_cast<double>(plane.width) * plane.height));
+}
+
+// Red, green and blue: the mean colour and the texture of each principal axis along it.
+std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes, std::uint64_t seed) {
+  const std::vector<ImageChannel> channels = principal_channels(planes);
+  // All channels get the size of the first, which holds most of the variance.
+  const bool x = tiles_along_x(channels.front().image), y = tiles_along_y(channels.front().image);
+  const int width = image_side(planes[0].width, x), height = image_side(planes[0].height, y);
+  const Vec3d mean = mean_color(planes);
+  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  std::vector<GreyImage> colors;
+  for (const double part : {mean.x, mean.y, mean.z})
+    colors.push_back({width, height, std::vector<double>(pixels, part)});
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    const ImageChannel& c = channels[k];
+    const PowerSpectrum spectrum =
+        least_leaky(tapered_power(c.image, width, height),
+                    std::sqrt(static_cast<double>(planes[0].width) * planes[0].height));
+    const GreyImage texture = random_phase_image(spectrum, hash_seed(seed, static_cast<std::uint32_t>(k)));
+    const double axis[] = {c.axis.x, c.axis.y, c.axis.z};
+    for (std::size_t i = 0; i < 3 * pixels; ++i)
+      colors[i / pixels].values[i % pixels] += axis[i / pixels] * texture.values[i % pixels];
+  }
+  return colors;
+}
+
+}  // namespace
+
+GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed) {
+  const FourierTransform fourier(spectrum.width, spectrum.height);
+  std::vector<std::complex<double>> half(fourier.half_size());
+  const auto pixels = static_cast<double>(fourier.grid_size());
+  std::size_t i = 0;
+  for (int y = 0; y < spectrum.height; ++y) {
+    for (int x = 0; x < fourier.half_width(); ++x, ++i) {
+      const double power =
+          spectrum.power[static_cast<std::size_t>(y) * static_cast<std::size_t>(spectrum.width) +
+                         static_cast<std::size_t>(x)];
+      half[i] = std::sqrt(power * pixels) * random_wave(x, y, spectrum.width, spectrum.height, seed);
+    }
+  }
+  half[0] = 0.0;
+  GreyImage image{spectrum.width, spectrum.height, std::vector<double>(fourier.grid_size())};
+  fourier.inverse(half, image.values);
+  return image;
+}
+
+ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
+                             std::uint64_t seed) {
+  const bool color = planes.size() == 3;
+  if (color) require_colors(planes, name);
+  const GreyImage photo = color ? luma_of(planes) : planes.front();
+  require_exemplar(photo, name);
+  ExemplarLayer layer;
+  layer.pixels = std::make_shared<const ExemplarImage>(
+      color ? colors_in_16_bits(random_phase_colors(planes, seed))
+            : in_16_bits(random_phase_image(spectrum_of_plane(photo), hash_seed(seed, 0))));
+  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(photo.values)));
+  layer.color = color;
+  return layer;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,27 @@
+// Random-phase noise with the whole spectrum of a photo, as the image of an exemplar layer.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "estimation/gabor/image/grey_image.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
+#include "recipe/recipe.h"
+
+namespace astrolith {
+
+// A periodic Gaussian texture with the power of every frequency of a spectrum and random phases (Galerne,
+// Gousseau and Morel, Random phase textures, IEEE TIP 2011), mean 0. Its variance is that of the spectrum
+// exactly.
+GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed);
+
+// An exemplar layer whose image has the spectrum of the photo, whatever its kind, and random phases. The
+// photo is one plane of grey, or red, green and blue, whose principal axes become independent textures. Along
+// an axis where the photo does not tile the image is twice as long, at most 1024 pixels or the photo's own
+// length: the longer it is, the less does blending change its spectrum. Lengths are pixels, and height_rms is
+// the deviation of the photo or of its luma. Throws as require_exemplar() and require_colors() do.
+ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
+                             std::uint64_t seed);
+
+}  // namespace astrolith

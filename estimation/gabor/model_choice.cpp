@@ -1,0 +1,160 @@
+#include "estimation/gabor/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "estimation/gabor/exemplar/exemplar_preparation.h"
+#include "estimation/gabor/exemplar/phase_exemplar.h"
+#include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
+#include "synthesis/gabor/gabor_texture.h"
+
+namespace astrolith {
+namespace {
+
+constexpr int kMostSide = 256, kTextures = 2;
+constexpr int kLeastSquares = 2;
+
+GreyImage square_of(const GreyImage& photo, int left, int top, int side) {
+  GreyImage square{side, side, {}};
+  for (int y = top; y < top + side; ++y) {
+    for (int x = left; x < left + side; ++x) square.values.push_back(photo.at(x, y));
+  }
+  return square;
+}
+
+// The squares in the middles of the quarters that have a tenth of the photo's contrast at least.
+std::vector<GreyImage> squares_of(const GreyImage& photo, int side) {
+  std::vector<GreyImage> squares;
+  const double least = 0.01 * variance_of(photo.values);
+  for (const int row : {1, 3}) {
+    for (const int column : {1, 3}) {
+      const int left = column * photo.width / 4 - side / 2, top = row * photo.height / 4 - side / 2;
+      GreyImage square = square_of(photo, std::clamp(left, 0, photo.width - side),
+                                   std::clamp(top, 0, photo.height - side), side);
+      if (variance_of(square.values) > least) squares.push_back(std::move(square));
+    }
+  }
+  return squares;
+}
+
+// A texture of lobes like the square that they were fitted to.
+GreyImage lobe_texture(const GaborFit& fit, const GreyImage& square, std::uint64_t seed) {
+  GaborLayer layer;
+  layer.exemplar_rms = layer.height_rms = fit.exemplar_rms;
+  layer.lobes = fit.lobes;
+  const double mean = mean_of(square.values);
+  GreyImage texture{square.width, square.height, {}};
+  for (const float v : synthesize_texture(layer, square.width, square.height, {seed, 0})) {
+    texture.values.push_back(mean + double{v});
+  }
+  return texture;
+}
+
+std::vector<GreyImage> textures_of(TextureModel model, const GreyImage& square, const std::string& name,
+                                   const GaborFitOptions& options, std::uint64_t seed) {
+  std::vector<GreyImage> textures;
+  if (model == TextureModel::kGabor) {
+    const GaborFit fit = fit_gabor_lobes(square, name, options);
+    for (int t = 0; t < kTextures; ++t)
+      textures.push_back(lobe_texture(fit, square, seed + static_cast<std::uint64_t>(t)));
+    return textures;
+  }
+  const ExemplarLayer layer = model == TextureModel::kPhase ? phase_exemplar({square}, name, seed)
+                                                            : prepare_exemplar(square, name, seed).layer;
+  for (int t = 0; t < kTextures; ++t)
+    textures.push_back(exemplar_texture_like(layer, square, seed + static_cast<std::uint64_t>(t)));
+  return textures;
+}
+
+// The mean score of textures of square `seen` against all other squares.
+TextureScore held_out_score(const std::vector<GreyImage>& textures,
+                            const std::vector<TextureDistributions>& squares, std::size_t seen, int side) {
+  TextureScore sum;
+  int count = 0;
+  for (const GreyImage& texture : textures) {
+    const TextureDistributions of_texture(texture, side);
+    for (std::size_t k = 0; k < squares.size(); ++k) {
+      if (k == seen) continue;
+      const TextureScore score = of_texture.score_against(squares[k]);
+      sum.values += score.values;
+      sum.filters += score.filters;
+      ++count;
+    }
+  }
+  return {sum.values / count, sum.filters / count};
+}
+
+double standard_error(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  return std::sqrt(variance_of(values) / (n - 1.0));
+}
+
+using Scores = std::array<std::vector<TextureScore>, 3>;  // of each model, by the seen square
+
+HeldOutScore summarised(const std::vector<TextureScore>& scores) {
+  std::vector<double> values, filters, sums;
+  for (const TextureScore& s : scores) {
+    values.push_back(s.values);
+    filters.push_back(s.filters);
+    sums.push_back(s.sum());
+  }
+  return {{mean_of(values), mean_of(filters)}, standard_error(sums)};
+}
+
+TextureModel simplest_of_the_best(const Scores& scores, const std::array<HeldOutScore, 3>& means) {
+  const auto best = std::min_element(means.begin(), means.end(),
+                                     [](const HeldOutScore& a, const HeldOutScore& b) {
+                                       return a.mean.sum() < b.mean.sum();
+                                     }) -
+                    means.begin();
+  for (const TextureModel model : kTextureModels) {
+    std::vector<double> worse;
+    for (std::size_t k = 0; k < scores[0].size(); ++k) {
+      worse.push_back(scores[static_cast<std::size_t>(model)][k].sum() -
+                      scores[static_cast<std::size_t>(best)][k].sum());
+    }
+    if (mean_of(worse) <= standard_error(worse)) return model;
+  }
+  return static_cast<TextureModel>(best);
+}
+
+}  // namespace
+
+std::string_view model_word(TextureModel model) {
+  constexpr std::string_view kWords[] = {"gabor", "phase", "exemplar"};
+  return kWords[static_cast<int>(model)];
+}
+
+ModelChoice choose_model(const GreyImage& photo, const std::string& name, const GaborFitOptions& options,
+                         std::uint64_t seed, const Progress& progress) {
+  ModelChoice choice;
+  choice.side = std::min(kMostSide, std::min(photo.width, photo.height) / 2);
+  if (choice.side < kSmallestExemplarSide) return choice;
+  const std::vector<GreyImage> squares = squares_of(photo, choice.side);
+  if (static_cast<int>(squares.size()) < kLeastSquares) return choice;
+  choice.squares = static_cast<int>(squares.size());
+  std::vector<TextureDistributions> distributions;
+  for (const GreyImage& square : squares) distributions.emplace_back(square, choice.side);
+  Scores scores;
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    for (const TextureModel model : kTextureModels) {
+      const auto m = static_cast<std::size_t>(model);
+      if (!report(
+              progress,
+              (static_cast<double>(k) + static_cast<double>(m) / 3.0) / static_cast<double>(squares.size()),
+              "comparing models")) {
+        throw WorkError(name + ": stopped before a model was chosen; nothing is written");
+      }
+      scores[m].push_back(
+          held_out_score(textures_of(model, squares[k], name, options, seed), distributions, k, choice.side));
+    }
+  }
+  for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summarised(scores[m]);
+  choice.taken = simplest_of_the_best(scores, choice.scores);
+  return choice;
+}
+
+}  // namespace astrolith

@@ -1,0 +1,68 @@
+#include "estimation/gabor/model_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/gabor/exemplar/exemplar_preparation.h"
+#include "numerics/errors.h"
+#include "tests/estimation/gabor/known_spectrum.h"
+
+namespace astrolith {
+namespace {
+
+GreyImage gaussian_texture() { return testing::realisation_of(testing::broad_spectrum(), 6); }
+
+// Round grains with dark gaps: their edges are beyond all noise.
+GreyImage grains() {
+  CounterRandom random(9);
+  GreyImage image{256, 256, std::vector<double>(256 * 256, 0.1)};
+  for (int n = 0; n < 900; ++n) {
+    const int cx = static_cast<int>(256 * random.uniform()), cy = static_cast<int>(256 * random.uniform());
+    const double radius = 5.0 + 5.0 * random.uniform(), shade = 0.4 + 0.6 * random.uniform();
+    for (int y = -10; y <= 10; ++y) {
+      for (int x = -10; x <= 10; ++x) {
+        const double r = std::hypot(x, y) / radius;
+        if (r < 1.0)
+          image.values[static_cast<std::size_t>(((cy + y) & 255) * 256 + ((cx + x) & 255))] =
+              shade * std::sqrt(1.0 - 0.9 * r * r);
+      }
+    }
+  }
+  return image;
+}
+
+TEST(ModelChoice, TakesTheSimplestForAGaussianTextureAndTheExemplarForGrains) {
+  const ModelChoice noise = choose_model(gaussian_texture(), "noise", {}, 1),
+                    stones = choose_model(grains(), "grains", {}, 1);
+  EXPECT_EQ(noise.squares, 4);
+  EXPECT_EQ(noise.side, 64);
+  EXPECT_EQ(model_word(noise.taken), "gabor");
+  EXPECT_EQ(model_word(stones.taken), "exemplar");
+  for (const HeldOutScore& score : stones.scores) {
+    EXPECT_GT(score.mean.values, 0.0);
+    EXPECT_GT(score.scatter, 0.0);
+  }
+}
+
+TEST(ModelChoice, ComparesNothingWhereThereIsTooLittle) {
+  GreyImage one_corner{128, 128, std::vector<double>(128 * 128, 0.5)};
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x)
+      one_corner.values[static_cast<std::size_t>(y * 128 + x)] += 0.01 * ((x * 7 + y * 13) % 11);
+  }
+  const GreyImage small{48, 200, std::vector<double>(48 * 200, 0.5)};
+  for (const GreyImage& image : {one_corner, small}) {
+    const ModelChoice choice = choose_model(image, "photo", {}, 1);
+    EXPECT_EQ(choice.squares, 0);
+    EXPECT_EQ(choice.taken, TextureModel::kGabor);
+  }
+}
+
+TEST(ModelChoice, StopsWhenAsked) {
+  EXPECT_THROW(
+      choose_model(gaussian_texture(), "noise", {}, 1, [](double, std::string_view) { return false; }),
+      WorkError);
+}
+
+}  // namespace
+}  // namespace astrolith
