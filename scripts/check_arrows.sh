@@ -35,7 +35,7 @@ cuda/mesher                -> numerics synthesis cuda/.
 estimation/optimize        -> numerics
 estimation/plot            -> numerics synthesis/picture
 estimation/page            -> numerics geometry synthesis/picture
-estimation/gabor           -> numerics recipe geometry synthesis/picture estimation/plot estimation/page estimation/gabor
+estimation/gabor           -> numerics recipe geometry synthesis/gabor synthesis/picture estimation/plot estimation/page estimation/gabor
 estimation/gabor/image     -> numerics
 estimation/gabor/spectrum  -> numerics estimation/gabor/image
 estimation/gabor/exemplar  -> numerics recipe synthesis/exemplar estimation/gabor/image estimation/gabor/spectrum

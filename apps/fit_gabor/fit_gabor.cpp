@@ -1,24 +1,28 @@
-// fit_gabor IMAGE -o RECIPE: a photo of rock becomes a layer of Gabor noise with the photo's spectrum.
+// fit_gabor IMAGE -o RECIPE: a photo of rock becomes layers of noise with its spectrum, or an exemplar of
+// itself.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
 
 #include "apps/counted.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
+#include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/photo_fit.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 #include "numerics/memory_use.h"
-#include "recipe/recipe_json.h"
 #include "tasks/estimation/exemplar_recipe.h"
-#include "tasks/estimation/photo_outputs.h"
 #include "tasks/estimation/photo_recipe.h"
+#include "tasks/estimation/texture_fit.h"
+#include "tasks/estimation/texture_outputs.h"
 
 namespace astrolith {
 namespace {
@@ -52,16 +56,18 @@ void add_photo_options(CommandLine& app, Options& o) {
          "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
          "alpha is ignored, of several pages or frames the first is taken")
       .required();
-  app.add_option("-o,--output", o.output,
-                 "recipe to write, with one Gabor layer (up to three with --channels pca) or one exemplar "
-                 "layer, whose image becomes RECIPE_exemplar.png beside it")
+  app.add_option(
+         "-o,--output", o.output,
+         "recipe to write, with one Gabor layer (up to three with --channels pca) or, of the models phase "
+         "and exemplar, one layer whose image becomes RECIPE_exemplar.png beside it")
       .required();
   app.add_option(
          "--model", o.model,
-         "what the layer is: gabor (the photo's spectrum in lobes), exemplar (the photo itself, tiled "
-         "and blended) or auto (the one whose texture is nearer to the photo by the distributions of "
-         "values and of 12 filter responses)")
-      .check(one_of({"gabor", "exemplar", "auto"}));
+         "how the texture is made: gabor (noise with the photo's spectrum in a few lobes), phase (an image "
+         "of noise with the whole spectrum), exemplar (the photo itself, tiled and blended) or auto (the "
+         "simplest of those whose textures are nearest to squares of the photo that the model has not "
+         "seen, by the distributions of values and of 12 filter responses)")
+      .check(one_of({"gabor", "phase", "exemplar", "auto"}));
   app.add_option(
          "--channels", o.channels,
          "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
@@ -136,15 +142,15 @@ void add_output_options(CommandLine& app, Options& o) {
       .default_text("");
   app.add_option(
          "--report", o.report_folder,
-         "folder for a page, index.html, with photo and noise as reliefs to turn; for a figure, "
-         "report.png and report.svg, of exemplar, synthesis, both spectra, lobes, gap of the pursuit; "
-         "and for its pictures pixel by pixel")
+         "folder for a page, index.html, with photo and texture as reliefs to turn; for a figure, "
+         "report.png and report.svg, of both and their spectra, of the lobes and the gap of the pursuit, "
+         "or of the grey values and the layer's image; and for its pictures pixel by pixel")
       .placeholder("DIR");
   app.add_option(
          "--spectrum", o.spectrum_file,
-         "write the fitted power spectrum on the image's DFT grid (.npy, float64, frequency 0 first, "
-         "|DFT|^2 / (width height)); images above 1024 pixels use a grid of at most 1024; with several "
-         "layers an array (layers, height, width)")
+         "write the power spectrum of the lobes, or of a texture of another model, on the image's DFT grid "
+         "(.npy, float64, frequency 0 first, |DFT|^2 / (width height)); images above 1024 pixels use a "
+         "grid of at most 1024; with several layers an array (layers, height, width)")
       .placeholder("FILE.npy");
 }
 
@@ -190,12 +196,6 @@ void set_provenance(const Program& program, const Options& o, Recipe& recipe) {
   recipe.provenance.options = program.given_options();
 }
 
-Recipe make_recipe(const Program& program, const Options& o, const PhotoFit& photo) {
-  Recipe recipe = photo_recipe(photo, recipe_options(program, o));
-  set_provenance(program, o, recipe);
-  return recipe;
-}
-
 PhotoFitOptions photo_options(const Program& program, const Options& o) {
   PhotoFitOptions photo = o.photo;
   photo.colors = o.channels == "pca";
@@ -233,7 +233,7 @@ std::string remedy(const PhotoFit& photo, const Options& o) {
                                      : "try a smaller --penalty";
 }
 
-void say_result(const PhotoFit& photo, const Options& o, const Program& program) {
+void say_lobes(const PhotoFit& photo, const Options& o, const Program& program) {
   const std::size_t layers = photo.channels.size();
   program.say(fmt::format(
       "{}{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the smoothed one of the photo and, speckle "
@@ -256,80 +256,59 @@ void say_result(const PhotoFit& photo, const Options& o, const Program& program)
   program.say(photo.gaussianity().value().sentence);
 }
 
-PreparedExemplar prepare(Program& program, const Options& o) {
-  const TrendModel trend = photo_options(program, o).trend;
-  const ColorImageFile read =
-      read_exemplar_photo(o.image, o.channels == "pca", o.photo.detrend_degree, trend);
-  for (const std::string& remark : read.remarks) program.say(o.image + ": " + remark);
-  PreparedExemplar prepared = prepare_photo(read.planes, o.image, program.seed, program.progress("exemplar"));
-  program.summary.update(exemplar_figures(prepared));
-  const TextureScore& best = prepared.scores[static_cast<int>(prepared.variant)];
+void say_exemplar(const PreparedExemplar& exemplar, const Program& program) {
+  const TextureScore& score = exemplar.scores[static_cast<int>(exemplar.variant)];
   program.say(fmt::format(
-      "exemplar: {}; a texture of it differs from the photo by {:.3f} in values and {:.3f} in filters",
-      variant_word(prepared.variant), best.values, best.filters));
-  return prepared;
+      "exemplar: {}; a texture of it differs from the photo itself by {:.3f} in values and {:.3f} in filters",
+      variant_word(exemplar.variant), score.values, score.filters));
 }
 
-void write_exemplar(Program& program, const Options& o, const PreparedExemplar& prepared) {
-  Recipe recipe = exemplar_recipe(prepared, recipe_options(program, o));
-  set_provenance(program, o, recipe);
-  write_exemplar_recipe(std::move(recipe), o.output);
-  program.summary["model"] = "exemplar";
-  program.summary["peak_bytes"] = peak_bytes();
+void say_phases(const TextureFit& fit, const Program& program) {
+  const ExemplarImage& image = *std::get<ExemplarLayer>(fit.recipe.layers.front()).pixels;
+  program.say(fmt::format("random phases: an image of {} x {} pixels with the whole spectrum of the photo",
+                          image.width, image.height));
+  program.say(fit.gaussianity.value().sentence);
 }
 
-// Whether a texture of the exemplar is nearer to the photo than one of the lobes.
-bool exemplar_is_nearer(Program& program, const PreparedExemplar& prepared, const PhotoFit& photo,
-                        const std::vector<float>& synthesis) {
-  const TextureScore gabor = score_of_lobes(photo, synthesis);
-  const TextureScore& exemplar = prepared.scores[static_cast<int>(prepared.variant)];
-  const bool nearer = exemplar.sum() < gabor.sum();
-  program.summary["gabor"] = {{"values", gabor.values}, {"filters", gabor.filters}};
-  program.say(fmt::format(
-      "a texture of the lobes differs by {:.3f} and {:.3f}: {}", gabor.values, gabor.filters,
-      nearer ? "the exemplar is nearer to the photo" : "the lobes are as near to the photo, and smaller"));
-  return nearer;
+void say_result(const TextureFit& fit, const Options& o, const Program& program) {
+  if (fit.lobes) say_lobes(*fit.lobes, o, program);
+  if (fit.model == TextureModel::kPhase) say_phases(fit, program);
+  if (fit.exemplar) say_exemplar(*fit.exemplar, program);
 }
 
-void check_model(const Options& o) {
-  if (o.model == "exemplar" && !(o.report_folder.empty() && o.spectrum_file.empty())) {
-    throw InputError(
-        "--model exemplar: fits no lobes that --report or --spectrum could show; use --model auto");
+void write_beside(const TextureFit& fit, const Options& o, Program& program) {
+  const FitTexture texture = synthesize_like_photo(fit, program.progress("synthesis"));
+  program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(fit, texture);
+  if (!o.report_folder.empty()) {
+    write_texture_reports(std::filesystem::path(o.image).filename().string(), fit, texture, o.report_folder);
   }
+  if (!o.spectrum_file.empty()) write_spectra(fit, texture, o.spectrum_file);
 }
 
 void work(Program& program, Options& o) {
-  check_model(o);
   require_outputs(o);
   o.image_sha256 = sha256_of_file(o.image);
-  std::optional<PreparedExemplar> exemplar;
-  if (o.model != "gabor") exemplar = prepare(program, o);
-  if (o.model == "exemplar") return write_exemplar(program, o, *exemplar);
-  const PhotoFitOptions options = photo_options(program, o);
-  predict_memory(program, o, options);
-  const PhotoFit photo = fit_photo(o.image, options, program.progress("pursuit"));
-  for (const std::string& remark : photo.remarks) program.say(o.image + ": " + remark);
-  const Recipe recipe = make_recipe(program, o, photo);
-  if (!exemplar || Program::interrupted()) write_recipe(recipe, o.output);
-  program.summary["model"] = "gabor";
-  program.summary.update(photo_figures(photo));
+  const TextureFitOptions options{model_named(o.model), photo_options(program, o),
+                                  recipe_options(program, o)};
+  predict_memory(program, o, options.photo);
+  ColorImageFile read = read_image(o.image, options.photo.colors);
+  for (const std::string& remark : read.remarks) program.say(o.image + ": " + remark);
+  if (!report(program.progress("photo"), 0.0, "read"))
+    throw WorkError(o.image + ": stopped; nothing is written");
+  TextureFit fit = fit_texture(std::move(read.planes), o.image, options,
+                               [&](const std::string& stage) { return program.progress(stage); });
+  set_provenance(program, o, fit.recipe);
+  write_texture_recipe(fit, fit.recipe, o.output);
+  program.summary.update(texture_figures(fit));
+  if (fit.choice) program.say(choice_sentence(fit));
   if (Program::interrupted()) {
     program.say(std::string("stopped by ") + Program::stopped_by() +
                 ": the recipe holds the best so far; no synthesis, no report");
     return;
   }
-  const std::vector<std::vector<float>> syntheses =
-      synthesize_channels(photo, recipe, program.progress("synthesis"));
-  program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
-  if (!o.report_folder.empty()) write_reports(o.image, photo, syntheses, o.report_folder);
-  if (!o.spectrum_file.empty()) write_spectra(photo, o.spectrum_file);
-  if (exemplar) {
-    const bool nearer = exemplar_is_nearer(program, *exemplar, photo, syntheses.front());
-    if (nearer) return write_exemplar(program, o, *exemplar);
-    write_recipe(recipe, o.output);
-  }
+  write_beside(fit, o, program);
   program.summary["peak_bytes"] = peak_bytes();
-  say_result(photo, o, program);
+  say_result(fit, o, program);
 }
 
 }  // namespace
@@ -339,12 +318,12 @@ int main(int argc, char** argv) {
   using namespace astrolith;
   Program program(
       "fit_gabor",
-      "Fits a layer of Gabor noise to a photo of rock: a sparse sum of Gaussians in its power spectrum, by "
-      "non-negative basis pursuit with a certified duality gap. Of the final lobes the summary says how far "
-      "their spectrum is from the photo's (spectrum_residual; 0: as good as can be told, above weak_above: "
-      "weak), the share of the variance in the right octave (band_overlap) and the variance of a texture "
-      "made "
-      "of them over that of the photo's pixels (variance_ratio_synthesized).");
+      "Fits the texture of a photo of rock: Gabor noise, a sparse sum of Gaussians in its power spectrum, by "
+      "non-negative basis pursuit with a certified duality gap; noise with its whole spectrum; or the photo "
+      "itself as an exemplar. Of lobes the summary says how far their spectrum is from the photo's "
+      "(spectrum_residual; 0: as good as can be told, above weak_above: weak), the share of the variance in "
+      "the right octave (band_overlap) and the variance of a texture made of them over that of the photo's "
+      "pixels (variance_ratio_synthesized).");
   Options options;
   add_options(program, options);
   return program.run(argc, argv, [&] { work(program, options); });

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "estimation/gabor/image/image_channels.h"
-#include "estimation/gabor/image/image_reader.h"
 #include "numerics/errors.h"
 #include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
@@ -14,15 +13,8 @@
 namespace astrolith {
 namespace {
 
-void detrend(GreyImage& image, const std::string& name, const PhotoFitOptions& options) {
-  // The fit refuses smaller images with a better message than remove_trend has.
-  if (options.detrend_degree == 0 || std::min(image.width, image.height) < kSmallestExemplarSide) return;
-  remove_trend(image, options.detrend_degree, options.trend, name);
-}
-
-PhotoFit grey_channels(GreyImage image, const std::string& name, const PhotoFitOptions& options) {
+PhotoFit grey_channels(GreyImage image) {
   PhotoFit photo;
-  detrend(image, name, options);
   photo.channels.emplace_back();
   photo.channels.front().exemplar = std::move(image);
   return photo;
@@ -32,10 +24,8 @@ Vec3d rounded(const Vec3d& v) {
   return {round_to_seven_digits(v.x), round_to_seven_digits(v.y), round_to_seven_digits(v.z)};
 }
 
-PhotoFit color_channels(std::vector<GreyImage> planes, const std::string& name,
-                        const PhotoFitOptions& options) {
+PhotoFit color_channels(const std::vector<GreyImage>& planes) {
   PhotoFit photo;
-  for (GreyImage& plane : planes) detrend(plane, name, options);
   for (ImageChannel& channel : principal_channels(planes)) {
     const bool first = photo.channels.empty();
     FittedChannel& fitted = photo.channels.emplace_back();
@@ -143,10 +133,17 @@ std::optional<Gaussianity> PhotoFit::gaussianity() const {
   return worst;
 }
 
+void flatten(std::vector<GreyImage>& planes, const std::string& name, const PhotoFitOptions& options) {
+  if (options.detrend_degree == 0) return;
+  for (GreyImage& plane : planes) {
+    if (std::min(plane.width, plane.height) < kSmallestExemplarSide) continue;
+    remove_trend(plane, options.detrend_degree, options.trend, name);
+  }
+}
+
 PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, const PhotoFitOptions& options,
                     const Progress& progress) {
-  PhotoFit photo = planes.size() > 1 ? color_channels(std::move(planes), name, options)
-                                     : grey_channels(std::move(planes.front()), name, options);
+  PhotoFit photo = planes.size() > 1 ? color_channels(planes) : grey_channels(std::move(planes.front()));
   const auto count = static_cast<double>(photo.channels.size());
   for (std::size_t k = 0; k < photo.channels.size(); ++k) {
     FittedChannel& channel = photo.channels[k];
@@ -157,15 +154,6 @@ PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, cons
     channel.gaussianity = tested(channel.exemplar, options.seed,
                                  [&](double, std::string_view words) { return share(1.0, words); });
   }
-  return photo;
-}
-
-PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& options,
-                   const Progress& progress) {
-  ColorImageFile read = read_image(file, options.colors);
-  if (!report(progress, 0.0, "photo read")) throw WorkError(file.string() + ": stopped; nothing is written");
-  PhotoFit photo = fit_planes(std::move(read.planes), file.string(), options, progress);
-  photo.remarks = std::move(read.remarks);
   return photo;
 }
 

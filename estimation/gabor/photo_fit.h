@@ -1,8 +1,7 @@
-// From a photo's file to Gabor layers: reads the photo, removes its trend, and fits and judges each channel.
+// From a photo to Gabor layers: removes its trend, and fits and judges each channel.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +34,6 @@ struct FittedChannel {
 
 struct PhotoFit {
   std::vector<FittedChannel> channels;  // at least one, the largest variance first
-  std::vector<std::string> remarks;     // remarks of the image reader
 
   std::size_t lobes() const;
   // The largest certified gap of the channels' pursuits. Selection and refinement then change the lobes, so
@@ -57,12 +55,12 @@ struct PhotoFit {
   std::optional<Gaussianity> gaussianity() const;
 };
 
-// Reads a photo and fits it. Throws as read_grey_image, remove_trend and fit_gabor_lobes do.
-PhotoFit fit_photo(const std::filesystem::path& file, const PhotoFitOptions& options,
-                   const Progress& progress = {});
+// Takes the trend of the options out of every plane. Smaller images than a fit takes stay as they are, since
+// the fit refuses them with a better message. Throws as remove_trend does.
+void flatten(std::vector<GreyImage>& planes, const std::string& name, const PhotoFitOptions& options);
 
-// Fits an image in memory, which messages call `name`: one plane of grey, or red, green and blue, all of one
-// size. Throws as remove_trend and fit_gabor_lobes do.
+// Fits an image, which messages call `name`: one plane of grey, or red, green and blue, all of one size. The
+// trend is taken out already. Throws as fit_gabor_lobes does.
 PhotoFit fit_planes(std::vector<GreyImage> planes, const std::string& name, const PhotoFitOptions& options,
                     const Progress& progress = {});
 

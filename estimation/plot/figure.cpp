@@ -205,6 +205,7 @@ void Figure::curve(const Rectangle& at, const Axis& x, const Axis& y,
   set(ink);
   cairo_set_line_width(c, 1.4);
   cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+  cairo_new_path(c);  // text leaves a point behind
   for (const auto& [vx, vy] : points) cairo_line_to(c, px(vx), py(vy));
   cairo_stroke(c);
   if (points.size() > kFew) return;

@@ -340,10 +340,12 @@ def fit_texture(
         The name of a PNG, JPEG or TIFF file, or (height, width) or (height, width, 3) uint8, uint16 (full scale
         becomes 1) or floats, at least 32 x 32. The recipe of a file has the bytes that the program writes.
     model
-        "gabor" (default: the photo's spectrum in lobes), "exemplar" (the photo itself, tiled and blended) or "auto"
-        (the one whose texture is nearer to the photo). figures.model says which one it became.
+        "gabor" (default: noise with the photo's spectrum in lobes), "phase" (an image of noise with the whole spectrum),
+        "exemplar" (the photo itself, tiled and blended) or "auto" (the simplest of those whose textures are nearest to
+        squares of the photo that the model has not seen). figures.model says which one it became, figures.choice the
+        scores of all.
     output
-        Write the recipe to this file. Models other than "gabor" need it, since an exemplar layer names an image,
+        Write the recipe to this file. Models other than "gabor" need it, since their layer names an image,
         which becomes RECIPE_exemplar.png beside it.
     channels
         "luminance" (default; one layer) or "pca" (a layer for each principal axis of the colours; an exemplar keeps
@@ -368,9 +370,9 @@ def fit_texture(
     max_memory
         Refuse fits that are predicted to need more gigabytes; default: three quarters of the machine's.
     spectrum
-        Whether the result shall have the lobes' power spectrum, what ``fit_gabor --spectrum`` writes.
+        Whether the result shall have the power spectrum that ``fit_gabor --spectrum`` writes.
     report
-        A folder for a page, index.html, and pictures of photo and noise, spectra and lobes.
+        A folder for a page, index.html, and pictures of photo and texture and of their spectra.
 
     Returns
     -------
@@ -390,11 +392,9 @@ def fit_texture(
             raise ValueError("channels: a grey image has no colours; leave it out")
         if not colors and len(planes) == 3:
             planes = _luma(planes)
-    kind = _arrays.choice(model or "gabor", "model", ("gabor", "exemplar", "auto"))
+    kind = _arrays.choice(model or "gabor", "model", ("gabor", "phase", "exemplar", "auto"))
     if kind != "gabor" and output is None:
-        raise ValueError("output: is missing; an exemplar layer names an image beside its recipe")
-    if kind == "exemplar" and (report is not None or spectrum):
-        raise ValueError('model: "exemplar" fits no lobes that report or spectrum could show; use "auto"')
+        raise ValueError("output: is missing; a layer with an image names a file beside its recipe")
     if max_memory is None:
         most_bytes = 0.75 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     else:

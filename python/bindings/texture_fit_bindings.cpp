@@ -1,4 +1,4 @@
-// fit_texture(): a photo becomes layers of Gabor noise or an exemplar layer, as fit_gabor does it.
+// fit_texture(): a photo becomes layers of Gabor noise or a layer with an image, as fit_gabor does it.
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "estimation/gabor/fit_memory.h"
+#include "estimation/gabor/image/image_reader.h"
 #include "estimation/gabor/photo_fit.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -25,8 +26,8 @@
 #include "python/bindings/job.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/exemplar_recipe.h"
-#include "tasks/estimation/photo_outputs.h"
-#include "tasks/estimation/photo_recipe.h"
+#include "tasks/estimation/texture_fit.h"
+#include "tasks/estimation/texture_outputs.h"
 
 namespace astrolith::python {
 namespace {
@@ -36,9 +37,8 @@ struct TextureArguments {
   std::optional<std::vector<GreyImage>> planes;  // in place of the file
   std::string model, output, report;             // output, report: empty for none
   double most_bytes = 0.0;
-  bool spectrum = false;  // whether the spectra of the lobes are wanted
-  PhotoFitOptions fit;
-  PhotoRecipeOptions recipe;
+  bool spectrum = false;  // whether the spectra are wanted
+  TextureFitOptions fit;
   Options options;
 };
 
@@ -74,27 +74,12 @@ void require_results(const TextureArguments& a) {
 void check_memory(const TextureArguments& a) {
   const ImageSize size =
       a.planes ? ImageSize{a.planes->front().width, a.planes->front().height} : read_image_size(a.name);
-  const double bytes = predicted_fit_bytes(size, a.fit, !a.report.empty());
+  const double bytes = predicted_fit_bytes(size, a.fit.photo, !a.report.empty());
   if (bytes <= a.most_bytes) return;
   throw InputError(
       fmt::format("{}: fitting {} x {} pixels needs {:.2f} GB of memory, more than {:.2f} GB; cut out a "
                   "part, scale it down or raise max_memory",
                   a.name, size.width, size.height, bytes / 1e9, a.most_bytes / 1e9));
-}
-
-PreparedExemplar prepare(const TextureArguments& a, JobState& state, std::vector<std::string>& remarks) {
-  const PhotoFitOptions& fit = a.fit;
-  ColorImageFile photo;
-  if (a.planes) {
-    photo.planes = *a.planes;
-    for (GreyImage& plane : photo.planes) {
-      flatten_exemplar_photo(plane, fit.detrend_degree, fit.trend, a.name);
-    }
-  } else {
-    photo = read_exemplar_photo(a.name, fit.colors, fit.detrend_degree, fit.trend);
-    remarks = photo.remarks;
-  }
-  return prepare_photo(photo.planes, a.name, fit.seed, state.progress("exemplar"));
 }
 
 void state_origin(const TextureArguments& a, Recipe& recipe) {
@@ -103,57 +88,31 @@ void state_origin(const TextureArguments& a, Recipe& recipe) {
   recipe.provenance = std::move(provenance);
 }
 
-Fitted written_exemplar(const TextureArguments& a, const PreparedExemplar& prepared,
-                        nlohmann::ordered_json figures) {
-  Recipe recipe = exemplar_recipe(prepared, a.recipe);
-  state_origin(a, recipe);
-  write_exemplar_recipe(recipe, a.output);
-  figures["model"] = "exemplar";
-  return {"", figures.dump()};
-}
-
-// The textures of the lobes: for the report, and to tell which model is nearer to the photo. Returns whether
-// an exemplar is.
-bool compare_textures(const TextureArguments& a, const PhotoFit& photo, const Recipe& recipe,
-                      const std::optional<PreparedExemplar>& exemplar, JobState& state,
-                      nlohmann::ordered_json& figures) {
-  const auto syntheses = synthesize_channels(photo, recipe, state.progress("synthesis"));
-  figures["variance_ratio_synthesized"] = synthesized_variance_ratio(photo, syntheses);
-  if (!a.report.empty()) write_reports(a.name, photo, syntheses, a.report);
-  if (!exemplar) return false;
-  const TextureScore lobes = score_of_lobes(photo, syntheses.front());
-  figures["gabor"] = {{"values", lobes.values}, {"filters", lobes.filters}};
-  return exemplar->scores[static_cast<int>(exemplar->variant)].sum() < lobes.sum();
+ColorImageFile photo_of(const TextureArguments& a) {
+  if (a.planes) return {*a.planes, {}};
+  return read_image(a.name, a.fit.photo.colors);
 }
 
 FittedTexture fit(const TextureArguments& a, JobState& state) {
   require_results(a);
-  nlohmann::ordered_json figures;
-  std::vector<std::string> remarks;
-  std::optional<PreparedExemplar> exemplar;
-  if (a.model != "gabor") {
-    exemplar = prepare(a, state, remarks);
-    figures.update(exemplar_figures(*exemplar));
-    figures["remarks"] = remarks;
-  }
-  if (a.model == "exemplar") return {written_exemplar(a, *exemplar, std::move(figures)), {}};
   check_memory(a);
-  const Progress pursuit = state.progress("pursuit");
-  const PhotoFit photo =
-      a.planes ? fit_planes(*a.planes, a.name, a.fit, pursuit) : fit_photo(a.name, a.fit, pursuit);
-  Recipe recipe = photo_recipe(photo, a.recipe);
-  state_origin(a, recipe);
-  figures["model"] = "gabor";
-  figures.update(photo_figures(photo));
+  ColorImageFile photo = photo_of(a);
+  TextureFit fit = fit_texture(std::move(photo.planes), a.name, a.fit,
+                               [&](const std::string& stage) { return state.progress(stage); });
+  state_origin(a, fit.recipe);
+  if (!a.output.empty()) write_texture_recipe(fit, fit.recipe, a.output);
+  nlohmann::ordered_json figures = texture_figures(fit);
   figures["remarks"] = photo.remarks;
   SpectraArray spectra;
-  if (a.spectrum) spectra = fitted_spectra(photo);
-  const bool more = (exemplar || !a.report.empty()) && !state.stopped();
-  if (more && compare_textures(a, photo, recipe, exemplar, state, figures)) {
-    return {written_exemplar(a, *exemplar, std::move(figures)), std::move(spectra)};
+  const bool with_texture = !fit.lobes || !a.report.empty();
+  if (!state.stopped() && (with_texture || a.spectrum)) {
+    const FitTexture texture =
+        with_texture ? synthesize_like_photo(fit, state.progress("synthesis")) : FitTexture{};
+    if (with_texture) figures["variance_ratio_synthesized"] = synthesized_variance_ratio(fit, texture);
+    if (!a.report.empty()) write_texture_reports(a.name, fit, texture, a.report);
+    if (a.spectrum) spectra = fitted_spectra(fit, texture);
   }
-  if (!a.output.empty()) write_recipe(recipe, a.output);
-  return {{recipe_to_json(recipe), figures.dump()}, std::move(spectra)};
+  return {{fit.lobes ? recipe_to_json(fit.recipe) : "", figures.dump()}, std::move(spectra)};
 }
 
 // The spectra as an array of (layers x height x width) or (height x width), or None.
@@ -174,8 +133,9 @@ TextureResult fit_texture(const std::string& name, const std::optional<Planes>& 
                           int lobes, double mm_per_px, const std::string& unit, double height_rms, bool tiles,
                           bool periodogram, bool fista, double penalty, double gap, const Options& given,
                           std::uint64_t seed, int threads, nb::object progress) {
-  TextureArguments arguments{name, {}, model, output, report, most_bytes, spectrum, {}, {}, given};
-  PhotoFitOptions& options = arguments.fit;
+  TextureArguments arguments{name, {}, model, output, report, most_bytes, spectrum, {}, given};
+  arguments.fit.model = model_named(model);
+  PhotoFitOptions& options = arguments.fit.photo;
   options.colors = colors;
   options.detrend_degree = detrend;
   options.trend = by_division ? TrendModel::kMultiplied : TrendModel::kAdded;
@@ -187,8 +147,8 @@ TextureResult fit_texture(const std::string& name, const std::optional<Planes>& 
   options.seed = seed;
   if (image) arguments.planes = planes_of(*image);
   const std::string stem = image ? "" : std::filesystem::path(name).stem().string();
-  arguments.recipe = {stem,       mm_per_px, unit,
-                      height_rms, seed,      tiles ? GaborEvaluation::kTiles : GaborEvaluation::kImpulses};
+  arguments.fit.recipe = {
+      stem, mm_per_px, unit, height_rms, seed, tiles ? GaborEvaluation::kTiles : GaborEvaluation::kImpulses};
   FittedTexture made =
       run_job(std::move(progress), threads, [arguments](JobState& state) { return fit(arguments, state); });
   return {made.fitted.json, made.fitted.figures, array_of_spectra(std::move(made.spectra))};

@@ -151,11 +151,11 @@ def test_the_spectrum_of_the_lobes_is_what_fit_gabor_writes(program, tmp_path, c
     assert wanted.shape == (48, 64) if channels == "luminance" else wanted.shape[1:] == (48, 64)
     without = astrolith.fit_texture(tmp_path / "rock.png", lobes=6, channels=channels)
     assert without.spectrum is None and without.recipe == fit.recipe
-    with pytest.raises(ValueError, match='^model: "exemplar" fits no lobes that report or spectrum'):
-        astrolith.fit_texture(image, model="exemplar", output=tmp_path / "e.json", spectrum=True)
+    phase = astrolith.fit_texture(image, model="phase", output=tmp_path / "p.json", spectrum=True, report=tmp_path / "report")
+    assert phase.spectrum.shape == (48, 64) and (tmp_path / "report" / "index.html").exists()
 
 
-@pytest.mark.parametrize("model", ["exemplar", "auto"])
+@pytest.mark.parametrize("model", ["exemplar", "phase", "auto"])
 def test_an_exemplar_of_a_photo_has_the_bytes_of_fit_gabor(program, tmp_path, model):
     rows, columns = np.indices((64, 64))
     grey = (120 + 90 * ((rows // 8 + columns // 8) % 2) + (rows * 7 + columns * 3) % 23).astype(np.uint8)
@@ -169,8 +169,10 @@ def test_an_exemplar_of_a_photo_has_the_bytes_of_fit_gabor(program, tmp_path, mo
         wanted, written = tmp_path / name, tmp_path / "package" / name
         assert wanted.exists() == written.exists()
         assert not wanted.exists() or written.read_bytes() == wanted.read_bytes()
-    assert fit.figures.model == "exemplar" and set(fit.figures.variants) == {"periodic", "matched", "mirrored"}
-    assert ("gabor" in fit.figures) == (model == "auto")
+    assert fit.figures.model == ("exemplar" if model == "auto" else model)
+    assert model == "phase" or set(fit.figures.variants) == {"periodic", "matched", "mirrored"}
+    if model == "auto":
+        assert set(fit.figures.choice.models) == {"gabor", "phase", "exemplar"}
     assert astrolith.texture(fit.recipe, 16, 16, content="height").values.shape == (16, 16)
 
 

@@ -1,7 +1,5 @@
 #include "tasks/estimation/exemplar_recipe.h"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -13,35 +11,14 @@
 namespace astrolith {
 namespace fs = std::filesystem;
 
-void flatten_exemplar_photo(GreyImage& photo, int degree, TrendModel trend, const std::string& name) {
-  if (degree > 0 && std::min(photo.width, photo.height) >= kLeastTextureSide) {
-    remove_trend(photo, degree, trend, name);
-  }
-}
-
-ColorImageFile read_exemplar_photo(const std::string& file, bool colors, int degree, TrendModel trend) {
-  ColorImageFile read = read_image(file, colors);
-  for (GreyImage& plane : read.planes) flatten_exemplar_photo(plane, degree, trend, file);
-  return read;
-}
-
-PreparedExemplar prepare_photo(const std::vector<GreyImage>& planes, const std::string& name,
-                               std::uint64_t seed, const Progress& progress) {
-  return planes.size() == 1 ? prepare_exemplar(planes.front(), name, seed, progress)
-                            : prepare_exemplar(planes, name, seed, progress);
-}
-
-Recipe exemplar_recipe(const PreparedExemplar& prepared, const PhotoRecipeOptions& options) {
-  ExemplarLayer layer = prepared.layer;
+Recipe exemplar_recipe(ExemplarLayer layer, const PhotoRecipeOptions& options) {
   layer.name = options.layer_name;
   if (options.mm_per_px > 0.0) layer.pixel_size = options.mm_per_px / (1e3 * metres_of(options.unit));
   if (options.height_rms >= 0.0) layer.height_rms = options.height_rms;
   Recipe recipe;
   recipe.length_unit = options.mm_per_px > 0.0 ? options.unit : "px";
   recipe.seed = options.seed;
-  recipe.layers = {layer};
-  const TextureScore& score = prepared.scores[static_cast<int>(prepared.variant)];
-  recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
+  recipe.layers = {std::move(layer)};
   return recipe;
 }
 
@@ -61,26 +38,6 @@ void write_exemplar_recipe(Recipe recipe, const fs::path& file) {
   layer.image = image.filename().string();
   layer.image_sha256 = sha256_of_file(image);
   write_recipe(recipe, file);
-}
-
-nlohmann::ordered_json exemplar_figures(const PreparedExemplar& prepared) {
-  auto scores = nlohmann::ordered_json::object();
-  for (const ExemplarVariant variant : kExemplarVariants) {
-    const TextureScore& score = prepared.scores[static_cast<int>(variant)];
-    scores[std::string(variant_word(variant))] = {{"values", score.values}, {"filters", score.filters}};
-  }
-  return {{"variant", std::string(variant_word(prepared.variant))}, {"variants", std::move(scores)}};
-}
-
-TextureScore score_of_lobes(const PhotoFit& photo, const std::vector<float>& synthesis) {
-  const FittedChannel& channel = photo.channels.front();
-  const double deviation = std::sqrt(channel.variance());
-  GreyImage texture{channel.exemplar.width, channel.exemplar.height, {}};
-  texture.values.reserve(synthesis.size());
-  for (const float v : synthesis) {
-    texture.values.push_back(channel.fit.exemplar_mean + deviation * static_cast<double>(v));
-  }
-  return texture_score(texture, channel.exemplar);
 }
 
 }  // namespace astrolith

@@ -92,10 +92,6 @@ nlohmann::ordered_json photo_figures(const PhotoFit& photo) {
   s["weak"] = photo.weak();
   s["band_overlap"] = photo.band_overlap();
   s["variance_in_spectrum"] = photo.variance_in_spectrum();
-  if (const std::optional<Gaussianity> gaussianity = photo.gaussianity()) {
-    s["gaussianity"] = gaussianity->p_value;
-    s["gaussianity_details"] = details(*gaussianity);
-  }
   int iterations = 0;
   double before_scaling = 0.0, variance = 0.0;
   for (const FittedChannel& channel : photo.channels) {
@@ -107,6 +103,10 @@ nlohmann::ordered_json photo_figures(const PhotoFit& photo) {
   s["variance_ratio_before_scaling"] = before_scaling / variance;
   s["iterations"] = iterations;
   return s;
+}
+
+nlohmann::ordered_json gaussianity_figures(const Gaussianity& gaussianity) {
+  return {{"gaussianity", gaussianity.p_value}, {"gaussianity_details", details(gaussianity)}};
 }
 
 }  // namespace astrolith

@@ -24,5 +24,6 @@ Recipe photo_recipe(const PhotoFit& photo, const PhotoRecipeOptions& options);
 
 // The figures of the fit, for summaries.
 nlohmann::ordered_json photo_figures(const PhotoFit& photo);
+nlohmann::ordered_json gaussianity_figures(const Gaussianity& gaussianity);
 
 }  // namespace astrolith

@@ -61,16 +61,41 @@ TEST_F(FitGabor, AnExemplarKeepsColours) {
   EXPECT_EQ(text("rock_exemplar.png")[25], '\2') << "colour type RGB";
 }
 
-TEST_F(FitGabor, AutoTakesTheNearerModelByItsScores) {
-  fit("rock.json", "--model auto --summary s.json");
+TEST_F(FitGabor, WritesRandomPhasesAsAnExemplar) {
+  fit("rock.json", "--model phase --channels pca --report report --summary s.json");
+  const auto layer = std::get<ExemplarLayer>(recipe().layers[0]);
+  EXPECT_TRUE(layer.color);
+  EXPECT_EQ(layer.image_sha256, sha256_of_file(folder_ / "rock_exemplar.png"));
   const auto summary = json("s.json");
-  const auto sum = [](const nlohmann::json& score) {
-    return score["values"].get<double>() + score["filters"].get<double>();
-  };
-  const bool exemplar =
-      sum(summary["variants"][summary["variant"].get<std::string>()]) < sum(summary["gabor"]);
-  EXPECT_EQ(summary["model"], exemplar ? "exemplar" : "gabor");
-  EXPECT_EQ(std::holds_alternative<ExemplarLayer>(recipe().layers[0]), exemplar);
+  EXPECT_EQ(summary["model"], "phase");
+  EXPECT_NEAR(summary["variance_ratio_synthesized"], 1.0, 0.3);
+  EXPECT_TRUE(summary.contains("gaussianity"));
+  EXPECT_TRUE(exists("report/report.png"));
+}
+
+// The layer, the report and the figures are those of the model that was taken.
+TEST_F(FitGabor, AutoComparesAllModelsOnUnseenSquares) {
+  const std::string said =
+      succeed("rock.png -o rock.json --model auto --summary s.json --report report --spectrum s.npy");
+  const auto summary = json("s.json");
+  const std::string taken = summary["model"];
+  EXPECT_TRUE(has(said, taken + " is taken"));
+  for (const char* model : {"gabor", "phase", "exemplar"}) {
+    EXPECT_TRUE(has(said, std::string(model) + " 0.")) << said;
+    EXPECT_GT(summary["choice"]["models"][model]["values"].get<double>(), 0.0);
+    EXPECT_GT(summary["choice"]["models"][model]["scatter"].get<double>(), 0.0);
+    EXPECT_TRUE(has(text("report/index.html"), model));
+  }
+  EXPECT_EQ(summary["choice"]["side"], 32);
+  EXPECT_EQ(std::holds_alternative<GaborLayer>(recipe().layers[0]), taken == "gabor");
+  EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
+}
+
+TEST_F(FitGabor, AnExemplarHasItsReportToo) {
+  fit("rock.json", "--model exemplar --report report --spectrum s.npy");
+  EXPECT_TRUE(exists("report/report.svg"));
+  EXPECT_TRUE(has(text("report/index.html"), "The layer is the photo itself"));
+  EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
 }
 
 TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
@@ -78,11 +103,11 @@ TEST_F(FitGabor, RefusesPhotosThatMakeNoExemplar) {
   write("small.png", testing::noise_png(16));
   write("out_exemplar.png", testing::noise_png(64));
   for (const auto& [words, culprit] : {std::pair{"flat.png", "one grey value"},
-                                       {"small.png", "16 x 16 pixels"},
-                                       {"small.png --channels pca", "16 x 16 pixels"},
-                                       {"small.png --report report", "--report"},
+                                       {"small.png", "small.png"},
+                                       {"small.png --channels pca", "small.png"},
                                        {"out_exemplar.png", "out_exemplar.png"}}) {
     refuse(std::string("--model exemplar -o out.json ") + words, culprit);
+    refuse(std::string("--model phase -o out.json ") + words, culprit);
   }
 }
 

@@ -12,19 +12,16 @@ namespace {
 
 GreyImage gaussian_texture() { return testing::realisation_of(testing::broad_spectrum(), 6); }
 
-// Round grains with dark gaps: their edges are beyond all noise.
+// Bright grains on a dark ground: two grey values, and edges, which no noise has.
 GreyImage grains() {
   CounterRandom random(9);
   GreyImage image{256, 256, std::vector<double>(256 * 256, 0.1)};
-  for (int n = 0; n < 900; ++n) {
-    const int cx = static_cast<int>(256 * random.uniform()), cy = static_cast<int>(256 * random.uniform());
-    const double radius = 5.0 + 5.0 * random.uniform(), shade = 0.4 + 0.6 * random.uniform();
-    for (int y = -10; y <= 10; ++y) {
-      for (int x = -10; x <= 10; ++x) {
-        const double r = std::hypot(x, y) / radius;
-        if (r < 1.0)
-          image.values[static_cast<std::size_t>(((cy + y) & 255) * 256 + ((cx + x) & 255))] =
-              shade * std::sqrt(1.0 - 0.9 * r * r);
+  for (int n = 0; n < 700; ++n) {
+    const int cx = static_cast<int>(random.uniform(0, 256)), cy = static_cast<int>(random.uniform(0, 256));
+    for (int y = -4; y <= 4; ++y) {
+      for (int x = -4; x <= 4; ++x) {
+        if (x * x + y * y > 16) continue;
+        image.values[static_cast<std::size_t>(((cy + y) & 255) * 256 + ((cx + x) & 255))] = 0.9;
       }
     }
   }

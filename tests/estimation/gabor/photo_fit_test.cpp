@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "estimation/gabor/image/image_reader.h"
 #include "numerics/errors.h"
 #include "synthesis/gabor/color_texture.h"
 #include "synthesis/picture/image_file.h"
@@ -30,7 +31,9 @@ class PhotoFitTest : public ::testing::Test {
 
   PhotoFit fit(PhotoFitOptions options) const {
     options.fit.max_lobes = 20;
-    return fit_photo(file_, options);
+    std::vector<GreyImage> planes = read_image(file_, options.colors).planes;
+    flatten(planes, "photo", options);
+    return fit_planes(planes, "photo", options);
   }
 
   fs::path file_ = fs::temp_directory_path() / ("astrolith_photo_" + std::to_string(::getpid()) + ".tif");

@@ -1,12 +1,11 @@
-#include "estimation/gabor/gabor_page.h"
+#include "estimation/gabor/texture_page.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-
-#include "estimation/page/report_page.h"
+#include <utility>
 
 namespace astrolith {
 namespace {
@@ -63,7 +62,20 @@ TurnableSurface relief(const ReportPicture& picture, const std::string& caption)
   return surface;
 }
 
-PageTable fit_table(const FittedChannel& channel) {
+}  // namespace
+
+PageTable choice_table(const ModelChoice& choice) {
+  PageTable table{{"difference from unseen squares", "values", "filters", "sum", "scatter of the sum"}, {}};
+  for (const TextureModel model : kTextureModels) {
+    const HeldOutScore& score = choice.scores[static_cast<std::size_t>(model)];
+    table.rows.push_back({fmt::format("{}{}", model_word(model), model == choice.taken ? " (taken)" : ""),
+                          fmt::format("{:.3f}", score.mean.values), fmt::format("{:.3f}", score.mean.filters),
+                          fmt::format("{:.3f}", score.mean.sum()), fmt::format("{:.3f}", score.scatter)});
+  }
+  return table;
+}
+
+PageTable lobe_table(const FittedChannel& channel) {
   const GaborFit& fit = channel.fit;
   const LobeQuality& quality = fit.quality;
   return {{"fit", ""},
@@ -75,7 +87,7 @@ PageTable fit_table(const FittedChannel& channel) {
             fmt::format("{} x {}", channel.exemplar.width, channel.exemplar.height)}}};
 }
 
-PageTable texture_table(const Gaussianity& g) {
+PageTable gaussianity_table(const Gaussianity& g) {
   const auto row = [](const char* name, double value, const char* gaussian) {
     return std::vector<std::string>{name, fmt::format("{:.2f}", value), gaussian};
   };
@@ -87,20 +99,15 @@ PageTable texture_table(const Gaussianity& g) {
            row("chance that a Gaussian texture is as unusual", g.p_value, "above 0.05")}};
 }
 
-}  // namespace
-
-void write_gabor_page(const ReportPicture& exemplar, const ReportPicture& synthesis,
-                      const FittedChannel& channel, const std::string& title,
-                      const std::filesystem::path& folder) {
-  const TurnableSurfaces reliefs{relief(exemplar, "photo"), relief(synthesis, "noise"), "", "", ""};
-  write_report_page(
-      {title,
-       channel.gaussianity.value().sentence,
-       {reliefs},
-       {texture_table(channel.gaussianity.value()), fit_table(channel)},
-       {{"report.png",
-         "Photo and noise, the gap of the pursuit, and the spectra of the photo and of the fit."}}},
-      folder / "index.html");
+void write_texture_page(const TextureReport& report, const std::string& layer, const std::string& verdict,
+                        std::vector<PageTable> tables, const std::filesystem::path& folder) {
+  const TurnableSurfaces reliefs{relief(report.photo, "photo"), relief(report.texture, layer), "", "", ""};
+  write_report_page({report.title,
+                     verdict,
+                     {reliefs},
+                     std::move(tables),
+                     {{"report.png", "Photo and texture, and the spectra of both."}}},
+                    folder / "index.html");
 }
 
 }  // namespace astrolith

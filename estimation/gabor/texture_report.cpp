@@ -1,4 +1,4 @@
-#include "estimation/gabor/gabor_report.h"
+#include "estimation/gabor/texture_report.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include "estimation/gabor/spectrum/fourier_transform.h"
 #include "estimation/plot/figure.h"
 #include "numerics/files/output_file.h"
+#include "numerics/sample_statistics.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/image_file.h"
 
@@ -147,6 +148,60 @@ void draw_gap(Figure& page, const Rectangle& at, const BasisPursuitResult& pursu
   page.curve(at, x, y, points, kCurve);
 }
 
+void draw_lobe_panels(Figure& page, const GaborFit& fit, const ReportPicture& measured) {
+  caption(page, panel(2, 0), "c",
+          fmt::format("certified gap of the pursuit {:.1e}", fit.pursuit.relative_gap));
+  draw_gap(page, panel(2, 0), fit.pursuit);
+  caption(page, panel(2, 1), "f", fmt::format("{} lobes at half their peak, over d", fit.lobes.size()));
+  draw_spectrum(page, panel(2, 1), measured);
+  draw_lobes(page, panel(2, 1), fit.lobes);
+  draw_color_bar(page, panel(2, 1));
+}
+
+// The share of the values in each of the bins from -kBeyond to kBeyond, over the largest share of all.
+constexpr double kBeyond = 4.0;  // standard deviations of the photo
+std::vector<double> histogram(const std::vector<double>& values, double mean, double deviation) {
+  constexpr int kBins = 64;
+  std::vector<double> shares(kBins);
+  for (const double v : values) {
+    const double at = ((v - mean) / deviation + kBeyond) / (2.0 * kBeyond) * kBins;
+    if (at >= 0.0 && at < kBins)
+      shares[static_cast<std::size_t>(at)] += 1.0 / static_cast<double>(values.size());
+  }
+  return shares;
+}
+
+void draw_grey_values(Figure& page, const Rectangle& at, const TextureReport& report) {
+  const double mean = mean_of(report.photo_values), deviation = std::sqrt(variance_of(report.photo_values));
+  const std::vector<double> of_photo = histogram(report.photo_values, mean, deviation),
+                            of_texture = histogram(report.texture_values, mean, deviation);
+  const double most = std::max(*std::max_element(of_photo.begin(), of_photo.end()),
+                               *std::max_element(of_texture.begin(), of_texture.end()));
+  const Axis x = linear_axis(-kBeyond, kBeyond, "deviations of the photo from its mean", 1.0);
+  const Axis y{0.0, 1.05, {{0.0, "0"}, {0.5, "0.5"}, {1.0, "1"}}, "share of the pixels, over the largest"};
+  page.axes(at, x, y, true);
+  const auto draw = [&](const std::vector<double>& shares, const Ink& ink, double line, const char* words) {
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      points.emplace_back(
+          kBeyond * (2.0 * (static_cast<double>(i) + 0.5) / static_cast<double>(shares.size()) - 1.0),
+          shares[i] / most);
+    }
+    page.curve(at, x, y, points, ink);
+    page.text(at.x + 8.0, at.y + line, words, 8.0, Figure::Align::kLeft, true, ink);
+  };
+  draw(of_photo, {}, 14.0, "photo");
+  draw(of_texture, kCurve, 26.0, "texture");
+}
+
+void draw_image_panels(Figure& page, const TextureReport& report) {
+  caption(page, panel(2, 0), "c", "grey values of both");
+  draw_grey_values(page, panel(2, 0), report);
+  caption(page, panel(2, 1), "f",
+          fmt::format("image of the layer, {} x {} pixels", report.image.width, report.image.height));
+  draw_photo(page, panel(2, 1), report.image);
+}
+
 void write_picture(const ReportPicture& picture, const std::filesystem::path& file) {
   write_png8_rgb({picture.width, picture.height, picture.rgb}, file);
 }
@@ -161,40 +216,31 @@ ReportPicture tone_mapped(std::span<const float> values, int width, int height) 
   return tone(values, width, height);
 }
 
-void write_gabor_report(const ReportPicture& exemplar, const ReportPicture& synthesis, const GaborFit& fit,
-                        const std::string& title, const std::filesystem::path& folder) {
+void write_texture_report(const TextureReport& report, const std::filesystem::path& folder) {
   make_output_folder(folder);
-  const PowerSpectrum& estimate = fit.estimate.spectrum;
-  const double top = *std::max_element(estimate.power.begin(), estimate.power.end());
-  const ReportPicture measured = spectrum_picture(estimate, top);
-  const ReportPicture fitted = spectrum_picture(fit.fitted, top);
+  const double top = *std::max_element(report.measured.power.begin(), report.measured.power.end());
+  const ReportPicture measured = spectrum_picture(report.measured, top),
+                      shown = spectrum_picture(report.shown, top);
 
   Figure page(kPageWidth, kPageHeight);
-  page.text(kLeft, 27.0, title, 12.0, Figure::Align::kLeft, true);
-  caption(page, panel(0, 0), "a", fmt::format("exemplar, {} x {} pixels", exemplar.width, exemplar.height));
-  draw_photo(page, panel(0, 0), exemplar);
-  caption(page, panel(1, 0), "b", "synthesis, same size");
-  draw_photo(page, panel(1, 0), synthesis);
-  caption(page, panel(2, 0), "c",
-          fmt::format("certified gap of the pursuit {:.1e}", fit.pursuit.relative_gap));
-  draw_gap(page, panel(2, 0), fit.pursuit);
-  caption(page, panel(0, 1), "d", "spectrum estimated from the exemplar");
+  page.text(kLeft, 27.0, report.title, 12.0, Figure::Align::kLeft, true);
+  caption(page, panel(0, 0), "a",
+          fmt::format("photo, {} x {} pixels", report.photo.width, report.photo.height));
+  draw_photo(page, panel(0, 0), report.photo);
+  caption(page, panel(1, 0), "b", "texture, same size");
+  draw_photo(page, panel(1, 0), report.texture);
+  caption(page, panel(0, 1), "d", "spectrum estimated from the photo");
   draw_spectrum(page, panel(0, 1), measured);
-  caption(page, panel(1, 1), "e",
-          fmt::format("fitted spectrum, residual {:.3f}{}", fit.quality.residual,
-                      fit.quality.weak() ? " (weak)" : ""));
-  draw_spectrum(page, panel(1, 1), fitted);
-  caption(page, panel(2, 1), "f", fmt::format("{} lobes at half their peak, over d", fit.lobes.size()));
-  draw_spectrum(page, panel(2, 1), measured);
-  draw_lobes(page, panel(2, 1), fit.lobes);
-  draw_color_bar(page, panel(2, 1));
+  caption(page, panel(1, 1), "e", report.shown_words);
+  draw_spectrum(page, panel(1, 1), shown);
+  report.lobes ? draw_lobe_panels(page, *report.lobes, measured) : draw_image_panels(page, report);
   page.write_png(folder / "report.png", 200.0);
   page.write_svg(folder / "report.svg");
 
-  write_picture(exemplar, folder / "exemplar.png");
-  write_picture(synthesis, folder / "synthesis.png");
+  write_picture(report.photo, folder / "exemplar.png");
+  write_picture(report.texture, folder / "synthesis.png");
   write_picture(measured, folder / "spectrum_exemplar.png");
-  write_picture(fitted, folder / "spectrum_fitted.png");
+  write_picture(shown, folder / "spectrum_fitted.png");
 }
 
 }  // namespace astrolith

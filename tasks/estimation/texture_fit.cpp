@@ -1,0 +1,122 @@
+#include "tasks/estimation/texture_fit.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "estimation/gabor/exemplar/phase_exemplar.h"
+#include "numerics/errors.h"
+#include "recipe/recipe_json.h"
+#include "tasks/estimation/exemplar_recipe.h"
+
+namespace astrolith {
+namespace {
+
+void fit_lobes(const std::string& name, const TextureFitOptions& options, const Progress& progress,
+               TextureFit& fit) {
+  fit.lobes = fit_planes(fit.photo, name, options.photo, progress);
+  fit.gaussianity = fit.lobes->gaussianity();
+  fit.recipe = photo_recipe(*fit.lobes, options.recipe);
+}
+
+void make_random_phases(const std::string& name, const TextureFitOptions& options, const Progress& progress,
+                        TextureFit& fit) {
+  fit.recipe = exemplar_recipe(phase_exemplar(fit.photo, name, options.recipe.seed), options.recipe);
+  fit.gaussianity = test_gaussianity(fit.luma(), options.photo.seed, progress);
+}
+
+void take_exemplar(const std::string& name, const TextureFitOptions& options, const Progress& progress,
+                   TextureFit& fit) {
+  const std::uint64_t seed = options.recipe.seed;
+  fit.exemplar = fit.photo.size() == 1 ? prepare_exemplar(fit.photo.front(), name, seed, progress)
+                                       : prepare_exemplar(fit.photo, name, seed, progress);
+  fit.recipe = exemplar_recipe(fit.exemplar->layer, options.recipe);
+  const TextureScore& score = fit.exemplar->scores[static_cast<int>(fit.exemplar->variant)];
+  fit.recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
+}
+
+nlohmann::ordered_json figures_of(const ModelChoice& choice) {
+  nlohmann::ordered_json models;
+  for (const TextureModel model : kTextureModels) {
+    const HeldOutScore& score = choice.scores[static_cast<std::size_t>(model)];
+    if (choice.squares > 0)
+      models[std::string(model_word(model))] = {
+          {"values", score.mean.values}, {"filters", score.mean.filters}, {"scatter", score.scatter}};
+  }
+  return {{"squares", choice.squares}, {"side", choice.side}, {"models", std::move(models)}};
+}
+
+nlohmann::ordered_json figures_of(const PreparedExemplar& exemplar) {
+  auto scores = nlohmann::ordered_json::object();
+  for (const ExemplarVariant variant : kExemplarVariants) {
+    const TextureScore& score = exemplar.scores[static_cast<int>(variant)];
+    scores[std::string(variant_word(variant))] = {{"values", score.values}, {"filters", score.filters}};
+  }
+  return {{"variant", std::string(variant_word(exemplar.variant))}, {"variants", std::move(scores)}};
+}
+
+}  // namespace
+
+GreyImage TextureFit::luma() const { return photo.size() == 3 ? luma_of(photo) : photo.front(); }
+
+std::optional<TextureModel> model_named(const std::string& name) {
+  for (const TextureModel model : kTextureModels) {
+    if (name == model_word(model)) return model;
+  }
+  return {};
+}
+
+TextureFit fit_texture(std::vector<GreyImage> photo, const std::string& name,
+                       const TextureFitOptions& options, const StageProgress& progress) {
+  TextureFit fit;
+  fit.photo = std::move(photo);
+  flatten(fit.photo, name, options.photo);
+  if (!options.model)
+    fit.choice = choose_model(fit.luma(), name, options.photo.fit, options.recipe.seed, progress("models"));
+  fit.model = options.model ? *options.model : fit.choice->taken;
+  switch (fit.model) {
+    case TextureModel::kGabor:
+      fit_lobes(name, options, progress("pursuit"), fit);
+      break;
+    case TextureModel::kPhase:
+      make_random_phases(name, options, progress("phases"), fit);
+      break;
+    case TextureModel::kExemplar:
+      take_exemplar(name, options, progress("exemplar"), fit);
+      break;
+  }
+  return fit;
+}
+
+void write_texture_recipe(const TextureFit& fit, const Recipe& recipe, const std::filesystem::path& file) {
+  fit.model == TextureModel::kGabor ? write_recipe(recipe, file) : write_exemplar_recipe(recipe, file);
+}
+
+nlohmann::ordered_json texture_figures(const TextureFit& fit) {
+  nlohmann::ordered_json figures = {{"model", std::string(model_word(fit.model))}};
+  if (fit.choice) figures["choice"] = figures_of(*fit.choice);
+  if (fit.exemplar) figures.update(figures_of(*fit.exemplar));
+  if (fit.lobes) figures.update(photo_figures(*fit.lobes));
+  if (fit.gaussianity) figures.update(gaussianity_figures(*fit.gaussianity));
+  return figures;
+}
+
+std::string choice_sentence(const TextureFit& fit) {
+  if (!fit.choice) return "";
+  const ModelChoice& c = *fit.choice;
+  const std::string taken(model_word(fit.model));
+  if (c.squares == 0) return taken + " is taken: too little of the photo has texture to compare models";
+  std::string scores;
+  for (const TextureModel model : kTextureModels) {
+    const HeldOutScore& score = c.scores[static_cast<std::size_t>(model)];
+    scores += fmt::format("{}{} {:.3f} +- {:.3f}", scores.empty() ? "" : ", ", model_word(model),
+                          score.mean.sum(), score.scatter);
+  }
+  return fmt::format(
+      "{} is taken, the simplest of the best on {} squares of {} pixels that it had not seen; differences in "
+      "values and filters: {}",
+      taken, c.squares, c.side, scores);
+}
+
+}  // namespace astrolith
