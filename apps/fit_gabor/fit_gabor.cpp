@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "apps/counted.h"
 #include "apps/output_names.h"
@@ -248,10 +247,13 @@ void say_lobes(const PhotoFit& photo, const Options& o, const Program& program) 
   if (!photo.pursuit_reached()) program.say("note: the pursuit ended before the --gap asked for");
   const double held = photo.variance_in_spectrum();
   if (held < kMostVariance) {
-    program.say(
-        fmt::format("note: {:.0f} % of the photo's variance lies in features wider than {} pixels, which "
-                    "the noise lacks; scale the photo down to that size to keep them",
-                    100.0 * (1.0 - held), o.photo.fit.largest_side));
+    const GreyImage& image = photo.channels.front().exemplar;
+    const bool tiled = std::max(image.width, image.height) > o.photo.fit.largest_side;
+    program.say(fmt::format(
+        "note: {:.0f} % of the photo's variance lies in features wider than {}, which the noise lacks{}",
+        100.0 * (1.0 - held),
+        tiled ? fmt::format("{} pixels", o.photo.fit.largest_side) : "it, or in light from one side",
+        tiled ? "; scale the photo down to that size to keep them" : ""));
   }
   program.say(photo.gaussianity().value().sentence);
 }
@@ -264,7 +266,7 @@ void say_exemplar(const PreparedExemplar& exemplar, const Program& program) {
 }
 
 void say_phases(const TextureFit& fit, const Program& program) {
-  const ExemplarImage& image = *std::get<ExemplarLayer>(fit.recipe.layers.front()).pixels;
+  const ExemplarImage& image = *fit.image->pixels;
   program.say(fmt::format("random phases: an image of {} x {} pixels with the whole spectrum of the photo",
                           image.width, image.height));
   program.say(fit.gaussianity.value().sentence);

@@ -88,6 +88,12 @@ double shown_variance(const SpectralLobe& lobe, int width, int height) {
          2.0 * lobe.height / width / height * at_zero(width, lobe.x) * at_zero(height, lobe.y);
 }
 
+// A frequency in a recipe. What rounding leaves of 0 is no frequency.
+double rounded_frequency(double cycles_per_pixel) {
+  constexpr double kNone = 1e-12;
+  return std::fabs(cycles_per_pixel) < kNone ? 0.0 : round_to_seven_digits(cycles_per_pixel);
+}
+
 // Lobes with variances instead of heights. The variances are scaled so that their sum is the exemplar's
 // variance.
 std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, GaborFit& fit) {
@@ -97,8 +103,7 @@ std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, Ga
   for (const SpectralLobe& lobe : lobes) {
     const double variance = shown_variance(lobe, grid.width, grid.height);
     total += variance;
-    result.push_back(
-        {lobe.bandwidth, round_to_seven_digits(lobe.x), round_to_seven_digits(lobe.y), variance});
+    result.push_back({lobe.bandwidth, rounded_frequency(lobe.x), rounded_frequency(lobe.y), variance});
   }
   const double wanted = fit.exemplar_rms * fit.exemplar_rms;
   fit.variance_before_scaling = total / wanted;

@@ -22,7 +22,8 @@ void fit_lobes(const std::string& name, const TextureFitOptions& options, const 
 
 void make_random_phases(const std::string& name, const TextureFitOptions& options, const Progress& progress,
                         TextureFit& fit) {
-  fit.recipe = exemplar_recipe(phase_exemplar(fit.photo, name, options.recipe.seed), options.recipe);
+  fit.image = phase_exemplar(fit.photo, name, options.recipe.seed);
+  fit.recipe = exemplar_recipe(*fit.image, options.recipe);
   fit.gaussianity = test_gaussianity(fit.luma(), options.photo.seed, progress);
 }
 
@@ -31,7 +32,8 @@ void take_exemplar(const std::string& name, const TextureFitOptions& options, co
   const std::uint64_t seed = options.recipe.seed;
   fit.exemplar = fit.photo.size() == 1 ? prepare_exemplar(fit.photo.front(), name, seed, progress)
                                        : prepare_exemplar(fit.photo, name, seed, progress);
-  fit.recipe = exemplar_recipe(fit.exemplar->layer, options.recipe);
+  fit.image = fit.exemplar->layer;
+  fit.recipe = exemplar_recipe(*fit.image, options.recipe);
   const TextureScore& score = fit.exemplar->scores[static_cast<int>(fit.exemplar->variant)];
   fit.recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
 }

@@ -28,7 +28,8 @@ struct TextureFit {
   std::vector<GreyImage> photo;              // without its trend: grey, or red, green and blue
   std::optional<PhotoFit> lobes;             // of kGabor
   std::optional<PreparedExemplar> exemplar;  // of kExemplar
-  std::optional<Gaussianity> gaussianity;    // of the photo; none for kExemplar and where the fit was stopped
+  std::optional<ExemplarLayer> image;      // of kPhase and kExemplar; lengths are pixels, heights grey values
+  std::optional<Gaussianity> gaussianity;  // of the photo; none for kExemplar and where the fit was stopped
   Recipe recipe;  // tool, input and options of its provenance are the caller's; an image is not yet written
 
   GreyImage luma() const;

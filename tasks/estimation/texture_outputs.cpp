@@ -128,7 +128,6 @@ std::vector<PageTable> tables_of_choice(const TextureFit& fit) {
 
 void write_image_report(const std::string& name, const TextureFit& fit, const FitTexture& texture,
                         const fs::path& folder) {
-  const auto& layer = std::get<ExemplarLayer>(fit.recipe.layers.front());
   const GreyImage luma = fit.luma(), image = texture_image(fit, texture);
   const PowerSpectrum measured = estimated(luma, kReportGrid), shown = estimated(image, kReportGrid);
   TextureReport report{
@@ -141,7 +140,7 @@ void write_image_report(const std::string& name, const TextureFit& fit, const Fi
       nullptr,
       luma.values,
       image.values,
-      picture_of(*layer.pixels)};
+      picture_of(*fit.image->pixels)};
   report.texture = tone_mapped(image.values, image.width, image.height);
   if (!texture.rgb.empty()) {
     report.texture.rgb.clear();
@@ -166,8 +165,7 @@ FitTexture synthesize_like_photo(const TextureFit& fit, const Progress& progress
     return texture;
   }
   const GreyImage luma = fit.luma();
-  auto layer = std::get<ExemplarLayer>(fit.recipe.layers.front());
-  layer.height_rms = std::sqrt(variance_of(luma.values));
+  const ExemplarLayer& layer = *fit.image;
   const GreyImage grey = exemplar_texture_like(layer, luma, fit.recipe.seed);
   texture.channels.emplace_back(grey.values.begin(), grey.values.end());
   if (layer.color)

@@ -37,21 +37,18 @@ GreyImage continued(const GreyImage& photo, ExemplarVariant variant) {
   return variant == ExemplarVariant::kMatched ? with_ranks_of(periodic, photo) : periodic;
 }
 
-// The image of a variant: of a grey photo, which is one plane, or of red, green and blue.
-ExemplarImage image_of_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant) {
-  if (planes.size() == 1) return in_16_bits(continued(planes.front(), variant));
-  std::vector<GreyImage> colors;
-  for (const GreyImage& plane : planes) colors.push_back(continued(plane, variant));
-  return colors_in_16_bits(colors);
-}
-
-ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, const GreyImage& photo,
-                               ExemplarVariant variant) {
+// The height has the deviation of the image, not of the photo: where its periodic component lacks light from
+// one side, its grains are no higher for that.
+ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, ExemplarVariant variant) {
+  std::vector<GreyImage> image;
+  for (const GreyImage& plane : planes) image.push_back(continued(plane, variant));
+  const bool color = planes.size() == 3;
+  const GreyImage luma = color ? luma_of(image) : image.front();
   ExemplarLayer layer;
-  layer.pixels = std::make_shared<const ExemplarImage>(image_of_variant(planes, variant));
+  layer.pixels = std::make_shared<const ExemplarImage>(color ? colors_in_16_bits(image) : in_16_bits(luma));
   layer.border = variant == ExemplarVariant::kMirrored ? ExemplarBorder::kMirror : ExemplarBorder::kRepeat;
-  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(photo.values)));
-  layer.color = planes.size() == 3;
+  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(luma.values)));
+  layer.color = color;
   return layer;
 }
 
@@ -64,7 +61,7 @@ PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const Gre
     const int number = static_cast<int>(variant);
     if (!report(progress, number / 3.0, "exemplar"))
       throw WorkError("stopped before the exemplar was prepared");
-    ExemplarLayer layer = layer_of_variant(planes, photo, variant);
+    ExemplarLayer layer = layer_of_variant(planes, variant);
     best.scores[number] = texture_score(exemplar_texture_like(layer, photo, seed), photo);
     if (number > 0 && best.scores[number].sum() >= best.scores[static_cast<int>(best.variant)].sum())
       continue;

@@ -24,7 +24,7 @@ std::string_view variant_word(ExemplarVariant variant);
 
 struct PreparedExemplar {
   ExemplarVariant variant = ExemplarVariant::kPeriodic;
-  ExemplarLayer layer;     // with pixels and border; lengths are pixels, height_rms is the photo's deviation
+  ExemplarLayer layer;     // with pixels and border; lengths are pixels, height_rms is the image's deviation
   TextureScore scores[3];  // of each variant, by number: a texture of the photo's size against the photo
 };
 

@@ -10,6 +10,7 @@
 #include "estimation/gabor/image/image_channels.h"
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
+#include "estimation/gabor/spectrum/octaves.h"
 #include "estimation/gabor/spectrum/tapered_periodogram.h"
 #include "numerics/hash_random.h"
 #include "numerics/portable_double.h"
@@ -38,31 +39,40 @@ std::complex<double> random_wave(int kx, int ky, int width, int height, std::uin
   return {angle.cosine, mirrored ? -angle.sine : angle.sine};
 }
 
-// The spectrum of a plane on the frequencies of the layer's image.
-PowerSpectrum spectrum_of_plane(const GreyImage& plane) {
-  const int width = image_side(plane.width, tiles_along_x(plane)),
-            height = image_side(plane.height, tiles_along_y(plane));
-  return least_leaky(tapered_power(plane, width, height),
-                     std::sqrt(static_cast<double>(plane.width) * plane.height));
+struct ImageSides {
+  int width, height;
+};
+ImageSides image_sides(const GreyImage& plane) {
+  return {image_side(plane.width, tiles_along_x(plane)), image_side(plane.height, tiles_along_y(plane))};
+}
+
+// The spectrum of a plane on the frequencies of the layer's image. A photo says nothing of features wider
+// than itself, so there is no power below three quarters of a cycle.
+PowerSpectrum spectrum_of_plane(const GreyImage& plane, const ImageSides& sides) {
+  PowerSpectrum spectrum = least_leaky(tapered_power(plane, sides.width, sides.height));
+  const double growth =
+      std::sqrt(static_cast<double>(sides.width) * sides.height / plane.width / plane.height);
+  const std::vector<double> positions = octave_positions(spectrum);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (positions[i] < std::log2(0.75 * growth)) spectrum.power[i] = 0.0;
+  }
+  return spectrum;
 }
 
 // Red, green and blue: the mean colour and the texture of each principal axis along it.
 std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes, std::uint64_t seed) {
   const std::vector<ImageChannel> channels = principal_channels(planes);
   // All channels get the size of the first, which holds most of the variance.
-  const bool x = tiles_along_x(channels.front().image), y = tiles_along_y(channels.front().image);
-  const int width = image_side(planes[0].width, x), height = image_side(planes[0].height, y);
+  const ImageSides sides = image_sides(channels.front().image);
   const Vec3d mean = mean_color(planes);
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const auto pixels = static_cast<std::size_t>(sides.width) * static_cast<std::size_t>(sides.height);
   std::vector<GreyImage> colors;
   for (const double part : {mean.x, mean.y, mean.z})
-    colors.push_back({width, height, std::vector<double>(pixels, part)});
+    colors.push_back({sides.width, sides.height, std::vector<double>(pixels, part)});
   for (std::size_t k = 0; k < channels.size(); ++k) {
     const ImageChannel& c = channels[k];
-    const PowerSpectrum spectrum =
-        least_leaky(tapered_power(c.image, width, height),
-                    std::sqrt(static_cast<double>(planes[0].width) * planes[0].height));
-    const GreyImage texture = random_phase_image(spectrum, hash_seed(seed, static_cast<std::uint32_t>(k)));
+    const GreyImage texture =
+        random_phase_image(spectrum_of_plane(c.image, sides), hash_seed(seed, static_cast<std::uint32_t>(k)));
     const double axis[] = {c.axis.x, c.axis.y, c.axis.z};
     for (std::size_t i = 0; i < 3 * pixels; ++i)
       colors[i / pixels].values[i % pixels] += axis[i / pixels] * texture.values[i % pixels];
@@ -97,11 +107,15 @@ ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::st
   if (color) require_colors(planes, name);
   const GreyImage photo = color ? luma_of(planes) : planes.front();
   require_exemplar(photo, name);
+  const std::vector<GreyImage> textures =
+      color
+          ? random_phase_colors(planes, seed)
+          : std::vector{random_phase_image(spectrum_of_plane(photo, image_sides(photo)), hash_seed(seed, 0))};
+  const GreyImage noise = color ? luma_of(textures) : textures.front();
   ExemplarLayer layer;
-  layer.pixels = std::make_shared<const ExemplarImage>(
-      color ? colors_in_16_bits(random_phase_colors(planes, seed))
-            : in_16_bits(random_phase_image(spectrum_of_plane(photo), hash_seed(seed, 0))));
-  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(photo.values)));
+  layer.pixels =
+      std::make_shared<const ExemplarImage>(color ? colors_in_16_bits(textures) : in_16_bits(noise));
+  layer.height_rms = round_to_seven_digits(std::sqrt(variance_of(noise.values)));
   layer.color = color;
   return layer;
 }

@@ -64,18 +64,4 @@ std::vector<double> octave_weights(const PowerSpectrum& spectrum) {
   return weights;
 }
 
-void add_below(double frequency, double more, PowerSpectrum& spectrum) {
-  const std::vector<double> positions = octave_positions(spectrum);
-  const double side = std::sqrt(static_cast<double>(spectrum.width) * spectrum.height),
-               highest = std::log2(frequency * side);
-  double below = 0.0;
-  for (std::size_t i = 1; i < positions.size(); ++i)
-    below += positions[i] < highest ? spectrum.power[i] : 0.0;
-  if (!(below > 0.0)) return;
-  const double gain = 1.0 + more * static_cast<double>(spectrum.power.size()) / below;
-  for (std::size_t i = 1; i < positions.size(); ++i) {
-    if (positions[i] < highest) spectrum.power[i] *= gain;
-  }
-}
-
 }  // namespace astrolith

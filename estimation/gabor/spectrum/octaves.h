@@ -22,8 +22,4 @@ std::vector<double> power_by_octave(const PowerSpectrum& spectrum, const std::ve
 // 1e-6 of the variance weigh no more than those.
 std::vector<double> octave_weights(const PowerSpectrum& spectrum);
 
-// Multiplies the power below a frequency (cycles per pixel) so that the variance grows by `more`, which may
-// be negative.
-void add_below(double frequency, double more, PowerSpectrum& spectrum);
-
 }  // namespace astrolith

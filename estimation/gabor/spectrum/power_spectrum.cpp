@@ -1,7 +1,6 @@
 #include "estimation/gabor/spectrum/power_spectrum.h"
 
 #include <algorithm>
-#include <cmath>
 #include <complex>
 #include <cstdint>
 #include <cstdlib>
@@ -108,9 +107,7 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
   }
   const std::size_t tiles = xs.size() * ys.size();
   sum.divide(static_cast<double>(tiles));
-  PowerSpectrum mean = borders == Borders::kTaper
-                           ? least_leaky(sum, std::sqrt(static_cast<double>(tile_width) * tile_height))
-                           : std::move(sum.values);
+  PowerSpectrum mean = borders == Borders::kTaper ? least_leaky(sum) : std::move(sum.values);
   if (tiles == 1) return mean;
   // Tiles that overlap share pixels, so the number of independent looks is that of tiles side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());

@@ -21,9 +21,6 @@ struct PowerSpectrum {
   double averages = 1.0;
   // The variance of each value by itself over its squared mean: 1 for one periodogram, tapered or not.
   double scatter = 1.0;
-  // The part of the variance that comes from features wider than the grid, which have no frequency of it:
-  // light from one side, a slope. The frequencies below two cycles of the image hold it.
-  double wider_variance = 0.0;
 
   double variance() const;
 };

@@ -140,11 +140,7 @@ void raise_to_variance(PowerSpectrum& spectrum, double variance) {
 
 }  // namespace
 
-SpectrumEstimate estimate_spectrum(const PowerSpectrum& whole, const Progress& progress) {
-  // The variance of wider features is no part of a smooth spectrum.
-  PowerSpectrum periodogram = whole;
-  const double two_cycles = 2.0 / bins_per_cycle(whole);
-  add_below(two_cycles, -whole.wider_variance, periodogram);
+SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress) {
   const std::vector<double> positions = octave_positions(periodogram);
   const std::vector<TriedSpline> tried = try_widths(periodogram, positions, progress);
   const std::vector<std::size_t> best = best_by_octave(tried);
@@ -161,7 +157,6 @@ SpectrumEstimate estimate_spectrum(const PowerSpectrum& whole, const Progress& p
     variance[i] = rough.freedom.variance;
   }
   raise_to_variance(estimate.spectrum, periodogram.variance());
-  add_below(two_cycles, whole.wider_variance, estimate.spectrum);
   estimate.weights = octave_weights(estimate.spectrum);
   double error = 0.0, weighted = 0.0;
   for (std::size_t i = 1; i < power.size(); ++i) {

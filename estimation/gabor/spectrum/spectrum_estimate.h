@@ -32,8 +32,7 @@ struct SpectrumEstimate {
 //   sum over the octave of n (g + I exp(-g)) + effective parameters per bin,
 //
 // and w is interpolated between octaves. Peaks near frequency 0 thus stay narrow, while flat regions are
-// smoothed widely. Frequency 0 holds no data and is left out, and so is PowerSpectrum::wider_variance, which
-// the lowest octave of the estimate has again. Throws WorkError when progress asks to stop.
+// smoothed widely. Frequency 0 holds no data and is left out. Throws WorkError when progress asks to stop.
 SpectrumEstimate estimate_spectrum(const PowerSpectrum& periodogram, const Progress& progress = {});
 
 }  // namespace astrolith

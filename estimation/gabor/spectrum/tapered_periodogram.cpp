@@ -70,20 +70,15 @@ void add_power(PowerSpectrum& sum, const PowerSpectrum& other) {
   for (std::size_t i = 0; i < sum.power.size(); ++i) sum.power[i] += other.power[i];
 }
 
-// Brings the variance to that of the pixels, by power below the frequency. A difference that chance explains,
-// and a surplus, is spread over all frequencies. Chance moves the sum of the power by some root of the sum of
-// its squares.
-void scale_to_pixels(PowerSpectrum& spectrum, double variance, double frequency) {
-  const double lacking = variance - spectrum.variance();
+// Takes a surplus of variance over the pixels' away, and what the spectrum lacks if chance explains it:
+// chance moves the sum of the power by some root of the sum of its squares.
+void scale_to_pixels(PowerSpectrum& spectrum, double variance) {
   double squares = 0.0;
   for (const double p : spectrum.power) squares += p * p;
-  if (lacking > std::sqrt(squares) / static_cast<double>(spectrum.power.size())) {
-    add_below(frequency, lacking, spectrum);
-    spectrum.wider_variance = lacking;
-    return;
-  }
-  const double gain = spectrum.variance() > 0.0 ? variance / spectrum.variance() : 0.0;
-  for (double& p : spectrum.power) p *= gain;
+  const double chance = std::sqrt(squares) / static_cast<double>(spectrum.power.size());
+  const double has = spectrum.variance();
+  if (variance - has > chance || !(has > 0.0)) return;
+  for (double& p : spectrum.power) p *= variance / has;
 }
 
 }  // namespace
@@ -114,7 +109,7 @@ TaperedPower tapered_power(const GreyImage& image, int width, int height) {
   return result;
 }
 
-PowerSpectrum least_leaky(const TaperedPower& power, double side) {
+PowerSpectrum least_leaky(const TaperedPower& power) {
   const std::vector<double> positions = octave_positions(power.values);
   const std::vector<double> values = power_by_octave(power.values, positions),
                             slopes = power_by_octave(power.slopes, positions);
@@ -123,7 +118,7 @@ PowerSpectrum least_leaky(const TaperedPower& power, double side) {
     const auto octave = static_cast<std::size_t>(positions[i]);
     if (slopes[octave] < (1.0 - kNegligibleLeakage) * values[octave]) best.power[i] = power.slopes.power[i];
   }
-  scale_to_pixels(best, power.variance, 2.0 / side);
+  scale_to_pixels(best, power.variance);
   return best;
 }
 

@@ -27,9 +27,8 @@ TaperedPower tapered_power(const GreyImage& image, int width, int height);
 // two periodograms is taken which has less. On 256 x 256 squares of f^-4 to f^-6 the values alone are up to
 // 30 times too strong, on white noise the slopes alone 2.4 times.
 //
-// Its variance is that of the pixels. Of what it lacks, more than chance explains is
-// PowerSpectrum::wider_variance.
-// `side` is the (geometric mean) side of the image, in pixels, below two cycles of which that variance lies.
-PowerSpectrum least_leaky(const TaperedPower& power, double side);
+// Light from one side and slopes wider than the image have no frequency, and their variance is left out. But
+// for them, the variance is that of the pixels.
+PowerSpectrum least_leaky(const TaperedPower& power);
 
 }  // namespace astrolith

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "estimation/gabor/image/image_reader.h"
 #include "numerics/errors.h"
@@ -60,17 +61,24 @@ TEST_F(PhotoFitTest, ColoursComeApartIntoTheLayersThatMadeThem) {
   EXPECT_EQ(layer_of(photo.channels[1], false).height_rms, 0.0);
 }
 
-// A photo above the largest side is cut into tiles, and a slope across it is lost.
-TEST_F(PhotoFitTest, VarianceWiderThanATileIsStated) {
-  std::vector<float> values;
-  for (int i = 0; i < 128 * 128; ++i) {
-    values.push_back(0.5f + 0.002f * static_cast<float>(i % 128) + 0.01f * static_cast<float>(i * 7919 % 13));
-  }
-  write_tiff_float(values, 128, 128, file_, 1);
-  PhotoFitOptions options;
-  EXPECT_NEAR(fit(options).variance_in_spectrum(), 1.0, 1e-6);
-  options.fit.largest_side = 32;
-  EXPECT_LT(fit(options).variance_in_spectrum(), 0.6);
+// A photo above the largest side is cut into tiles, and waves of twice their side are lost. So is a slope
+// across the photo.
+TEST_F(PhotoFitTest, VarianceOfWiderFeaturesIsStated) {
+  const auto held = [&](double wave, double slope, int largest_side) {
+    std::vector<float> values;
+    for (int i = 0; i < 128 * 128; ++i) {
+      const double x = i % 128, noise = 0.01 * (i * 7919 % 13);
+      values.push_back(
+          static_cast<float>(0.5 + wave * std::sin(x * std::numbers::pi / 32.0) + slope * x + noise));
+    }
+    write_tiff_float(values, 128, 128, file_, 1);
+    PhotoFitOptions options;
+    options.fit.largest_side = largest_side;
+    return fit(options).variance_in_spectrum();
+  };
+  EXPECT_NEAR(held(0.1, 0.0, 1024), 1.0, 0.05);
+  EXPECT_LT(held(0.1, 0.0, 32), 0.6);
+  EXPECT_LT(held(0.0, 0.002, 1024), 0.4);
 }
 
 TEST_F(PhotoFitTest, LuminanceIsOneLayerWithoutColour) {
