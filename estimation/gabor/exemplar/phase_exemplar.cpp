@@ -23,7 +23,7 @@ namespace {
 constexpr int kPreferredSide = 1024;
 
 int image_side(int side, bool tiles) {
-  return tiles ? side : std::min(2 * side, std::max(side, kPreferredSide));
+  return tiles ? side : std::min(4 * side, std::max(side, kPreferredSide));
 }
 
 // The wave of random phase at a frequency. Its opposite has the conjugate, and a frequency that is its own
@@ -47,14 +47,14 @@ ImageSides image_sides(const GreyImage& plane) {
 }
 
 // The spectrum of a plane on the frequencies of the layer's image. A photo says nothing of features wider
-// than itself, so there is no power below three quarters of a cycle.
+// than itself, so there is no power below a cycle.
 PowerSpectrum spectrum_of_plane(const GreyImage& plane, const ImageSides& sides) {
   PowerSpectrum spectrum = least_leaky(tapered_power(plane, sides.width, sides.height));
   const double growth =
       std::sqrt(static_cast<double>(sides.width) * sides.height / plane.width / plane.height);
   const std::vector<double> positions = octave_positions(spectrum);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (positions[i] < std::log2(0.75 * growth)) spectrum.power[i] = 0.0;
+    if (positions[i] < std::log2(growth) - 1e-9) spectrum.power[i] = 0.0;
   }
   return spectrum;
 }

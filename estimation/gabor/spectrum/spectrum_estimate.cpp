@@ -112,9 +112,10 @@ std::vector<OctaveSmoothing> smoothing_of(const std::vector<std::size_t>& best,
   return smoothing;
 }
 
-// Gives the spectrum S the variance by the most likely change of ln S. The error of ln S is equally large at
-// every frequency, so the change of least squares with a given sum of S is proportional to S: what is lacking
-// goes to the peaks, which the spline had lowered.
+// Gives the spectrum S the variance by a change of ln S in proportion to sqrt(S). What is lacking then goes
+// to the peaks, which the spline had lowered, and weak frequencies keep their power. In proportion to S,
+// which is the change of least squares, narrow ridges are raised too much: .174 in place of .163 from the
+// truth on `lines`, as near on other known spectra.
 void raise_to_variance(PowerSpectrum& spectrum, double variance) {
   constexpr int kSteps = 30;
   constexpr double kMost = 3.0;  // change of ln S at the peak
@@ -124,16 +125,16 @@ void raise_to_variance(PowerSpectrum& spectrum, double variance) {
   for (int step = 0; step < kSteps; ++step) {
     double sum = 0.0, slope = 0.0;
     for (const double p : spectrum.power) {
-      const double raised = p * std::exp(change * p / peak);
+      const double raised = p * std::exp(change * std::sqrt(p / peak));
       sum += raised;
-      slope += raised * p / peak;
+      slope += raised * std::sqrt(p / peak);
     }
     const double next = std::clamp(change + (wanted - sum) / slope, -kMost, kMost);
     const bool settled = std::fabs(next - change) < 1e-9;
     change = next;
     if (settled) break;
   }
-  for (double& p : spectrum.power) p *= std::exp(change * p / peak);
+  for (double& p : spectrum.power) p *= std::exp(change * std::sqrt(p / peak));
   const double gain = variance / spectrum.variance();
   for (double& p : spectrum.power) p *= gain;
 }

@@ -75,6 +75,11 @@ inline PowerSpectrum steep_spectrum() {
   return spectrum_from([](double fx, double fy) { return std::pow(1.0 + (fx * fx + fy * fy) / 4.0, -1.5); });
 }
 
+// The spectrum of a smooth height map: nine tenths of its power lie below three cycles per image.
+inline PowerSpectrum smooth_spectrum() {
+  return spectrum_from([](double fx, double fy) { return std::pow(1.0 + fx * fx + fy * fy, -2.0); });
+}
+
 // Two long and narrow ridges, as fibres or layers have.
 inline PowerSpectrum line_spectrum() {
   return spectrum_from([](double fx, double fy) {
@@ -116,9 +121,13 @@ struct NamedSpectrum {
 
 // All spectra of this file; they differ in kind.
 inline std::vector<NamedSpectrum> known_spectra() {
-  return {{"four lobes", four_lobe_spectrum()}, {"ring", ring_spectrum()},
-          {"steep", steep_spectrum()},          {"lines", line_spectrum()},
-          {"broad", broad_spectrum()},          {"eight Gabor lobes", eight_lobe_spectrum()}};
+  return {{"four lobes", four_lobe_spectrum()},
+          {"ring", ring_spectrum()},
+          {"steep", steep_spectrum()},
+          {"smooth", smooth_spectrum()},
+          {"lines", line_spectrum()},
+          {"broad", broad_spectrum()},
+          {"eight Gabor lobes", eight_lobe_spectrum()}};
 }
 
 // White Gaussian noise filtered by the square root of the spectrum.

@@ -32,8 +32,8 @@ TEST(PhaseExemplar, AnImageHasItsSpectrumExactly) {
 TEST(PhaseExemplar, TakesTheSpectrumOfThePhoto) {
   const testing::CutTexture cut = testing::cut_realisation(testing::ring_power, 2);
   const ExemplarLayer layer = phase_exemplar({cut.image}, "photo", 1);
-  EXPECT_EQ(layer.pixels->width, 256);
-  EXPECT_EQ(layer.pixels->height, 256);
+  EXPECT_EQ(layer.pixels->width, 512);
+  EXPECT_EQ(layer.pixels->height, 512);
   EXPECT_NEAR(layer.height_rms / std::sqrt(variance_of(cut.image.values)), 1.0, 0.02);
   const GreyImage texture = exemplar_texture_like(layer, cut.image, 5);
   EXPECT_NEAR(variance_of(texture.values) / variance_of(cut.image.values), 1.0, 0.25);
