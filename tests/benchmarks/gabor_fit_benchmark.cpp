@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "estimation/gabor/gabor_fit.h"
 #include "estimation/gabor/image/image_reader.h"
@@ -151,7 +152,9 @@ nlohmann::ordered_json measure_spectra(const Options& options) {
              "spectrum", "raw", "best smooth", "estimate", "s.e.", "fit_gabor", "lobes", "raw", "smooth",
              "fit", "raw", "smooth", "fit");
   auto rows = nlohmann::ordered_json::array();
-  for (const NamedSpectrum& known : known_spectra()) {
+  std::vector<NamedSpectrum> spectra = known_spectra();
+  spectra.push_back({"smooth", smooth_spectrum()});
+  for (const NamedSpectrum& known : spectra) {
     if (known.name.find(options.only) != std::string::npos) rows.push_back(measure_known(known, options));
   }
   return rows;

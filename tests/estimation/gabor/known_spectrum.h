@@ -119,12 +119,12 @@ struct NamedSpectrum {
   PowerSpectrum spectrum;
 };
 
-// All spectra of this file; they differ in kind.
+// Spectra of different kinds, with most power in many bins.
 inline std::vector<NamedSpectrum> known_spectra() {
   return {{"four lobes", four_lobe_spectrum()},
           {"ring", ring_spectrum()},
           {"steep", steep_spectrum()},
-          {"smooth", smooth_spectrum()},
+
           {"lines", line_spectrum()},
           {"broad", broad_spectrum()},
           {"eight Gabor lobes", eight_lobe_spectrum()}};
