@@ -164,7 +164,7 @@ void add_options(Program& program, Options& o) {
 // allowed.
 void predict_memory(Program& program, const Options& o, const PhotoFitOptions& photo) {
   const ImageSize size = read_image_size(o.image);
-  const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty());
+  const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty(), o.model != "gabor");
   program.summary["predicted"] = {{"peak_bytes", predicted}};
   if (predicted > memory_limit(o.max_memory_gb)) {
     throw InputError(

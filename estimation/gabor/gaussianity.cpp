@@ -71,11 +71,7 @@ GreyImage tile_of(const GreyImage& image, const Tiling& tiling, int t) {
   };
   const int x0 = start(image.width, t % tiling.columns, tiling.columns);
   const int y0 = start(image.height, t / tiling.columns, tiling.rows);
-  GreyImage tile{tiling.width, tiling.height, {}};
-  for (int y = y0; y < y0 + tiling.height; ++y) {
-    for (int x = x0; x < x0 + tiling.width; ++x) tile.values.push_back(image.at(x, y));
-  }
-  return tile;
+  return image.part(x0, y0, tiling.width, tiling.height);
 }
 
 double block_variance(const GreyImage& image, int bx, int by) {

@@ -17,14 +17,6 @@ namespace {
 constexpr int kMostSide = 256, kTextures = 2;
 constexpr int kLeastSquares = 2;
 
-GreyImage square_of(const GreyImage& photo, int left, int top, int side) {
-  GreyImage square{side, side, {}};
-  for (int y = top; y < top + side; ++y) {
-    for (int x = left; x < left + side; ++x) square.values.push_back(photo.at(x, y));
-  }
-  return square;
-}
-
 // The squares in the middles of the quarters that have a tenth of the photo's contrast at least.
 std::vector<GreyImage> squares_of(const GreyImage& photo, int side) {
   std::vector<GreyImage> squares;
@@ -32,8 +24,8 @@ std::vector<GreyImage> squares_of(const GreyImage& photo, int side) {
   for (const int row : {1, 3}) {
     for (const int column : {1, 3}) {
       const int left = column * photo.width / 4 - side / 2, top = row * photo.height / 4 - side / 2;
-      GreyImage square = square_of(photo, std::clamp(left, 0, photo.width - side),
-                                   std::clamp(top, 0, photo.height - side), side);
+      GreyImage square = photo.part(std::clamp(left, 0, photo.width - side),
+                                    std::clamp(top, 0, photo.height - side), side, side);
       if (variance_of(square.values) > least) squares.push_back(std::move(square));
     }
   }

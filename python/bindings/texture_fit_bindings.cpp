@@ -74,7 +74,7 @@ void require_results(const TextureArguments& a) {
 void check_memory(const TextureArguments& a) {
   const ImageSize size =
       a.planes ? ImageSize{a.planes->front().width, a.planes->front().height} : read_image_size(a.name);
-  const double bytes = predicted_fit_bytes(size, a.fit.photo, !a.report.empty());
+  const double bytes = predicted_fit_bytes(size, a.fit.photo, !a.report.empty(), a.model != "gabor");
   if (bytes <= a.most_bytes) return;
   throw InputError(
       fmt::format("{}: fitting {} x {} pixels needs {:.2f} GB of memory, more than {:.2f} GB; cut out a "

@@ -3,9 +3,10 @@
 //
 //   exemplar_windows_benchmark PHOTO... --body ITOKAWA.json --body KLEOPATRA.json
 //
-// The exemplar is made of the square in the middle of each photo. A ball is always measured. The image is
-// laid so that a body is as long as twelve images. A window is a square in the tangent plane of a random
-// point of the bare body; its pixels are projected to the body. Settings are the same for all photos.
+// The exemplar, and the image of random phases, is made of the square in the middle of each photo. A ball is
+// always measured. The image is laid so that a body is as long as twelve images. A window is a square in the
+// tangent plane of a random point of the bare body; its pixels are projected to the body. Settings are the
+// same for all photos.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@
 #include <filesystem>
 
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
+#include "estimation/gabor/exemplar/phase_exemplar.h"
 #include "estimation/gabor/image/image_reader.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -29,16 +31,6 @@ struct NamedBody {
   std::string name;
   Recipe recipe;
 };
-
-GreyImage middle_square(const GreyImage& photo, int side) {
-  side = std::min({side, photo.width, photo.height});
-  GreyImage square{side, side, {}};
-  const int x0 = (photo.width - side) / 2, y0 = (photo.height - side) / 2;
-  for (int y = y0; y < y0 + side; ++y) {
-    for (int x = x0; x < x0 + side; ++x) square.values.push_back(photo.at(x, y));
-  }
-  return square;
-}
 
 double mean_of(const std::vector<double>& values) {
   double sum = 0.0;
@@ -196,13 +188,16 @@ int main(int argc, char** argv) {
     all.push_back({std::filesystem::path(file).stem().string(), read_recipe(file)});
   }
   for (const std::string& file : photos) {
-    const GreyImage square = middle_square(read_grey_image(file).image, side);
-    const PreparedExemplar prepared = prepare_exemplar(square, file, 1);
+    const GreyImage square = read_grey_image(file).image.middle(side);
     const Judge judge{square};
-    const std::string photo = std::filesystem::path(file).stem().string();
-    fmt::print("{:<40} planes of 16 x 16 images: variance / photo's {:.3f}\n", photo,
-               variance_ratio(prepared.layer, judge));
-    print(photo, "plane", on_plane(prepared.layer, judge, windows));
-    for (const NamedBody& body : all) print(photo, body.name, on_body(body, prepared.layer, judge, windows));
+    const std::string stem = std::filesystem::path(file).stem().string();
+    for (const auto& [model, layer] : {std::pair{"exemplar", prepare_exemplar(square, file, 1).layer},
+                                       std::pair{"phase", phase_exemplar({square}, file, 1)}}) {
+      const std::string photo = fmt::format("{}, {}", stem, model);
+      fmt::print("{:<40} planes of 16 x 16 images: variance / photo's {:.3f}\n", photo,
+                 variance_ratio(layer, judge));
+      print(photo, "plane", on_plane(layer, judge, windows));
+      for (const NamedBody& body : all) print(photo, body.name, on_body(body, layer, judge, windows));
+    }
   }
 }

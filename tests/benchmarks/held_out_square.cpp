@@ -19,14 +19,6 @@ namespace {
 
 constexpr int kWindow = 64;
 
-GreyImage cut(const GreyImage& image, int x0, int y0, int side) {
-  GreyImage square{side, side, {}};
-  for (int y = y0; y < y0 + side; ++y) {
-    for (int x = x0; x < x0 + side; ++x) square.values.push_back(image.at(x, y));
-  }
-  return square;
-}
-
 double mean_of(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
@@ -175,8 +167,8 @@ HeldOut measure_held_out(const GreyImage& photo, int side, int seeds, const Gabo
   mean.pairs = std::min(4, photo.height / side);
   for (int i = 0; i < mean.pairs; ++i) {
     const int y0 = (2 * i + 1) * photo.height / (2 * mean.pairs) - side / 2;
-    add_pair(cut(photo, photo.width / 2 - side, y0, side), cut(photo, photo.width / 2, y0, side), seeds,
-             options, mean);
+    add_pair(photo.part(photo.width / 2 - side, y0, side, side), photo.part(photo.width / 2, y0, side, side),
+             seeds, options, mean);
   }
   for (double* value :
        {&mean.photo, &mean.random_phase, &mean.lobes, &mean.expected_random_phase, &mean.expected_lobes,

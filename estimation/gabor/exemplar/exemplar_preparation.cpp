@@ -52,17 +52,21 @@ ExemplarLayer layer_of_variant(const std::vector<GreyImage>& planes, ExemplarVar
   return layer;
 }
 
+// The scores are those of the middle of a larger photo.
+constexpr int kMostJudgedSide = 1024;
+
 // `photo` is the grey photo, or the luma of the planes.
 PreparedExemplar nearest_variant(const std::vector<GreyImage>& planes, const GreyImage& photo,
                                  const std::string& name, std::uint64_t seed, const Progress& progress) {
   require_exemplar(photo, name);
+  const GreyImage judged = photo.middle(kMostJudgedSide);
   PreparedExemplar best;
   for (const ExemplarVariant variant : kExemplarVariants) {
     const int number = static_cast<int>(variant);
     if (!report(progress, number / 3.0, "exemplar"))
       throw WorkError("stopped before the exemplar was prepared");
     ExemplarLayer layer = layer_of_variant(planes, variant);
-    best.scores[number] = texture_score(exemplar_texture_like(layer, photo, seed), photo);
+    best.scores[number] = texture_score(exemplar_texture_like(layer, judged, seed), judged);
     if (number > 0 && best.scores[number].sum() >= best.scores[static_cast<int>(best.variant)].sum())
       continue;
     best.variant = variant;

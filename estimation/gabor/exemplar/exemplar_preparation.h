@@ -24,8 +24,9 @@ std::string_view variant_word(ExemplarVariant variant);
 
 struct PreparedExemplar {
   ExemplarVariant variant = ExemplarVariant::kPeriodic;
-  ExemplarLayer layer;     // with pixels and border; lengths are pixels, height_rms is the image's deviation
-  TextureScore scores[3];  // of each variant, by number: a texture of the photo's size against the photo
+  ExemplarLayer layer;  // with pixels and border; lengths are pixels, height_rms is the image's deviation
+  TextureScore
+      scores[3];  // of each variant, by number: a texture against the photo, or its middle 1024 x 1024
 };
 
 // Makes an exemplar of a photo by the variant whose textures are nearest to the photo. `name` is the photo's

@@ -17,6 +17,20 @@ struct GreyImage {
     return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                   static_cast<std::size_t>(x)];
   }
+  // The pixels of a rectangle that lies inside the image.
+  GreyImage part(int left, int top, int part_width, int part_height) const {
+    GreyImage result{part_width, part_height, {}};
+    result.values.reserve(static_cast<std::size_t>(part_width) * static_cast<std::size_t>(part_height));
+    for (int y = top; y < top + part_height; ++y) {
+      for (int x = left; x < left + part_width; ++x) result.values.push_back(at(x, y));
+    }
+    return result;
+  }
+  // The square in the middle, or as much of it as there is.
+  GreyImage middle(int side) const {
+    const int part_width = side < width ? side : width, part_height = side < height ? side : height;
+    return part((width - part_width) / 2, (height - part_height) / 2, part_width, part_height);
+  }
 };
 
 }  // namespace astrolith

@@ -46,15 +46,6 @@ double scatter_along(const std::vector<int>& starts, int tile, Borders borders) 
   return sum / static_cast<double>(starts.size() * starts.size());
 }
 
-GreyImage cut(const GreyImage& image, int x0, int y0, int width, int height) {
-  GreyImage tile{width, height, {}};
-  tile.values.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int y = y0; y < y0 + height; ++y) {
-    for (int x = x0; x < x0 + width; ++x) tile.values.push_back(image.at(x, y));
-  }
-  return tile;
-}
-
 TaperedPower power_of(const GreyImage& image, Borders borders) {
   if (borders == Borders::kTaper) return tapered_power(image, image.width, image.height);
   return {power_spectrum(decompose_periodic(image).periodic), {}, 0.0};
@@ -102,7 +93,7 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
       if (!report(progress, 0.0, "spectrum of the photo")) {
         throw WorkError("stopped before the spectrum was known; nothing is written");
       }
-      sum.add(power_of(cut(image, x, y, tile_width, tile_height), borders));
+      sum.add(power_of(image.part(x, y, tile_width, tile_height), borders));
     }
   }
   const std::size_t tiles = xs.size() * ys.size();

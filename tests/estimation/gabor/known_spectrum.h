@@ -121,13 +121,9 @@ struct NamedSpectrum {
 
 // Spectra of different kinds, with most power in many bins.
 inline std::vector<NamedSpectrum> known_spectra() {
-  return {{"four lobes", four_lobe_spectrum()},
-          {"ring", ring_spectrum()},
-          {"steep", steep_spectrum()},
-
-          {"lines", line_spectrum()},
-          {"broad", broad_spectrum()},
-          {"eight Gabor lobes", eight_lobe_spectrum()}};
+  return {{"four lobes", four_lobe_spectrum()}, {"ring", ring_spectrum()},
+          {"steep", steep_spectrum()},          {"lines", line_spectrum()},
+          {"broad", broad_spectrum()},          {"eight Gabor lobes", eight_lobe_spectrum()}};
 }
 
 // White Gaussian noise filtered by the square root of the spectrum.

@@ -9,20 +9,12 @@
 namespace astrolith {
 namespace {
 
-GreyImage corner_of(const GreyImage& image, int side) {
-  GreyImage corner{side, side, {}};
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) corner.values.push_back(image.at(x, y));
-  }
-  return corner;
-}
-
 // The decision is statistical: the cut of one of these textures continues by chance.
 TEST(BorderTaper, TellsATileFromACut) {
   int false_cuts = 0, false_tiles = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const PowerSpectrum& s : {testing::four_lobe_spectrum(), testing::steep_spectrum()}) {
-      const GreyImage tile = testing::realisation_of(s, seed), cut = corner_of(tile, 64);
+      const GreyImage tile = testing::realisation_of(s, seed), cut = tile.part(0, 0, 64, 64);
       false_cuts += !tiles_along_x(tile) + !tiles_along_y(tile);
       false_tiles += tiles_along_x(cut) + tiles_along_y(cut);
     }
@@ -36,7 +28,7 @@ TEST(BorderTaper, OneStrongStratumOrGrainDoesNotHideACut) {
   int false_tiles = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const PowerSpectrum& s : {testing::four_lobe_spectrum(), testing::steep_spectrum()}) {
-      const GreyImage cut = corner_of(testing::realisation_of(s, seed), 64);
+      const GreyImage cut = testing::realisation_of(s, seed).part(0, 0, 64, 64);
       GreyImage upright = cut, level = cut, grain = cut;
       for (int i = 0; i < 64; ++i) {
         upright.values[static_cast<std::size_t>(i * 64 + 20)] += 10.0;
@@ -66,7 +58,7 @@ TEST(BorderTaper, LeavesATileAsItIs) {
 }
 
 TEST(BorderTaper, FadesACut) {
-  const GreyImage cut = corner_of(testing::realisation_of(testing::steep_spectrum(), 3), 70);
+  const GreyImage cut = testing::realisation_of(testing::steep_spectrum(), 3).part(0, 0, 70, 70);
   const BorderTaper taper = taper_of(cut);
   EXPECT_LT(std::abs(faded(cut, taper).at(0, 35)), 0.1 * std::sqrt(variance_of(cut.values)));
   EXPECT_GT(taper.looks(), 0.7);
