@@ -75,6 +75,11 @@ Option& Option::expected(int count) {
   return *this;
 }
 
+Option& Option::repeated() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 Option& Option::description(const std::string& text) {
   option_->description(text);
   return *this;

@@ -50,6 +50,8 @@ class Option {
   Option& excludes(const Option& other);
   // The option takes exactly `count` values.
   Option& expected(int count);
+  // The option may be given several times and takes one value each time.
+  Option& repeated();
   Option& description(const std::string& text);
   // The words that stand for the value in --help, such as FILE.json.
   Option& placeholder(const std::string& text);

@@ -80,7 +80,7 @@ void write_gravity_preview(const Program& program, const GravityBody& body, cons
   const double high = most > low ? most : low + 1.0;
   PreviewOptions options;
   options.seed = program.seed;
-  options.fill_light = 0.5;
+  options.ambient = 0.5;
   options.vertex_colors = sequential_colors(values, low, high);
   RgbImage image = render_preview(body.mesh, options, program.progress("preview"));
   add_color_bar(image, low, high);

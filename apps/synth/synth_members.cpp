@@ -255,8 +255,8 @@ void prepare_outputs(const Program& program, const MemberMaker& maker, const Mes
 MemberRange range_of(const MembersRequest& request) { return parse_range(request.range); }
 
 void set_light_and_view(const Family& family, const FamilyMember& member, PreviewRequest& preview) {
-  if (family.any_view) preview.views = {{member.view.x, member.view.y, member.view.z}};
-  if (family.any_sun) preview.sun = {member.sun.x, member.sun.y, member.sun.z};
+  if (family.any_view) preview.look.look_from(member.view);
+  if (family.any_sun) preview.look.light_from(member.sun);
 }
 
 void declare_members_options(Program& program, MembersRequest& request) {

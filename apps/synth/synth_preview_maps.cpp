@@ -78,11 +78,10 @@ std::vector<double> flat(const std::vector<Vec3d>& vectors) {
 
 void write_preview_maps(Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
                         const MapsSource& source) {
-  const PictureMaps maps =
-      render_maps(mesh, preview_options(program, request, mesh), program.progress("maps"));
+  const PictureMaps maps = render_maps(mesh, maps_options(program, request, mesh), program.progress("maps"));
   const int h = maps.height, w = maps.width, views = static_cast<int>(maps.from.size());
   const std::vector<double> right = flat(maps.right), up = flat(maps.up), from = flat(maps.from),
-                            corner = flat(maps.corner), pixel{maps.pixel};
+                            corner = flat(maps.corner), eye = flat(maps.eye), pixel{maps.pixel};
   std::vector<NpzArray> arrays{npz_array("depth", {h, w}, maps.depth),
                                npz_array("normal", {h, w, 3}, maps.normal),
                                npz_array("view", {h, w}, maps.view)};
@@ -99,6 +98,7 @@ void write_preview_maps(Program& program, const PreviewRequest& request, const T
   arrays.push_back(npz_array("up", {views, 3}, up));
   arrays.push_back(npz_array("from", {views, 3}, from));
   arrays.push_back(npz_array("corner", {views, 3}, corner));
+  arrays.push_back(npz_array("eye", {views, 3}, eye));
   arrays.push_back(npz_array("pixel", {}, pixel));
   write_npz(arrays, request.maps);
 }

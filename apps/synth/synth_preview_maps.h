@@ -22,7 +22,7 @@ struct MapsSource {
 
 // Writes the maps as NPZ, with these arrays (h x w pixels, v views):
 //   depth (h, w) float32, normal (h, w, 3) float32, view (h, w) int8,
-//   right, up, from, corner (v, 3) float64, pixel () float64    as in synthesis/picture/picture_maps.h
+//   right, up, from, corner, eye (v, 3) float64, pixel () float64    as in synthesis/picture/picture_maps.h
 //   layer (h, w) int32       the label of synthesis/field/surface_labels.h; -1 where the ray meets nothing
 //   instance (h, w) int32    the row of the feature list, from 0; -1 for none
 // An eroded mesh has no layer and no instance, because erosion moves what layers made; a line says so.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/counted.h"
-#include "apps/synth/pixel_size.h"
+#include "apps/pixel_size.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/image_file.h"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence
+from typing import Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -11,12 +11,19 @@ from astrolith import _arrays, _options, _synthesis
 from astrolith._mesh import MeshLike, arrays_of
 from astrolith._options import Progress
 
+_LUNAR_SHARES = {"rock": 0.35, "lambert": 0.0, "lommel-seeliger": 1.0}
+
 
 def render(
     mesh: MeshLike,
     *,
     views: Sequence[Sequence[float]] = (),
+    cameras: Union[str, Sequence[str]] = (),
     sun: Sequence[float] = (-0.75, 0.45, 0.55),
+    sun_body: Optional[Sequence[float]] = None,
+    reflectance: str = "rock",
+    ambient: float = 0.1,
+    transparent: bool = False,
     width: int = 1280,
     height: int = 960,
     colors: Optional[npt.ArrayLike] = None,
@@ -29,9 +36,20 @@ def render(
     Parameters
     ----------
     views
-        Directions from the body to the viewer, one tile each; empty: +x, +y, +z and obliquely, a patch from above.
+        Directions from the body to the viewer, one tile each.
+    cameras
+        Cameras in the words of ``synth --camera``, such as ``"lat 20 lon 45 fov 30 radii 4"``, one tile each.
+        Without views and cameras: +x, +y, +z and obliquely, a patch from above.
     sun
         The direction towards the sun in the axes of each view: right, up, to the viewer.
+    sun_body
+        The direction towards the sun in the axes of the mesh, in place of ``sun``.
+    reflectance
+        ``"lambert"``, ``"lommel-seeliger"`` or ``"rock"``, .35 of Lommel-Seeliger and .65 of Lambert.
+    ambient
+        Light from everywhere as a share of sunlight, 0 to 10.
+    transparent
+        Whether the background is transparent.
     width, height
         Pixels of the whole picture, 16 to 16384.
     colors
@@ -40,7 +58,7 @@ def render(
     Returns
     -------
     ndarray
-        (height, width, 3) uint8 sRGB, the top row first.
+        (height, width, 3) uint8 sRGB, the top row first; (height, width, 4) with alpha where ``transparent``.
 
     Raises
     ------
@@ -49,8 +67,12 @@ def render(
     """
     arrays = arrays_of(mesh, "mesh")
     directions = [_arrays.vector(view, "views") for view in views]
-    towards_sun = _arrays.vector(sun, "sun")
-    for name, direction in [("views", d) for d in directions] + [("sun", towards_sun)]:
+    words = [cameras] if isinstance(cameras, str) else [str(camera) for camera in cameras]
+    sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)
+    towards_sun = _arrays.vector(towards_sun, sun_name)
+    if reflectance not in _LUNAR_SHARES:
+        raise ValueError(f"reflectance: {reflectance!r} is unknown; choose from {', '.join(_LUNAR_SHARES)}")
+    for name, direction in [("views", d) for d in directions] + [(sun_name, towards_sun)]:
         if not any(direction):
             raise ValueError(f"{name}: 0 0 0 is no direction; give another")
     albedo = None if colors is None else _arrays.rows(colors, "colors", length=len(arrays.vertices))
@@ -60,7 +82,12 @@ def render(
         arrays.normals,
         albedo,
         directions,
+        words,
         towards_sun,
+        sun_body is not None,
+        _LUNAR_SHARES[reflectance],
+        float(ambient),
+        bool(transparent),
         _arrays.integer(width, "width", 16, 16384),
         _arrays.integer(height, "height", 16, 16384),
         _options.seed(seed),

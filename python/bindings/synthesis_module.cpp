@@ -205,14 +205,19 @@ std::pair<std::string, std::string> vary_in_job(const std::string& json, const s
 NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
                                 const OptionalRows& normals, const OptionalRows& colors,
                                 const std::vector<std::array<double, 3>>& views,
-                                const std::array<double, 3>& sun, int width, int height, std::uint64_t seed,
-                                int threads, nb::object progress) {
+                                const std::vector<std::string>& cameras, const std::array<double, 3>& sun,
+                                bool sun_in_body, double lunar_share, double ambient, bool transparent,
+                                int width, int height, std::uint64_t seed, int threads, nb::object progress) {
   PreviewOptions options;
   options.width = width;
   options.height = height;
   options.seed = seed;
-  options.sun = {sun[0], sun[1], sun[2]};
+  options.sun = {{sun[0], sun[1], sun[2]}, sun_in_body};
+  options.lunar_share = lunar_share;
+  options.ambient = ambient;
+  options.transparent = transparent;
   options.views.clear();
+  for (const std::string& camera : cameras) options.views.push_back(parse_camera("cameras", camera));
   for (const auto& view : views) options.views.push_back(view_from({view[0], view[1], view[2]}));
   if (colors) {
     for (const Vec3d& c : points_of(*colors)) {
@@ -220,13 +225,15 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
           {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)});
     }
   }
-  RgbImage image = run_job(std::move(progress), threads,
-                           [options, mesh = mesh_of(vertices, faces, normals)](JobState& state) mutable {
-                             if (options.views.empty()) options.views = usual_views(mesh);
-                             return render_preview(mesh, options, state.progress("preview"));
-                           });
-  return array_of<std::uint8_t>(std::move(image.pixels), {static_cast<std::size_t>(image.height),
-                                                          static_cast<std::size_t>(image.width), 3});
+  const RgbaImage16 image =
+      run_job(std::move(progress), threads,
+              [options, mesh = mesh_of(vertices, faces, normals)](JobState& state) mutable {
+                if (options.views.empty()) options.views = usual_views(mesh);
+                return render_picture(mesh, options, state.progress("preview"));
+              });
+  return array_of<std::uint8_t>(
+      transparent ? rgba_bytes(image) : opaque_bytes(image).pixels,
+      {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), transparent ? 4u : 3u});
 }
 
 std::tuple<NumpyArray<float>, double, bool> texture(const std::string& json, const std::string& name,
@@ -268,8 +275,9 @@ void bind_products(nb::module_& module) {
              nb::arg("progress").none());
   module.def("render", &render, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert(),
              nb::arg("normals").noconvert().none(), nb::arg("colors").noconvert().none(), nb::arg("views"),
-             nb::arg("sun"), nb::arg("width"), nb::arg("height"), nb::arg("seed"), nb::arg("threads"),
-             nb::arg("progress").none());
+             nb::arg("cameras"), nb::arg("sun"), nb::arg("sun_in_body"), nb::arg("lunar_share"),
+             nb::arg("ambient"), nb::arg("transparent"), nb::arg("width"), nb::arg("height"), nb::arg("seed"),
+             nb::arg("threads"), nb::arg("progress").none());
   module.def("texture", &texture, nb::arg("json"), nb::arg("name"), nb::arg("width"), nb::arg("height"),
              nb::arg("content"), nb::arg("tileable"), nb::arg("threads"), nb::arg("progress").none());
 }

@@ -161,6 +161,18 @@ def test_a_picture_shows_a_bright_ball_on_black(ball):
     assert picture[24, 32].mean() > 60 and picture[0, 0].max() < 60
 
 
+def test_cameras_suns_and_transparency_are_those_of_synth(ball):
+    body = astrolith.mesh(ball, resolution=24)
+    look = dict(cameras="from 1 0 0", width=64, height=48, reflectance="lambert", ambient=0)
+    picture = astrolith.render(body, sun_body=(0, 1, 0), transparent=True, **look)
+    assert picture.shape == (48, 64, 4) and picture[0, 0, 3] == 0 and picture[24, 32, 3] == 255
+    assert picture[24, 44, 0] > 150 and picture[24, 24, 0] == 0  # +y is to the right
+    with pytest.raises(ValueError, match="cameras"):
+        astrolith.render(body, cameras="lat 100")
+    with pytest.raises(ValueError, match="reflectance"):
+        astrolith.render(body, reflectance="hapke")
+
+
 def test_recipes_are_edited_as_attributes_and_checked(ball, tmp_path):
     ball.seed = 5
     ball.body.spheres[0][3] = 3.0

@@ -6,6 +6,7 @@
 
 #include "numerics/portable_angles.h"
 #include "numerics/portable_double.h"
+#include "numerics/srgb.h"
 
 namespace astrolith {
 namespace {
@@ -52,11 +53,7 @@ std::vector<Vec3<float>> sequential_colors(std::span<const double> values, doubl
 }
 
 unsigned char srgb_byte(float linear) {
-  const float v = std::clamp(linear, 0.0f, 1.0f);
-  const float encoded =
-      v <= 0.0031308f ? 12.92f * v
-                      : 1.055f * static_cast<float>(portable::pow(double{v}, double{1.0f / 2.4f})) - 0.055f;
-  return static_cast<unsigned char>(255.0f * encoded + 0.5f);
+  return static_cast<unsigned char>(255.0 * srgb_of_linear(std::clamp(double{linear}, 0.0, 1.0)) + 0.5);
 }
 
 }  // namespace astrolith

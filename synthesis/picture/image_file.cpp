@@ -129,7 +129,40 @@ bool write_tiff_rows(TIFF* tiff, std::span<const float> values, int width, int h
   return TIFFFlush(tiff) == 1;
 }
 
+// The picture's values with the first `channels` of each pixel.
+template <typename Value, typename Convert>
+std::vector<Value> first_channels(const RgbaImage16& image, std::size_t channels, const Convert& convert) {
+  std::vector<Value> values;
+  values.reserve(image.pixels.size() / 4 * channels);
+  for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+    for (std::size_t k = 0; k < channels; ++k) values.push_back(convert(image.pixels[i + k]));
+  }
+  return values;
+}
+
+std::uint8_t byte_of(std::uint16_t value) { return static_cast<std::uint8_t>((value + 128u) / 257u); }
+
 }  // namespace
+
+RgbImage opaque_bytes(const RgbaImage16& image) {
+  return {image.width, image.height, first_channels<std::uint8_t>(image, 3, byte_of)};
+}
+
+std::vector<std::uint8_t> rgba_bytes(const RgbaImage16& image) {
+  return first_channels<std::uint8_t>(image, 4, byte_of);
+}
+
+void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::filesystem::path& file) {
+  check_size(image.pixels.size(), 4, image.width, image.height, file);
+  const std::size_t channels = with_alpha ? 4 : 3, width = static_cast<std::size_t>(image.width);
+  const int type = with_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB;
+  if (bits == 16) {
+    const auto values = first_channels<std::uint16_t>(image, channels, [](std::uint16_t v) { return v; });
+    return write_png({image.width, image.height, 16, type, 2 * channels * width}, values.data(), file);
+  }
+  const auto bytes = first_channels<std::uint8_t>(image, channels, byte_of);
+  write_png({image.width, image.height, 8, type, channels * width}, bytes.data(), file);
+}
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file) {
   check_size(image.pixels.size(), 3, image.width, image.height, file);

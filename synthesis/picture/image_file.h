@@ -17,6 +17,22 @@ struct RgbImage {
   std::vector<std::uint8_t> pixels;  // (height x width x 3) sRGB
 };
 
+// A picture with coverage, of 16 bits.
+struct RgbaImage16 {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint16_t> pixels;  // (height x width x 4) sRGB and alpha, not multiplied by alpha
+};
+
+// The picture rounded to 8 bits, without its alpha.
+RgbImage opaque_bytes(const RgbaImage16& image);
+
+// The picture rounded to 8 bits, (height x width x 4).
+std::vector<std::uint8_t> rgba_bytes(const RgbaImage16& image);
+
+// Writes a PNG of 8 or 16 bits, with or without alpha.
+void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::filesystem::path& file);
+
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file);
 
 // grey: (height x width)

@@ -1,7 +1,9 @@
 #include "synthesis/picture/picture_maps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
@@ -26,11 +28,13 @@ PictureMaps empty_maps(const PreviewOptions& options) {
 void set_cameras(const PreviewRays& rays, const RayScene& scene, std::size_t views, PictureMaps& maps) {
   maps.pixel = rays.pixel() / scene.scale();
   for (std::size_t view = 0; view < views; ++view) {
-    const PreviewCamera& camera = rays.camera(view);
+    const ViewCamera& camera = rays.camera(view);
     maps.right.push_back(camera.right);
     maps.up.push_back(camera.up);
     maps.from.push_back(camera.from);
-    maps.corner.push_back(scene.from_unit(rays.exact_origin(view, 0.0, 0.0)));
+    maps.corner.push_back(scene.from_unit(rays.on_plane(view, 0.0, 0.0)));
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    maps.eye.push_back(camera.is_pinhole ? scene.from_unit(camera.eye) : Vec3d{kNone, kNone, kNone});
   }
 }
 
@@ -40,7 +44,9 @@ Vec3d PictureMaps::point(int x, int y) const {
   const std::size_t i =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   const auto k = static_cast<std::size_t>(static_cast<unsigned char>(view[i]));  // not -1
-  return corner[k] + (x + 0.5) * pixel * right[k] - (y + 0.5) * pixel * up[k] - double{depth[i]} * from[k];
+  const Vec3d q = corner[k] + (x + 0.5) * pixel * right[k] - (y + 0.5) * pixel * up[k];
+  if (std::isnan(eye[k].x)) return q - double{depth[i]} * from[k];
+  return eye[k] + double{depth[i]} * normalized(q - eye[k]);
 }
 
 PictureMaps render_maps(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
@@ -55,11 +61,11 @@ PictureMaps render_maps(const TriangleMesh& mesh, const PreviewOptions& options,
     const std::optional<std::size_t> view = rays.view_at(x + 0.5, y + 0.5);
     if (!view) return;
     maps.view[i] = static_cast<std::int8_t>(*view);
-    const Vec3f to_viewer = rays.camera(*view).to_viewer;
-    const RayHit hit = scene.first_hit(rays.origin(*view, x + 0.5, y + 0.5), -to_viewer);
+    const PictureRay ray = rays.ray(*view, x + 0.5, y + 0.5);
+    const RayHit hit = scene.first_hit(ray.origin, ray.direction);
     if (!hit.found) return;
-    maps.depth[i] = static_cast<float>(double{hit.distance} / scene.scale());
-    const Vec3f normal = seen_normals(mesh, normals, hit, to_viewer).smooth;
+    maps.depth[i] = static_cast<float>((ray.before + double{hit.distance}) / scene.scale());
+    const Vec3f normal = seen_normals(mesh, normals, hit, -ray.direction).smooth;
     maps.normal[3 * i] = normal.x, maps.normal[3 * i + 1] = normal.y, maps.normal[3 * i + 2] = normal.z;
   };
   parallel_for(0, maps.height, [&](std::int64_t y) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <optional>
 
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
@@ -10,28 +12,25 @@
 #include "numerics/parallel_for.h"
 #include "numerics/portable_angles.h"
 #include "numerics/scalar_math.h"
+#include "numerics/srgb.h"
 #include "numerics/tangent_frame.h"
-#include "synthesis/picture/colormap.h"
 #include "synthesis/picture/preview_rays_internal.h"
 #include "synthesis/picture/ray_scene_internal.h"
 
 namespace astrolith {
 namespace {
 
-constexpr Vec3f kBackground{0.0030f, 0.0034f, 0.0048f};
 constexpr Vec3f kNeutralAlbedo{0.58f, 0.56f, 0.535f};
 // The height above the surface at which secondary rays start, in radii of the body. It exceeds the rounding
 // errors of a hit.
 constexpr float kLift = 2e-5f;
-// The share of the law of Lommel and Seeliger in the reflectance (McEwen 1991), which makes full moons look
-// flat. Rocks look less flat: the rest of the reflectance follows Lambert.
-constexpr float kLunarShare = 0.35f;
+// Square roots of linear light in neighbouring pixels that differ by more are worth more samples.
+constexpr float kContrast = 0.035f;
+// Points of the sun's disk that neighbouring pixels look at in turn, along a row and along a column. Pixels
+// in a penumbra then differ and get more samples.
+constexpr int kTurns = 3;
 
-// A frame across the unit vector n. Sums are rounded twice and the sign bit of n.z decides the frame, because
-// pictures have always had these bits.
-Tangents<float> tangents_about(const Vec3f& n) {
-  return duff_tangents<SumRounding::kTwice>(n, std::copysign(1.0f, n.z));
-}
+float fraction(double x) { return static_cast<float>(x - std::floor(x)); }
 
 // The sun of one view, in the scene's axes.
 struct Sun {
@@ -39,34 +38,59 @@ struct Sun {
   Vec3f first, second;  // across the sun's disk, as long as its apparent radius
 };
 
-Sun make_sun(const PreviewCamera& camera, const PreviewOptions& options) {
-  const Vec3d sun = normalized(options.sun);
-  Sun made{to_float(sun.x * camera.right + sun.y * camera.up + sun.z * camera.from), {}, {}};
+Sun make_sun(const ViewCamera& camera, const PreviewOptions& options) {
+  const Vec3d sun = normalized(options.sun.direction);
+  const Vec3d direction =
+      options.sun.in_mesh_axes ? sun : sun.x * camera.right + sun.y * camera.up + sun.z * camera.from;
+  Sun made{to_float(direction), {}, {}};
   const auto radius =
       static_cast<float>(portable::tan(options.sun_radius_degrees * std::numbers::pi / 180.0));
-  const Tangents<float> tangents = tangents_about(made.direction);
+  const Tangents<float> tangents =
+      duff_tangents<SumRounding::kTwice>(made.direction, std::copysign(1.0f, made.direction.z));
   made.first = radius * tangents.first;
   made.second = radius * tangents.second;
   return made;
 }
 
-// Uniform random numbers of one ray, as hashes of the pixel and the ray.
-class RayRandom {
- public:
-  RayRandom(std::uint64_t seed, int x, int y, int ray) : hash_(hash_cell(hash_seed(seed, 0), x, y, ray)) {}
-  float next() { return unit_float(hash_append(hash_, index_++)); }
-
- private:
-  std::uint32_t hash_;
-  std::uint32_t index_ = 0;
+// Where a sample lies in its pixel, and the point of the unit disk that stands for the sun.
+struct SamplePlace {
+  float x = 0.5f, y = 0.5f, sun_x = 0, sun_y = 0;
 };
 
-// A point of the unit disk with uniform density.
-std::array<float, 2> disk_point(RayRandom& random) {
-  const float radius = math::sqrt(random.next());
-  const float turn = random.next();
-  return {radius * math::cos_turns(turn), radius * math::sin_turns(turn)};
+SamplePlace at_disk(float x, float y, float area, float turn) {
+  const float radius = math::sqrt(area);
+  return {x, y, radius * math::cos_turns(turn), radius * math::sin_turns(turn)};
 }
+
+// Places that cover pixel and disk evenly: a lattice of the golden ratio and one of the plastic number
+// (Roberts 2018), moved by the seed. All pixels have the same places, so that penumbrae are free of noise.
+std::vector<SamplePlace> sample_places(int count, std::uint64_t seed) {
+  const std::uint32_t hash = hash_seed(seed, 0);
+  const double dx = unit_float(hash_append(hash, 0)), dy = unit_float(hash_append(hash, 1));
+  std::vector<SamplePlace> places;
+  for (int k = 0; k < count; ++k) {
+    places.push_back(at_disk(fraction((k + dx) / count), fraction(dy + 0.6180339887498949 * k),
+                             fraction(0.5 + 0.7548776662466927 * k), fraction(0.5698402909980532 * k)));
+  }
+  return places;
+}
+
+// What one sample or one pixel shows.
+struct Seen {
+  Vec3f light;         // linear, of the surface; weighted by `cover`
+  float cover = 0.0f;  // share of the samples that meet the surface
+};
+
+bool differ(const Vec3f& a, const Vec3f& b) {
+  const Vec3f d = a - b;
+  return std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)}) > kContrast;
+}
+
+// A sample at the middle of a pixel, and the square roots of its light.
+struct Probe {
+  Seen seen;
+  Vec3f level{-1.0f, -1.0f, -1.0f};
+};
 
 class Painter {
  public:
@@ -75,74 +99,86 @@ class Painter {
         options_(options),
         scene_(mesh),
         rays_(mesh, options, scene_),
-        normals_(mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh)) {
+        normals_(mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh)),
+        places_(sample_places(options.oversampling * options.oversampling, options.seed)) {
     for (std::size_t view = 0; view < options.views.size(); ++view)
       suns_.push_back(make_sun(rays_.camera(view), options));
+    for (int k = 0; k < kTurns * kTurns; ++k) {
+      const int mixed = k * 4 % (kTurns * kTurns);  // neighbours look at far points of the disk
+      turns_.push_back(at_disk(0.5f, 0.5f, (static_cast<float>(mixed) + 0.5f) / (kTurns * kTurns),
+                               fraction(0.6180339887498949 * mixed)));
+    }
   }
 
-  std::array<unsigned char, 3> pixel(int x, int y) const {
-    const int n = options_.oversampling, rays = n * n;
-    Vec3f sum;
-    bool is_hit = false;
-    for (int k = 0; k < rays; ++k) {
-      // The rays at two opposite corners come first. Where both miss the body, the whole pixel is background.
-      const int ray = k == 1 ? rays - 1 : k > 1 ? k - 1 : 0;
-      const int column = ray % n, row = ray / n;
-      RayRandom random(options_.seed, x, y, ray);
-      const double px = x + (column + double(random.next())) / n;
-      const double py = y + (row + double(random.next())) / n;
-      sum += radiance(px, py, random, is_hit);
-      if (k == 1 && !is_hit)
-        return {srgb_byte(kBackground.x), srgb_byte(kBackground.y), srgb_byte(kBackground.z)};
+  Probe probe(int x, int y) const {
+    Probe made{sample(x, y, turns_[static_cast<std::size_t>(x % kTurns + kTurns * (y % kTurns))])};
+    const Vec3f& light = made.seen.light;
+    if (made.seen.cover > 0.0f) made.level = {math::sqrt(light.x), math::sqrt(light.y), math::sqrt(light.z)};
+    return made;
+  }
+
+  Seen pixel(int x, int y) const {
+    Seen sum;
+    for (const SamplePlace& place : places_) {
+      const Seen seen = sample(x, y, place);
+      sum.light += seen.light;
+      sum.cover += seen.cover;
     }
-    sum *= 1.0f / static_cast<float>(rays);
-    return {srgb_byte(sum.x), srgb_byte(sum.y), srgb_byte(sum.z)};
+    const float share = 1.0f / static_cast<float>(places_.size());
+    return {share * sum.light, share * sum.cover};
   }
 
  private:
-  Vec3f radiance(double px, double py, RayRandom& random, bool& is_hit) const {
+  Seen sample(int x, int y, const SamplePlace& place) const {
+    const double px = x + double{place.x}, py = y + double{place.y};
     const std::optional<std::size_t> view = rays_.view_at(px, py);
-    if (!view) return kBackground;
-    const Vec3f to_viewer = rays_.camera(*view).to_viewer;
-    const Vec3f origin = rays_.origin(*view, px, py);
-    const RayHit hit = scene_.first_hit(origin, -to_viewer);
-    if (!hit.found) return kBackground;
-    is_hit = true;
-    return shade(to_viewer, suns_[*view], origin - hit.distance * to_viewer, hit, random);
+    if (!view) return {};
+    const PictureRay ray = rays_.ray(*view, px, py);
+    const RayHit hit = scene_.first_hit(ray.origin, ray.direction);
+    if (!hit.found) return {};
+    const Vec3f point = ray.origin + hit.distance * ray.direction;
+    return {shade(-ray.direction, suns_[*view], point, hit, place), 1.0f};
   }
 
   Vec3f shade(const Vec3f& to_viewer, const Sun& sun, const Vec3f& point, const RayHit& hit,
-              RayRandom& random) const {
+              const SamplePlace& place) const {
     const auto [face, normal] = seen_normals(mesh_, normals_, hit, to_viewer);
-    const Vec3f start = point + kLift * face;
     const Vec3f albedo = options_.vertex_colors.empty()
                              ? kNeutralAlbedo
                              : interpolate_corners(mesh_, options_.vertex_colors, hit);
-    const float light = sunlight(sun, start, normal, to_viewer, random);
-    return albedo * (light + sky_light(start, normal, to_viewer, random));
-  }
-
-  float sunlight(const Sun& sun, const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer,
-                 RayRandom& random) const {
-    const auto [dx, dy] = disk_point(random);
-    const Vec3f towards = normalized(sun.direction + dx * sun.first + dy * sun.second);
-    const float incidence = dot(normal, towards);
-    if (incidence <= 0.0f || scene_.occluded(start, towards)) return 0.0f;
-    const float emission = std::max(dot(normal, to_viewer), 1e-3f);
-    return kLunarShare * 2.0f * incidence / (incidence + emission) + (1.0f - kLunarShare) * incidence;
-  }
-
-  // Light from a sky that is brightest behind the viewer. One cosine-weighted ray tests whether the sky is
-  // open. In shadows this keeps slopes legible and makes hollows look hollow.
-  float sky_light(const Vec3f& start, const Vec3f& normal, const Vec3f& to_viewer, RayRandom& random) const {
-    if (options_.fill_light <= 0.0) return 0.0f;
-    const auto [dx, dy] = disk_point(random);
-    const float dz = math::sqrt(std::max(0.0f, 1.0f - dx * dx - dy * dy));
-    const Tangents<float> tangents = tangents_about(normal);
-    const Vec3f towards = normalized(dx * tangents.first + dy * tangents.second + dz * normal);
-    if (scene_.occluded(start, towards)) return 0.0f;
     const float facing = std::max(0.0f, dot(normal, to_viewer));
-    return static_cast<float>(options_.fill_light) * (0.25f + 0.75f * facing * facing);
+    const Vec3f start = lifted(point, hit, face);
+    return albedo * (sunlight(sun, start, normal, facing, place) + ambient(facing));
+  }
+
+  // Where secondary rays start: above the planes across the normals of the triangle's corners, so that facets
+  // near the terminator do not shade their neighbours (Hanika, "Hacking the shadow terminator", 2021).
+  Vec3f lifted(const Vec3f& point, const RayHit& hit, const Vec3f& face) const {
+    const Triangle& t = mesh_.triangles[hit.triangle];
+    const float weights[] = {1.0f - hit.u - hit.v, hit.u, hit.v};
+    Vec3f start = point + kLift * face;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f normal = to_float(normals_[t[k]]);
+      if (dot(normal, face) <= 0.0f) continue;  // the surface is seen from behind
+      const float below = dot(point - to_float(scene_.to_unit(mesh_.vertices[t[k]])), normal);
+      if (below < 0.0f) start -= weights[k] * below * normal;
+    }
+    return start;
+  }
+
+  float sunlight(const Sun& sun, const Vec3f& start, const Vec3f& normal, float facing,
+                 const SamplePlace& place) const {
+    const float incidence = dot(normal, sun.direction);
+    if (incidence <= 0.0f) return 0.0f;
+    const Vec3f towards = normalized(sun.direction + place.sun_x * sun.first + place.sun_y * sun.second);
+    if (scene_.occluded(start, towards)) return 0.0f;
+    const auto lunar = static_cast<float>(options_.lunar_share);
+    return lunar * 2.0f * incidence / (incidence + std::max(facing, 1e-3f)) + (1.0f - lunar) * incidence;
+  }
+
+  // Light from a sky that is brightest behind the viewer keeps slopes legible in shadows.
+  float ambient(float facing) const {
+    return static_cast<float>(options_.ambient) * (0.25f + 0.75f * facing * facing);
   }
 
   const TriangleMesh& mesh_;
@@ -150,59 +186,116 @@ class Painter {
   RayScene scene_;
   PreviewRays rays_;
   std::vector<Vec3d> normals_;  // (#V)
-  std::vector<Sun> suns_;       // one a view
+  std::vector<SamplePlace> places_, turns_;
+  std::vector<Sun> suns_;  // one a view
+};
+
+// Values of sRGB in 16 bits, from a table over the square root of linear light, on which they are smooth.
+class SrgbTable {
+ public:
+  SrgbTable() {
+    for (int i = 0; i <= kSteps + 1; ++i) {
+      const double root = std::min(1.0, static_cast<double>(i) / kSteps);
+      values_.push_back(static_cast<float>(65535.0 * srgb_of_linear(root * root)));
+    }
+  }
+  std::uint16_t operator()(float linear) const {
+    const float at = math::sqrt(std::clamp(linear, 0.0f, 1.0f)) * kSteps;
+    const auto i = static_cast<std::size_t>(at);
+    const float between = at - static_cast<float>(i);
+    return static_cast<std::uint16_t>(values_[i] + between * (values_[i + 1] - values_[i]) + 0.5f);
+  }
+
+ private:
+  static constexpr int kSteps = 4096;
+  std::vector<float> values_;
+};
+
+// Paints bands of rows: first a sample for each pixel, then more where neighbours differ.
+class BandPainter {
+ public:
+  BandPainter(const Painter& painter, const PreviewOptions& options, RgbaImage16& image)
+      : painter_(painter), options_(options), image_(image) {}
+
+  void paint(int first, int end) {
+    first_probe_ = std::max(0, first - 1);
+    const int end_probe = std::min(image_.height, end + 1);
+    probes_.resize(static_cast<std::size_t>(end_probe - first_probe_) * columns());
+    parallel_for(first_probe_, end_probe, [&](std::int64_t y) {
+      for (int x = 0; x < image_.width; ++x)
+        probes_[index(x, static_cast<int>(y))] = painter_.probe(x, static_cast<int>(y));
+    });
+    parallel_for(first, end, [&](std::int64_t y) {
+      for (int x = 0; x < image_.width; ++x) paint_pixel(x, static_cast<int>(y), end_probe);
+    });
+  }
+
+ private:
+  std::size_t columns() const { return static_cast<std::size_t>(image_.width); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - first_probe_) * columns() + static_cast<std::size_t>(x);
+  }
+
+  bool is_even(int x, int y, int end_probe) const {
+    const Vec3f& level = probes_[index(x, y)].level;
+    for (int v = std::max(first_probe_, y - 1); v < std::min(end_probe, y + 2); ++v) {
+      for (int u = std::max(0, x - 1); u < std::min(image_.width, x + 2); ++u) {
+        if (differ(level, probes_[index(u, v)].level)) return false;
+      }
+    }
+    return true;
+  }
+
+  void paint_pixel(int x, int y, int end_probe) {
+    const Seen seen = options_.oversampling == 1 || is_even(x, y, end_probe) ? probes_[index(x, y)].seen
+                                                                             : painter_.pixel(x, y);
+    const float open = 1.0f - seen.cover;
+    const Vec3f light = options_.transparent
+                            ? (seen.cover > 0.0f ? (1.0f / seen.cover) * seen.light : Vec3f{})
+                            : seen.light + open * options_.background;
+    std::uint16_t* out =
+        &image_.pixels[4 * (static_cast<std::size_t>(y) * columns() + static_cast<std::size_t>(x))];
+    out[0] = srgb_(light.x), out[1] = srgb_(light.y), out[2] = srgb_(light.z);
+    out[3] = options_.transparent ? static_cast<std::uint16_t>(65535.0f * seen.cover + 0.5f) : 65535;
+  }
+
+  const Painter& painter_;
+  const PreviewOptions& options_;
+  RgbaImage16& image_;
+  SrgbTable srgb_;
+  int first_probe_ = 0;
+  std::vector<Probe> probes_;
 };
 
 }  // namespace
 
-PreviewView view_from(const Vec3d& direction) {
-  const Vec3d from = normalized(direction);
-  const bool polar = from.x * from.x + from.y * from.y < 1e-6;
-  return {from, polar ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1}};
+Sunlight sun_at_phase(double phase_degrees, double azimuth_degrees) {
+  const double phase = phase_degrees * std::numbers::pi / 180.0;
+  const double azimuth = azimuth_degrees * std::numbers::pi / 180.0;
+  const double s = portable::sin(phase);
+  return {{-s * portable::sin(azimuth), s * portable::cos(azimuth), portable::cos(phase)}, false};
 }
 
-std::vector<PreviewView> standard_views() {
-  return {
-      {{1, 0, 0}, {0, 0, 1}}, {{0, 1, 0}, {0, 0, 1}}, {{0, 0, 1}, {0, 1, 0}}, {{1.0, -1.2, 0.8}, {0, 0, 1}}};
-}
-
-std::vector<PreviewView> usual_views(const TriangleMesh& mesh) {
-  // The areas of a closed surface, as vectors, add up to nothing; those of a plane to its whole area.
-  constexpr double kFacesOneWay = 0.5;
-  Vec3d facing{0, 0, 0};
-  double area = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d& p = mesh.vertices[t[0]];
-    const Vec3d twice = cross(mesh.vertices[t[1]] - p, mesh.vertices[t[2]] - p);
-    facing += twice;
-    area += norm(twice);
-  }
-  if (!(norm(facing) > kFacesOneWay * area)) return standard_views();
-  const PreviewView above = view_from(facing);
-  const Vec3d north = normalized(above.up - dot(above.up, above.from) * above.from);
-  return {above, {above.from - 1.2 * north, above.from}};
-}
-
-RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
+RgbaImage16 render_picture(const TriangleMesh& mesh, const PreviewOptions& options,
+                           const Progress& progress) {
   check_preview_options(options, mesh);
   const Painter painter(mesh, options);
-  RgbImage image{options.width, options.height, {}};
-  image.pixels.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-  constexpr int kBand = 32;  // rows between two reports of progress
+  RgbaImage16 image{options.width, options.height, {}};
+  image.pixels.resize(4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  BandPainter bands(painter, options, image);
+  constexpr int kBand = 64;  // rows between two reports of progress
   for (int first = 0; first < image.height; first += kBand) {
     const int end = std::min(image.height, first + kBand);
-    parallel_for(first, end, [&](std::int64_t y) {
-      unsigned char* out =
-          &image.pixels[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width)];
-      for (int x = 0; x < image.width; ++x) {
-        for (const unsigned char byte : painter.pixel(x, static_cast<int>(y))) *out++ = byte;
-      }
-    });
+    bands.paint(first, end);
     if (!report(progress, double(end) / image.height, "preview")) {
       throw WorkError("preview: stopped before the picture was complete");
     }
   }
   return image;
+}
+
+RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
+  return opaque_bytes(render_picture(mesh, options, progress));
 }
 
 }  // namespace astrolith

@@ -1,53 +1,66 @@
-// Renders a mesh under sunlight: orthographic rays (Embree), the reflectance of small bodies, soft shadows
-// and a little fill light. The pixels are the same on every run and for any number of threads.
+// Renders a mesh under sunlight: rays of orthographic cameras or pinholes (Embree), the reflectance of small
+// bodies, soft shadows and ambient light. The pixels are the same on every run and for any number of threads.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
+#include "synthesis/picture/camera.h"
 #include "synthesis/picture/image_file.h"
 
 namespace astrolith {
 
-// The viewpoint: the direction from the body to the camera, and the direction that is up in the picture.
-struct PreviewView {
-  Vec3d from;
-  Vec3d up;
+inline constexpr int kLeastPictureSide = 16, kMostPictureSide = 16384;  // pixels
+
+// The direction towards the sun, of any length above 0: in the axes of each view (right, up, to the viewer),
+// or in those of the mesh.
+struct Sunlight {
+  Vec3d direction{-0.75, 0.45, 0.55};
+  bool in_mesh_axes = false;
 };
 
-// The views from +x, from +y, from above the +z pole, and obliquely, as readers of shape models expect them.
-std::vector<PreviewView> standard_views();
+// The sun of a view by its phase angle, between the directions to the sun and to the viewer, 0 .. 180
+// degrees, and by its azimuth in the picture, degrees counter-clockwise from up.
+Sunlight sun_at_phase(double phase_degrees, double azimuth_degrees);
 
-// The standard views; of a patch of ground, which is open and faces one way, the view from above its mean
-// plane and one obliquely.
-std::vector<PreviewView> usual_views(const TriangleMesh& mesh);
-
-// The view from a direction of any length above 0. North is up, or +y where the view is along the pole.
-PreviewView view_from(const Vec3d& direction);
-
-inline constexpr int kLeastPictureSide = 16, kMostPictureSide = 16384;  // pixels
+// Shares of the law of Lommel and Seeliger in the reflectance, the lunar share of McEwen (1991).
+inline constexpr double kLambert = 0.0, kRock = 0.35, kLommelSeeliger = 1.0;
 
 struct PreviewOptions {
   int width = 1280, height = 960;  // kLeastPictureSide .. kMostPictureSide
-  int oversampling = 3;            // rays along a pixel's side, 1 .. 16
-  // Each view gets one tile, in rows. All tiles have one scale, chosen such that every view fits.
-  std::vector<PreviewView> views = standard_views();
-  // The direction towards the sun in the axes of each view (right, up, to the viewer), of any length.
-  Vec3d sun{-0.75, 0.45, 0.55};
+  // Rows at the bottom that no view takes, for scales; less than the height.
+  int strip = 0;
+  // Samples along a pixel's side where neighbouring pixels differ, 1 .. 16. Even ground takes one sample.
+  int oversampling = 3;
+  // Each view gets one tile, in rows. All orthographic tiles have one scale, chosen such that every view
+  // fits.
+  std::vector<Camera> views = standard_views();
+  Sunlight sun;
   double sun_radius_degrees = 1.5;  // angular radius of the sun's disk; 0 gives hard shadows
-  double fill_light = 0.035;        // ratio of sky light to sunlight; 0 leaves shadows black, as in space
+  // Ratio of the light from everywhere, brightest from behind the viewer, to sunlight. 0 leaves shadows
+  // black, as in space.
+  double ambient = 0.1;
+  // The reflectance is albedo * (L * 2 m0 / (m0 + m) + (1 - L) * m0) with the cosines m0 of incidence and m
+  // of emission and the lunar share L (McEwen, Icarus 92, 1991, eq. 3). 0 is Lambert's law, 1 that of Lommel
+  // and Seeliger, which makes full moons look flat.
+  double lunar_share = kRock;
   // The linear-light albedo (sRGB components in [0, 1], colormap.h) at each vertex, or empty for neutral
   // grey.
   std::vector<Vec3<float>> vertex_colors;
-  std::uint64_t seed = 1;  // decides where rays lie within pixels
+  Vec3<float> background{0.0030f, 0.0034f, 0.0048f};  // linear-light sRGB
+  bool transparent = false;                           // no background
+  std::uint64_t seed = 1;                             // decides where samples lie within pixels
 };
 
 // Shading is smooth: it uses mesh.normals where given, and otherwise normals averaged over triangles. Throws
 // InputError for a mesh without triangles, with indices out of range or with positions that are not finite,
-// and for options out of range. Throws WorkError when progress asks to stop.
+// for options out of range and for a camera inside the mesh. Throws WorkError when progress asks to stop.
+RgbaImage16 render_picture(const TriangleMesh& mesh, const PreviewOptions& options = {},
+                           const Progress& progress = {});
+
+// The picture in 8 bits, without its transparency.
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options = {},
                         const Progress& progress = {});
 

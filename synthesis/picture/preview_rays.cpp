@@ -1,33 +1,83 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "numerics/errors.h"
+#include "numerics/portable_angles.h"
 #include "synthesis/picture/preview_rays_internal.h"
 
 namespace astrolith {
 namespace {
 
-constexpr double kFilled = 0.92;  // share of a tile that the largest view spans
+constexpr double kFilled = 0.92;          // share of a tile that the largest view spans
+constexpr double kLeastPixel = 1e-9;      // in the unit ball, of a mesh without extent
+constexpr double kOrthographicFar = 2.0;  // from the ball's centre to where orthographic rays begin
 
-PreviewCamera make_camera(const PreviewView& view, const RayScene& scene, const TriangleMesh& mesh) {
-  PreviewCamera camera;
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+// The axes of a camera, without its place.
+ViewCamera oriented(const Camera& view) {
+  ViewCamera camera;
   camera.from = normalized(view.from);
-  camera.right = normalized(cross(view.up, camera.from));
-  camera.up = cross(camera.from, camera.right);
-  if (!(squared_norm(camera.right) > 0.5)) {
+  const Vec3d right = normalized(cross(normalized(view.up), camera.from));
+  if (!(squared_norm(right) > 0.5)) {
     throw InputError("preview: a view looks along its own up direction; choose another up");
   }
+  const Vec3d up = cross(camera.from, right);
+  const double c = portable::cos(radians(view.roll)), s = portable::sin(radians(view.roll));
+  camera.right = view.roll == 0.0 ? right : c * right + s * up;
+  camera.up = view.roll == 0.0 ? up : c * up - s * right;
+  return camera;
+}
+
+void place_orthographic(const Camera& view, const RayScene& scene, const TriangleMesh& mesh,
+                        ViewCamera& camera) {
   Box box;
   for (const Vec3d& vertex : mesh.vertices) {
     const Vec3d p = scene.to_unit(vertex);
     box.extend({dot(p, camera.right), dot(p, camera.up), 0.0});
   }
-  camera.center_x = box.center().x;
-  camera.center_y = box.center().y;
+  Vec3d middle = box.center();
   camera.half_width = 0.5 * box.extent().x;
   camera.half_height = 0.5 * box.extent().y;
-  camera.to_viewer = to_float(camera.from);
-  return camera;
+  if (view.target) {
+    const Vec3d target = scene.to_unit(*view.target);
+    middle = {dot(target, camera.right), dot(target, camera.up), 0.0};
+  }
+  camera.eye = middle.x * camera.right + middle.y * camera.up + kOrthographicFar * camera.from;
+}
+
+// The least distance at which a pinhole sees the whole mesh in the middle of its tile.
+double distance_for_all(const Vec3d& target, const ViewCamera& camera, double half_width_tangent,
+                        double half_height_tangent, const RayScene& scene, const TriangleMesh& mesh) {
+  double distance = 0.0;
+  for (const Vec3d& vertex : mesh.vertices) {
+    const Vec3d p = scene.to_unit(vertex) - target;
+    const double across = std::max(std::fabs(dot(p, camera.right)) / half_width_tangent,
+                                   std::fabs(dot(p, camera.up)) / half_height_tangent);
+    distance = std::max(distance, dot(p, camera.from) + across / kFilled);
+  }
+  return distance;
+}
+
+void place_pinhole(const Camera& view, const RayScene& scene, const TriangleMesh& mesh, double tile_width,
+                   double tile_height, ViewCamera& camera) {
+  const double tangent = portable::tan(radians(0.5 * view.field_of_view));
+  const Vec3d target = view.target ? scene.to_unit(*view.target) : Vec3d{0, 0, 0};
+  double distance = view.in_radii ? view.distance : view.distance * scene.scale();
+  if (!(view.distance > 0.0)) {
+    distance = distance_for_all(target, camera, tangent, tangent * tile_height / tile_width, scene, mesh);
+  }
+  camera.is_pinhole = true;
+  camera.pixel = 2.0 * tangent / tile_width;
+  camera.eye = target + distance * camera.from;
+}
+
+// Whether the first surface before a pinhole turns its back to it.
+bool is_inside(const ViewCamera& camera, const RayScene& scene) {
+  if (norm(camera.eye) > 1.0) return false;
+  const RayHit hit = scene.first_hit(to_float(camera.eye), to_float(-camera.from));
+  return hit.found && dot(hit.normal, to_float(camera.from)) < 0.0f;
 }
 
 }  // namespace
@@ -42,10 +92,16 @@ void check_preview_options(const PreviewOptions& options, const TriangleMesh& me
   if (!within(static_cast<double>(options.views.size()), 1, 64)) {
     throw InputError("preview: give 1 .. 64 views");
   }
-  if (!within(options.sun_radius_degrees, 0, 45) || !within(options.fill_light, 0, 10)) {
-    throw InputError("preview: the sun's radius must be 0 .. 45 degrees and the fill light 0 .. 10");
+  if (!within(options.sun_radius_degrees, 0, 45) || !within(options.ambient, 0, 10)) {
+    throw InputError("preview: the sun's radius must be 0 .. 45 degrees and the ambient light 0 .. 10");
   }
-  if (!(squared_norm(options.sun) > 0.0)) throw InputError("preview: the sun needs a direction");
+  if (!within(options.lunar_share, 0, 1)) throw InputError("preview: the lunar share must be 0 .. 1");
+  if (!(squared_norm(options.sun.direction) > 0.0)) throw InputError("preview: the sun needs a direction");
+  for (const Camera& view : options.views) {
+    if (!within(view.field_of_view, 0, 175) || !(view.distance >= 0.0) || !std::isfinite(view.roll)) {
+      throw InputError("preview: a field of view must be 0 .. 175 degrees, a distance above 0");
+    }
+  }
   if (!options.vertex_colors.empty() && options.vertex_colors.size() != mesh.vertices.size()) {
     throw InputError("preview: give one colour a vertex, or none");
   }
@@ -53,29 +109,62 @@ void check_preview_options(const PreviewOptions& options, const TriangleMesh& me
 
 PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options, const RayScene& scene)
     : width_(options.width),
-      height_(options.height),
+      height_(options.height - options.strip),
       columns_(static_cast<int>(std::ceil(std::sqrt(double(options.views.size()))))),
-      rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_) {
-  for (const PreviewView& view : options.views) cameras_.push_back(make_camera(view, scene, mesh));
-  for (const PreviewCamera& camera : cameras_) {
+      rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_),
+      pixel_(kLeastPixel) {
+  for (const Camera& view : options.views) {
+    ViewCamera camera = oriented(view);
+    if (view.field_of_view > 0.0) {
+      place_pinhole(view, scene, mesh, tile_width(), tile_height(), camera);
+      if (is_inside(camera, scene)) {
+        throw InputError("camera: it stands inside the body or below its ground; give a larger distance");
+      }
+    } else {
+      place_orthographic(view, scene, mesh, camera);
+    }
+    cameras_.push_back(camera);
+  }
+  double at_body = 0.0;  // side of a pixel of a pinhole at the ball's centre
+  for (const ViewCamera& camera : cameras_) {
     pixel_ = std::max({pixel_, 2 * camera.half_width / (kFilled * tile_width()),
                        2 * camera.half_height / (kFilled * tile_height())});
+    if (camera.is_pinhole) at_body = std::max(at_body, camera.pixel * norm(camera.eye));
+  }
+  if (pixel_ == kLeastPixel && at_body > 0.0) pixel_ = at_body;
+  for (ViewCamera& camera : cameras_) {
+    if (!camera.is_pinhole) camera.pixel = pixel_;
   }
 }
 
 std::optional<std::size_t> PreviewRays::view_at(double px, double py) const {
+  if (py >= height_) return std::nullopt;
   const int column = std::min(columns_ - 1, static_cast<int>(px / tile_width()));
   const int row = std::min(rows_ - 1, static_cast<int>(py / tile_height()));
   const auto view = static_cast<std::size_t>(row * columns_ + column);
   return view < cameras_.size() ? std::optional(view) : std::nullopt;
 }
 
-Vec3d PreviewRays::exact_origin(std::size_t view, double px, double py) const {
-  const PreviewCamera& camera = cameras_[view];
+Vec3d PreviewRays::across(std::size_t view, double px, double py) const {
   const int column = static_cast<int>(view) % columns_, row = static_cast<int>(view) / columns_;
-  const double u = (px - (column + 0.5) * tile_width()) * pixel_ + camera.center_x;
-  const double v = ((row + 0.5) * tile_height() - py) * pixel_ + camera.center_y;
-  return u * camera.right + v * camera.up + kCameraDistance * camera.from;
+  return (px - (column + 0.5) * tile_width()) * cameras_[view].right +
+         ((row + 0.5) * tile_height() - py) * cameras_[view].up;
+}
+
+Vec3d PreviewRays::on_plane(std::size_t view, double px, double py) const {
+  const ViewCamera& camera = cameras_[view];
+  const double before = camera.is_pinhole ? pixel_ / camera.pixel : 0.0;
+  return camera.eye - before * camera.from + pixel_ * across(view, px, py);
+}
+
+PictureRay PreviewRays::ray(std::size_t view, double px, double py) const {
+  const ViewCamera& camera = cameras_[view];
+  const Vec3d offset = camera.pixel * across(view, px, py);
+  if (!camera.is_pinhole) return {to_float(camera.eye + offset), to_float(-camera.from), 0.0};
+  const Vec3d direction = normalized(offset - camera.from);
+  // Where the ray of a far camera nears the ball: single precision is enough from there.
+  const double before = std::max(0.0, -dot(camera.eye, direction) - kOrthographicFar);
+  return {to_float(camera.eye + before * direction), to_float(direction), before};
 }
 
 SeenNormals seen_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& vertex_normals,

@@ -14,39 +14,50 @@ namespace astrolith {
 // Throws InputError for options out of range.
 void check_preview_options(const PreviewOptions& options, const TriangleMesh& mesh);
 
-// An orthographic camera in the unit ball of a scene. Its rays begin on the plane at kCameraDistance from the
-// ball's centre and run along -to_viewer.
-struct PreviewCamera {
-  Vec3d right, up, from;  // orthonormal
-  Vec3f to_viewer;        // `from` in single precision
-  // The centre and the half sides of the body's box in the picture plane.
-  double center_x = 0, center_y = 0, half_width = 0, half_height = 0;
+// A ray in the unit ball of a scene.
+struct PictureRay {
+  Vec3f origin, direction;  // unit direction
+  // From where lengths along the ray are counted to the origin: the ray of a far camera begins near the ball.
+  double before = 0.0;
 };
-inline constexpr double kCameraDistance = 2.0;
+
+// A camera in the unit ball of a scene.
+struct ViewCamera {
+  Vec3d right, up, from;  // orthonormal
+  // The pinhole, or the middle of the plane on which the rays of an orthographic camera begin.
+  Vec3d eye;
+  bool is_pinhole = false;
+  // The half sides of the mesh's box in the picture plane of an orthographic camera.
+  double half_width = 0, half_height = 0;
+  // The side of a pixel: a length, or for a pinhole the tangent of an angle.
+  double pixel = 0;
+};
 
 class PreviewRays {
  public:
-  // Throws InputError for a view along its own up direction.
+  // Throws InputError for a camera along its own up direction, and for one inside the mesh.
   PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options, const RayScene& scene);
 
   // The view whose tile has a place of the picture, in pixels from its top left corner. Tiles that are left
   // over have none.
   std::optional<std::size_t> view_at(double px, double py) const;
-  // Where the ray of that place begins.
-  Vec3d exact_origin(std::size_t view, double px, double py) const;
-  Vec3f origin(std::size_t view, double px, double py) const { return to_float(exact_origin(view, px, py)); }
-  const PreviewCamera& camera(std::size_t view) const { return cameras_[view]; }
-  // The side of a pixel in the unit ball.
+  PictureRay ray(std::size_t view, double px, double py) const;
+  const ViewCamera& camera(std::size_t view) const { return cameras_[view]; }
+  // The side of a pixel of the orthographic views in the unit ball, and of a plane before each pinhole.
   double pixel() const { return pixel_; }
+  // The point of that plane at a place of the picture.
+  Vec3d on_plane(std::size_t view, double px, double py) const;
 
  private:
   double tile_width() const { return width_ / columns_; }
   double tile_height() const { return height_ / rows_; }
+  // A place of the picture from the middle of its view, in pixels.
+  Vec3d across(std::size_t view, double px, double py) const;
 
   double width_, height_;
   int columns_, rows_;
-  std::vector<PreviewCamera> cameras_;  // one a view
-  double pixel_ = 1e-9;
+  std::vector<ViewCamera> cameras_;  // one a view
+  double pixel_;
 };
 
 // Interpolates a value at the corners of the triangle that was hit.

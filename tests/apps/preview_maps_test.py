@@ -49,8 +49,11 @@ def points_of(maps, rows, columns):
     view = maps["view"][rows, columns]
     right, up, origin = maps["right"][view], maps["up"][view], maps["corner"][view]
     pixel = maps["pixel"]
-    begin = origin + ((columns + 0.5) * pixel)[:, None] * right - ((rows + 0.5) * pixel)[:, None] * up
-    return begin, -maps["from"][view]
+    plane = origin + ((columns + 0.5) * pixel)[:, None] * right - ((rows + 0.5) * pixel)[:, None] * up
+    eye = maps["eye"][view]
+    if np.isnan(eye).all():
+        return plane, -maps["from"][view]
+    return eye, (plane - eye) / np.linalg.norm(plane - eye, axis=1)[:, None]
 
 
 def first_hit(begin, along, vertices, normals, faces):
@@ -136,6 +139,13 @@ def main():
         assert maps["depth"].dtype == np.float32 and maps["normal"].shape == (*maps["depth"].shape, 3)
         check_geometry(maps, read_ply(folder / "b.ply"))
         check_features(maps, list(csv.DictReader((folder / "f.csv").open())))
+
+        # A pinhole, and maps of a size of their own.
+        camera = ["--camera", "lat 30 lon -60 fov 40 radii 3", "--maps-size", "200x150", "--preview-maps", folder / "d.npz"]
+        run(synth, recipe, "-o", folder / "b.ply", *options, *camera)
+        maps = dict(np.load(folder / "d.npz"))
+        assert maps["depth"].shape == (150, 200)
+        check_geometry(maps, read_ply(folder / "b.ply"))
 
         # In a patch, points are relative to its centre, as the mesh is.
         cube = ["--patch", 0, 0, 95, 60]

@@ -24,7 +24,16 @@ TEST_F(SynthPicture, PicturesCanBeTakenFromElsewhere) {
   EXPECT_FALSE(one == picture("--view 0 1 0 --view 0 0 1"));
   EXPECT_FALSE(one == picture("--view 0 1 0 --sun 0 0 1"));
   std::filesystem::remove(folder_ / "p.png");
+  EXPECT_FALSE(one == picture("--view 0 1 0 --sun-body 0 0 1"));
+  EXPECT_FALSE(one == picture("--view 0 1 0 --phase 90 180"));
+  EXPECT_FALSE(one == picture("--camera \"lat 0 lon 90 fov 40\""));
+  EXPECT_TRUE(one == picture("--camera \"from 0 1 0\""));
   refuse("r.json -o x.ply --sun 1 0 0", "--preview");
+  refuse("r.json -o x.ply --preview p.png --camera \"fov 30 radii .2\"", "stands inside the body");
+  refuse("r.json -o x.ply --preview p.png --camera \"zoom 2\"", "--camera: \"zoom\" is no word of a camera");
+  refuse("r.json -o x.ply --preview p.png --sun-body 0 0 0", "--sun-body");
+  refuse("r.json -o x.ply --preview p.png --phase 200 0", "--phase");
+  refuse("r.json -o x.ply --preview p.png --phase 20 0 --sun 0 0 1", "give one of them");
   refuse("r.json -o x.ply --preview p.png --sun 0 0 0", "--sun");
 }
 
@@ -49,10 +58,22 @@ TEST_F(SynthPicture, SizesOfPictures) {
          "--picture-size: is about a picture; add --preview FILE.png");
 }
 
+TEST_F(SynthPicture, BitsAndBackgrounds) {
+  const auto type = [&](const std::string& more) {
+    succeed("r.json -o out.ply --resolution 16 --preview p.png --picture-size 64x64 " + more);
+    return text("p.png").substr(24, 2);
+  };
+  EXPECT_EQ(type(""), "\x08\x02");
+  EXPECT_EQ(type("--picture-bits 16"), "\x10\x02");
+  EXPECT_EQ(type("--background transparent"), "\x08\x06");
+}
+
 TEST_F(SynthPicture, MapsAreOfAPicture) {
   refuse("r.json -o x.ply --preview-maps p.npz",
          "--preview-maps: is about a picture; add --preview FILE.png");
   const std::string line = "r.json -o x.ply --preview p.png --preview-maps ";
+  refuse("r.json -o x.ply --preview p.png --maps-size 64x64", "--maps-size: is about maps");
+  refuse(line + "p.npz --maps-size 1x1", "--maps-size");
   refuse(line + "p.exr", "p.exr: is no .npz file");
   refuse(line + "none/p.npz", "none");
   refuse(line + "r.json", "is the input itself");

@@ -64,7 +64,7 @@ void write_distance_map(const TargetBody& target, const ShapeFitResult& fit,
   PreviewOptions options = small_preview();
   options.vertex_colors = sequential_colors(vertex_distances(target.tree, fit.check.mesh), 0.0,
                                             std::max(fit.check.distance.p99, 1e-9));
-  options.fill_light = 0.5;  // keeps colours readable in the shadows
+  options.ambient = 0.5;  // keeps colours readable in the shadows
   write_picture_with_scale(
       {render_preview(fit.check.mesh, options), "distance from the fit to the target, of the diagonal"},
       {"0", percent(fit.check.distance.p99)}, file);

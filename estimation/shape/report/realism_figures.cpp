@@ -83,7 +83,7 @@ CaptionedPicture roughness_map(const NamedSurface& surface, double low, double h
   PreviewOptions options;
   options.width = 800;
   options.height = 600;
-  options.fill_light = 0.5;  // keeps colours readable in the shadows
+  options.ambient = 0.5;  // keeps colours readable in the shadows
   options.vertex_colors =
       sequential_colors(roughness_at_vertices(surface, mapped_roughness(surface.statistics)), low, high);
   return {render_preview(surface.mesh, options), surface.name};

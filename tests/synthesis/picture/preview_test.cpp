@@ -4,6 +4,7 @@
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/srgb.h"
 #include "synthesis/mesh/mesher.h"
 #include "synthesis/picture/colormap.h"
 #include "tests/synthesis/analytic_field.h"
@@ -33,8 +34,8 @@ int grey(const RgbImage& image, int x, int y) {
 
 TEST(Preview, SphereIsLitFromTheSunAndDarkBehind) {
   PreviewOptions options = one_view();
-  options.sun = {-1, 0, 0.2};
-  options.fill_light = 0.0;
+  options.sun.direction = {-1, 0, 0.2};
+  options.ambient = 0.0;
   const RgbImage image = render_preview(sphere_mesh(), options);
   EXPECT_GT(grey(image, 10, 32), 150);  // the side of the sun
   EXPECT_EQ(grey(image, 50, 32), 0);    // night
@@ -47,7 +48,7 @@ TEST(Preview, SphereIsLitFromTheSunAndDarkBehind) {
 TEST(Preview, PatchesAreSeenFromAboveTheirGround) {
   EXPECT_EQ(usual_views(sphere_mesh()).size(), standard_views().size());
   const TriangleMesh patch{{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0.1, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}};
-  const std::vector<PreviewView> views = usual_views(patch);
+  const std::vector<Camera> views = usual_views(patch);
   ASSERT_EQ(views.size(), 2u);
   EXPECT_GT(normalized(views[0].from).x, 0.99);
   EXPECT_GT(normalized(views[1].from).x, 0.6);
@@ -57,7 +58,7 @@ TEST(Preview, PatchesAreSeenFromAboveTheirGround) {
 
 TEST(Preview, DiskHasTheAreaOfTheSphere) {
   PreviewOptions options = one_view();
-  options.sun = {0, 0, 1};
+  options.sun.direction = {0, 0, 1};
   options.width = options.height = 200;
   const RgbImage image = render_preview(sphere_mesh(), options);
   int lit = 0;
@@ -74,8 +75,8 @@ TEST(Preview, BodiesCastShadows) {
   mesh_field(AnalyticField(two, 1.0), cube(1.01), 64, collector);
   PreviewOptions options = one_view();
   options.width = options.height = 256;
-  options.sun = {-1, 0, 0};
-  options.fill_light = 0.0;
+  options.sun.direction = {-1, 0, 0};
+  options.ambient = 0.0;
   const RgbImage image = render_preview(collector.mesh, options);
   // The picture spans y = -1 .. 0.5 over 92 % of its side.
   const auto pixel = [](double y, double z) {
@@ -117,12 +118,40 @@ TEST(Preview, AnyUnitAndPlaceGivesNearlyTheSamePicture) {
 TEST(Preview, ColoursOfVerticesShow) {
   const TriangleMesh mesh = sphere_mesh();
   PreviewOptions options = one_view();
-  options.sun = {0, 0, 1};
+  options.sun.direction = {0, 0, 1};
   options.vertex_colors.assign(mesh.vertices.size(), {0.8f, 0.1f, 0.0f});
   const RgbImage image = render_preview(mesh, options);
   const std::size_t center = 3 * (32 * 64 + 32);
   EXPECT_GT(image.pixels[center], image.pixels[center + 1] + 60);
   EXPECT_GT(image.pixels[center + 1], image.pixels[center + 2]);
+}
+
+TEST(Preview, TransparentPicturesHaveCoverage) {
+  PreviewOptions options = one_view();
+  options.transparent = true;
+  const RgbaImage16 image = render_picture(sphere_mesh(), options);
+  const auto alpha = [&](std::size_t x, std::size_t y) { return image.pixels[4 * (64 * y + x) + 3]; };
+  EXPECT_EQ(alpha(1, 1), 0);
+  EXPECT_EQ(alpha(32, 32), 65535);
+  double covered = 0.0;
+  for (std::size_t y = 0; y < 64; ++y) {
+    for (std::size_t x = 0; x < 64; ++x) covered += alpha(x, y) / 65535.0;
+  }
+  const double radius = 0.46 * 64;
+  EXPECT_NEAR(covered, 3.14159 * radius * radius, 0.003 * 64 * 64);
+}
+
+TEST(Preview, LambertAndLommelSeeligerFollowTheirFormulas) {
+  PreviewOptions options = one_view();
+  options.ambient = 0.0;
+  options.sun = sun_at_phase(60.0, 90.0);  // from the left
+  options.vertex_colors.assign(sphere_mesh().vertices.size(), {0.5f, 0.5f, 0.5f});
+  const auto middle = [&](double lunar_share) {
+    options.lunar_share = lunar_share;
+    return linear_of_srgb(render_picture(sphere_mesh(), options).pixels[4 * (64 * 32 + 32)] / 65535.0);
+  };
+  EXPECT_NEAR(middle(kLambert), 0.5 * 0.5, 0.01);
+  EXPECT_NEAR(middle(kLommelSeeliger), 0.5 * 2 * 0.5 / 1.5, 0.01);
 }
 
 TEST(Preview, BadMeshesAndOptionsAreInputErrors) {
