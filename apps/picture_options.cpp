@@ -8,9 +8,9 @@
 namespace astrolith {
 namespace {
 
-constexpr const char* kPictureOptions[] = {"--picture-size", "--picture-bits", "--camera", "--view",
-                                           "--sun",          "--sun-body",     "--phase",  "--reflectance",
-                                           "--ambient",      "--background"};
+constexpr const char* kPictureOptions[] = {"--picture-size", "--picture-bits", "--camera",  "--view",
+                                           "--sun",          "--sun-body",     "--phase",   "--reflectance",
+                                           "--ambient",      "--background",   "--no-marks"};
 
 Vec3d vector_of(const Direction& d) { return {std::get<0>(d), std::get<1>(d), std::get<2>(d)}; }
 
@@ -72,6 +72,7 @@ void PictureOptions::add_to(CommandLine& app) {
       .check(in_range(0.0, 10.0));
   app.add_option("--background", background, "behind the body")
       .check(one_of({"dark", "black", "white", "transparent"}));
+  app.add_flag("--no-marks", no_marks, "without the scale of lengths and the axes");
 }
 
 void PictureOptions::check(const Program& program, bool has_picture, const std::string& remedy) const {
@@ -95,7 +96,8 @@ void PictureOptions::check(const Program& program, bool has_picture, const std::
   }
 }
 
-PreviewOptions PictureOptions::options(const Program& program, const TriangleMesh& mesh) const {
+PreviewOptions PictureOptions::options(const Program& program, const TriangleMesh& mesh,
+                                       const std::string& unit) const {
   PreviewOptions made;
   if (!size.empty()) {
     const PixelSize pixels = picture_size(size);
@@ -112,6 +114,8 @@ PreviewOptions PictureOptions::options(const Program& program, const TriangleMes
   made.ambient = ambient;
   made.lunar_share = reflectance == "lambert" ? kLambert : reflectance == "rock" ? kRock : kLommelSeeliger;
   made.transparent = background == "transparent";
+  made.marks.axes = !no_marks;
+  if (!no_marks) made.marks.length_unit = unit;
   if (background == "black") made.background = {0, 0, 0};
   if (background == "white") made.background = {1, 1, 1};
   return made;

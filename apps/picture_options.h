@@ -23,6 +23,7 @@ struct PictureOptions {
   std::string reflectance = "rock", background = "dark";
   double ambient = PreviewOptions{}.ambient;
   int bits = 8;
+  bool no_marks = false;
 
   void add_to(CommandLine& app);
 
@@ -30,8 +31,9 @@ struct PictureOptions {
   // set.
   void check(const Program& program, bool has_picture, const std::string& remedy) const;
 
-  // The size, the cameras and the light, without colours.
-  PreviewOptions options(const Program& program, const TriangleMesh& mesh) const;
+  // The size, the cameras, the light, and, unless --no-marks is given, axes and a scale in the mesh's unit;
+  // without colours.
+  PreviewOptions options(const Program& program, const TriangleMesh& mesh, const std::string& unit) const;
 
   // Looks from one direction under one sun instead, each where it is given.
   void look_from(const Vec3d& direction);

@@ -13,6 +13,7 @@ set(about_fit_shape "fit metaballs and noise to a shape model")
 set(about_describe "compute the histogram that describes a shape")
 set(about_compare "measure how alike two shapes are")
 set(about_gravity "compute potential, slope and elevation of a body")
+set(about_render "draw a sunlit picture of a mesh")
 set(about_check_tiles "say whether the tiles of a body join to one closed mesh")
 set(about_classify "train and use a classifier of shapes")
 

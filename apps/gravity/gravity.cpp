@@ -7,6 +7,7 @@
 #include "apps/gravity/gravity_outputs.h"
 #include "apps/gravity/gravity_parts.h"
 #include "apps/output_names.h"
+#include "apps/picture_options.h"
 #include "apps/program.h"
 #include "apps/shape_repair.h"
 #include "geometry/io/points_io.h"
@@ -25,6 +26,7 @@ struct Arguments {
   int resolution = 128, degree = 4, sample = 100;
   bool exact = false;
   ShapeRepair repair;
+  PictureOptions look;
 };
 
 void add_options(Program& program, Arguments& a) {
@@ -72,6 +74,8 @@ void add_options(Program& program, Arguments& a) {
   app.add_option("--color", a.color, "what the colours of the picture say")
       .check(one_of(
           {"slope_deg", "elevation_m", "potential_J_kg", "geopotential_J_kg", "effective_gravity_m_s2"}));
+  a.look.ambient = 0.5;  // keeps colours readable in the shadows
+  a.look.add_to(app);
 }
 
 Vec3d axis_of(const Arguments& a) {
@@ -101,6 +105,7 @@ void check(const Program& program, const Arguments& a) {
     }
     require_writable(a.output);
   }
+  a.look.check(program, !a.preview.empty(), "add --preview FILE.png");
   if (!a.preview.empty()) {
     require_extension(a.preview, {".png"});
     require_writable(a.preview);
@@ -130,7 +135,7 @@ void write_outputs(Program& program, const Arguments& a, const GravityBody& body
   if (!a.output.empty()) write_gravity(columns, body, a.output, program.tool());
   if (a.preview.empty()) return;
   for (const GravityColumn& column : columns) {
-    if (column.name == a.color) write_gravity_preview(program, body, column, a.preview);
+    if (column.name == a.color) write_gravity_preview(program, body, column, a.look, a.preview);
   }
 }
 

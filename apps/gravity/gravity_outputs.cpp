@@ -9,8 +9,6 @@
 
 #include "geometry/io/ply_values.h"
 #include "numerics/files/npy_file.h"
-#include "numerics/sample_statistics.h"
-#include "synthesis/picture/color_bar.h"
 #include "synthesis/picture/colormap.h"
 #include "synthesis/picture/preview.h"
 
@@ -69,25 +67,16 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
 }
 
 void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
-                           const std::filesystem::path& file) {
+                           const PictureOptions& look, const std::filesystem::path& file) {
   const std::vector<double> values = values_of_vertices(body.mesh, column.values);
-  // A few extremes would leave all others one colour.
-  std::vector<double> sorted = values;
-  std::erase_if(sorted, [](double value) { return std::isnan(value); });
-  if (sorted.empty()) sorted = {0.0};
-  std::sort(sorted.begin(), sorted.end());
-  const double low = quantile_of_sorted(sorted, 0.01), most = quantile_of_sorted(sorted, 0.99);
-  const double high = most > low ? most : low + 1.0;
-  PreviewOptions options;
-  options.seed = program.seed;
-  options.ambient = 0.5;
-  options.vertex_colors = sequential_colors(values, low, high);
-  RgbImage image = render_preview(body.mesh, options, program.progress("preview"));
-  add_color_bar(image, low, high);
-  write_png8_rgb(image, file);
+  const ValueRange range = value_range(values);
+  PreviewOptions options = look.options(program, body.mesh, body.unit);
+  options.vertex_colors = sequential_colors(values, range.low, range.high);
+  options.marks.values = {range.low, range.high, title_of_column(column.name)};
+  look.write(render_picture(body.mesh, options, program.progress("preview")), file);
   program.say(
       fmt::format("{}: {}; colours from {:.4g} to {:.4g}, the 1st and 99th percentile, of {:.4g} to {:.4g}",
-                  file.string(), column.name, low, high, sorted.front(), sorted.back()));
+                  file.string(), column.name, range.low, range.high, range.least, range.most));
 }
 
 }  // namespace astrolith

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/picture_options.h"
 #include "apps/program.h"
 #include "tasks/gravity/gravity_body.h"
 #include "tasks/gravity/gravity_table.h"
@@ -18,6 +19,6 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
 
 // The mesh in the colours of one column, which has a value for each vertex, or for each facet.
 void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
-                           const std::filesystem::path& file);
+                           const PictureOptions& look, const std::filesystem::path& file);
 
 }  // namespace astrolith

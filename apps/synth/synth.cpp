@@ -104,12 +104,12 @@ void declare_options(Program& program, Options& options) {
   declare_texture_options(program, options.texture);
   declare_members_options(program, options.members);
   for (const char* of_mesh :
-       {"--resolution",   "--triangles", "--max-memory",    "--tile",        "--patch",    "--feature-list",
-        "--vary",         "--target",    "--min-component", "--predict",     "--device",   "--points",
-        "--labels",       "--preview",   "--preview-maps",  "--maps-size",   "--view",     "--sun",
-        "--picture-size", "--gravity",   "--height-map",    "--uv",          "--finish",   "--even",
-        "--like",         "--finer",     "--fill-unseen",   "--camera",      "--sun-body", "--phase",
-        "--reflectance",  "--ambient",   "--background",    "--picture-bits"}) {
+       {"--resolution",   "--triangles", "--max-memory",    "--tile",      "--patch",       "--feature-list",
+        "--vary",         "--target",    "--min-component", "--predict",   "--device",      "--points",
+        "--labels",       "--preview",   "--preview-maps",  "--maps-size", "--view",        "--sun",
+        "--picture-size", "--gravity",   "--height-map",    "--uv",        "--finish",      "--even",
+        "--like",         "--finer",     "--fill-unseen",   "--camera",    "--sun-body",    "--phase",
+        "--reflectance",  "--ambient",   "--background",    "--no-marks",  "--picture-bits"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
   for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {

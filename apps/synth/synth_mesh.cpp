@@ -240,7 +240,8 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   result.write(quantities);
   const MeshCounts kept = counts_in_file({report.vertices, report.triangles}, output);
   report.vertices = kept.vertices, report.triangles = kept.triangles;
-  if (!request.preview.file.empty()) write_preview(program, request.preview, result.collected());
+  if (!request.preview.file.empty())
+    write_preview(program, request.preview, result.collected(), recipe.length_unit);
   if (!request.preview.maps.empty())
     write_preview_maps(program, request.preview, result.collected(), {recipe, file, region, field});
   if (!request.height_map.empty())

@@ -58,7 +58,8 @@ void check_preview(const Program& program, const PreviewRequest& request) {
 }
 
 PreviewOptions maps_options(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
-  PreviewOptions options = request.look.options(program, mesh);
+  PreviewOptions options = request.look.options(program, mesh, "");
+  options.marks = {};
   if (request.maps_size.empty()) return options;
   const PixelSize size = size_of_maps(request.maps_size);
   options.width = size.width;
@@ -66,8 +67,11 @@ PreviewOptions maps_options(const Program& program, const PreviewRequest& reques
   return options;
 }
 
-void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
-  PreviewOptions options = request.look.options(program, mesh);
+void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+                   const std::string& unit) {
+  PreviewOptions options = request.look.options(program, mesh, unit);
+  // Pictures for training show the body alone, and their pixels are those of their maps.
+  if (!request.maps.empty() || program.app.option("--members").count() > 0) options.marks = {};
   for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
   request.look.write(render_picture(mesh, options, program.progress("preview")), request.file);
 }

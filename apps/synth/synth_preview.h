@@ -24,7 +24,9 @@ void declare_preview_options(Program& program, PreviewRequest& request);
 // given without --preview.
 void check_preview(const Program& program, const PreviewRequest& request);
 
-void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);
+// Lengths of the mesh are in `unit`. Pictures of members and pictures with maps have no marks.
+void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+                   const std::string& unit);
 
 // The cameras of the request with the size of its maps.
 PreviewOptions maps_options(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);

@@ -16,6 +16,11 @@ struct VertexValues {
   std::vector<double> values;
 };
 
+// Reads the values of one property of the vertices of a PLY, of any type but a list, in the order of
+// read_mesh(). Throws InputError for a file that is no PLY and for a property that it lacks, with the names
+// that it has.
+VertexValues read_ply_values(const std::filesystem::path& file, const std::string& name);
+
 // Writes a binary little-endian PLY: float32 x y z (and normals and uchar red green blue where the mesh has
 // them), then each quantity as a float32 property of the vertex, which MeshLab, ParaView and CloudCompare
 // show. The mesh must be as write_mesh() wants it. Throws InputError when the file cannot be written,

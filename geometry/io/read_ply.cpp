@@ -1,10 +1,13 @@
 // PLY, ascii and binary. Properties may come in any order and have any type; unknown properties and elements
 // are skipped.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "geometry/io/byte_reader_internal.h"
 #include "geometry/io/mesh_file_internal.h"
 #include "geometry/io/ply_header_internal.h"
+#include "geometry/io/ply_values.h"
 #include "geometry/io/polygon_fan_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
@@ -98,33 +101,39 @@ void skip_property(Source& source, const PlyProperty& property) {
   for (std::uint64_t i = 0; i < count; ++i) source.skip(property.type);
 }
 
+// `wanted` gets the values of the property that it names; nothing where its name is empty.
 template <typename Source>
-void read_vertices(Source& source, const PlyElement& element, TriangleMesh& mesh) {
+void read_vertices(Source& source, const PlyElement& element, TriangleMesh& mesh, VertexValues& wanted) {
   static constexpr std::string_view kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
-  constexpr int kSkipped = 6;
+  constexpr int kWanted = 6, kSkipped = 7;
   std::vector<int> slots;
   int known = 0;
   for (const PlyProperty& property : element.properties) {
     int slot = 0;
-    while (slot < kSkipped && (property.is_list || kNames[slot] != property.name)) ++slot;
+    while (slot < kWanted && (property.is_list || kNames[slot] != property.name)) ++slot;
+    if (slot == kWanted && (property.is_list || wanted.name != property.name)) slot = kSkipped;
     slots.push_back(slot);
     if (slot < kSkipped) known |= 1 << slot;
   }
   if ((known & 7) != 7) source.fail("the vertices have no x, y and z", "add the properties");
-  const bool with_normals = known == 63;
+  const bool with_normals = (known & 63) == 63;
+  const std::ptrdiff_t wanted_slot =
+      std::find(std::begin(kNames), std::end(kNames), wanted.name) - std::begin(kNames);
+  const bool with_wanted = (known >> wanted_slot & 1) != 0;
   mesh.vertices.reserve(element.count);
   if (with_normals) mesh.normals.reserve(element.count);
   for (std::uint64_t i = 0; i < element.count; ++i) {
-    double values[6] = {};
+    double values[kSkipped] = {};
     for (std::size_t p = 0; p < slots.size(); ++p) {
       if (slots[p] == kSkipped) {
         skip_property(source, element.properties[p]);
       } else {
-        values[slots[p]] = source.number(element.properties[p].type, kNames[slots[p]]);
+        values[slots[p]] = source.number(element.properties[p].type, element.properties[p].name);
       }
     }
     mesh.vertices.push_back({values[0], values[1], values[2]});
     if (with_normals) mesh.normals.push_back({values[3], values[4], values[5]});
+    if (with_wanted) wanted.values.push_back(values[wanted_slot]);
   }
 }
 
@@ -157,13 +166,13 @@ void read_faces(Source& source, const PlyElement& element, TriangleMesh& mesh) {
 }
 
 template <typename Source>
-TriangleMesh read_body(Source&& source, const PlyHeader& header) {
+TriangleMesh read_body(Source&& source, const PlyHeader& header, VertexValues& wanted) {
   TriangleMesh mesh;
   for (const PlyElement& element : header.elements) {
     if (element.properties.empty()) continue;  // rows without properties take no bytes
     source.need_rows(element);
     if (element.name == "vertex" && mesh.vertices.empty()) {
-      read_vertices(source, element, mesh);
+      read_vertices(source, element, mesh, wanted);
     } else if (element.name == "face" && mesh.triangles.empty()) {
       read_faces(source, element, mesh);
     } else {
@@ -183,14 +192,46 @@ bool all_unit(const std::vector<Vec3d>& normals) {
   return true;
 }
 
+TriangleMesh read_after(const PlyHeader& header, const MeshFile& file, TextScanner& scan,
+                        VertexValues& wanted) {
+  const std::size_t offset = file.bytes.size() - scan.bytes_left();
+  return header.ascii ? read_body(TextSource(scan), header, wanted)
+                      : read_body(BinarySource(file, offset, header.order), header, wanted);
+}
+
+// The properties of the vertices that are single numbers, for messages.
+std::string names_of_values(const PlyHeader& header) {
+  std::string names;
+  for (const PlyElement& element : header.elements) {
+    if (element.name != "vertex") continue;
+    for (const PlyProperty& p : element.properties) {
+      if (!p.is_list && names.size() < 200) names += (names.empty() ? "" : ", ") + p.name.substr(0, 40);
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
+VertexValues read_ply_values(const std::filesystem::path& file, const std::string& name) {
+  const MeshFile content = load_mesh_file(file);
+  if (!is_ply_name(file)) content.fail("", "has no properties of vertices", "give a .ply");
+  TextScanner scan(content);
+  const PlyHeader header = read_ply_header(scan);
+  VertexValues wanted{name, {}};
+  const TriangleMesh mesh = read_after(header, content, scan, wanted);
+  if (wanted.values.empty() || wanted.values.size() != mesh.vertices.size()) {
+    content.fail("", "the vertices have no property " + astrolith::quoted(name),
+                 "choose from " + names_of_values(header));
+  }
+  return wanted;
+}
+
 TriangleMesh read_ply(const MeshFile& file) {
+  VertexValues nothing;
   TextScanner scan(file);
   const PlyHeader header = read_ply_header(scan);
-  const std::size_t offset = file.bytes.size() - scan.bytes_left();
-  TriangleMesh mesh = header.ascii ? read_body(TextSource(scan), header)
-                                   : read_body(BinarySource(file, offset, header.order), header);
+  TriangleMesh mesh = read_after(header, file, scan, nothing);
   if (mesh.normals.size() != mesh.vertices.size() || !all_unit(mesh.normals)) mesh.normals.clear();
   return mesh;
 }

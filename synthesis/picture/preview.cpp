@@ -14,6 +14,7 @@
 #include "numerics/scalar_math.h"
 #include "numerics/srgb.h"
 #include "numerics/tangent_frame.h"
+#include "synthesis/picture/picture_marks_internal.h"
 #include "synthesis/picture/preview_rays_internal.h"
 #include "synthesis/picture/ray_scene_internal.h"
 
@@ -108,6 +109,10 @@ class Painter {
       turns_.push_back(at_disk(0.5f, 0.5f, (static_cast<float>(mixed) + 0.5f) / (kTurns * kTurns),
                                fraction(0.6180339887498949 * mixed)));
     }
+  }
+
+  void draw_marks(RgbaImage16& image) const {
+    astrolith::draw_marks(image, options_, rays_, rays_.pixel() / scene_.scale());
   }
 
   Probe probe(int x, int y) const {
@@ -291,6 +296,7 @@ RgbaImage16 render_picture(const TriangleMesh& mesh, const PreviewOptions& optio
       throw WorkError("preview: stopped before the picture was complete");
     }
   }
+  painter.draw_marks(image);
   return image;
 }
 

@@ -9,6 +9,7 @@
 #include "numerics/progress.h"
 #include "synthesis/picture/camera.h"
 #include "synthesis/picture/image_file.h"
+#include "synthesis/picture/picture_marks.h"
 
 namespace astrolith {
 
@@ -30,8 +31,7 @@ inline constexpr double kLambert = 0.0, kRock = 0.35, kLommelSeeliger = 1.0;
 
 struct PreviewOptions {
   int width = 1280, height = 960;  // kLeastPictureSide .. kMostPictureSide
-  // Rows at the bottom that no view takes, for scales; less than the height.
-  int strip = 0;
+  PictureMarks marks;              // none, unless asked for; the views take the rest of the height
   // Samples along a pixel's side where neighbouring pixels differ, 1 .. 16. Even ground takes one sample.
   int oversampling = 3;
   // Each view gets one tile, in rows. All orthographic tiles have one scale, chosen such that every view

@@ -109,7 +109,7 @@ void check_preview_options(const PreviewOptions& options, const TriangleMesh& me
 
 PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options, const RayScene& scene)
     : width_(options.width),
-      height_(options.height - options.strip),
+      height_(options.height - marks_height(options.marks, options.width, options.height)),
       columns_(static_cast<int>(std::ceil(std::sqrt(double(options.views.size()))))),
       rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_),
       pixel_(kLeastPixel) {

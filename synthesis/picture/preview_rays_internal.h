@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
@@ -48,9 +49,15 @@ class PreviewRays {
   // The point of that plane at a place of the picture.
   Vec3d on_plane(std::size_t view, double px, double py) const;
 
- private:
   double tile_width() const { return width_ / columns_; }
   double tile_height() const { return height_ / rows_; }
+  // The lower left corner of a view's tile, in pixels from the top left corner of the picture.
+  std::pair<double, double> lower_left(std::size_t view) const {
+    const int column = static_cast<int>(view) % columns_, row = static_cast<int>(view) / columns_;
+    return {column * tile_width(), (row + 1) * tile_height()};
+  }
+
+ private:
   // A place of the picture from the middle of its view, in pixels.
   Vec3d across(std::size_t view, double px, double py) const;
 

@@ -66,6 +66,7 @@ def runs(folder):
     features = ["--feature-list", folder / "features.json"]
     yield ["synth", eroded, *mesh, *features, "--min-component", "0.1", "--gravity", "2000", "5"]
     yield ["synth", body, *mesh, "--even"]
+    yield ["render", folder / "mesh.ply", "-o", folder / "body.png", "--color", "z"]
     yield ["synth", body, *mesh, "--patch", "0", "0", "1", "0.6", "--height-map", folder / "map.tif", *features]
     for k in (1, 2):
         yield ["synth", body, *mesh[:-1], "32", "--tile", f"{k}/2"]

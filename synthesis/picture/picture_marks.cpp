@@ -1,0 +1,181 @@
+#include "synthesis/picture/picture_marks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "numerics/portable_double.h"
+#include "numerics/sample_statistics.h"
+#include "synthesis/picture/colormap.h"
+#include "synthesis/picture/picture_marks_internal.h"
+#include "synthesis/picture/picture_text.h"
+
+namespace astrolith {
+namespace {
+
+constexpr int kLeastMarkedWidth = 160, kLeastMarkedHeight = 120;
+constexpr int kStripDots = 24, kBarTop = 4, kBarDots = 6, kTextTop = 13;  // dots from the top of the strip
+
+int dot_of(int height) { return 1 + height / 600; }
+
+std::string four_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+// A length of one digit, without an exponent where few zeros do.
+std::string length_digits(double length) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), length >= 1.0 && length < 1e7 ? "%.0f" : "%.4g", length);
+  return text.data();
+}
+
+// The largest of 1, 2 and 5 times a power of ten that is not above `most`.
+double round_length(double most) {
+  double power = 1.0;
+  while (power > most) power /= 10.0;
+  while (power * 10.0 <= most) power *= 10.0;
+  return power * 5.0 <= most ? 5.0 * power : power * 2.0 <= most ? 2.0 * power : power;
+}
+
+class MarksPainter {
+ public:
+  MarksPainter(RgbaImage16& image, const PreviewOptions& options, int strip)
+      : image_(image), options_(options), dot_(dot_of(image.height)), top_(image.height - strip) {
+    const bool light = !options.transparent && options.background.y > 0.2f;
+    ink_ = light ? PictureInk{40, 40, 40} : PictureInk{235, 235, 235};
+    if (!options.transparent) return;
+    fill_rectangle(image, 0, top_, image.width, strip, {20, 20, 24});
+  }
+
+  void value_bar(const ValueScale& scale) {
+    const int left = image_.width * 36 / 100, right = image_.width * 97 / 100;
+    for (int x = left; x < right; ++x) {
+      const Vec3<float> c = sequential_color((x - left) / (right - left - 1.0));
+      fill_rectangle(image_, x, top_ + kBarTop * dot_, 1, kBarDots * dot_,
+                     {srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
+    }
+    const std::string low = four_digits(scale.low), high = four_digits(scale.high);
+    text(left, low);
+    text(right - text_width(high, dot_), high);
+    const int room = right - left - 2 * std::max(text_width(low, dot_), text_width(high, dot_)) - 12 * dot_;
+    const std::string title = scale.title.substr(0, static_cast<std::size_t>(std::max(0, room / (6 * dot_))));
+    text((left + right - text_width(title, dot_)) / 2, title);
+  }
+
+  void length_bar(double length_per_pixel, const std::string& unit) {
+    const double length = round_length(0.25 * image_.width * length_per_pixel);
+    const int pixels = static_cast<int>(length / length_per_pixel + 0.5), left = image_.width * 3 / 100;
+    const int line = top_ + (kBarTop + kBarDots) * dot_ - dot_;
+    fill_rectangle(image_, left, line, pixels, dot_, ink_);
+    for (const int end : {left, left + pixels - dot_})
+      fill_rectangle(image_, end, line - 2 * dot_, dot_, 3 * dot_, ink_);
+    text(left, length_digits(length) + (unit.empty() ? "" : " " + unit));
+  }
+
+  // The axes of the mesh as a view sees them, in the lower left corner of its tile.
+  void axes(const ViewCamera& camera, double left, double bottom, double tile_height) {
+    const double arm = std::max(8.0 * dot_, 0.045 * tile_height), reach = arm + 9.0 * dot_;
+    const int x = static_cast<int>(left + reach), y = static_cast<int>(bottom - reach);
+    if (!is_empty(x, y, static_cast<int>(reach))) return;
+    constexpr std::array<PictureInk, 3> kInks{{{235, 90, 80}, {95, 190, 95}, {100, 140, 245}}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d axis{k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+      const double dx = dot(axis, camera.right), dy = -dot(axis, camera.up);
+      if (dx * dx + dy * dy < 0.01) continue;  // the axis points to the viewer, or away
+      for (int step = 0; step <= static_cast<int>(arm); ++step)
+        fill_rectangle(image_, x + rounded(dx * step), y + rounded(dy * step), dot_, dot_, kInks[k]);
+      const double end = arm + 5.0 * dot_;
+      draw_text(image_, x + rounded(dx * end) - 2 * dot_, y + rounded(dy * end) - 4 * dot_, dot_,
+                std::string_view("xyz").substr(k, 1), kInks[k]);
+    }
+  }
+
+ private:
+  static int rounded(double value) { return static_cast<int>(std::floor(value + 0.5)); }
+
+  void text(int left, const std::string& words) {
+    draw_text(image_, left, top_ + kTextTop * dot_, dot_, words, ink_);
+  }
+
+  // Whether a square shows nothing but background, all of whose pixels are alike.
+  bool is_empty(int x, int y, int reach) const {
+    const auto at = [&](int u, int v) {
+      return &image_.pixels[4 * (static_cast<std::size_t>(v) * static_cast<std::size_t>(image_.width) +
+                                 static_cast<std::size_t>(u))];
+    };
+    if (x - reach < 0 || y - reach < 0 || x + reach >= image_.width || y + reach >= image_.height)
+      return false;
+    const std::uint16_t* first = at(x - reach, y + reach);
+    for (int v = y - reach; v <= y + reach; ++v) {
+      for (int u = x - reach; u <= x + reach; ++u) {
+        if (!std::equal(first, first + 4, at(u, v))) return false;
+      }
+    }
+    return true;
+  }
+
+  RgbaImage16& image_;
+  const PreviewOptions& options_;
+  int dot_, top_;
+  PictureInk ink_{};
+};
+
+}  // namespace
+
+ValueRange value_range(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::erase_if(sorted, [](double value) { return !std::isfinite(value); });
+  if (sorted.empty()) sorted = {0.0};
+  std::sort(sorted.begin(), sorted.end());
+  const double low = quantile_of_sorted(sorted, 0.01), high = quantile_of_sorted(sorted, 0.99);
+  return {low, high > low ? high : low + 1.0, sorted.front(), sorted.back()};
+}
+
+std::string title_of_column(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kUnits{{{"_m_s2", "m/s2"},
+                                                                                 {"_J_kg", "J/kg"},
+                                                                                 {"_deg", "deg"},
+                                                                                 {"_km", "km"},
+                                                                                 {"_cm", "cm"},
+                                                                                 {"_mm", "mm"},
+                                                                                 {"_m", "m"},
+                                                                                 {"_s", "s"}}};
+  std::string words = name, unit;
+  for (const auto& [ending, symbol] : kUnits) {
+    if (!unit.empty() || !name.ends_with(ending) || name.size() == ending.size()) continue;
+    words.resize(name.size() - ending.size());
+    unit = " [" + std::string(symbol) + "]";
+  }
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words + unit;
+}
+
+int marks_height(const PictureMarks& marks, int width, int height) {
+  if (width < kLeastMarkedWidth || height < kLeastMarkedHeight) return 0;
+  return marks.values || marks.length_unit ? kStripDots * dot_of(height) : 0;
+}
+
+void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
+                double length_per_pixel) {
+  const PictureMarks& marks = options.marks;
+  if (image.width < kLeastMarkedWidth || image.height < kLeastMarkedHeight) return;
+  MarksPainter painter(image, options, marks_height(marks, image.width, image.height));
+  if (marks.values) painter.value_bar(*marks.values);
+  bool is_flat = true;
+  for (std::size_t view = 0; view < options.views.size(); ++view) {
+    const ViewCamera& camera = rays.camera(view);
+    is_flat = is_flat && !camera.is_pinhole;
+    if (!marks.axes) continue;
+    const auto [left, bottom] = rays.lower_left(view);
+    painter.axes(camera, left, bottom, rays.tile_height());
+  }
+  if (marks.length_unit && is_flat) painter.length_bar(length_per_pixel, *marks.length_unit);
+}
+
+}  // namespace astrolith

@@ -1,0 +1,42 @@
+// What a picture says beside its views: which colour stands for which number, how long lengths are, and where
+// the axes of the mesh point.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace astrolith {
+
+// The colours of sequential_color() from `low` to `high`.
+struct ValueScale {
+  double low = 0.0, high = 1.0;
+  std::string title;  // quantity and unit, such as "slope [deg]"
+};
+
+// The 1st and 99th percentile of the values and their extremes, NaN left out. The percentiles differ: the
+// upper one is raised by 1 where all values are alike. A few extremes would leave all other values one
+// colour.
+struct ValueRange {
+  double low = 0.0, high = 1.0, least = 0.0, most = 0.0;
+};
+ValueRange value_range(std::span<const double> values);
+
+// "slope [deg]" for the column slope_deg, "effective gravity [m/s2]" for effective_gravity_m_s2; names
+// without a known unit keep their words.
+std::string title_of_column(const std::string& name);
+
+struct PictureMarks {
+  std::optional<ValueScale> values;  // a bar below the views
+  // The unit of the mesh's lengths, for a scale below orthographic views; none where absent, a plain number
+  // where empty.
+  std::optional<std::string> length_unit;
+  bool axes = false;  // x, y and z in a corner of each view that shows nothing else
+};
+
+// Rows below the views that the marks take of a picture: none for pictures under 160 x 120 pixels, which have
+// no marks.
+int marks_height(const PictureMarks& marks, int width, int height);
+
+}  // namespace astrolith

@@ -1,0 +1,72 @@
+#include "synthesis/picture/picture_marks.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "synthesis/picture/preview.h"
+
+namespace astrolith {
+namespace {
+
+TriangleMesh diamond() {
+  return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+          {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
+          {}};
+}
+
+TEST(PictureMarks, TitlesHaveQuantityAndUnit) {
+  EXPECT_EQ(title_of_column("slope_deg"), "slope [deg]");
+  EXPECT_EQ(title_of_column("effective_gravity_m_s2"), "effective gravity [m/s2]");
+  EXPECT_EQ(title_of_column("geopotential_J_kg"), "geopotential [J/kg]");
+  EXPECT_EQ(title_of_column("crater_age"), "crater age");
+}
+
+TEST(PictureMarks, RangesAreThePercentilesOfFiniteValues) {
+  std::vector<double> values;
+  for (int i = 0; i <= 1000; ++i) values.push_back(i);
+  values.push_back(std::numeric_limits<double>::quiet_NaN());
+  const ValueRange range = value_range(values);
+  EXPECT_NEAR(range.low, 10, 1);
+  EXPECT_NEAR(range.high, 990, 1);
+  EXPECT_EQ(range.most, 1000);
+  EXPECT_LT(value_range(std::vector<double>{3, 3}).low, value_range(std::vector<double>{3, 3}).high);
+  EXPECT_LT(value_range({}).low, value_range({}).high);
+}
+
+// The rows above the strip of a picture with marks are the picture of that many rows without.
+TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
+  const TriangleMesh mesh = diamond();
+  PreviewOptions plain;
+  plain.width = 400, plain.height = 300;
+  PreviewOptions marked = plain;
+  marked.marks.values = {0.0, 1.0, "slope [deg]"};
+  marked.marks.length_unit = "m";
+  const int strip = marks_height(marked.marks, 400, 300);
+  ASSERT_GT(strip, 0);
+  plain.height -= strip;
+  const RgbaImage16 without = render_picture(mesh, plain), with = render_picture(mesh, marked);
+  ASSERT_GT(with.pixels.size(), without.pixels.size());
+  EXPECT_TRUE(std::equal(without.pixels.begin(), without.pixels.end(), with.pixels.begin()));
+  const auto bright = [&](const RgbaImage16& image) {
+    return std::count_if(image.pixels.begin() + static_cast<std::ptrdiff_t>(without.pixels.size()),
+                         image.pixels.end(), [](std::uint16_t v) { return v > 58000 && v < 65535; });
+  };
+  EXPECT_GT(bright(with), 300) << "bars and letters";
+
+  marked.marks.axes = true;
+  const RgbaImage16 axes = render_picture(mesh, marked);
+  int changed = 0, over_body = 0;
+  for (std::size_t i = 0; i < without.pixels.size(); i += 4) {
+    if (axes.pixels[i] == with.pixels[i] && axes.pixels[i + 2] == with.pixels[i + 2]) continue;
+    ++changed;
+    over_body += with.pixels[i] == with.pixels[0] ? 0 : 1;
+  }
+  EXPECT_GT(changed, 100);
+  EXPECT_EQ(over_body, 0);
+  EXPECT_EQ(marks_height(marked.marks, 100, 100), 0);
+}
+
+}  // namespace
+}  // namespace astrolith
