@@ -18,6 +18,17 @@ PixelSize size_of_maps(const std::string& text) {
   return parse_pixel_size("--maps-size", text, kLeastPictureSide, kMostPictureSide);
 }
 
+// Pictures of members are smaller unless a size is given: many are made, of meshes of few triangles. Pictures
+// for training show the body alone, and their pixels are those of their maps.
+PreviewOptions picture_options(const Program& program, const PreviewRequest& request,
+                               const TriangleMesh& mesh, const std::string& unit) {
+  PreviewOptions options = request.look.options(program, mesh, unit);
+  const bool of_member = program.app.option("--members").count() > 0;
+  if (of_member && request.look.size.empty()) options.width = 640, options.height = 480;
+  if (of_member || !request.maps.empty()) options.marks = {};
+  return options;
+}
+
 }  // namespace
 
 void declare_preview_options(Program& program, PreviewRequest& request) {
@@ -27,6 +38,7 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
                   "patch from above its ground and obliquely")
       .placeholder("FILE.png");
   request.look.add_to(program.app);
+  program.app.option("--picture-size").placeholder("WxH (default 1280x960, 640x480 of --members)");
   program.app
       .add_option("--preview-maps", request.maps,
                   "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
@@ -58,7 +70,7 @@ void check_preview(const Program& program, const PreviewRequest& request) {
 }
 
 PreviewOptions maps_options(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh) {
-  PreviewOptions options = request.look.options(program, mesh, "");
+  PreviewOptions options = picture_options(program, request, mesh, "");
   options.marks = {};
   if (request.maps_size.empty()) return options;
   const PixelSize size = size_of_maps(request.maps_size);
@@ -69,9 +81,7 @@ PreviewOptions maps_options(const Program& program, const PreviewRequest& reques
 
 void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit) {
-  PreviewOptions options = request.look.options(program, mesh, unit);
-  // Pictures for training show the body alone, and their pixels are those of their maps.
-  if (!request.maps.empty() || program.app.option("--members").count() > 0) options.marks = {};
+  PreviewOptions options = picture_options(program, request, mesh, unit);
   for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
   request.look.write(render_picture(mesh, options, program.progress("preview")), request.file);
 }

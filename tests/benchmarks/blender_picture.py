@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 SIZE, FOV = 512, 30.0
-EYE, SUN = (2.2, 2.6, 1.6), (0.3, 1.0, 0.35)
+EYE, SUN = (2.2, 2.6, 1.6), (1.0, -0.3, 0.3)
 
 # What Blender runs. The mesh is an .obj in the mesh's own axes; eye, target and sun are vectors in them.
 SCENE = """
