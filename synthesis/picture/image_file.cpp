@@ -34,6 +34,7 @@ void check_size(std::size_t values, std::size_t channels, int width, int height,
 struct PngLayout {
   int width, height, bit_depth, color_type;
   std::size_t row_bytes;
+  int compression = 6;  // of zlib
 };
 
 void append_bytes(png_structp png, png_bytep data, png_size_t size) {
@@ -53,6 +54,7 @@ bool encode(png_structp png, png_infop info, const PngLayout& layout, const std:
   png_set_IHDR(png, info, static_cast<png_uint_32>(layout.width), static_cast<png_uint_32>(layout.height),
                layout.bit_depth, layout.color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                PNG_FILTER_TYPE_DEFAULT);
+  png_set_compression_level(png, layout.compression);
   png_write_info(png, info);
   if (layout.bit_depth == 16 && std::endian::native == std::endian::little) png_set_swap(png);
   for (int y = 0; y < layout.height; ++y) {
@@ -161,7 +163,8 @@ void write_png(const RgbaImage16& image, int bits, bool with_alpha, const std::f
     return write_png({image.width, image.height, 16, type, 2 * channels * width}, values.data(), file);
   }
   const auto bytes = first_channels<std::uint8_t>(image, channels, byte_of);
-  write_png({image.width, image.height, 8, type, channels * width}, bytes.data(), file);
+  constexpr int kFast = 4;  // a tenth of a preview's time less than 6, for 7 % more bytes
+  write_png({image.width, image.height, 8, type, channels * width, kFast}, bytes.data(), file);
 }
 
 void write_png8_rgb(const RgbImage& image, const std::filesystem::path& file) {

@@ -58,21 +58,23 @@ struct SamplePlace {
   float x = 0.5f, y = 0.5f, sun_x = 0, sun_y = 0;
 };
 
-SamplePlace at_disk(float x, float y, float area, float turn) {
-  const float radius = math::sqrt(area);
+constexpr double kGoldenTurn = 0.6180339887498949;
+
+// The k-th of `count` points that cover the unit disk evenly (Vogel 1979).
+SamplePlace on_disk(float x, float y, int k, int count) {
+  const float radius = math::sqrt((static_cast<float>(k) + 0.5f) / static_cast<float>(count));
+  const float turn = fraction(kGoldenTurn * k);
   return {x, y, radius * math::cos_turns(turn), radius * math::sin_turns(turn)};
 }
 
-// Places that cover pixel and disk evenly: a lattice of the golden ratio and one of the plastic number
-// (Roberts 2018), moved by the seed. All pixels have the same places, so that penumbrae are free of noise.
+// Places that cover the pixel by a lattice of the golden ratio, moved by the seed. All pixels have the same
+// places, so that penumbrae are free of noise.
 std::vector<SamplePlace> sample_places(int count, std::uint64_t seed) {
   const std::uint32_t hash = hash_seed(seed, 0);
   const double dx = unit_float(hash_append(hash, 0)), dy = unit_float(hash_append(hash, 1));
   std::vector<SamplePlace> places;
-  for (int k = 0; k < count; ++k) {
-    places.push_back(at_disk(fraction((k + dx) / count), fraction(dy + 0.6180339887498949 * k),
-                             fraction(0.5 + 0.7548776662466927 * k), fraction(0.5698402909980532 * k)));
-  }
+  for (int k = 0; k < count; ++k)
+    places.push_back(on_disk(fraction((k + dx) / count), fraction(dy + kGoldenTurn * k), k, count));
   return places;
 }
 
@@ -105,9 +107,8 @@ class Painter {
     for (std::size_t view = 0; view < options.views.size(); ++view)
       suns_.push_back(make_sun(rays_.camera(view), options));
     for (int k = 0; k < kTurns * kTurns; ++k) {
-      const int mixed = k * 4 % (kTurns * kTurns);  // neighbours look at far points of the disk
-      turns_.push_back(at_disk(0.5f, 0.5f, (static_cast<float>(mixed) + 0.5f) / (kTurns * kTurns),
-                               fraction(0.6180339887498949 * mixed)));
+      // Neighbours look at far points of the disk.
+      turns_.push_back(on_disk(0.5f, 0.5f, k * 4 % (kTurns * kTurns), kTurns * kTurns));
     }
   }
 
