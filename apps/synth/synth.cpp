@@ -1,6 +1,7 @@
 // synth: a recipe becomes a closed mesh, a picture of it, or the texture of its Gabor layers.
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "apps/synth/synth_members.h"
 #include "apps/synth/synth_mesh.h"
 #include "apps/synth/synth_predict_members.h"
+#include "apps/synth/synth_series.h"
 #include "apps/synth/synth_texture.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
@@ -38,9 +40,11 @@ struct Options {
   FinishOptions finish;
   bool like = false;  // whether reliefs are drawn anew
   bool fill_unseen = false;
-  int finer = 0;      // levels of reliefs below their models
-  double vary = 0.0;  // 0 = the recipe itself
-  fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
+  int count = 0;        // of bodies with seeds of their own; 0 = one body
+  bool seeded = false;  // whether the seed replaces the recipe's
+  int finer = 0;        // levels of reliefs below their models
+  double vary = 0.0;    // 0 = the recipe itself
+  fs::path target;      // the mesh that a variation is to be like; empty = the recipe's own body
 };
 
 void declare_options(Program& program, Options& options) {
@@ -97,6 +101,14 @@ void declare_options(Program& program, Options& options) {
       .needs(vary)
       .placeholder("MESH");
   program.app
+      .add_option(
+          "--count", options.count,
+          "make N bodies in place of one, with the seeds --seed, --seed + 1 and so on: {n} in the names of "
+          "files stands for the seed, with which --seed makes the same body again")
+      .check(in_range(1, kMostInSeries))
+      .placeholder("N")
+      .default_text("");
+  program.app
       .add_option("--write-recipe", options.written_recipe,
                   "also write the recipe that is made, with the layers of --base, the variation and the seed "
                   "in it, as JSON or compact (.astro); without -o nothing else")
@@ -104,15 +116,15 @@ void declare_options(Program& program, Options& options) {
   declare_texture_options(program, options.texture);
   declare_members_options(program, options.members);
   for (const char* of_mesh :
-       {"--resolution",   "--triangles", "--max-memory",    "--tile",      "--patch",       "--feature-list",
-        "--vary",         "--target",    "--min-component", "--predict",   "--device",      "--points",
-        "--labels",       "--preview",   "--preview-maps",  "--maps-size", "--view",        "--sun",
-        "--picture-size", "--gravity",   "--height-map",    "--uv",        "--finish",      "--even",
-        "--like",         "--finer",     "--fill-unseen",   "--camera",    "--sun-body",    "--phase",
-        "--reflectance",  "--ambient",   "--background",    "--no-marks",  "--picture-bits"}) {
+       {"--resolution",   "--triangles", "--max-memory",    "--tile",      "--patch",        "--feature-list",
+        "--vary",         "--target",    "--min-component", "--predict",   "--device",       "--points",
+        "--labels",       "--preview",   "--preview-maps",  "--maps-size", "--view",         "--sun",
+        "--picture-size", "--gravity",   "--height-map",    "--uv",        "--finish",       "--even",
+        "--like",         "--finer",     "--fill-unseen",   "--camera",    "--sun-body",     "--phase",
+        "--reflectance",  "--ambient",   "--background",    "--no-marks",  "--picture-bits", "--aligned"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
-  for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map"}) {
+  for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map", "--count"}) {
     program.app.option("--members").excludes(program.app.option(of_one));
   }
   program.app.option("--seed")
@@ -164,7 +176,7 @@ Recipe read_input(const Program& program, const Options& options) {
     change_reliefs(recipe, options.recipe, "--finer continues",
                    [&](ReliefLayer& relief) { relief.finer = options.finer; });
   }
-  if (program.app.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
+  if (options.seeded && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
 }
 
@@ -215,7 +227,8 @@ void check_outputs(const Program& program, const Options& options) {
   throw InputError("--output: is required; name the file to make, such as -o body.ply");
 }
 
-void synthesize(Program& program, const Options& options) {
+void synthesize(Program& program, Options options) {
+  options.seeded = options.seeded || program.app.option("--seed").count() > 0;
   check_outputs(program, options);
   const Recipe recipe = read_input(program, options);
   program.summary["length_unit"] = recipe.length_unit;
@@ -240,6 +253,33 @@ void synthesize(Program& program, const Options& options) {
   make_mesh(program, options.mesh, made, body_file, options.output);
 }
 
+// The options of the body with this seed.
+Options numbered(Options options, std::uint64_t seed) {
+  MeshRequest& mesh = options.mesh;
+  for (fs::path* name : {&options.output, &options.written_recipe, &mesh.preview.file, &mesh.preview.maps,
+                         &mesh.height_map, &mesh.landforms}) {
+    *name = with_seed(*name, seed);
+  }
+  options.seeded = true;
+  return options;
+}
+
+// Makes bodies one after another, each as --seed makes it.
+void synthesize_series(Program& program, const Options& options) {
+  const MeshRequest& mesh = options.mesh;
+  check_series_names({options.output, options.written_recipe, mesh.preview.file, mesh.preview.maps,
+                      mesh.height_map, mesh.landforms});
+  const std::uint64_t first = program.seed, end = first + static_cast<std::uint64_t>(options.count);
+  for (std::uint64_t seed = first; seed < end; ++seed) check_outputs(program, numbered(options, seed));
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  for (program.seed = first; program.seed < end; ++program.seed) {
+    program.summary = {{"seed", program.seed}};
+    synthesize(program, numbered(options, program.seed));
+    bodies.push_back(program.summary);
+  }
+  program.summary = {{"bodies", bodies}};
+}
+
 }  // namespace
 }  // namespace astrolith
 
@@ -251,6 +291,10 @@ int main(int argc, char** argv) {
   astrolith::declare_options(program, options);
   return program.run(argc, argv, [&] {
     if (!options.members.folder.empty()) options.output = options.members.folder / "{member}.ply";
-    astrolith::synthesize(program, options);
+    if (options.count > 0) {
+      astrolith::synthesize_series(program, options);
+    } else {
+      astrolith::synthesize(program, options);
+    }
   });
 }

@@ -57,7 +57,8 @@ void check_height_map(const std::filesystem::path& file, const Region& region, c
 void write_height_map(Program& program, const std::filesystem::path& file, const TriangleMesh& mesh,
                       const Region& region, const Recipe& recipe, int resolution) {
   const double metres = metres_of(recipe.length_unit);
-  const HeightMap map = height_map(mesh, region.size, resolution, metres);
+  const HeightMap map = region.axes ? height_map(mesh, *region.axes, region.size, resolution, metres)
+                                    : height_map(mesh, region.size, resolution, metres);
   const Json frame = frame_json(map, region, recipe);
   write_geotiff(map.heights, map.side, map.side, metres * map.pixel,
                 frame.dump(-1, ' ', true, Json::error_handler_t::replace), file);

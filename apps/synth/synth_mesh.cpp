@@ -62,7 +62,7 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
 }  // namespace
 
 void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const fs::path& file) {
-  check_request(request, parse_region(request.tile, request.patch), recipe, file);
+  check_request(request, parse_region(request.tile, request.patch, request.aligned), recipe, file);
 }
 
 void check_mesh_name(const MeshRequest& request, const fs::path& output) {
@@ -104,6 +104,11 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
   program.summary["active_blocks"] = statistics.active_blocks;
   program.summary["total_blocks"] = statistics.total_blocks;
   if (region.is_patch) program.summary["origin"] = {region.center.x, region.center.y, region.center.z};
+  if (!region.axes) return;
+  const auto list = [](const Vec3d& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  program.summary["patch_axes"] = {{"right", list(region.axes->right)},
+                                   {"ahead", list(region.axes->ahead)},
+                                   {"up", list(region.axes->up)}};
 }
 
 // A tile of a .ply may hold no triangle, so that the tiles of a body can be made one after the other.
@@ -243,10 +248,12 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (!request.preview.file.empty())
     write_preview(program, request.preview, result.collected(), recipe.length_unit);
   if (!request.preview.maps.empty())
-    write_preview_maps(program, request.preview, result.collected(), {recipe, file, region, field});
+    write_preview_maps(program, request.preview, result.collected(),
+                       {recipe, file, region, field, made.statistics.step});
   if (!request.height_map.empty())
     write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
-  if (!request.landforms.empty()) write_landform_list(field, recipe, region.cube(), request.landforms);
+  if (!request.landforms.empty())
+    write_landform_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   if (has_colors(recipe)) {
     program.summary["vertex_colors"] = holds_colors(output);
@@ -284,6 +291,13 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .expected(4)
       .excludes(tile)
       .placeholder("X Y Z SIDE");
+  program.app
+      .add_flag(
+          "--aligned", request.aligned,
+          "the cube of --patch stands on its ground: it is turned so that one axis is the mean normal of "
+          "the surface in it. A --height-map then has the cube's square and no empty border; vertices "
+          "still lie along the recipe's axes")
+      .needs(program.app.option("--patch"));
   program.app
       .add_option(
           "--min-component", request.least_component,
@@ -343,7 +357,10 @@ FieldRegion region_on_surface(Program& program, const Recipe& recipe, const fs::
     ImplicitField field = field_of_region(recipe, file, region, program.progress("landforms"));
     const std::optional<Vec3d> beside =
         move < kMostMoves ? surface_beside_patch(field, region) : std::nullopt;
-    if (!beside) return {region, std::move(field)};
+    if (!beside) {
+      align_to_ground(field, region);
+      return {region, std::move(field)};
+    }
     program.say(fmt::format(
         "patch: no surface crosses this cube; moved by {:.4g} {} to {:.9g} {:.9g} {:.9g} on the surface",
         norm(*beside - region.center), recipe.length_unit, beside->x, beside->y, beside->z));
@@ -355,7 +372,7 @@ FieldRegion region_on_surface(Program& program, const Recipe& recipe, const fs::
 
 void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
                const fs::path& output) {
-  const Region asked = parse_region(request.tile, request.patch);
+  const Region asked = parse_region(request.tile, request.patch, request.aligned);
   check_request(request, asked, recipe, file);
   const auto [region, field] = region_on_surface(program, recipe, file, asked);
   const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(),

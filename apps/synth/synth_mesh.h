@@ -22,6 +22,7 @@ struct MeshRequest {
   std::filesystem::path landforms;   // list of craters and boulders; empty = none
   std::string tile;                  // "3/16"; empty = the whole
   std::vector<double> patch;         // centre and side; empty = the whole
+  bool aligned = false;              // the cube of the patch stands on its ground
   double least_component = 0.0;      // share of the largest one's volume; 0 = all stay
   bool points = false;
   bool labels = false;

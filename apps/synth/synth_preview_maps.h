@@ -18,6 +18,7 @@ struct MapsSource {
   const std::filesystem::path& file;  // of the recipe, for messages
   const Region& region;
   const ImplicitField& field;  // of the recipe in the region
+  double cell;                 // side of the mesh's cells, length units
 };
 
 // Writes the maps as NPZ, with these arrays (h x w pixels, v views):

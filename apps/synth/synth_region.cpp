@@ -18,8 +18,12 @@ Region parse_tile(const std::string& text) {
 
 }  // namespace
 
-Region parse_region(const std::string& tile, const std::vector<double>& patch) {
-  if (!patch.empty()) return patch_region({patch[0], patch[1], patch[2]}, patch[3]);
+Region parse_region(const std::string& tile, const std::vector<double>& patch, bool aligned) {
+  if (!patch.empty()) {
+    Region region = patch_region({patch[0], patch[1], patch[2]}, patch[3]);
+    region.aligned = aligned;
+    return region;
+  }
   return tile.empty() ? Region{} : parse_tile(tile);
 }
 

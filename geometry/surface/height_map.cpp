@@ -10,20 +10,6 @@
 namespace astrolith {
 namespace {
 
-Vec3d mean_normal(const TriangleMesh& mesh) {
-  Vec3d sum;
-  for (const auto& [a, b, c] : mesh.triangles)
-    sum += cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
-  return normalized(sum);
-}
-
-void set_axes(HeightMap& map, const Vec3d& up) {
-  map.up = up;
-  const Vec3d north = std::fabs(up.z) < 0.999 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
-  map.right = normalized(cross(north, up));
-  map.ahead = cross(up, map.right);
-}
-
 // A point in pixels from the upper left corner, and its height.
 Vec3d in_pixels(const HeightMap& map, const Vec3d& p) {
   const Vec3d d = p - map.origin;
@@ -61,16 +47,9 @@ void draw(HeightMap& map, const Vec3d& a, const Vec3d& b, const Vec3d& c, double
   }
 }
 
-}  // namespace
-
-HeightMap height_map(const TriangleMesh& mesh, double length, int side, double scale) {
-  const Vec3d up = mean_normal(mesh);
-  if (!(norm(up) > 0.5)) throw InputError("height map: the surface faces no direction; take a smaller patch");
-  HeightMap map;
-  map.side = side;
-  map.pixel = length / side;
-  map.origin = surface_centroid(mesh);
-  set_axes(map, up);
+HeightMap map_over(const TriangleMesh& mesh, const GroundAxes& axes, const Vec3d& origin, double length,
+                   int side, double scale) {
+  HeightMap map{side, length / side, origin, axes.right, axes.ahead, axes.up, {}};
   const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   map.heights.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -78,6 +57,19 @@ HeightMap height_map(const TriangleMesh& mesh, double length, int side, double s
          in_pixels(map, mesh.vertices[c]), scale);
   }
   return map;
+}
+
+}  // namespace
+
+HeightMap height_map(const TriangleMesh& mesh, double length, int side, double scale) {
+  const Vec3d up = mean_normal(mesh);
+  if (!(norm(up) > 0.5)) throw InputError("height map: the surface faces no direction; take a smaller patch");
+  return map_over(mesh, axes_about(up), surface_centroid(mesh), length, side, scale);
+}
+
+HeightMap height_map(const TriangleMesh& mesh, const GroundAxes& axes, double length, int side,
+                     double scale) {
+  return map_over(mesh, axes, dot(surface_centroid(mesh), axes.up) * axes.up, length, side, scale);
 }
 
 }  // namespace astrolith

@@ -54,6 +54,7 @@ def height_map(
     patch: Sequence[float],
     *,
     resolution: int = 256,
+    aligned: bool = False,
     seed: Optional[int] = None,
     threads: int = 0,
     progress: Progress = None,
@@ -68,15 +69,22 @@ def height_map(
         (x, y, z, side): the centre and the side of a cube, in the recipe's unit.
     resolution
         Pixels along a side, 4 to 8192. The mesh has as many cells.
+    aligned
+        Whether the cube stands on its ground, as with ``--aligned``: the map's square is then the cube's, without
+        an empty border.
 
     Raises
     ------
     ValueError
         There is no surface in the patch, the recipe is in pixels, or an argument is wrong.
     """
-    made = mesh(recipe, patch=patch, resolution=resolution, seed=seed, threads=threads, progress=progress)
+    made = mesh(
+        recipe, patch=patch, aligned=aligned, resolution=resolution, seed=seed, threads=threads, progress=progress
+    )
     center = _arrays.vector(patch, "patch", 4)
     unit = _arrays.choice(made.length_unit, "recipe.length_unit", _UNITS)
     vertices = made.vertices.astype(np.float64)
-    fields = _synthesis.height_map(vertices, made.faces, center[:3], center[3], resolution, unit)
+    cube = made.figures.get("patch_axes")
+    axes = None if cube is None else [cube["right"], cube["ahead"], cube["up"]]
+    fields = _synthesis.height_map(vertices, made.faces, center[:3], center[3], resolution, unit, axes)
     return HeightMap(**fields, body_frame=made.frame)

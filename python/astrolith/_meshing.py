@@ -34,18 +34,21 @@ def _mesh_arguments(
     resolution: Optional[int],
     triangles: Optional[float],
     patch: Optional[Sequence[float]],
+    aligned: bool,
     tile: Union[None, str, Sequence[int]],
     seed: Optional[int],
     min_component: float,
     labels: bool,
     even: bool,
-) -> tuple[str, str, int, float, Any, Any, float, bool, bool]:
+) -> tuple[str, str, int, float, Any, bool, Any, float, bool, bool]:
     """The checked arguments of the module's functions, of which the recipe's text and name come first."""
     if resolution is not None and triangles is not None:
         raise ValueError("triangles: excludes resolution; leave one of them out")
     cells = 256 if resolution is None else _arrays.integer(resolution, "resolution", 4, 8192)
     count = 0.0 if triangles is None else _arrays.number(triangles, "triangles", 100.0, 1e10)
     cube, slab = _region(patch, tile)
+    if aligned and cube is None:
+        raise ValueError("aligned: is of a patch; give patch as well")
     json, name = _options.seeded(recipe, seed)
     fields = records(json)
     if fields.get("erosion") is not None and (cube is not None or slab is not None or labels):
@@ -54,7 +57,7 @@ def _mesh_arguments(
     if min_component and (cube is not None or slab is not None):
         raise ValueError("min_component: the size of a piece that is cut is not known; leave out tile and patch")
     share = _arrays.number(min_component, "min_component", 0.0, 1.0)
-    return json, name, cells, count, cube, slab, share, bool(labels), bool(even)
+    return json, name, cells, count, cube, bool(aligned), slab, share, bool(labels), bool(even)
 
 
 def mesh(
@@ -63,6 +66,7 @@ def mesh(
     resolution: Optional[int] = None,
     triangles: Optional[float] = None,
     patch: Optional[Sequence[float]] = None,
+    aligned: bool = False,
     tile: Union[None, str, Sequence[int]] = None,
     seed: Optional[int] = None,
     min_component: float = 0.0,
@@ -83,6 +87,9 @@ def mesh(
         Choose the resolution that gives about this many triangles, 100 to 1e10.
     patch
         (x, y, z, side): only what this cube holds of the surface. Vertices are relative to its centre.
+    aligned
+        Turn the cube of the patch to its ground: one axis is the mean normal of the surface in it. `figures.patch_axes`
+        states right, ahead and up; vertices still lie along the recipe's axes.
     tile
         (I, N) or "I/N": only the I-th of N slabs along z. Tiles fit without cracks.
     seed
@@ -113,7 +120,7 @@ def mesh(
     KeyboardInterrupt
         Ctrl-C was pressed; it is raised within a second.
     """
-    arguments = _mesh_arguments(recipe, resolution, triangles, patch, tile, seed, min_component, labels, even)
+    arguments = _mesh_arguments(recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even)
     fields = records(arguments[0])
     made = _synthesis.mesh(*arguments, _options.threads(threads), progress)
     figures = Record(made["figures"])
@@ -139,6 +146,7 @@ def predict(
     resolution: Optional[int] = None,
     triangles: Optional[float] = None,
     patch: Optional[Sequence[float]] = None,
+    aligned: bool = False,
     tile: Union[None, str, Sequence[int]] = None,
     seed: Optional[int] = None,
     min_component: float = 0.0,
@@ -151,7 +159,7 @@ def predict(
 
     Parameters
     ----------
-    recipe, resolution, triangles, patch, tile, seed, min_component, labels, even
+    recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even
         As `mesh` has them.
     format
         The extension of the file: ".ply", ".obj", ".stl", ".glb", ".icq" or ".tab".
@@ -171,5 +179,5 @@ def predict(
     """
     if format not in _FORMATS:
         raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
-    arguments = _mesh_arguments(recipe, resolution, triangles, patch, tile, seed, min_component, labels, even)
+    arguments = _mesh_arguments(recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even)
     return Record(_synthesis.predict(*arguments, format, _options.threads(threads)))

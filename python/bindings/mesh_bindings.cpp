@@ -67,13 +67,18 @@ struct MeshArguments {
   int resolution = 0;      // used where `triangles` is 0
   double triangles = 0.0;  // 0: as the resolution gives
   std::optional<std::array<double, 4>> patch;
+  bool aligned = false;  // the cube of the patch stands on its ground
   std::optional<std::array<int, 2>> tile;
   double min_component = 0.0;
   bool labels = false;
   bool even = false;
 
   Region region() const {
-    if (patch) return patch_region({(*patch)[0], (*patch)[1], (*patch)[2]}, (*patch)[3]);
+    if (patch) {
+      Region region = patch_region({(*patch)[0], (*patch)[1], (*patch)[2]}, (*patch)[3]);
+      region.aligned = aligned;
+      return region;
+    }
     return tile ? tile_region((*tile)[0], (*tile)[1]) : Region{};
   }
 };
@@ -83,6 +88,7 @@ struct MadeMesh {
   BodyMeshReport report;
   std::optional<ErosionStatistics> erosion;
   int resolution = 0;
+  Region region;
   std::vector<std::string> legend;
   std::vector<LayerLeftOut> left_out;
   std::vector<VertexColor> colors;  // empty where no layer paints
@@ -118,15 +124,16 @@ std::vector<VertexColor> colors_of(const ArraySink& arrays, const SurfaceColors&
 MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
   const std::filesystem::path file = arguments.name;
-  const Region region = arguments.region();
+  Region region = arguments.region();
   const ImplicitField field = field_of_region(recipe, file, region);
+  align_to_ground(field, region);
   std::optional<SurfaceLabels> labels;
   VertexLabeller labeller;
   if (arguments.labels) {
     labels.emplace(recipe, field, region.cube());
     labeller = [&](auto vertices, auto out) { labels->label(region.center, vertices, out); };
   }
-  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, {}, {}, {}};
+  MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, region, {}, {}, {}};
   made.resolution = arguments.triangles > 0.0
                         ? resolution_for_triangles(field, recipe, region, arguments.triangles)
                         : arguments.resolution;
@@ -152,8 +159,9 @@ PredictedMesh predict_of(const MeshArguments& arguments, const std::string& form
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t processor_start = std::clock();
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
-  const Region region = arguments.region();
+  Region region = arguments.region();
   const ImplicitField field = field_of_region(recipe, arguments.name, region);
+  align_to_ground(field, region);
   MeshUse use;
   use.erosion = recipe.erosion.has_value();
   use.twice = arguments.min_component > 0.0;
@@ -188,7 +196,9 @@ nb::dict even_figures(const EvenStatistics& done) {
   return even;
 }
 
-nb::dict figures(const MadeMesh& made, const Region& region) {
+nb::tuple tuple_of(const Vec3d& v) { return nb::make_tuple(v.x, v.y, v.z); }
+
+nb::dict figures(const MadeMesh& made) {
   const BodyMeshReport& report = made.report;
   nb::dict figures;
   figures["resolution"] = made.resolution;
@@ -201,7 +211,14 @@ nb::dict figures(const MadeMesh& made, const Region& region) {
   figures["dropped_components"] = report.dropped_components;
   figures["evaluations"] = report.statistics.evaluations;
   figures["cell"] = report.statistics.step;
-  if (region.is_patch) figures["origin"] = nb::make_tuple(region.center.x, region.center.y, region.center.z);
+  if (made.region.is_patch) figures["origin"] = tuple_of(made.region.center);
+  if (const std::optional<GroundAxes>& axes = made.region.axes) {
+    nb::dict of_patch;
+    of_patch["right"] = tuple_of(axes->right);
+    of_patch["ahead"] = tuple_of(axes->ahead);
+    of_patch["up"] = tuple_of(axes->up);
+    figures["patch_axes"] = of_patch;
+  }
   if (report.even) figures["even"] = even_figures(*report.even);
   if (made.erosion) {
     nb::dict erosion;
@@ -223,16 +240,16 @@ nb::dict figures(const MadeMesh& made, const Region& region) {
 }
 
 Fields mesh(const std::string& json, const std::string& name, int resolution, double triangles,
-            std::optional<std::array<double, 4>> patch, std::optional<std::array<int, 2>> tile,
+            std::optional<std::array<double, 4>> patch, bool aligned, std::optional<std::array<int, 2>> tile,
             double min_component, bool labels, bool even, int threads, nb::object progress) {
-  const MeshArguments arguments{json, name, resolution, triangles, patch, tile, min_component, labels, even};
-  const Region region = arguments.region();
+  const MeshArguments arguments{json,    name, resolution,    triangles, patch,
+                                aligned, tile, min_component, labels,    even};
   MadeMesh made =
       run_job(std::move(progress), threads, [=](JobState& state) { return make_mesh(arguments, state); });
   ArraySink& arrays = made.arrays;
   const std::size_t n = arrays.vertices.size(), m = arrays.triangles.size();
   Fields result;
-  result["figures"] = figures(made, region);
+  result["figures"] = figures(made);
   result["vertices"] = array_of<float>(std::move(arrays.vertices), {n, 3});
   result["faces"] = array_of<std::uint32_t>(std::move(arrays.triangles), {m, 3});
   result["normals"] = array_of<float>(std::move(arrays.normals), {n, 3});
@@ -246,9 +263,11 @@ Fields mesh(const std::string& json, const std::string& name, int resolution, do
 }
 
 Fields predict(const std::string& json, const std::string& name, int resolution, double triangles,
-               std::optional<std::array<double, 4>> patch, std::optional<std::array<int, 2>> tile,
-               double min_component, bool labels, bool even, const std::string& format, int threads) {
-  const MeshArguments arguments{json, name, resolution, triangles, patch, tile, min_component, labels, even};
+               std::optional<std::array<double, 4>> patch, bool aligned,
+               std::optional<std::array<int, 2>> tile, double min_component, bool labels, bool even,
+               const std::string& format, int threads) {
+  const MeshArguments arguments{json,    name, resolution,    triangles, patch,
+                                aligned, tile, min_component, labels,    even};
   const PredictedMesh predicted =
       run_job(nb::none(), threads, [=](JobState&) { return predict_of(arguments, format, threads); });
   Fields figures;
@@ -330,11 +349,12 @@ void write(const std::string& file, const Rows<double>& vertices, const Rows<std
 
 void bind_meshes(nb::module_& module) {
   module.def("mesh", &mesh, nb::arg("json"), nb::arg("name"), nb::arg("resolution"), nb::arg("triangles"),
-             nb::arg("patch").none(), nb::arg("tile").none(), nb::arg("min_component"), nb::arg("labels"),
-             nb::arg("even"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("patch").none(), nb::arg("aligned"), nb::arg("tile").none(), nb::arg("min_component"),
+             nb::arg("labels"), nb::arg("even"), nb::arg("threads"), nb::arg("progress").none());
   module.def("predict", &predict, nb::arg("json"), nb::arg("name"), nb::arg("resolution"),
-             nb::arg("triangles"), nb::arg("patch").none(), nb::arg("tile").none(), nb::arg("min_component"),
-             nb::arg("labels"), nb::arg("even"), nb::arg("format"), nb::arg("threads"));
+             nb::arg("triangles"), nb::arg("patch").none(), nb::arg("aligned"), nb::arg("tile").none(),
+             nb::arg("min_component"), nb::arg("labels"), nb::arg("even"), nb::arg("format"),
+             nb::arg("threads"));
   module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"), nb::arg("progress").none());
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),

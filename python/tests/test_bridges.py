@@ -148,6 +148,19 @@ def test_height_maps_are_in_metres(example, name, side):
     assert 100.0 < made.origin[2] < 130.0
 
 
+def test_an_aligned_map_is_full(example, program, tmp_path):
+    top = astrolith.mesh(example("itokawa_details"), resolution=40).vertices.astype(float)
+    patch = (*top[np.abs(top[:, 2] - top[:, 1]).argmin()].tolist(), 40.0)
+    made = astrolith.height_map(example("itokawa_details"), patch, resolution=32, aligned=True)
+    assert np.isfinite(made.heights).all()
+    program("synth", example("itokawa_details"), "-o", "p.ply", "--patch", *patch, "--resolution", "32", "--aligned",
+            "--height-map", "p.tif")
+    frame = json.loads((tmp_path / "p.json").read_text())
+    assert frame["pixels_without_data"] == 0 and frame["up"] == list(made.up)
+    with pytest.raises(ValueError, match="aligned: is of a patch"):
+        astrolith.mesh(example("itokawa_details"), aligned=True)
+
+
 def test_what_is_missing_is_named_with_the_extra():
     code = """
 import sys

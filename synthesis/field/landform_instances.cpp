@@ -28,11 +28,12 @@ Box box_about(const Vec3d& center, double reach) {
 }  // namespace
 
 LandformInstances::LandformInstances(const ImplicitField& field, const Recipe& recipe,
-                                     const std::optional<PatchCube>& patch)
+                                     const std::optional<PatchCube>& patch, double cell)
     : bare_(bare_body(recipe)), listed_(listed_landforms(field, patch)) {
   std::vector<Box> rock_boxes, rim_boxes;
   for (std::size_t row = 0; row < listed_.size(); ++row) {
     const ListedLandform& listed = listed_[row];
+    if (!is_resolved(listed, cell)) continue;
     if (listed.crater != nullptr) {
       rims_.push_back(static_cast<std::int32_t>(row));
       rim_boxes.push_back(

@@ -17,11 +17,14 @@ namespace astrolith {
 // A point shows a boulder where the rock stands out of the ground there: of several boulders the one whose
 // surface is outermost. Elsewhere it shows the last crater within whose rim it lies: its projection onto the
 // bare body is nearer to the crater's centre than half the diameter, in a straight line. Craters of a later
-// layer come after those of an earlier one.
+// layer come after those of an earlier one. Landforms that the mesh does not resolve are left out: their
+// ground shows what is beneath them.
 class LandformInstances {
  public:
-  // `field` is the recipe's, made for the same patch, and must outlive this object.
-  LandformInstances(const ImplicitField& field, const Recipe& recipe, const std::optional<PatchCube>& patch);
+  // `field` is the recipe's, made for the same patch, and must outlive this object. `cell` is the side of the
+  // mesh's cells, length units (is_resolved()).
+  LandformInstances(const ImplicitField& field, const Recipe& recipe, const std::optional<PatchCube>& patch,
+                    double cell);
 
   // The row of the feature list that a point shows, from 0 after its header (landform_list.h); -1 for none.
   // The point lies on the surface, in the recipe's frame. `ground` is F without boulders there, length units.

@@ -28,8 +28,9 @@ struct Row {
   int layer;
   std::string kind;
   Numbers numbers;
-  double top;    // the surface is looked for about this height above the centre ...
-  double reach;  // ... and so far from there, length units
+  bool resolved;  // by the mesh
+  double top;     // the surface is looked for about this height above the centre ...
+  double reach;   // ... and so far from there, length units
 };
 
 void set_point(Numbers& numbers, std::size_t column, const Vec3d& p) {
@@ -43,7 +44,7 @@ Vec3d center_of(const Row& row) {
 }
 
 Row crater_row(int layer, const PlacedCrater& c, double height_bound) {
-  Row row{layer, c.complex ? "complex crater" : "simple crater", {}, 0.0, height_bound};
+  Row row{layer, c.complex ? "complex crater" : "simple crater", {}, false, 0.0, height_bound};
   set_point(row.numbers, kCenterColumn, c.position);
   const std::array sizes{c.diameter, c.depth, c.rim_height, c.age};
   std::copy(sizes.begin(), sizes.end(), row.numbers.begin() + kFirstSizeColumn);
@@ -63,7 +64,7 @@ double half_extent(const PlacedBoulder& b, const Vec3d& direction) {
 
 Row boulder_row(int layer, const PlacedBoulder& b, const BareSurface& bare) {
   const double top = half_extent(b, bare.normal(b.center));
-  Row row{layer, "boulder", {}, top, top};
+  Row row{layer, "boulder", {}, false, top, top};
   set_point(row.numbers, kCenterColumn, b.center);
   const std::array<std::optional<double>, 9> sizes{b.axes.x, {},        {},     {},      b.axes.y,
                                                    b.axes.z, b.heading, b.tilt, b.burial};
@@ -72,11 +73,12 @@ Row boulder_row(int layer, const PlacedBoulder& b, const BareSurface& bare) {
 }
 
 std::vector<Row> rows_of(const ImplicitField& field, const BareSurface& bare,
-                         const std::optional<PatchCube>& patch) {
+                         const std::optional<PatchCube>& patch, double cell) {
   std::vector<Row> rows;
   for (const ListedLandform& listed : listed_landforms(field, patch)) {
     rows.push_back(listed.crater != nullptr ? crater_row(listed.layer, *listed.crater, field.height_bound())
                                             : boulder_row(listed.layer, *listed.boulder, bare));
+    rows.back().resolved = is_resolved(listed, cell);
   }
   return rows;
 }
@@ -104,11 +106,11 @@ std::string text_of(double value) {
 std::string csv_of(const std::vector<Row>& rows, const Recipe& recipe) {
   std::string text = "layer,kind";
   for (const char* column : kNumbers) text += std::string(",") + column;
-  text += ",length_unit";
+  text += ",length_unit,resolved";
   for (const Row& row : rows) {
     text += '\n' + std::to_string(row.layer) + ',' + row.kind;
     for (const auto& number : row.numbers) text += ',' + (number ? text_of(*number) : "");
-    text += ',' + recipe.length_unit;
+    text += ',' + recipe.length_unit + (row.resolved ? ",1" : ",0");
   }
   return text + '\n';
 }
@@ -125,7 +127,7 @@ std::string json_of(const std::vector<Row>& rows, const Recipe& recipe, const Ve
     for (std::size_t k = 0; k < kNumbers.size(); ++k) {
       if (row.numbers[k]) text += std::string(", \"") + kNumbers[k] + "\": " + text_of(*row.numbers[k]);
     }
-    text += '}';
+    text += row.resolved ? ", \"resolved\": true}" : ", \"resolved\": false}";
     separator = ",\n";
   }
   return text + "\n  ]\n}\n";
@@ -134,10 +136,11 @@ std::string json_of(const std::vector<Row>& rows, const Recipe& recipe, const Ve
 }  // namespace
 
 void write_landform_list(const ImplicitField& field, const Recipe& recipe,
-                         const std::optional<PatchCube>& patch, const std::filesystem::path& file) {
+                         const std::optional<PatchCube>& patch, double cell,
+                         const std::filesystem::path& file) {
   const BareSurface bare(bare_body(recipe));
   const Vec3d origin = patch ? patch->center : Vec3d{};
-  std::vector<Row> rows = rows_of(field, bare, patch);
+  std::vector<Row> rows = rows_of(field, bare, patch, cell);
   find_surface_points(field, bare, origin, rows);
   write_file(file, file.extension() == ".json" ? json_of(rows, recipe, origin) : csv_of(rows, recipe));
 }

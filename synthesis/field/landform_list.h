@@ -8,9 +8,9 @@
 
 namespace astrolith {
 
-// The list has one row for each crater, in the order in which craters fell, and then one for each boulder.
-// For a patch it has those whose rim or rock reaches into the cube. Lengths are in the recipe's unit, angles
-// in degrees. The columns are:
+// `cell` is the side of the mesh's cells, length units. The list has one row for each crater, in the order in
+// which craters fell, and then one for each boulder. For a patch it has those whose rim or rock reaches into
+// the cube. Lengths are in the recipe's unit, angles in degrees. The columns are:
 //   layer                       number of the layer in the recipe, from 0
 //   kind                        "simple crater", "complex crater" or "boulder"
 //   x, y, z                     a point of the finished surface in the recipe's frame: where the normal of
@@ -24,10 +24,13 @@ namespace astrolith {
 //   depth, rim_height, age      craters only
 //   axis_b, axis_c, heading, tilt, burial    boulders only
 //   length_unit                 the recipe's unit
+//   resolved                    1 or true where the mesh shows the landform, as is_resolved() says; others
+//                               are in no map of instances
 // A .json file holds {"length_unit", "frame", "origin" of the mesh in the recipe's frame, "features":
 // [objects]}. Any other file is CSV with a header. The file is whole or absent; throws what OutputFile
 // throws.
 void write_landform_list(const ImplicitField& field, const Recipe& recipe,
-                         const std::optional<PatchCube>& patch, const std::filesystem::path& file);
+                         const std::optional<PatchCube>& patch, double cell,
+                         const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -15,6 +15,15 @@ bool reaches_patch(const Vec3d& center, double radius, const std::optional<Patch
 
 }  // namespace
 
+bool is_resolved(const ListedLandform& landform, double cell) {
+  constexpr double kAcross = 2.0, kHigh = 0.1;  // cells
+  const PlacedCrater* const crater = landform.crater;
+  if (crater != nullptr)
+    return crater->diameter >= kAcross * cell && crater->depth + crater->rim_height >= kHigh * cell;
+  const PlacedBoulder& boulder = *landform.boulder;
+  return boulder.axes.y >= kAcross * cell && (1.0 - boulder.burial) * boulder.axes.z >= kHigh * cell;
+}
+
 std::vector<ListedLandform> listed_landforms(const ImplicitField& field,
                                              const std::optional<PatchCube>& patch) {
   std::vector<ListedLandform> listed;

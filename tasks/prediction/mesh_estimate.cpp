@@ -47,9 +47,9 @@ ImplicitField base_of(const ImplicitField& field, const Recipe& recipe) {
 TriangleMesh coarse_mesh_in(const ImplicitField& base, const Region& region, int cells,
                             double* evaluations = nullptr) {
   MeshStatistics made;
-  TriangleMesh mesh = region.is_patch
-                          ? coarse_mesh_of(PatchField(base, region.center), region.size, cells, &made)
-                          : coarse_mesh_of(base, cells, &made);
+  TriangleMesh mesh = region.is_patch ? coarse_mesh_of(PatchField(base, region.center, region.axes),
+                                                       region.size, cells, &made)
+                                      : coarse_mesh_of(base, cells, &made);
   if (evaluations != nullptr) *evaluations += static_cast<double>(made.evaluations);
   return mesh;
 }
@@ -84,7 +84,7 @@ class RegionProbes {
     const ProbedMesh mesh{surface_, grid_of(field_, region_, resolution_).step, reach, with_neighbour, gabor,
                           costs};
     if (region_.is_patch) {
-      probe(PatchField(field_, region_.center), mesh, sums_.probes, count, sums_);
+      probe(PatchField(field_, region_.center, region_.axes), mesh, sums_.probes, count, sums_);
     } else {
       probe(field_, mesh, sums_.probes, count, sums_);
     }
@@ -109,8 +109,9 @@ class RegionProbes {
 
 MeshEstimate sample_region(const ImplicitField& field, const Region& region, int resolution,
                            const SampleSize& size) {
-  return region.is_patch ? sample_patch(PatchField(field, region.center), region.size, resolution, size)
-                         : sample_field(field, field.bounds(), resolution, region.tile, size);
+  return region.is_patch
+             ? sample_patch(PatchField(field, region.center, region.axes), region.size, resolution, size)
+             : sample_field(field, field.bounds(), resolution, region.tile, size);
 }
 
 // Makes a coarse surface, as fine as the seconds allow, of which `spent` are gone. Returns the seconds that

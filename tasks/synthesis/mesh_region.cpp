@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "cuda/mesher/backend_mesher.h"
 #include "cuda/mesher/gpu_obstacle.h"
@@ -80,10 +82,34 @@ int emptying_layer(const Recipe& recipe, const std::filesystem::path& file, int 
   return -1;
 }
 
+// Passes on a mesh whose coordinates lie along the axes of the ground, with coordinates of the body's axes.
+class TurnedMesh : public MeshSink {
+ public:
+  TurnedMesh(const GroundAxes& axes, MeshSink& sink) : axes_(axes), sink_(sink) {}
+  void add_vertices(std::span<const MeshVertex> vertices) override {
+    turned_.assign(vertices.begin(), vertices.end());
+    for (MeshVertex& v : turned_) v = {turned(v.position), turned(v.normal)};
+    sink_.add_vertices(turned_);
+  }
+  void add_triangles(std::span<const Triangle> triangles) override { sink_.add_triangles(triangles); }
+
+ private:
+  Vec3f turned(const Vec3f& v) const {
+    return to_float(axes_.to_frame({double{v.x}, double{v.y}, double{v.z}}));
+  }
+
+  GroundAxes axes_;
+  MeshSink& sink_;
+  std::vector<MeshVertex> turned_;  // kept for its memory
+};
+
 }  // namespace
 
 Region patch_region(const Vec3d& center, double side) {
-  Region region{{}, true, center, side};
+  Region region;
+  region.is_patch = true;
+  region.center = center;
+  region.size = side;
   if (!(side >= kMinPositive) || !(side <= kMaxNumber) ||
       !(squared_norm(center) <= kMaxNumber * kMaxNumber)) {
     throw InputError("patch: has no centre or no side above 0; write X Y Z SIDE in the recipe's length unit");
@@ -96,7 +122,9 @@ Region tile_region(int number, int count) {
     throw InputError(
         fmt::format("tile: {}/{} is no tile; write I/N with I from 1 to N, such as 3/16", number, count));
   }
-  return {{number - 1, count}, false, {}, 0.0};
+  Region region;
+  region.tile = {number - 1, count};
+  return region;
 }
 
 std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution) {
@@ -107,6 +135,11 @@ std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device) {
   if (region.is_patch && !field.has_local_form()) check_cells(field, region, resolution);
+  if (region.axes) {
+    TurnedMesh turned(*region.axes, sink);
+    return mesh_patch(PatchField(field, region.center, region.axes), region.size, resolution, turned,
+                      progress);
+  }
   if (region.is_patch) {
     return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
   }
@@ -135,6 +168,21 @@ std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Regi
   const bool beside =
       distance > kHalfDiagonal * region.size && distance < kNear * norm(field.bounds().extent());
   return beside ? near : std::nullopt;
+}
+
+void align_to_ground(const ImplicitField& field, Region& region) {
+  constexpr int kSteps = 3;  // the ground within the turned cube has another mean plane, if only a little
+  if (!region.aligned) return;
+  for (int step = 0; step < kSteps; ++step) {
+    MeshCollector ground;
+    mesh_region(field, region, kLookAround, ground, {});
+    if (ground.mesh.triangles.empty()) return;
+    const Vec3d up = mean_normal(ground.mesh);
+    if (!(norm(up) > 0.5)) {
+      throw InputError("aligned: the surface in the cube faces no direction; take a smaller cube");
+    }
+    region.axes = axes_about(up);
+  }
 }
 
 void fail_empty(const Recipe& recipe, const ImplicitField& field, const Region& region, int resolution,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "geometry/surface/ground_axes.h"
 #include "numerics/progress.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/even_mesh.h"
@@ -15,13 +16,16 @@ namespace astrolith {
 struct Region {
   MeshTile tile;
   bool is_patch = false;
-  Vec3d center;       // centre of a patch
-  double size = 0.0;  // side of a patch, length units
+  Vec3d center;                    // centre of a patch
+  double size = 0.0;               // side of a patch, length units
+  bool aligned = false;            // whether the cube of a patch stands on its ground
+  std::optional<GroundAxes> axes;  // of an aligned cube, where they are known: align_to_ground()
 
   bool is_cut() const { return is_patch || tile.count > 1; }
-  // The cube of a patch; none for the whole surface and for tiles.
+  // A cube along the body's axes that holds the patch; none for the whole surface and for tiles.
   std::optional<PatchCube> cube() const {
-    return is_patch ? std::optional(PatchCube{center, size}) : std::nullopt;
+    constexpr double kDiagonal = 1.7320508075688772;  // of a cube of side 1
+    return is_patch ? std::optional(PatchCube{center, aligned ? kDiagonal * size : size}) : std::nullopt;
   }
 };
 
@@ -37,14 +41,20 @@ Region tile_region(int number, int count);
 // regions.
 std::optional<Vec3d> surface_beside_patch(const ImplicitField& field, const Region& region);
 
+// Turns the cube of a patch to its ground: `up` becomes the mean normal of the surface in the cube, weighted
+// by area, and the axes lie about it (geometry/surface/ground_axes.h). The field is that of region.cube().
+// Nothing happens where the region is not to be aligned or the cube holds no surface. Throws InputError for a
+// surface that faces no direction.
+void align_to_ground(const ImplicitField& field, Region& region);
+
 // Names the part of a field or region that the GPU cannot mesh, in a few words. Empty where the GPU can mesh
 // all.
 std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int resolution);
 
 enum class MeshingDevice { kCpu, kGpu };
 
-// Meshes the region. Throws InputError for a patch whose cells are finer than the coordinates of a body made
-// by operations, and what mesh_field throws.
+// Meshes the region; an aligned patch, too, has its vertices along the body's axes. Throws InputError for a
+// patch whose cells are finer than the coordinates of a body made by operations, and what mesh_field throws.
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device = MeshingDevice::kCpu);
 

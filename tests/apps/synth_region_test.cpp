@@ -76,6 +76,29 @@ TEST_F(SynthRegion, HeightMapOfAPatch) {
   refuse("ball.json -o q.ply --resolution 32 --height-map h.tif", "--height-map");
 }
 
+// The cube stands on a slope of the ball: a patch along the body's axes leaves pixels empty there.
+TEST_F(SynthRegion, AnAlignedPatchFillsItsHeightMap) {
+  write("ball.json", ball_recipe("km", 1));
+  const std::string line = "ball.json -o p.ply --patch 0.36 0.48 0.8 0.2 --resolution 40 --height-map h.tif";
+  succeed(line);
+  EXPECT_GT(json("h.json")["pixels_without_data"], 50);
+  succeed(line + " --aligned --summary s.json");
+  EXPECT_EQ(json("h.json")["pixels_without_data"], 0);
+  const auto axes = json("s.json").at("patch_axes");
+  EXPECT_EQ(axes.at("up"), json("h.json").at("up"));
+  const Vec3d up{axes["up"][0], axes["up"][1], axes["up"][2]};
+  EXPECT_GT(dot(up, Vec3d{0.36, 0.48, 0.8}), 0.99999);
+  for (const Vec3d& p : read_mesh(folder_ / "p.ply").vertices) {
+    ASSERT_NEAR(norm(p + Vec3d{0.36, 0.48, 0.8}), 1.0, 1e-4);  // along the body's axes
+  }
+  const std::string bytes = text("p.ply");
+  succeed(line + " --aligned --threads 1");
+  EXPECT_TRUE(bytes == text("p.ply"));
+  succeed(line + " --aligned --even");
+  refuse("ball.json -o q.ply --resolution 32 --aligned", "--aligned");
+  refuse("ball.json -o q.ply --resolution 32 --aligned --patch 0 0 0 4", "faces no direction");
+}
+
 TEST_F(SynthRegion, TilesMakeTheWholeMesh) {
   synthesise("whole.ply");
   std::size_t triangles = 0;

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "synthesis/field/landform_instances.h"
+#include "synthesis/field/listed_landforms.h"
 #include "synthesis/field/surface_crossing.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/synthesis/bodies.h"
@@ -31,7 +33,7 @@ Recipe cratered_ball() {
 
 nlohmann::json listed(const Recipe& recipe, const std::optional<PatchCube>& patch) {
   const testing::ScratchFolder folder;
-  write_landform_list(ImplicitField(recipe, "recipe", patch), recipe, patch, folder / "list.json");
+  write_landform_list(ImplicitField(recipe, "recipe", patch), recipe, patch, 0.7, folder / "list.json");
   std::ifstream file(folder / "list.json");
   return nlohmann::json::parse(file);
 }
@@ -54,6 +56,25 @@ TEST(LandformList, PlacesLieOnTheFinishedSurface) {
   EXPECT_NEAR(std::hypot(crater.x, crater.y), 0.0, 1e-3) << "on the normal through its centre";
   EXPECT_LT(crater.z, point(list["features"][0], "center_").z) << "its floor lies below the bare surface";
   EXPECT_GT(norm(boulder), norm(point(list["features"][1], "center_"))) << "its top, not its own centre";
+}
+
+// The crater is 4 wide and .544 deep with its rim; the boulder is 1.5 across and stands .7 above the ground.
+TEST(LandformList, WhatTheMeshDoesNotShowIsNotResolved) {
+  const Recipe recipe = cratered_ball();
+  const ImplicitField field(recipe);
+  const std::vector<ListedLandform> both = listed_landforms(field, {});
+  EXPECT_TRUE(is_resolved(both[0], 2.0));
+  EXPECT_FALSE(is_resolved(both[0], 2.01)) << "fewer than two cells across";
+  EXPECT_TRUE(is_resolved(both[1], 0.75));
+  EXPECT_FALSE(is_resolved(both[1], 0.76));
+  PlacedCrater flat = *both[0].crater;
+  flat.depth = 0.05, flat.rim_height = 0.0;
+  EXPECT_TRUE(is_resolved({1, &flat, nullptr}, 0.49));
+  EXPECT_FALSE(is_resolved({1, &flat, nullptr}, 0.51)) << "shallower than a tenth of a cell";
+  EXPECT_TRUE(listed(recipe, {})["features"][0]["resolved"]);
+  const Vec3d floor = point(listed(recipe, {})["features"][0], "");
+  EXPECT_EQ(LandformInstances(field, recipe, {}, 0.7).row_at(floor, 0.0f), 0);
+  EXPECT_EQ(LandformInstances(field, recipe, {}, 2.01).row_at(floor, 0.0f), -1);
 }
 
 TEST(LandformList, APatchHasItsOwnInItsFrame) {
