@@ -6,6 +6,7 @@
 #include "apps/gravity/gravity_body.h"
 #include "apps/gravity/gravity_outputs.h"
 #include "apps/gravity/gravity_parts.h"
+#include "apps/gravity/gravity_sites.h"
 #include "apps/output_names.h"
 #include "apps/picture_options.h"
 #include "apps/program.h"
@@ -27,6 +28,7 @@ struct Arguments {
   bool exact = false;
   ShapeRepair repair;
   PictureOptions look;
+  SitesRequest sites;
 };
 
 void add_options(Program& program, Arguments& a) {
@@ -70,7 +72,12 @@ void add_options(Program& program, Arguments& a) {
       .check(zero_or_more());
   app.add_option("--resolution", a.resolution, "cells along the longest side of a recipe's body")
       .check(in_range(8, 4096));
-  app.add_option("--preview", a.preview, "also a picture in colours, with a bar").placeholder("FILE.png");
+  declare_sites_options(app, a.sites);
+  app.add_option(
+         "--preview", a.preview,
+         "also a picture in colours, with a bar; with --sites one view from above each of the first nine, "
+         "whose ground is orange")
+      .placeholder("FILE.png");
   app.add_option("--color", a.color, "what the colours of the picture say")
       .check(one_of(
           {"slope_deg", "elevation_m", "potential_J_kg", "geopotential_J_kg", "effective_gravity_m_s2"}));
@@ -97,6 +104,7 @@ void check(const Program& program, const Arguments& a) {
   if (!a.points.empty() && (!a.preview.empty() || program.app.option("--at").count() > 0)) {
     throw InputError("--points: gives places of its own; leave out --at and --preview");
   }
+  check_sites(program, a.sites, a.at == "facets" && a.points.empty());
   if (!a.output.empty()) {
     require_extension(a.output, {".csv", ".npy", ".ply"});
     if (a.output.ends_with(".ply") && (a.at != "vertices" || !a.points.empty())) {
@@ -131,11 +139,11 @@ BodyGravityOptions options_of(const Program& program, const Arguments& a, const 
 }
 
 void write_outputs(Program& program, const Arguments& a, const GravityBody& body,
-                   const std::vector<GravityColumn>& columns) {
+                   const std::vector<GravityColumn>& columns, const std::vector<LandingSite>& sites) {
   if (!a.output.empty()) write_gravity(columns, body, a.output, program.tool());
   if (a.preview.empty()) return;
   for (const GravityColumn& column : columns) {
-    if (column.name == a.color) write_gravity_preview(program, body, column, a.look, a.preview);
+    if (column.name == a.color) write_gravity_preview(program, body, column, sites, a.look, a.preview);
   }
 }
 
@@ -149,7 +157,8 @@ void run(Program& program, const Arguments& a) {
   nlohmann::ordered_json result{{"shape", a.shape}};
   result.update(made.figures);
   if (!repair.is_null()) result["repair"] = repair;
-  write_outputs(program, a, body, made.columns);
+  const std::vector<LandingSite> sites = landing_sites(program, a.sites, a.shape, body, made.columns, result);
+  write_outputs(program, a, body, made.columns, sites);
   print(result);
   program.summary = result;
 }

@@ -55,6 +55,26 @@ std::vector<double> values_of_vertices(const TriangleMesh& mesh, const std::vect
   return sums;
 }
 
+void paint_sites(const TriangleMesh& mesh, const std::vector<LandingSite>& sites,
+                 std::vector<Vec3<float>>& colors) {
+  const Vec3<float> orange{1.0f, 0.3f, 0.0f};
+  for (const LandingSite& site : sites) {
+    for (const std::uint32_t facet : site.facets) {
+      for (const std::uint32_t v : mesh.triangles[facet]) colors[v] = orange;
+    }
+  }
+}
+
+// The first sites, each from above its ground.
+std::vector<Camera> views_from_above(const std::vector<LandingSite>& sites) {
+  constexpr std::size_t kMostViews = 9;
+  std::vector<Camera> views;
+  for (std::size_t i = 0; i < std::min(sites.size(), kMostViews); ++i) {
+    views.push_back(view_from(sites[i].axes.up));
+  }
+  return views;
+}
+
 }  // namespace
 
 void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody& body,
@@ -67,12 +87,15 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
 }
 
 void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
-                           const PictureOptions& look, const std::filesystem::path& file) {
+                           const std::vector<LandingSite>& sites, const PictureOptions& look,
+                           const std::filesystem::path& file) {
   const std::vector<double> values = values_of_vertices(body.mesh, column.values);
   const ValueRange range = value_range(values);
   PreviewOptions options = look.options(program, body.mesh, body.unit);
   options.vertex_colors = sequential_colors(values, range.low, range.high);
   options.marks.values = {range.low, range.high, title_of_column(column.name)};
+  paint_sites(body.mesh, sites, options.vertex_colors);
+  if (!sites.empty() && look.cameras.empty() && look.views.empty()) options.views = views_from_above(sites);
   look.write(render_picture(body.mesh, options, program.progress("preview")), file);
   program.say(
       fmt::format("{}: {}; colours from {:.4g} to {:.4g}, the 1st and 99th percentile, of {:.4g} to {:.4g}",

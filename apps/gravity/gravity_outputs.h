@@ -9,6 +9,7 @@
 #include "apps/program.h"
 #include "tasks/gravity/gravity_body.h"
 #include "tasks/gravity/gravity_table.h"
+#include "tasks/gravity/landing_sites.h"
 
 namespace astrolith {
 
@@ -17,8 +18,11 @@ namespace astrolith {
 void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody& body,
                    const std::filesystem::path& file, const std::string& tool);
 
-// The mesh in the colours of one column, which has a value for each vertex, or for each facet.
+// The mesh in the colours of one column, which has a value for each vertex, or for each facet. Sites, if any,
+// are orange, and the first nine are each seen from above
+// unless there are cameras.
 void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
-                           const PictureOptions& look, const std::filesystem::path& file);
+                           const std::vector<LandingSite>& sites, const PictureOptions& look,
+                           const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -284,5 +284,48 @@ TEST_F(Gravity, BadInputIsRefused) {
   }
 }
 
+// A ball at rest is level everywhere, but its ground below z = .4 is wavy here. A square of side L on a ball
+// has a roughness of sqrt(8 / 45) (L / 2)^2 / (2 R): heights are -(x^2 + y^2) / (2 R).
+TEST_F(Gravity, SitesAreLevelGroundApartFromOneAnother) {
+  TriangleMesh mesh = read_mesh(folder_ / "ball.obj");
+  for (Vec3d& p : mesh.vertices) p *= p.z < 0.4 ? 1.0 + 0.02 * std::sin(20.0 * p.x) : 1.0;
+  write_mesh(mesh, folder_ / "wavy.ply", {});
+  const std::string line = "wavy.ply --density 2000 --sites 2 --site-size 0.4";
+  const Outcome outcome = run(line + " --site-list s.csv --preview s.png");
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  const auto sites = nlohmann::json::parse(outcome.output)["sites"];
+  ASSERT_EQ(sites.size(), 2u);
+  std::vector<Vec3d> centers;
+  for (const auto& site : sites) {
+    const Vec3d center{site["center"][0], site["center"][1], site["center"][2]};
+    const Vec3d normal{site["normal"][0], site["normal"][1], site["normal"][2]};
+    EXPECT_GT(dot(normal, normalized(center)), 0.99);
+    EXPECT_GT(center.z, 0.4);
+    EXPECT_NEAR(site["roughness_m"], 8.43, 0.3);
+    EXPECT_LT(site["mean_slope_deg"], 1.5);  // of facets on a round body
+    EXPECT_NEAR(site["latitude_deg"].get<double>(),
+                180 / std::numbers::pi * std::asin(center.z / norm(center)), 1e-9);
+    EXPECT_LE(site["mean_slope_deg"], site["largest_slope_deg"]);
+    centers.push_back(center);
+  }
+  EXPECT_GE(norm(centers[0] - centers[1]), 0.8);
+  EXPECT_EQ(rows_of("s.csv").size(), 2u);
+  EXPECT_TRUE(has(outcome.errors, "site 1: slope "));
+  EXPECT_TRUE(has(outcome.errors, "synth wavy.ply --patch " + sites[0]["patch"].get<std::string>()));
+  EXPECT_EQ(gravity(line + " --threads 1")["sites"], sites);
+  EXPECT_TRUE(has(run(line + " --site-distance 5").errors, "the body has 1 sites"));
+  for (const auto& [options, message] : std::vector<std::pair<std::string, std::string>>{
+           {"--sites 2", "--site-size"},
+           {"--sites 2 --site-size 0.01", "is less than 4 edges"},
+           {"--sites 2 --site-size 3", "more than a quarter"},
+           {"--sites 0 --site-size 0.3", "--sites"},
+           {"--sites 2 --site-size 0.3 --at vertices", "slopes of facets"},
+           {"--site-size 0.3", "--sites"}}) {
+    const Outcome refused = run("wavy.ply --density 2000 " + options);
+    EXPECT_EQ(refused.status, 2) << options;
+    EXPECT_TRUE(has(refused.errors, message)) << refused.errors;
+  }
+}
+
 }  // namespace
 }  // namespace astrolith

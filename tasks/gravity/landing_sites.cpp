@@ -1,0 +1,196 @@
+#include "tasks/gravity/landing_sites.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/mesh_measure.h"
+#include "numerics/box_tree.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "numerics/portable_angles.h"
+#include "tasks/gravity/square_ground_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+double mean_edge(const TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    sum += norm(mesh.vertices[b] - mesh.vertices[a]) + norm(mesh.vertices[c] - mesh.vertices[b]) +
+           norm(mesh.vertices[a] - mesh.vertices[c]);
+  }
+  return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
+}
+
+void check_side(const TriangleMesh& mesh, double side) {
+  constexpr double kFewestEdges = 4.0, kLargest = 0.25;
+  const double least = kFewestEdges * mean_edge(mesh), most = kLargest * norm(mesh.bounds().extent());
+  if (side < least) {
+    throw InputError(
+        fmt::format("--site-size: {:.4g} is less than 4 edges of the mesh, which are {:.4g}; take larger "
+                    "sites or a finer mesh",
+                    side, least));
+  }
+  if (side > most) {
+    throw InputError(
+        fmt::format("--site-size: {:.4g} is more than a quarter of the body, {:.4g}; take less", side, most));
+  }
+}
+
+class SiteFinder {
+ public:
+  SiteFinder(const TriangleMesh& mesh, std::span<const double> slopes, double side)
+      : mesh_(mesh), slopes_(slopes), side_(side) {
+    std::vector<Box> boxes(mesh.triangles.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (const std::uint32_t v : mesh.triangles[i]) boxes[i].extend(mesh.vertices[v]);
+    }
+    tree_ = BoxTree(boxes);
+  }
+
+  // The site about the centre of a facet; its cost is infinite where there is none.
+  LandingSite site_at(std::size_t facet) const {
+    LandingSite site;
+    site.side = side_;
+    site.cost = std::numeric_limits<double>::infinity();
+    const auto& [a, b, c] = mesh_.triangles[facet];
+    site.center = (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) * (1.0 / 3.0);
+    const double reach = 0.5 * std::numbers::sqrt3 * side_;
+    const Vec3d r{reach, reach, reach};
+    const std::vector<std::uint32_t> near = tree_.touching({site.center - r, site.center + r});
+    if (!align(near, site)) return site;
+    measure(near, site);
+    return site;
+  }
+
+ private:
+  std::array<Vec3d, 3> corners(std::uint32_t facet, const Vec3d& center) const {
+    const auto& [a, b, c] = mesh_.triangles[facet];
+    return {mesh_.vertices[a] - center, mesh_.vertices[b] - center, mesh_.vertices[c] - center};
+  }
+
+  // Turns the site's axes to the mean normal of the ground in their cube, as synth aligns a patch.
+  bool align(std::span<const std::uint32_t> near, LandingSite& site) const {
+    constexpr int kSteps = 3;
+    site.axes = {};
+    for (int step = 0; step < kSteps; ++step) {
+      Vec3d sum;
+      for (const std::uint32_t f : near) {
+        sum += area_vector(cut_to_cube(corners(f, site.center), site.axes, side_));
+      }
+      const Vec3d up = normalized(site.axes.to_frame(sum));
+      if (!(norm(up) > 0.5)) return false;
+      site.axes = axes_about(up);
+    }
+    return true;
+  }
+
+  void measure(std::span<const std::uint32_t> near, LandingSite& site) const {
+    constexpr double kFull = 0.01;  // what the ground may lack of the square, or have twice
+    HeightSums heights;
+    double covered = 0.0, slopes = 0.0;
+    for (const std::uint32_t f : near) {
+      const GroundPolygon ground = cut_to_cube(corners(f, site.center), site.axes, side_);
+      const double area = heights.add(ground);
+      if (area == 0.0) continue;
+      covered += std::fabs(area);
+      slopes += std::fabs(area) * slopes_[f];
+      site.largest_slope = std::max(site.largest_slope, slopes_[f]);
+      site.facets.push_back(f);
+    }
+    const double square = side_ * side_;
+    if (std::fabs(covered - square) > kFull * square || heights.area() < (1.0 - kFull) * square) return;
+    site.mean_slope = slopes / covered;
+    site.roughness = heights.rms_about_plane();
+    site.cost = site.mean_slope + kDegrees * site.roughness / (0.5 * side_);
+  }
+
+  const TriangleMesh& mesh_;
+  std::span<const double> slopes_;
+  double side_;
+  BoxTree tree_;
+};
+
+// How many facets lie between two that are tried, so that the search stays within seconds.
+std::size_t stride_of(const TriangleMesh& mesh, double side) {
+  constexpr double kMostCuts = 2e7;
+  const auto facets = static_cast<double>(mesh.triangles.size());
+  const double of_site = std::max(1.0, 2.0 * side * side * facets / surface_area(mesh));
+  return static_cast<std::size_t>(std::ceil(facets * of_site / kMostCuts));
+}
+
+void add_place(LandingSite& site) {
+  const Vec3d& p = site.center;
+  site.longitude = kDegrees * portable::atan2(p.y, p.x);
+  site.latitude = kDegrees * portable::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y));
+}
+
+nlohmann::ordered_json list_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+std::vector<LandingSite> find_landing_sites(const GravityBody& body, std::span<const double> slopes,
+                                            const SiteSearch& search, const Progress& progress) {
+  check_side(body.mesh, search.side);
+  const SiteFinder finder(body.mesh, slopes, search.side);
+  const std::size_t stride = stride_of(body.mesh, search.side);
+  const std::size_t tried = (body.mesh.triangles.size() + stride - 1) / stride;
+  std::vector<double> costs(tried);
+  constexpr std::size_t kAtOnce = 4096;  // facets between two reports of progress
+  for (std::size_t first = 0; first < tried; first += kAtOnce) {
+    const std::size_t end = std::min(first + kAtOnce, tried);
+    parallel_for(static_cast<std::int64_t>(first), static_cast<std::int64_t>(end), [&](std::int64_t i) {
+      const auto at = static_cast<std::size_t>(i);
+      costs[at] = finder.site_at(at * stride).cost;
+    });
+    if (!report(progress, double(end) / double(tried), "sites"))
+      throw WorkError("sites: stopped before all places were looked at");
+  }
+  std::vector<std::size_t> order(tried);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+  std::vector<LandingSite> sites;
+  for (const std::size_t i : order) {
+    if (static_cast<int>(sites.size()) == search.count || !std::isfinite(costs[i])) break;
+    LandingSite site = finder.site_at(i * stride);
+    const auto too_near = [&](const LandingSite& other) {
+      return norm(other.center - site.center) < search.distance;
+    };
+    if (std::any_of(sites.begin(), sites.end(), too_near)) continue;
+    add_place(site);
+    sites.push_back(std::move(site));
+  }
+  return sites;
+}
+
+std::string patch_words(const LandingSite& site) {
+  const Vec3d& p = site.center;
+  return fmt::format("{:.9g} {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z, site.side);
+}
+
+nlohmann::ordered_json sites_json(std::span<const LandingSite> sites, const GravityBody& body) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const LandingSite& site : sites) {
+    list.push_back({{"center", list_of(site.center)},
+                    {"normal", list_of(site.axes.up)},
+                    {"latitude_deg", site.latitude},
+                    {"longitude_deg", site.longitude},
+                    {"mean_slope_deg", site.mean_slope},
+                    {"largest_slope_deg", site.largest_slope},
+                    {"roughness_m", body.metres * site.roughness},
+                    {"cost_deg", site.cost},
+                    {"patch", patch_words(site)}});
+  }
+  return list;
+}
+
+}  // namespace astrolith
