@@ -7,6 +7,7 @@
 #include "apps/output_names.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "recipe/recipe_json.h"
 
 namespace astrolith {
 namespace {
@@ -82,12 +83,13 @@ std::vector<LandingSite> landing_sites(Program& program, const SitesRequest& req
   std::vector<LandingSite> sites =
       find_landing_sites(body, slopes->values, search, program.progress("sites"));
   figures["sites"] = sites_json(sites, body);
+  const std::string recipe = is_recipe_name(shape) ? shape : "RECIPE.json";  // of a measured mesh, its fit
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const LandingSite& site = sites[i];
     program.say(fmt::format(
         "site {}: slope {:.2f} degrees, {:.2f} at most, roughness {:.3g} m: synth {} --patch {} "
         "--aligned",
-        i + 1, site.mean_slope, site.largest_slope, body.metres * site.roughness, shape, patch_words(site)));
+        i + 1, site.mean_slope, site.largest_slope, body.metres * site.roughness, recipe, patch_words(site)));
   }
   if (static_cast<int>(sites.size()) < request.count) {
     program.say(fmt::format("note: the body has {} sites of this size at this distance, not {}", sites.size(),

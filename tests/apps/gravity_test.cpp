@@ -311,7 +311,7 @@ TEST_F(Gravity, SitesAreLevelGroundApartFromOneAnother) {
   EXPECT_GE(norm(centers[0] - centers[1]), 0.8);
   EXPECT_EQ(rows_of("s.csv").size(), 2u);
   EXPECT_TRUE(has(outcome.errors, "site 1: slope "));
-  EXPECT_TRUE(has(outcome.errors, "synth wavy.ply --patch " + sites[0]["patch"].get<std::string>()));
+  EXPECT_TRUE(has(outcome.errors, "synth RECIPE.json --patch " + sites[0]["patch"].get<std::string>()));
   EXPECT_EQ(gravity(line + " --threads 1")["sites"], sites);
   EXPECT_TRUE(has(run(line + " --site-distance 5").errors, "the body has 1 sites"));
   for (const auto& [options, message] : std::vector<std::pair<std::string, std::string>>{
