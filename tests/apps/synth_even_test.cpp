@@ -42,8 +42,8 @@ TEST_F(SynthEven, OtherFormatsAndOptionsHaveIt) {
   synthesise("even.ply.zst", "--even --min-component 0.001");
   synthesise("labels.ply", "--even --labels");
   synthesise("patch.ply", "--even --patch -1 0 0 0.5");
-  const Json predicted = figures("r.json --predict --resolution 64 --even")["predicted"];
-  const Json plain = figures("r.json --predict --resolution 64")["predicted"];
+  const Json predicted = figures("r.json --predict --resolution 256 --even")["predicted"];
+  const Json plain = figures("r.json --predict --resolution 256")["predicted"];
   EXPECT_GT(predicted["peak_bytes"], plain["peak_bytes"]);
 }
 
