@@ -113,9 +113,15 @@ ResidualTexture fit_residual_texture(const TargetBody& target, const MetaballBod
         "mesh");
   }
   PowerSpectrum spectrum = mean_periodogram(images, target.area / (width * width));
-  const double rms = std::sqrt(spectrum.variance());
-  if (!(rms > 1e-9)) throw InputError("residual texture: the base leaves nothing of the measured surface");
-  for (double& p : spectrum.power) p /= rms * rms;
+  // The height is that of the pixels: bumps wider than a patch count, since its tilt is taken out already.
+  double pixels = 0.0;
+  for (const GreyImage& image : images)
+    pixels += variance_of(image.values) / static_cast<double>(images.size());
+  const double rms = std::sqrt(pixels), in_spectrum = spectrum.variance();
+  if (!(rms > 1e-9 && in_spectrum > 0.0)) {
+    throw InputError("residual texture: the base leaves nothing of the measured surface");
+  }
+  for (double& p : spectrum.power) p /= in_spectrum;
   const GaborFit fit = fit_gabor_spectrum(std::move(spectrum), "residual", {}, progress);
   ResidualTexture result;
   result.patches = static_cast<int>(images.size());
