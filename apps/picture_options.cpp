@@ -84,6 +84,10 @@ void PictureOptions::check(const Program& program, bool has_picture, const std::
     return;
   }
   if (!size.empty()) picture_size(size);
+  constexpr std::size_t kMostViews = 64;
+  if (cameras.size() + views.size() > kMostViews) {
+    throw InputError("--camera, --view: give at most 64 of them together");
+  }
   cameras_of(cameras);
   for (const Direction& view : views) require_direction("--view", vector_of(view));
   require_direction("--sun", vector_of(sun));

@@ -17,6 +17,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
 #include "tasks/estimation/exemplar_recipe.h"
 #include "tasks/estimation/photo_recipe.h"
@@ -65,7 +66,7 @@ void add_photo_options(CommandLine& app, Options& o) {
          "how the texture is made: gabor (noise with the photo's spectrum in a few lobes), phase (an image "
          "of noise with the whole spectrum), exemplar (the photo itself, tiled and blended) or auto (the "
          "simplest of those whose textures are nearest to squares of the photo that the model has not "
-         "seen, by the distributions of values and of 12 filter responses)")
+         "seen, by the distributions of values and of up to 12 filter responses)")
       .check(one_of({"gabor", "phase", "exemplar", "auto"}));
   app.add_option(
          "--channels", o.channels,
@@ -205,6 +206,18 @@ PhotoFitOptions photo_options(const Program& program, const Options& o) {
   return photo;
 }
 
+// Options that are about lobes say nothing of the models without any.
+void check_model(const Program& program, const Options& o) {
+  if (o.model != "phase" && o.model != "exemplar") return;
+  for (const char* name :
+       {"--lobes", "--penalty", "--gap", "--solver", "--evaluation", "--spectrum-estimate"}) {
+    if (program.app.option(name).count() > 0) {
+      throw InputError(
+          fmt::format("{}: is about lobes, which --model {} has none of; leave it out", name, o.model));
+    }
+  }
+}
+
 void require_outputs(const Options& o) {
   require_extension(o.output, {".json", ".astro"});
   if (!o.spectrum_file.empty()) require_extension(o.spectrum_file, {".npy"});
@@ -267,12 +280,24 @@ void say_exemplar(const PreparedExemplar& exemplar, const Program& program) {
 
 void say_phases(const TextureFit& fit, const Program& program) {
   const ExemplarImage& image = *fit.image->pixels;
-  program.say(fmt::format("random phases: an image of {} x {} pixels with the whole spectrum of the photo",
-                          image.width, image.height));
+  program.say(fmt::format("random phases: an image of {} x {} pixels with the photo's spectrum", image.width,
+                          image.height));
+  const double held = variance_in_phases(fit);
+  if (held < kMostVariance) {
+    program.say(fmt::format(
+        "note: {:.0f} % of the photo's variance lies in features wider than it, or in light from one side, "
+        "which random phases lack",
+        100.0 * (1.0 - held)));
+  }
   program.say(fit.gaussianity.value().sentence);
 }
 
 void say_result(const TextureFit& fit, const Options& o, const Program& program) {
+  if (o.mm_per_px > 0.0 && o.height_rms < 0.0) {
+    program.say(fmt::format(
+        "note: without --height-rms white is a height of 1 {}; half a pixel is --height-rms {:.3g}", o.unit,
+        0.5e-3 * o.mm_per_px / metres_of(o.unit)));
+  }
   if (fit.lobes) say_lobes(*fit.lobes, o, program);
   if (fit.model == TextureModel::kPhase) say_phases(fit, program);
   if (fit.exemplar) say_exemplar(*fit.exemplar, program);
@@ -288,6 +313,7 @@ void write_beside(const TextureFit& fit, const Options& o, Program& program) {
 }
 
 void work(Program& program, Options& o) {
+  check_model(program, o);
   require_outputs(o);
   o.image_sha256 = sha256_of_file(o.image);
   const TextureFitOptions options{model_named(o.model), photo_options(program, o),

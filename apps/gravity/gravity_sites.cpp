@@ -86,10 +86,11 @@ std::vector<LandingSite> landing_sites(Program& program, const SitesRequest& req
   const std::string recipe = is_recipe_name(shape) ? shape : "RECIPE.json";  // of a measured mesh, its fit
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const LandingSite& site = sites[i];
-    program.say(fmt::format(
-        "site {}: slope {:.2f} degrees, {:.2f} at most, roughness {:.3g} m: synth {} --patch {} "
-        "--aligned",
-        i + 1, site.mean_slope, site.largest_slope, body.metres * site.roughness, recipe, patch_words(site)));
+    program.say(
+        fmt::format("site {}: slope {:.2f} degrees, {:.2f} at most, roughness {:.3g} m: synth {} --patch {} "
+                    "--aligned -o site_{}.ply --height-map site_{}.tif",
+                    i + 1, site.mean_slope, site.largest_slope, body.metres * site.roughness, recipe,
+                    patch_words(site), i + 1, i + 1));
   }
   if (static_cast<int>(sites.size()) < request.count) {
     program.say(fmt::format("note: the body has {} sites of this size at this distance, not {}", sites.size(),

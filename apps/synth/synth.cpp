@@ -270,6 +270,9 @@ void synthesize_series(Program& program, const Options& options) {
   check_series_names({options.output, options.written_recipe, mesh.preview.file, mesh.preview.maps,
                       mesh.height_map, mesh.landforms});
   const std::uint64_t first = program.seed, end = first + static_cast<std::uint64_t>(options.count);
+  constexpr std::uint64_t kLargestSeed = 9007199254740991u;  // of --seed
+  if (end - 1 > kLargestSeed)
+    throw InputError("--count: the last body's seed would be too large; lower --seed");
   for (std::uint64_t seed = first; seed < end; ++seed) check_outputs(program, numbered(options, seed));
   nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   for (program.seed = first; program.seed < end; ++program.seed) {

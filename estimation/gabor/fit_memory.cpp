@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimation/gabor/exemplar/phase_exemplar.h"
+
 namespace astrolith {
 namespace {
 

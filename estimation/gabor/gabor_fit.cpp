@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "estimation/gabor/lobes/lobe_refinement.h"
 #include "estimation/gabor/lobes/lobe_selection.h"
@@ -120,8 +121,11 @@ GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, con
   require_texture(exemplar, name);
   const Borders borders =
       options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
-  GaborFit fit = fit_gabor_spectrum(exemplar_periodogram(exemplar, options.largest_side, borders, progress),
-                                    name, options, progress);
+  PowerSpectrum periodogram = exemplar_periodogram(exemplar, options.largest_side, borders, progress);
+  if (!(periodogram.variance() > kLeastTexture * variance_of(exemplar.values))) {
+    throw InputError(name + ": holds light from one side or a slope and no texture; use another image");
+  }
+  GaborFit fit = fit_gabor_spectrum(std::move(periodogram), name, options, progress);
   fit.exemplar_mean = mean_of(exemplar.values);
   return fit;
 }

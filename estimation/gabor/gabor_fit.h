@@ -51,8 +51,11 @@ struct GaborFit {
 // The smallest side of an exemplar, in pixels.
 inline constexpr int kSmallestExemplarSide = 32;
 
+// The smallest share of an exemplar's variance that its spectrum holds. Below it there is no texture.
+inline constexpr double kLeastTexture = 1e-6;
+
 // Fits lobes to an exemplar, which messages call `name`. Throws InputError for sides below 32 pixels and for
-// constant images, WorkError where no lobe is found.
+// constant images and those without texture, WorkError where no lobe is found.
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress = {});
 

@@ -17,16 +17,23 @@ namespace {
 constexpr int kMostSide = 256, kTextures = 2;
 constexpr int kLeastSquares = 2;
 
-// The squares in the middles of the quarters that have a tenth of the photo's contrast at least.
+// Whether a model can be fitted to a square: it has a tenth of the photo's contrast, and texture.
+bool has_texture(const GreyImage& square, double photo_variance) {
+  const double variance = variance_of(square.values);
+  return variance > 0.01 * photo_variance &&
+         exemplar_periodogram(square).variance() > kLeastTexture * variance;
+}
+
+// The squares in the middles of the quarters that have texture.
 std::vector<GreyImage> squares_of(const GreyImage& photo, int side) {
   std::vector<GreyImage> squares;
-  const double least = 0.01 * variance_of(photo.values);
+  const double variance = variance_of(photo.values);
   for (const int row : {1, 3}) {
     for (const int column : {1, 3}) {
       const int left = column * photo.width / 4 - side / 2, top = row * photo.height / 4 - side / 2;
       GreyImage square = photo.part(std::clamp(left, 0, photo.width - side),
                                     std::clamp(top, 0, photo.height - side), side, side);
-      if (variance_of(square.values) > least) squares.push_back(std::move(square));
+      if (has_texture(square, variance)) squares.push_back(std::move(square));
     }
   }
   return squares;
@@ -123,11 +130,12 @@ std::string_view model_word(TextureModel model) {
 ModelChoice choose_model(const GreyImage& photo, const std::string& name, const GaborFitOptions& options,
                          std::uint64_t seed, const Progress& progress) {
   ModelChoice choice;
-  choice.side = std::min(kMostSide, std::min(photo.width, photo.height) / 2);
-  if (choice.side < kSmallestExemplarSide) return choice;
-  const std::vector<GreyImage> squares = squares_of(photo, choice.side);
+  const int side = std::min(kMostSide, std::min(photo.width, photo.height) / 2);
+  if (side < kSmallestExemplarSide) return choice;
+  const std::vector<GreyImage> squares = squares_of(photo, side);
   if (static_cast<int>(squares.size()) < kLeastSquares) return choice;
   choice.squares = static_cast<int>(squares.size());
+  choice.side = side;
   std::vector<TextureDistributions> distributions;
   for (const GreyImage& square : squares) distributions.emplace_back(square, choice.side);
   Scores scores;

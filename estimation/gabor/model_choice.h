@@ -31,7 +31,7 @@ struct HeldOutScore {
 struct ModelChoice {
   TextureModel taken = TextureModel::kGabor;
   int squares = 0;  // that were compared; 0: too few with texture, and the simplest model is taken
-  int side = 0;     // of a square, pixels
+  int side = 0;     // of a square, pixels; 0 where none was compared
   std::array<HeldOutScore, 3> scores;  // by the number of the model
 };
 

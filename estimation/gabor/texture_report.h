@@ -28,7 +28,7 @@ struct TextureReport {
   std::string title;
   ReportPicture photo, texture;     // of one size
   PowerSpectrum measured, shown;    // estimated from the photo, and the texture's, on one grid
-  std::string shown_words;          // what the latter is
+  std::string shown_words;          // caption of the spectrum `shown`
   const GaborFit* lobes = nullptr;  // of a texture of lobes
   // Of a texture with an image: grey values of both, and the image.
   std::vector<double> photo_values, texture_values;

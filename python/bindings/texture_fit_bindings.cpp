@@ -123,7 +123,7 @@ std::optional<NumpyArray<double>> array_of_spectra(SpectraArray&& spectra) {
   return array_of<double>(std::move(spectra.power), {side(0), side(1), side(2)});
 }
 
-// What a fit gives: the recipe, empty for an exemplar layer, whose recipe lies in the file `output`; the
+// What a fit gives: the recipe, empty for a layer with an image, whose recipe lies in the file `output`; the
 // figures; the spectra where they were asked for.
 using TextureResult = std::tuple<std::string, std::string, std::optional<NumpyArray<double>>>;
 

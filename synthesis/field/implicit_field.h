@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/surface/ground_axes.h"
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
 #include "synthesis/body/body_tables.h"
@@ -41,6 +42,12 @@ struct LayerBoulders;  // synthesis/landforms/boulder_field.h
 struct PatchCube {
   Vec3d center;
   double side = 0.0;
+  // A smaller cube about the same centre, along other axes, that alone is shown; none where all of it is.
+  struct Turned {
+    GroundAxes axes;
+    double side = 0.0;
+  };
+  std::optional<Turned> turned = std::nullopt;
 };
 
 // A part of a layer that is too fine for the coordinates that the field is evaluated in, or the landforms of

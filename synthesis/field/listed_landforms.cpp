@@ -8,8 +8,14 @@ namespace {
 
 bool reaches_patch(const Vec3d& center, double radius, const std::optional<PatchCube>& cube) {
   if (!cube) return true;
-  const Vec3d d = center - cube->center;
-  const auto beyond = [&](double x) { return std::max(std::abs(x) - 0.5 * cube->side, 0.0); };
+  Vec3d d = center - cube->center;
+  double side = cube->side;
+  if (cube->turned) {
+    const GroundAxes& axes = cube->turned->axes;
+    d = {dot(d, axes.right), dot(d, axes.ahead), dot(d, axes.up)};
+    side = cube->turned->side;
+  }
+  const auto beyond = [&](double x) { return std::max(std::abs(x) - 0.5 * side, 0.0); };
   return norm(Vec3d{beyond(d.x), beyond(d.y), beyond(d.z)}) <= radius;
 }
 

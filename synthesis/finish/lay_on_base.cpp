@@ -29,8 +29,10 @@ double unit_ratio(const Recipe& details, const std::string& details_name, const 
   if (from == "body") return longest_side(base, base_name);
   if (from == "m" && to == "km") return 1e-3;
   if (from == "km" && to == "m") return 1e3;
-  throw InputError(details_name + ": length_unit: \"" + from + "\" has no physical scale on " + base_name +
-                   ", which is in \"" + to + "\"; state length_unit \"m\" or \"km\" and the lengths in it");
+  throw InputError(
+      details_name + ": length_unit: \"" + from + "\" has no physical scale on " + base_name +
+      ", which is in \"" + to +
+      "\"; fit the photo again with --mm-per-px, or state length_unit \"m\" or \"km\" and the lengths in it");
 }
 
 const ReliefLayer* relief_of(const Recipe& recipe) {

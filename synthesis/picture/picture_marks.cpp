@@ -43,14 +43,18 @@ double round_length(double most) {
   return power * 5.0 <= most ? 5.0 * power : power * 2.0 <= most ? 2.0 * power : power;
 }
 
+// A pinhole has no one scale of lengths.
+bool has_length_bar(const PreviewOptions& options) {
+  const auto is_pinhole = [](const Camera& view) { return view.field_of_view > 0.0; };
+  return options.marks.length_unit && std::none_of(options.views.begin(), options.views.end(), is_pinhole);
+}
+
 class MarksPainter {
  public:
   MarksPainter(RgbaImage16& image, const PreviewOptions& options, int strip)
       : image_(image), options_(options), dot_(dot_of(image.height)), top_(image.height - strip) {
     const bool light = !options.transparent && options.background.y > 0.2f;
     ink_ = light ? PictureInk{40, 40, 40} : PictureInk{235, 235, 235};
-    if (!options.transparent) return;
-    fill_rectangle(image, 0, top_, image.width, strip, {20, 20, 24});
   }
 
   void value_bar(const ValueScale& scale) {
@@ -156,26 +160,24 @@ std::string title_of_column(const std::string& name) {
   return words + unit;
 }
 
-int marks_height(const PictureMarks& marks, int width, int height) {
-  if (width < kLeastMarkedWidth || height < kLeastMarkedHeight) return 0;
-  return marks.values || marks.length_unit ? kStripDots * dot_of(height) : 0;
+int marks_height(const PreviewOptions& options) {
+  if (options.width < kLeastMarkedWidth || options.height < kLeastMarkedHeight) return 0;
+  return options.marks.values || has_length_bar(options) ? kStripDots * dot_of(options.height) : 0;
 }
 
 void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
                 double length_per_pixel) {
   const PictureMarks& marks = options.marks;
   if (image.width < kLeastMarkedWidth || image.height < kLeastMarkedHeight) return;
-  MarksPainter painter(image, options, marks_height(marks, image.width, image.height));
+  MarksPainter painter(image, options, marks_height(options));
   if (marks.values) painter.value_bar(*marks.values);
-  bool is_flat = true;
   for (std::size_t view = 0; view < options.views.size(); ++view) {
     const ViewCamera& camera = rays.camera(view);
-    is_flat = is_flat && !camera.is_pinhole;
     if (!marks.axes) continue;
     const auto [left, bottom] = rays.lower_left(view);
     painter.axes(camera, left, bottom, rays.tile_height());
   }
-  if (marks.length_unit && is_flat) painter.length_bar(length_per_pixel, *marks.length_unit);
+  if (has_length_bar(options)) painter.length_bar(length_per_pixel, *marks.length_unit);
 }
 
 }  // namespace astrolith

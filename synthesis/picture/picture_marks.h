@@ -27,6 +27,8 @@ ValueRange value_range(std::span<const double> values);
 // without a known unit keep their words.
 std::string title_of_column(const std::string& name);
 
+struct PreviewOptions;
+
 struct PictureMarks {
   std::optional<ValueScale> values;  // a bar below the views
   // The unit of the mesh's lengths, for a scale below orthographic views; none where absent, a plain number
@@ -35,8 +37,8 @@ struct PictureMarks {
   bool axes = false;  // x, y and z in a corner of each view that shows nothing else
 };
 
-// Rows below the views that the marks take of a picture: none for pictures under 160 x 120 pixels, which have
-// no marks.
-int marks_height(const PictureMarks& marks, int width, int height);
+// Rows below the views that the marks take of a picture: none where nothing stands there, and for pictures
+// under 160 x 120 pixels, which have no marks.
+int marks_height(const PreviewOptions& options);
 
 }  // namespace astrolith

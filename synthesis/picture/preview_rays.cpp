@@ -50,12 +50,13 @@ void place_orthographic(const Camera& view, const RayScene& scene, const Triangl
 // The least distance at which a pinhole sees the whole mesh in the middle of its tile.
 double distance_for_all(const Vec3d& target, const ViewCamera& camera, double half_width_tangent,
                         double half_height_tangent, const RayScene& scene, const TriangleMesh& mesh) {
+  constexpr double kClearance = 0.05;  // radii before what lies on the line of sight
   double distance = 0.0;
   for (const Vec3d& vertex : mesh.vertices) {
     const Vec3d p = scene.to_unit(vertex) - target;
     const double across = std::max(std::fabs(dot(p, camera.right)) / half_width_tangent,
                                    std::fabs(dot(p, camera.up)) / half_height_tangent);
-    distance = std::max(distance, dot(p, camera.from) + across / kFilled);
+    distance = std::max(distance, dot(p, camera.from) + std::max(across / kFilled, kClearance));
   }
   return distance;
 }
@@ -109,7 +110,7 @@ void check_preview_options(const PreviewOptions& options, const TriangleMesh& me
 
 PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options, const RayScene& scene)
     : width_(options.width),
-      height_(options.height - marks_height(options.marks, options.width, options.height)),
+      height_(options.height - marks_height(options)),
       columns_(static_cast<int>(std::ceil(std::sqrt(double(options.views.size()))))),
       rows_((static_cast<int>(options.views.size()) + columns_ - 1) / columns_),
       pixel_(kLeastPixel) {

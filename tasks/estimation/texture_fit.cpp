@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "estimation/gabor/exemplar/phase_exemplar.h"
-#include "numerics/errors.h"
+#include "numerics/sample_statistics.h"
 #include "recipe/recipe_json.h"
 #include "tasks/estimation/exemplar_recipe.h"
 
@@ -39,7 +39,7 @@ void take_exemplar(const std::string& name, const TextureFitOptions& options, co
 }
 
 nlohmann::ordered_json figures_of(const ModelChoice& choice) {
-  nlohmann::ordered_json models;
+  auto models = nlohmann::ordered_json::object();
   for (const TextureModel model : kTextureModels) {
     const HeldOutScore& score = choice.scores[static_cast<std::size_t>(model)];
     if (choice.squares > 0)
@@ -74,8 +74,12 @@ TextureFit fit_texture(std::vector<GreyImage> photo, const std::string& name,
   TextureFit fit;
   fit.photo = std::move(photo);
   flatten(fit.photo, name, options.photo);
-  if (!options.model)
+  if (!options.model) {
+    // What one of the models would refuse is refused before the comparison.
+    require_exemplar(fit.luma(), name);
+    if (fit.photo.size() == 3) require_colors(fit.photo, name);
     fit.choice = choose_model(fit.luma(), name, options.photo.fit, options.recipe.seed, progress("models"));
+  }
   fit.model = options.model ? *options.model : fit.choice->taken;
   switch (fit.model) {
     case TextureModel::kGabor:
@@ -100,8 +104,13 @@ nlohmann::ordered_json texture_figures(const TextureFit& fit) {
   if (fit.choice) figures["choice"] = figures_of(*fit.choice);
   if (fit.exemplar) figures.update(figures_of(*fit.exemplar));
   if (fit.lobes) figures.update(photo_figures(*fit.lobes));
+  if (fit.model == TextureModel::kPhase) figures["variance_in_spectrum"] = variance_in_phases(fit);
   if (fit.gaussianity) figures.update(gaussianity_figures(*fit.gaussianity));
   return figures;
+}
+
+double variance_in_phases(const TextureFit& fit) {
+  return fit.image->height_rms * fit.image->height_rms / variance_of(fit.luma().values);
 }
 
 std::string choice_sentence(const TextureFit& fit) {

@@ -50,6 +50,9 @@ void write_texture_recipe(const TextureFit& fit, const Recipe& recipe, const std
 // The model, the scores of all models where it was chosen, and the figures of its fit, for summaries.
 nlohmann::ordered_json texture_figures(const TextureFit& fit);
 
+// The share of the photo's variance that an image of random phases has.
+double variance_in_phases(const TextureFit& fit);
+
 // What was chosen and why, in one sentence; empty where there was no choice.
 std::string choice_sentence(const TextureFit& fit);
 

@@ -119,12 +119,16 @@ class SiteFinder {
   BoxTree tree_;
 };
 
-// How many facets lie between two that are tried, so that the search stays within seconds.
+// The facets of a site, about.
+double facets_of_site(const TriangleMesh& mesh, double side) {
+  return std::max(1.0, 2.0 * side * side * static_cast<double>(mesh.triangles.size()) / surface_area(mesh));
+}
+
+// How many facets lie between two that are tried, so that the search stays within a minute.
 std::size_t stride_of(const TriangleMesh& mesh, double side) {
   constexpr double kMostCuts = 2e7;
   const auto facets = static_cast<double>(mesh.triangles.size());
-  const double of_site = std::max(1.0, 2.0 * side * side * facets / surface_area(mesh));
-  return static_cast<std::size_t>(std::ceil(facets * of_site / kMostCuts));
+  return static_cast<std::size_t>(std::ceil(facets * facets_of_site(mesh, side) / kMostCuts));
 }
 
 void add_place(LandingSite& site) {
@@ -144,9 +148,11 @@ std::vector<LandingSite> find_landing_sites(const GravityBody& body, std::span<c
   const std::size_t stride = stride_of(body.mesh, search.side);
   const std::size_t tried = (body.mesh.triangles.size() + stride - 1) / stride;
   std::vector<double> costs(tried);
-  constexpr std::size_t kAtOnce = 4096;  // facets between two reports of progress
-  for (std::size_t first = 0; first < tried; first += kAtOnce) {
-    const std::size_t end = std::min(first + kAtOnce, tried);
+  constexpr double kCutsAtOnce = 1e5;  // between two reports of progress
+  const auto at_once =
+      static_cast<std::size_t>(std::max(64.0, kCutsAtOnce / facets_of_site(body.mesh, search.side)));
+  for (std::size_t first = 0; first < tried; first += at_once) {
+    const std::size_t end = std::min(first + at_once, tried);
     parallel_for(static_cast<std::int64_t>(first), static_cast<std::int64_t>(end), [&](std::int64_t i) {
       const auto at = static_cast<std::size_t>(i);
       costs[at] = finder.site_at(at * stride).cost;

@@ -103,6 +103,14 @@ class TurnedMesh : public MeshSink {
   std::vector<MeshVertex> turned_;  // kept for its memory
 };
 
+MeshStatistics mesh_cube(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
+                         const Progress& progress) {
+  if (!region.axes)
+    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
+  TurnedMesh turned(*region.axes, sink);
+  return mesh_patch(PatchField(field, region.center, region.axes), region.size, resolution, turned, progress);
+}
+
 }  // namespace
 
 Region patch_region(const Vec3d& center, double side) {
@@ -135,14 +143,7 @@ std::string lacking_on_gpu(const ImplicitField& field, const Region& region, int
 MeshStatistics mesh_region(const ImplicitField& field, const Region& region, int resolution, MeshSink& sink,
                            const Progress& progress, MeshingDevice device) {
   if (region.is_patch && !field.has_local_form()) check_cells(field, region, resolution);
-  if (region.axes) {
-    TurnedMesh turned(*region.axes, sink);
-    return mesh_patch(PatchField(field, region.center, region.axes), region.size, resolution, turned,
-                      progress);
-  }
-  if (region.is_patch) {
-    return mesh_patch(PatchField(field, region.center), region.size, resolution, sink, progress);
-  }
+  if (region.is_patch) return mesh_cube(field, region, resolution, sink, progress);
   return device == MeshingDevice::kGpu
              ? mesh_field_on_gpu(field, field.bounds(), resolution, sink, progress, region.tile)
              : mesh_field(field, field.bounds(), resolution, sink, progress, region.tile);
@@ -175,7 +176,7 @@ void align_to_ground(const ImplicitField& field, Region& region) {
   if (!region.aligned) return;
   for (int step = 0; step < kSteps; ++step) {
     MeshCollector ground;
-    mesh_region(field, region, kLookAround, ground, {});
+    mesh_cube(field, region, kLookAround, ground, {});
     if (ground.mesh.triangles.empty()) return;
     const Vec3d up = mean_normal(ground.mesh);
     if (!(norm(up) > 0.5)) {

@@ -25,7 +25,10 @@ struct Region {
   // A cube along the body's axes that holds the patch; none for the whole surface and for tiles.
   std::optional<PatchCube> cube() const {
     constexpr double kDiagonal = 1.7320508075688772;  // of a cube of side 1
-    return is_patch ? std::optional(PatchCube{center, aligned ? kDiagonal * size : size}) : std::nullopt;
+    if (!is_patch) return std::nullopt;
+    PatchCube cube{center, aligned ? kDiagonal * size : size};
+    if (axes) cube.turned = {*axes, size};
+    return cube;
   }
 };
 

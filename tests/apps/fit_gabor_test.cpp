@@ -223,6 +223,7 @@ TEST_F(FitGabor, BadFilesAndOddOptionsAreRefused) {
                                        {"rock.png -o o.json --detrend 7", "--detrend"},
                                        {"rock.png -o o.json --detrend-by hope", "--detrend-by"},
                                        {"rock.png -o o.json --lobes 0", "--lobes"},
+                                       {"rock.png -o o.json --model phase --lobes 5", "--lobes"},
                                        {"rock.png -o o.json --max-memory 0.001", "rock.png"}}) {
     refuse(words, culprit);
   }

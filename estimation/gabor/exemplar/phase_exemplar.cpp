@@ -22,9 +22,7 @@ namespace {
 
 constexpr int kPreferredSide = 1024;
 
-int image_side(int side, bool tiles) {
-  return tiles ? side : std::min(4 * side, std::max(side, kPreferredSide));
-}
+int image_side(int side, bool tiles) { return tiles ? side : longest_phase_side(side); }
 
 // The wave of random phase at a frequency. Its opposite has the conjugate, and a frequency that is its own
 // opposite a random sign.
@@ -81,6 +79,8 @@ std::vector<GreyImage> random_phase_colors(const std::vector<GreyImage>& planes,
 }
 
 }  // namespace
+
+int longest_phase_side(int side) { return std::min(4 * side, std::max(side, kPreferredSide)); }
 
 GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed) {
   const FourierTransform fourier(spectrum.width, spectrum.height);

@@ -16,12 +16,15 @@ namespace astrolith {
 // exactly.
 GreyImage random_phase_image(const PowerSpectrum& spectrum, std::uint32_t seed);
 
+// The longest side of the image of random phases that a side of a photo may have, in pixels.
+int longest_phase_side(int side);
+
 // An exemplar layer whose image has the spectrum of the photo, whatever its kind, and random phases. The
 // photo is one plane of grey, or red, green and blue, whose principal axes become independent textures. Along
 // an axis where the photo does not tile the image is four times as long, at most 1024 pixels or the photo's
-// own length: the longer it is, the less does blending change its spectrum. Lengths are pixels, and
-// height_rms is the deviation of the photo or of its luma. Throws as require_exemplar() and require_colors()
-// do.
+// own length: the longer it is, the less does blending change its spectrum. Lengths are pixels.
+// height_rms is the deviation of the texture or of its luma: that of the photo but for light from one side
+// and other features wider than it. Throws as require_exemplar() and require_colors() do.
 ExemplarLayer phase_exemplar(const std::vector<GreyImage>& planes, const std::string& name,
                              std::uint64_t seed);
 

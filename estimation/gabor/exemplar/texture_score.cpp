@@ -82,14 +82,18 @@ TextureDistributions::TextureDistributions(const GreyImage& image, int side) {
 
 // The Wasserstein-1 distance of two distributions is the mean difference of their quantiles.
 TextureScore TextureDistributions::score_against(const TextureDistributions& photo) const {
+  constexpr double kNone = 1e-9;  // a response of so little beside the grey values is rounding
   TextureScore score;
+  int filters = 0;
   for (std::size_t k = 0; k < distributions_.size(); ++k) {
     const Distribution &a = distributions_[k], &b = photo.distributions_[k];
+    if (!(b.deviation > kNone * photo.distributions_[0].deviation)) continue;
+    filters += k > 0;
     double sum = 0.0;
     for (std::size_t q = 0; q < a.quantiles.size(); ++q) sum += std::fabs(a.quantiles[q] - b.quantiles[q]);
     (k == 0 ? score.values : score.filters) += sum / kQuantiles / b.deviation;
   }
-  score.filters /= static_cast<double>(distributions_.size() - 1);
+  score.filters /= std::max(1, filters);
   return score;
 }
 

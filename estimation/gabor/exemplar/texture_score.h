@@ -24,7 +24,8 @@ class TextureDistributions {
  public:
   // Sides are above 8 pixels. `side`, at most the image's shorter one, says which blurs count.
   TextureDistributions(const GreyImage& image, int side);
-  // Scores this texture against a photo that is not constant. Both were made with one side.
+  // Scores this texture against a photo that is not constant, by the filters to which it responds. Both were
+  // made with one side.
   TextureScore score_against(const TextureDistributions& photo) const;
 
  private:

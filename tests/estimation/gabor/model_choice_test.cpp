@@ -55,6 +55,20 @@ TEST(ModelChoice, ComparesNothingWhereThereIsTooLittle) {
   }
 }
 
+// Stripes respond to filters along one axis only, and a ramp has no texture.
+TEST(ModelChoice, IsFiniteForStripesAndComparesNoRamps) {
+  GreyImage stripes{128, 128, {}}, ramp{128, 128, {}};
+  for (int i = 0; i < 128 * 128; ++i) {
+    stripes.values.push_back(0.5 + 0.2 * std::sin(0.7 * (i % 128)));
+    ramp.values.push_back(0.005 * (i % 128) + 0.002 * (i / 128));
+  }
+  for (const HeldOutScore& score : choose_model(stripes, "stripes", {}, 1).scores) {
+    EXPECT_TRUE(std::isfinite(score.mean.sum()) && std::isfinite(score.scatter));
+  }
+  EXPECT_EQ(choose_model(ramp, "ramp", {}, 1).squares, 0);
+  EXPECT_THROW(fit_gabor_lobes(ramp, "ramp", {}), InputError);
+}
+
 TEST(ModelChoice, StopsWhenAsked) {
   EXPECT_THROW(
       choose_model(gaussian_texture(), "noise", {}, 1, [](double, std::string_view) { return false; }),

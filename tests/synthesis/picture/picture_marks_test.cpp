@@ -43,7 +43,7 @@ TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   PreviewOptions marked = plain;
   marked.marks.values = {0.0, 1.0, "slope [deg]"};
   marked.marks.length_unit = "m";
-  const int strip = marks_height(marked.marks, 400, 300);
+  const int strip = marks_height(marked);
   ASSERT_GT(strip, 0);
   plain.height -= strip;
   const RgbaImage16 without = render_picture(mesh, plain), with = render_picture(mesh, marked);
@@ -65,7 +65,13 @@ TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   }
   EXPECT_GT(changed, 100);
   EXPECT_EQ(over_body, 0);
-  EXPECT_EQ(marks_height(marked.marks, 100, 100), 0);
+  marked.marks.values.reset();
+  marked.views = {parse_camera("--camera", "lat 10 fov 30")};
+  EXPECT_EQ(marks_height(marked), 0) << "a pinhole has no scale";
+  marked.marks.values = {0.0, 1.0, "slope [deg]"};
+  EXPECT_EQ(marks_height(marked), strip);
+  marked.width = marked.height = 100;
+  EXPECT_EQ(marks_height(marked), 0);
 }
 
 }  // namespace
