@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "numerics/sample_statistics.h"
+
 namespace astrolith {
 namespace {
 
@@ -84,12 +86,6 @@ double independent_share(const std::vector<double>& taper) {
   return square * square / (static_cast<double>(taper.size()) * fourth);
 }
 
-double sum_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum;
-}
-
 double mean_square(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v * v;
@@ -136,8 +132,9 @@ BorderTaper taper_of(const GreyImage& image) {
 }
 
 GreyImage faded(const GreyImage& image, const BorderTaper& taper) {
-  const double mean =
-      weighted_sum(image, taper.columns, taper.rows) / (sum_of(taper.columns) * sum_of(taper.rows));
+  const double weights =
+      mean_of(taper.columns) * mean_of(taper.rows) * static_cast<double>(image.values.size());
+  const double mean = weighted_sum(image, taper.columns, taper.rows) / weights;
   const double gain = 1.0 / std::sqrt(mean_square(taper.columns) * mean_square(taper.rows));
   GreyImage result = image;
   const auto width = static_cast<std::size_t>(image.width);
