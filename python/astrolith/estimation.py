@@ -393,6 +393,10 @@ def fit_texture(
         if not colors and len(planes) == 3:
             planes = _luma(planes)
     kind = _arrays.choice(model or "gabor", "model", ("gabor", "phase", "exemplar", "auto"))
+    about_lobes = {"lobes": lobes, "penalty": penalty, "gap": gap, "solver": solver, "evaluation": evaluation, "spectrum_estimate": spectrum_estimate}  # fmt: skip
+    for name, value in about_lobes.items():
+        if kind in ("phase", "exemplar") and value is not None:
+            raise ValueError(f'{name}: is about lobes, which model "{kind}" has none of; leave it out')
     if kind != "gabor" and output is None:
         raise ValueError("output: is missing; a layer with an image names a file beside its recipe")
     if max_memory is None:

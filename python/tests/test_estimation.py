@@ -161,9 +161,9 @@ def test_an_exemplar_of_a_photo_has_the_bytes_of_fit_gabor(program, tmp_path, mo
     grey = (120 + 90 * ((rows // 8 + columns // 8) % 2) + (rows * 7 + columns * 3) % 23).astype(np.uint8)
     (tmp_path / "tiles.png").write_bytes(png(grey))
     (tmp_path / "package").mkdir()
-    options = {"model": model, "mm_per_px": 2.0, "height_rms": 0.01, "lobes": 6, "seed": 2}
+    options = {"model": model, "mm_per_px": 2.0, "height_rms": 0.01, "seed": 2}
     program("fit_gabor", "tiles.png", "-o", "tile.json", "--model", model, "--mm-per-px", "2.0", "--height-rms",
-            "0.01", "--lobes", "6", "--seed", "2")  # fmt: skip
+            "0.01", "--seed", "2")  # fmt: skip
     fit = astrolith.fit_texture(tmp_path / "tiles.png", output=tmp_path / "package" / "tile.json", **options)
     for name in ("tile.json", "tile_exemplar.png"):
         wanted, written = tmp_path / name, tmp_path / "package" / name
@@ -180,6 +180,8 @@ def test_a_photo_beyond_the_memory_is_refused(tmp_path):
     grey = (np.arange(64 * 64).reshape(64, 64) * 37 % 251).astype(np.uint8)
     with pytest.raises(ValueError, match="^image: fitting 64 x 64 pixels needs .* raise max_memory$"):
         astrolith.fit_texture(grey, max_memory=1e-6)
+    with pytest.raises(ValueError, match='^lobes: is about lobes, which model "phase" has none of'):
+        astrolith.fit_texture(grey, model="phase", lobes=4, output=tmp_path / "rock.json")
     with pytest.raises(ValueError, match="^output: is missing"):
         astrolith.fit_texture(grey, model="auto")
     fit = astrolith.fit_texture(grey, lobes=4, report=tmp_path / "report", output=tmp_path / "rock.json")
