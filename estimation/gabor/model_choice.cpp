@@ -8,6 +8,7 @@
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
 #include "estimation/gabor/exemplar/phase_exemplar.h"
 #include "numerics/errors.h"
+#include "numerics/parallel_for.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/gabor/gabor_texture.h"
 
@@ -139,18 +140,17 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
   std::vector<TextureDistributions> distributions;
   for (const GreyImage& square : squares) distributions.emplace_back(square, choice.side);
   Scores scores;
-  for (std::size_t k = 0; k < squares.size(); ++k) {
-    for (const TextureModel model : kTextureModels) {
-      const auto m = static_cast<std::size_t>(model);
-      if (!report(
-              progress,
-              (static_cast<double>(k) + static_cast<double>(m) / 3.0) / static_cast<double>(squares.size()),
-              "comparing models")) {
-        throw WorkError(name + ": stopped before a model was chosen; nothing is written");
-      }
-      scores[m].push_back(
-          held_out_score(textures_of(model, squares[k], name, options, seed), distributions, k, choice.side));
+  for (const TextureModel model : kTextureModels) {
+    const auto m = static_cast<std::size_t>(model);
+    if (!report(progress, static_cast<double>(m) / 3.0, "comparing models")) {
+      throw WorkError(name + ": stopped before a model was chosen; nothing is written");
     }
+    scores[m].resize(squares.size());
+    parallel_for(0, static_cast<std::int64_t>(squares.size()), [&](std::int64_t i) {
+      const auto k = static_cast<std::size_t>(i);
+      scores[m][k] =
+          held_out_score(textures_of(model, squares[k], name, options, seed), distributions, k, side);
+    });
   }
   for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summarised(scores[m]);
   choice.taken = simplest_of_the_best(scores, choice.scores);
