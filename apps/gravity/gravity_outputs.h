@@ -19,8 +19,7 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
                    const std::filesystem::path& file, const std::string& tool);
 
 // The mesh in the colours of one column, which has a value for each vertex, or for each facet. Sites, if any,
-// are orange, and the first nine are each seen from above
-// unless there are cameras.
+// are orange, and the first nine are each seen from above unless there are cameras.
 void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
                            const std::vector<LandingSite>& sites, const PictureOptions& look,
                            const std::filesystem::path& file);

@@ -10,7 +10,7 @@ namespace {
 constexpr double kBytesAnyway = 55e6;         // program, libraries and threads, whatever the image
 constexpr double kBytesPerGridPoint = 390.0;  // dictionary, estimates and solver together
 
-// Of a layer's image: random phases hold spectra of all pixels, exemplars their ranks.
+// A pixel of a layer's image takes so much: random phases hold spectra of all pixels, exemplars their ranks.
 constexpr double kBytesPerImagePixel = 82.0, kBytesPerColorPixel = 150.0;
 
 // The bytes per pixel of the image, at the stage of the fit that holds the most.

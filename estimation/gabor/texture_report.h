@@ -30,17 +30,16 @@ struct TextureReport {
   PowerSpectrum measured, shown;    // estimated from the photo, and the texture's, on one grid
   std::string shown_words;          // caption of the spectrum `shown`
   const GaborFit* lobes = nullptr;  // of a texture of lobes
-  // Of a texture with an image: grey values of both, and the image.
+  // A texture with an image has these in place of lobes: the grey values of both, and its image.
   std::vector<double> photo_values, texture_values;
   ReportPicture image;
 };
 
 // Writes the pictures of a report into `folder`, which is made if it is missing:
 //   report.png, report.svg   one figure (200 pixels an inch) of (a) the photo, (b) the texture, (d) the
-//   spectrum
-//                            estimated from the photo, (e) the texture's; of lobes (c) the certified gap of
-//                            the pursuit against its steps and (f) the lobes over the estimated spectrum; of
-//                            an image (c) the distributions of grey values and (f) the image
+//                            spectrum estimated from the photo, (e) the texture's; of lobes (c) the certified
+//                            gap of the pursuit against its steps and (f) the lobes over the estimated
+//                            spectrum; of an image (c) the distributions of grey values and (f) the image
 //   exemplar.png, synthesis.png, spectrum_exemplar.png, spectrum_fitted.png   pictures a, b, d and e in full
 // Spectra are logarithmic over six decades, with frequency 0 in the middle. Throws InputError where a file
 // cannot be written.

@@ -14,9 +14,8 @@ namespace astrolith {
 //   layer                       number of the layer in the recipe, from 0
 //   kind                        "simple crater", "complex crater" or "boulder"
 //   x, y, z                     a point of the finished surface in the recipe's frame: where the normal of
-//   the
-//                               bare body through the centre of the crater, or of the boulder, crosses it;
-//                               absent where nothing is left there
+//                               the bare body through the centre of the crater, or of the boulder, crosses
+//                               it; absent where nothing is left there
 //   mesh_x, mesh_y, mesh_z      the same point in the frame of the mesh: relative to the centre of a patch
 //   center_x, center_y, center_z    in the recipe's frame, a crater's centre on the bare surface, a boulder's
 //                               own centre

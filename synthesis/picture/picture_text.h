@@ -14,8 +14,8 @@ using PictureInk = std::array<std::uint8_t, 3>;  // sRGB
 // Fills what lies within the picture.
 void fill_rectangle(RgbaImage16& image, int left, int top, int width, int height, const PictureInk& ink);
 
-// A character is 5 x 8 dots, of dot x dot pixels each, and one dot apart from the next.
-inline constexpr int kTextRows = 8;
+// The width of a line of text. A character is 5 x 8 dots, of dot x dot pixels each, and one dot apart from
+// the next.
 int text_width(std::string_view text, int dot);  // pixels
 
 // Draws printable ASCII; other bytes show as a question mark.

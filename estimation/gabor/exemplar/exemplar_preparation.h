@@ -25,8 +25,8 @@ std::string_view variant_word(ExemplarVariant variant);
 struct PreparedExemplar {
   ExemplarVariant variant = ExemplarVariant::kPeriodic;
   ExemplarLayer layer;  // with pixels and border; lengths are pixels, height_rms is the image's deviation
-  TextureScore
-      scores[3];  // of each variant, by number: a texture against the photo, or its middle 1024 x 1024
+  // The score of each variant, by number: of a texture against the photo, or its middle 1024 x 1024.
+  TextureScore scores[3];
 };
 
 // Makes an exemplar of a photo by the variant whose textures are nearest to the photo. `name` is the photo's

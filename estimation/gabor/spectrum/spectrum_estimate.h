@@ -21,8 +21,8 @@ struct SpectrumEstimate {
   // sum S var(ln S) / 4 over sum S. It is 0 for an estimate that is a raw periodogram.
   double standard_error = 0.0;
   std::vector<double> weights;  // octave_weights of the spectrum; empty for a raw periodogram
-  double weighted_error =
-      0.0;  // standard_error with these weights: the root of sum w S var(ln S) / 4 over sum w S
+  // The standard error with these weights: the root of sum w S var(ln S) / 4 over sum w S.
+  double weighted_error = 0.0;
 };
 
 // The periodogram I of a Gaussian texture is its spectrum times exponential speckle. The log spectrum g is
