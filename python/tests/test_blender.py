@@ -34,9 +34,11 @@ def blender(tmp_path):
         command = ["blender", "--background", "--factory-startup", "--python-exit-code", "3", "--python", str(script), "--"]
         if python:
             command = [python, str(script), "--"]
-        # Debian's Blender heeds PYTHONPATH.
+        # Debian's Blender heeds PYTHONPATH, and takes the modules that belong to the first python3.11 on PATH.
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-        environment |= {"BLENDER_USER_SCRIPTS": str(tmp_path / "scripts"),
+        beside = os.path.dirname(shutil.which(command[0]))
+        environment |= {"PATH": beside + os.pathsep + os.environ["PATH"],
+                        "BLENDER_USER_SCRIPTS": str(tmp_path / "scripts"),
                         "BLENDER_USER_CONFIG": str(tmp_path / "config")}  # fmt: skip
         done = subprocess.run([*command, *map(str, arguments)], capture_output=True, text=True, env=environment, timeout=300)
         lines = [line for line in done.stdout.splitlines() if line.startswith(word + " ")]
