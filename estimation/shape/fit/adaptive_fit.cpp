@@ -59,6 +59,7 @@ AdaptiveFitOptions options_for(int spheres) {
   options.grown_iterations = times(options.grown_iterations, 1.0 + many);
   options.relocation_iterations = times(options.relocation_iterations, 1.0 + many);
   options.last_iterations = times(options.last_iterations, 1.0 + many);
+  options.least_decrease *= 1.0 + 9.0 * std::clamp((spheres - kMany) / kMany, 0.0, 1.0);
   options.fewer_relocated = times(options.fewer_relocated, 1.0 + many);
   return options;
 }

@@ -32,6 +32,7 @@ struct AdaptiveFitOptions {
   double relocation_gain = 3e-3;   // share of the mean distance; a smaller gain lets fewer move:
   int fewer_relocated = 3;         // two parts of so many, > 2
   int samples_per_sphere = 60;     // used until the final refinement
+  double least_decrease = 1e-4;    // share of the cost; a refinement ends with a round that lowers it by less
   double tolerance = 0.0;          // growth stops at this mean |s| over the samples, fraction of the diagonal
   double loss_scale = 1e-3;        // fraction of the diagonal
   double containment_weight = 0.2;  // fraction of the diagonal, >= 0
@@ -41,7 +42,7 @@ struct AdaptiveFitOptions {
 // The default options for this number of metaballs, 1 to 10000. Fits with many metaballs converge slowly, and
 // each of their iterations costs more. From 250 to 1000 metaballs the refinements grow steadily to twice as
 // many iterations, the rounds of relocation fall from 40 to 13, and those that gain little end sooner.
-// Beyond, the rounds fall with the number of metaballs, to one.
+// Beyond, the rounds fall with the number of metaballs, to one, and refinements end ten times as early.
 AdaptiveFitOptions options_for(int spheres);
 
 struct ConvergencePoint {

@@ -21,6 +21,7 @@ TrackedModel::TrackedModel(const TargetBody& target, const SurfaceSamples& sampl
   refinement_.loss_scale = options.loss_scale;
   refinement_.containment_weight = options.containment_weight;
   refinement_.keep_centers_inside = &target.tree;
+  refinement_.relative_decrease = options.least_decrease;
   planned_iterations_ = options.first_iterations + options.rounds * options.round_iterations +
                         options.grown_iterations + options.relocations * options.relocation_iterations +
                         options.last_iterations;

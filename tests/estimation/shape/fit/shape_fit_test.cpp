@@ -147,10 +147,13 @@ TEST(ShapeFit, ThePlanIsASmoothFunctionOfTheNumberOfMetaballs) {
     EXPECT_LE(more.relocation_iterations - one.relocation_iterations, 1) << spheres;
     EXPECT_LE(more.grown_iterations - one.grown_iterations, 1) << spheres;
     EXPECT_LE(more.last_iterations - one.last_iterations, 1) << spheres;
+    EXPECT_LE(more.least_decrease - one.least_decrease, 1e-6) << spheres;
   }
   EXPECT_EQ(options_for(200).relocations, 40);
   EXPECT_EQ(options_for(1000).relocations, 13);
   EXPECT_EQ(options_for(1000).relocation_iterations, 40);
+  EXPECT_DOUBLE_EQ(options_for(1000).least_decrease, 1e-4);
+  EXPECT_DOUBLE_EQ(options_for(10000).least_decrease, 1e-3);
 }
 
 TEST(ShapeFit, RefusesOptionsOutOfRange) {
