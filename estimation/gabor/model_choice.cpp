@@ -69,16 +69,21 @@ std::vector<GreyImage> textures_of(TextureModel model, const GreyImage& square, 
   return textures;
 }
 
+std::vector<TextureDistributions> distributions_of(const std::vector<GreyImage>& images, int side) {
+  std::vector<TextureDistributions> distributions;
+  for (const GreyImage& image : images) distributions.emplace_back(image, side);
+  return distributions;
+}
+
 // The mean score of textures of square `seen` against all other squares.
-TextureScore held_out_score(const std::vector<GreyImage>& textures,
-                            const std::vector<TextureDistributions>& squares, std::size_t seen, int side) {
+TextureScore held_out_score(std::span<const TextureDistributions> textures,
+                            std::span<const TextureDistributions> squares, std::size_t seen) {
   TextureScore sum;
   int count = 0;
-  for (const GreyImage& texture : textures) {
-    const TextureDistributions of_texture(texture, side);
+  for (const TextureDistributions& texture : textures) {
     for (std::size_t k = 0; k < squares.size(); ++k) {
       if (k == seen) continue;
-      const TextureScore score = of_texture.score_against(squares[k]);
+      const TextureScore score = texture.score_against(squares[k]);
       sum.values += score.values;
       sum.filters += score.filters;
       ++count;
@@ -94,7 +99,7 @@ double standard_error(const std::vector<double>& values) {
 
 using Scores = std::array<std::vector<TextureScore>, 3>;  // of each model, by the seen square
 
-HeldOutScore summarised(const std::vector<TextureScore>& scores) {
+HeldOutScore summary_of(const std::vector<TextureScore>& scores) {
   std::vector<double> values, filters, sums;
   for (const TextureScore& s : scores) {
     values.push_back(s.values);
@@ -102,6 +107,14 @@ HeldOutScore summarised(const std::vector<TextureScore>& scores) {
     sums.push_back(s.sum());
   }
   return {{mean_of(values), mean_of(filters)}, standard_error(sums)};
+}
+
+// The score that no texture can beat but by chance: each square in the place of a texture of itself.
+HeldOutScore score_of_squares(std::span<const TextureDistributions> squares) {
+  std::vector<TextureScore> scores;
+  for (std::size_t k = 0; k < squares.size(); ++k)
+    scores.push_back(held_out_score(squares.subspan(k, 1), squares, k));
+  return summary_of(scores);
 }
 
 TextureModel simplest_of_the_best(const Scores& scores, const std::array<HeldOutScore, 3>& means) {
@@ -137,8 +150,8 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
   if (static_cast<int>(squares.size()) < kLeastSquares) return choice;
   choice.squares = static_cast<int>(squares.size());
   choice.side = side;
-  std::vector<TextureDistributions> distributions;
-  for (const GreyImage& square : squares) distributions.emplace_back(square, choice.side);
+  const std::vector<TextureDistributions> distributions = distributions_of(squares, side);
+  choice.photo = score_of_squares(distributions);
   Scores scores;
   for (const TextureModel model : kTextureModels) {
     const auto m = static_cast<std::size_t>(model);
@@ -148,11 +161,11 @@ ModelChoice choose_model(const GreyImage& photo, const std::string& name, const 
     scores[m].resize(squares.size());
     parallel_for(0, static_cast<std::int64_t>(squares.size()), [&](std::int64_t i) {
       const auto k = static_cast<std::size_t>(i);
-      scores[m][k] =
-          held_out_score(textures_of(model, squares[k], name, options, seed), distributions, k, side);
+      const std::vector<GreyImage> textures = textures_of(model, squares[k], name, options, seed);
+      scores[m][k] = held_out_score(distributions_of(textures, side), distributions, k);
     });
   }
-  for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summarised(scores[m]);
+  for (std::size_t m = 0; m < scores.size(); ++m) choice.scores[m] = summary_of(scores[m]);
   choice.taken = simplest_of_the_best(scores, choice.scores);
   return choice;
 }

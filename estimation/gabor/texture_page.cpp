@@ -66,12 +66,16 @@ TurnableSurface relief(const ReportPicture& picture, const std::string& caption)
 
 PageTable choice_table(const ModelChoice& choice) {
   PageTable table{{"difference from unseen squares", "values", "filters", "sum", "scatter of the sum"}, {}};
+  const auto add = [&](std::string name, const HeldOutScore& score) {
+    table.rows.push_back({std::move(name), fmt::format("{:.3f}", score.mean.values),
+                          fmt::format("{:.3f}", score.mean.filters), fmt::format("{:.3f}", score.mean.sum()),
+                          fmt::format("{:.3f}", score.scatter)});
+  };
   for (const TextureModel model : kTextureModels) {
-    const HeldOutScore& score = choice.scores[static_cast<std::size_t>(model)];
-    table.rows.push_back({fmt::format("{}{}", model_word(model), model == choice.taken ? " (taken)" : ""),
-                          fmt::format("{:.3f}", score.mean.values), fmt::format("{:.3f}", score.mean.filters),
-                          fmt::format("{:.3f}", score.mean.sum()), fmt::format("{:.3f}", score.scatter)});
+    add(fmt::format("{}{}", model_word(model), model == choice.taken ? " (taken)" : ""),
+        choice.scores[static_cast<std::size_t>(model)]);
   }
+  add("the photo's own squares", choice.photo);
   return table;
 }
 

@@ -38,15 +38,22 @@ void take_exemplar(const std::string& name, const TextureFitOptions& options, co
   fit.recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
 }
 
+// Squares whose grey values differ by so many standard deviations are no squares of one texture.
+constexpr double kUnlikeSquares = 0.5;
+
+nlohmann::ordered_json figures_of(const HeldOutScore& score) {
+  return {{"values", score.mean.values}, {"filters", score.mean.filters}, {"scatter", score.scatter}};
+}
+
 nlohmann::ordered_json figures_of(const ModelChoice& choice) {
-  auto models = nlohmann::ordered_json::object();
-  for (const TextureModel model : kTextureModels) {
-    const HeldOutScore& score = choice.scores[static_cast<std::size_t>(model)];
-    if (choice.squares > 0)
-      models[std::string(model_word(model))] = {
-          {"values", score.mean.values}, {"filters", score.mean.filters}, {"scatter", score.scatter}};
-  }
-  return {{"squares", choice.squares}, {"side", choice.side}, {"models", std::move(models)}};
+  nlohmann::ordered_json figures = {
+      {"squares", choice.squares}, {"side", choice.side}, {"models", nlohmann::ordered_json::object()}};
+  if (choice.squares == 0) return figures;
+  for (const TextureModel model : kTextureModels)
+    figures["models"][std::string(model_word(model))] =
+        figures_of(choice.scores[static_cast<std::size_t>(model)]);
+  figures["photo"] = figures_of(choice.photo);
+  return figures;
 }
 
 nlohmann::ordered_json figures_of(const PreparedExemplar& exemplar) {
@@ -124,10 +131,13 @@ std::string choice_sentence(const TextureFit& fit) {
     scores += fmt::format("{}{} {:.3f} +- {:.3f}", scores.empty() ? "" : ", ", model_word(model),
                           score.mean.sum(), score.scatter);
   }
-  return fmt::format(
+  std::string sentence = fmt::format(
       "{} is taken, the simplest of the best on {} squares of {} pixels that it had not seen; differences in "
-      "values and filters: {}",
-      taken, c.squares, c.side, scores);
+      "values and filters: {}, the squares themselves {:.3f}",
+      taken, c.squares, c.side, scores, c.photo.mean.sum());
+  if (c.photo.mean.values > kUnlikeSquares)
+    sentence += "; the photo changes from place to place: crop it to a part that looks alike";
+  return sentence;
 }
 
 }  // namespace astrolith

@@ -41,6 +41,17 @@ TEST(ModelChoice, TakesTheSimplestForAGaussianTextureAndTheExemplarForGrains) {
   }
 }
 
+// One half is dark and the other bright, so no square has the grey values of all.
+TEST(ModelChoice, SaysHowFarThePhotoDiffersFromItself) {
+  const GreyImage noise = gaussian_texture();
+  GreyImage halves = noise;
+  for (std::size_t i = 0; i < halves.values.size(); ++i) {
+    if (static_cast<int>(i) % halves.width >= halves.width / 2) halves.values[i] += 10.0;
+  }
+  EXPECT_LT(choose_model(noise, "noise", {}, 1).photo.mean.values, 0.3);
+  EXPECT_GT(choose_model(halves, "halves", {}, 1).photo.mean.values, 1.0);
+}
+
 TEST(ModelChoice, ComparesNothingWhereThereIsTooLittle) {
   GreyImage one_corner{128, 128, std::vector<double>(128 * 128, 0.5)};
   for (int y = 0; y < 64; ++y) {
