@@ -56,7 +56,7 @@ AdaptiveFitOptions options_for(int spheres) {
   AdaptiveFitOptions options;
   options.spheres = spheres;
   options.relocations = times(options.relocations, 1.0 / (1.0 + 2.0 * many) / std::max(1.0, spheres / kMany));
-  options.grown_iterations = times(options.grown_iterations, 1.0 + many);
+  options.grown_iterations = times(options.grown_iterations, (1.0 + many) / std::max(1.0, spheres / kMany));
   options.relocation_iterations = times(options.relocation_iterations, 1.0 + many);
   options.last_iterations = times(options.last_iterations, 1.0 + many);
   options.least_decrease *= 1.0 + 9.0 * std::clamp((spheres - kMany) / kMany, 0.0, 1.0);
