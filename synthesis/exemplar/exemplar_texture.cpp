@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -125,24 +126,39 @@ struct Plane {
   }
 };
 
-// Turns the samples of a line into the coefficients of the quadratic B-spline through them. The inverse of
-// the filter [1, 6, 1] / 8 is a sum over all samples that falls by kPole from sample to sample: a run over
-// kRunUp samples before the first one makes it exact to 1e-12.
-void prefilter(std::vector<double>& line, bool mirror) {
-  constexpr double kPole = -0.17157287525380990239;  // 2 sqrt(2) - 3
-  constexpr int kRunUp = 16;
-  const int side = static_cast<int>(line.size());
-  std::vector<double> extended(static_cast<std::size_t>(side + 2 * kRunUp));
-  const int last = side + 2 * kRunUp - 1;
-  for (int i = 0; i <= last; ++i) {
-    extended[static_cast<std::size_t>(i)] =
-        8.0 * line[static_cast<std::size_t>(pixel_beyond(i - kRunUp, side, mirror))];
+// The taps of a symmetric filter, from the middle one on.
+constexpr std::size_t kTaps = 16;
+using Taps = std::array<double, kTaps>;
+
+// The filter 1 / sqrt(a) with a(t) = (66 + 52 cos t + 2 cos 2 t) / 120, the spectrum of the products of the
+// spline with itself. Its taps are Fourier coefficients and fall by .43 from one to the next; sums over
+// kAngles angles have them to the last digits.
+Taps equal_power_taps() {
+  constexpr int kAngles = 128;
+  Taps taps{};
+  for (int j = 0; j < kAngles; ++j) {
+    const double angle = 2.0 * std::numbers::pi * j / kAngles;
+    const double correlation =
+        (66.0 + 52.0 * portable::cos(angle) + 2.0 * portable::cos(2.0 * angle)) / 120.0;
+    for (std::size_t k = 0; k < kTaps; ++k)
+      taps[k] += portable::cos(static_cast<double>(k) * angle) / std::sqrt(correlation) / kAngles;
   }
-  for (std::size_t i = 1; i < extended.size(); ++i) extended[i] += kPole * extended[i - 1];
-  double next = extended.back() * (kPole / (kPole * kPole - 1.0));
-  for (int i = last - 1; i >= kRunUp; --i) {
-    next = kPole * (next - extended[static_cast<std::size_t>(i)]);
-    if (i < kRunUp + side) line[static_cast<std::size_t>(i - kRunUp)] = next;
+  return taps;
+}
+
+// Turns the samples of a line into coefficients of a quadratic B-spline that has, over all points of a pixel,
+// the power of the samples at each frequency: the orthonormal spline (Unser, "Splines: a perfect fit for
+// signal and image processing", 1999). A spline through the samples is smoother between them than at them, so
+// that a gain which restores the variance makes wide features too high.
+void filter_to_coefficients(std::vector<double>& line, const Taps& taps, bool mirror) {
+  const std::vector<double> samples = line;
+  const int side = static_cast<int>(line.size());
+  const auto at = [&](int i) { return samples[static_cast<std::size_t>(pixel_beyond(i, side, mirror))]; };
+  for (int i = 0; i < side; ++i) {
+    double sum = taps[0] * at(i);
+    for (int k = 1; k < static_cast<int>(kTaps); ++k)
+      sum += taps[static_cast<std::size_t>(k)] * (at(i - k) + at(i + k));
+    line[static_cast<std::size_t>(i)] = sum;
   }
 }
 
@@ -185,7 +201,8 @@ Plane gaussianised(const ExemplarImage& image, const std::vector<GreyLevel>& lev
   Plane plane{image.width, image.height, mirror, {}};
   plane.values.reserve(image.values.size());
   for (const std::uint16_t value : image.values) plane.values.push_back(deviates[value]);
-  plane.filter_lines([mirror](std::vector<double>& line) { prefilter(line, mirror); });
+  const Taps taps = equal_power_taps();
+  plane.filter_lines([&](std::vector<double>& line) { filter_to_coefficients(line, taps, mirror); });
   scale_to_unit_mean_square(plane);
   return plane;
 }

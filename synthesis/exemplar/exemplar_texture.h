@@ -2,7 +2,8 @@
 // code is plain and scalar, for loops and GPUs.
 //
 // The grey values of the image, by their ranks, become samples of a normal distribution: the Gaussianised
-// image g. g is interpolated by a quadratic B-spline, which is C1. The coefficients of the spline are whole
+// image. g is the quadratic B-spline, which is C1, that has the power of these samples at each frequency. It
+// passes near them, and through them where the image is smooth. The coefficients of the spline are whole
 // numbers of ten bits, three neighbours of a row in one word, so that nine coefficients take three loads.
 #pragma once
 
@@ -38,9 +39,9 @@ struct ExemplarTexture {
 };
 
 // Makes the tables of a layer whose heights have the layer's height_rms or height_range, mean 0. The mean
-// square of the interpolated g over the image is 1. Expects sides of kLeastExemplarSide to
-// kMostExemplarSide. Throws InputError, which begins with `place`, where the layer has no pixels and where
-// all of them have one grey value.
+// square of g over the image is 1. Expects sides of kLeastExemplarSide to kMostExemplarSide. Throws
+// InputError, which begins with `place`, where the layer has no pixels and where all of them have one grey
+// value.
 ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::string& place,
                                       ArrayStore& arrays);
 

@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <numbers>
+#include <utility>
+
 #include "numerics/errors.h"
 #include "tests/synthesis/exemplars.h"
 
@@ -59,6 +66,46 @@ TEST(ExemplarTexture, HasTheMeanSquareOne) {
     EXPECT_NEAR(sum / count, 0.0, 0.01);
     EXPECT_NEAR(square / count, 1.0, 0.005);
   }
+}
+
+// Normal noise, pixel by pixel, has as much power at its widest waves as at its narrowest. Sampled between
+// the pixels, too, the widest waves must be as high as those of the pixels.
+TEST(ExemplarTexture, HasThePowerOfThePixelsInWideWaves) {
+  constexpr int kSide = 64, kSteps = 4, kWaves = 6;
+  ExemplarImage image{kSide, kSide, {}, {}};
+  CounterRandom random(3);
+  for (int i = 0; i < kSide * kSide; ++i)
+    image.values.push_back(
+        static_cast<std::uint16_t>(std::clamp(32768.0 + 7000.0 * random.normal(), 0.0, 65535.0)));
+  const auto power = [&](int steps, const auto& value) {
+    const int count = kSide * steps;
+    double sum = 0.0;
+    for (int ky = 0; ky < kWaves; ++ky) {
+      for (int kx = 1; kx < kWaves; ++kx) {
+        std::complex<double> wave = 0.0;
+        for (int y = 0; y < count; ++y) {
+          for (int x = 0; x < count; ++x) {
+            const double turns = (kx * (x + 0.5) + ky * (y + 0.5)) / count;
+            wave += std::polar(value((x + 0.5) / steps, (y + 0.5) / steps), 2.0 * std::numbers::pi * turns);
+          }
+        }
+        sum += std::norm(wave / static_cast<double>(count * count));
+      }
+    }
+    return sum;
+  };
+  const double of_pixels = power(1, [&](double x, double y) {
+    return (image.values[static_cast<std::size_t>(static_cast<int>(y) * kSide + static_cast<int>(x))] -
+            32768.0) /
+           7000.0;
+  });
+  ExemplarLayer layer = exemplar_layer(1.0, 1.0);
+  layer.pixels = std::make_shared<ExemplarImage>(std::move(image));
+  const Tables tables(layer);
+  const double of_spline = power(kSteps, [&](double x, double y) {
+    return static_cast<double>(tables.value(static_cast<float>(x), static_cast<float>(y)));
+  });
+  EXPECT_NEAR(of_spline / of_pixels, 1.0, 0.05);
 }
 
 // Values and slopes agree on both sides of pixels' borders, also where the image begins anew.
