@@ -11,8 +11,10 @@
 #include "apps/shape_options.h"
 #include "apps/shape_repair.h"
 #include "apps/surface_options.h"
+#include "apps/unit_question.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/output_file.h"
+#include "numerics/length_unit.h"
 #include "tasks/synthesis/comparison.h"
 #include "tasks/synthesis/surface_report.h"
 
@@ -49,7 +51,8 @@ void add_options(Program& program, Arguments& arguments) {
       "Kolmogorov-Smirnov distances, p by exchange of regions, and in words what B lacks");
   app.add_flag("--json", arguments.json,
                "print all figures as JSON with --realism too, in place of the ten lines that matter");
-  app.add_option("--unit", arguments.unit, "unit of both files, for the lengths in these words")
+  app.add_option("--unit", arguments.unit,
+                 "unit of both files, for the lengths in these words, in place of what the files state")
       .check(one_of({"m", "km"}))
       .default_text("")
       .needs(realism);
@@ -63,10 +66,10 @@ std::string text_of(const nlohmann::ordered_json& result) {
 }
 
 SurfaceComparison judge(const Program& program, const Arguments& arguments, const TriangleMesh& a,
-                        const TriangleMesh& b) {
+                        const TriangleMesh& b, const std::string& unit) {
   SurfaceComparison made =
-      judge_surfaces({arguments.a, a}, {arguments.b, b}, arguments.surface.of(program), arguments.floor,
-                     arguments.unit, [&](const std::string& stage) { return program.progress(stage); });
+      judge_surfaces({arguments.a, a}, {arguments.b, b}, arguments.surface.of(program), arguments.floor, unit,
+                     [&](const std::string& stage) { return program.progress(stage); });
   for (const std::string& remark : made.a.remarks) program.say(arguments.a + ": " + remark);
   for (const std::string& remark : made.b.remarks) program.say(arguments.b + ": " + remark);
   return made;
@@ -88,6 +91,18 @@ TriangleMesh read_shape(Program& program, const Arguments& arguments, const std:
   return arguments.repair.mended_surface(program, arguments.repair.read(file), file, figures);
 }
 
+// The unit of A. Gives B the same where it has another.
+std::string one_unit(const Program& program, const Arguments& arguments, TriangleMesh& b) {
+  const UnitChoice choice{arguments.unit, ""};
+  const std::string of_a = unit_of_mesh(program, arguments.a, choice, {});
+  const std::string of_b = unit_of_mesh(program, arguments.b, choice, {});
+  const double ratio = metres_of(of_b) / metres_of(of_a);
+  if (of_a.empty() || of_b.empty() || ratio == 1.0) return of_a;
+  for (Vec3d& vertex : b.vertices) vertex = ratio * vertex;
+  program.say(fmt::format("{}: from {} to {}, the unit of {}", arguments.b, of_b, of_a, arguments.a));
+  return of_a;
+}
+
 void run(Program& program, const Arguments& arguments) {
   if (!arguments.output.empty()) {
     require_extension(arguments.output, {".json"});
@@ -95,13 +110,15 @@ void run(Program& program, const Arguments& arguments) {
   }
   nlohmann::ordered_json repair_of_a, repair_of_b;
   const TriangleMesh a = read_shape(program, arguments, arguments.a, repair_of_a);
-  const TriangleMesh b = read_shape(program, arguments, arguments.b, repair_of_b);
+  TriangleMesh b = read_shape(program, arguments, arguments.b, repair_of_b);
+  const std::string unit = one_unit(program, arguments, b);
   const DescriptionOptions options = arguments.options.with_seed(program.seed);
   nlohmann::ordered_json result{{"a", arguments.a},
                                 {"b", arguments.b},
                                 {"features", arguments.options.features},
                                 {"bins", options.bins},
                                 {"points", options.points}};
+  if (!unit.empty()) result["length_unit"] = unit;
   const Comparison comparison =
       compare_meshes({arguments.a, a}, {arguments.b, b}, options, arguments.samples, arguments.floor,
                      [&](const std::string& stage) { return program.progress(stage); });
@@ -109,7 +126,7 @@ void run(Program& program, const Arguments& arguments) {
   result.update(comparison.figures);
   std::vector<std::string> lines;
   if (arguments.realism) {
-    SurfaceComparison judged = judge(program, arguments, a, b);
+    SurfaceComparison judged = judge(program, arguments, a, b, unit);
     result["realism"] = std::move(judged.figures);
     lines = std::move(judged.lines);
   }

@@ -12,6 +12,7 @@
 #include "apps/surface_options.h"
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/stated_unit.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "tasks/synthesis/describe_file.h"
@@ -74,6 +75,8 @@ TriangleMesh read_shape(Program& program, const Arguments& arguments, bool or_po
   nlohmann::ordered_json figures;
   mesh = arguments.repair.mended_surface(program, std::move(mesh), arguments.shape, figures);
   if (!figures.is_null()) program.summary["repair"] = figures;
+  if (const std::string unit = stated_length_unit(arguments.shape); !unit.empty())
+    program.summary["length_unit"] = unit;
   return mesh;
 }
 

@@ -9,6 +9,7 @@
 #include "apps/output_names.h"
 #include "apps/picture_options.h"
 #include "apps/program.h"
+#include "apps/unit_question.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
 #include "numerics/errors.h"
@@ -44,7 +45,9 @@ void add_options(Program& program, Arguments& a) {
   app.add_option("--title", a.title, "quantity and unit on the bar (default: from the property's name)")
       .needs(color)
       .placeholder("TEXT");
-  app.add_option("--unit", a.unit, "the unit of the mesh's lengths, for the scale").placeholder("UNIT");
+  app.add_option("--unit", a.unit,
+                 "the unit of the mesh's lengths, for the scale, in place of what the file states")
+      .placeholder("UNIT");
   a.look.add_to(app);
 }
 
@@ -72,7 +75,7 @@ void color_by(Program& program, const Arguments& a, PreviewOptions& options) {
 void run(Program& program, const Arguments& a) {
   check(program, a);
   const TriangleMesh mesh = read_mesh(a.shape);
-  PreviewOptions options = a.look.options(program, mesh, a.unit);
+  PreviewOptions options = a.look.options(program, mesh, unit_of_mesh(program, a.shape, {a.unit, ""}, {}));
   if (!a.color.empty()) color_by(program, a, options);
   a.look.write(render_picture(mesh, options, program.progress("render")), a.output);
   program.summary["triangles"] = mesh.triangles.size();

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "apps/density_question.h"
+#include "apps/unit_question.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
@@ -75,9 +76,11 @@ void declare_run_options(CommandLine& app, FitArguments& arguments) {
          "keep the progress of the fit in this file; where the file exists, go on from there. The result is "
          "the result of a run without a stop")
       .placeholder("FILE.json");
-  app.add_option("--unit", arguments.unit,
-                 "length unit of the mesh's coordinates; what a file may say of it in a comment is not read")
-      .check(one_of({"km", "m"}));
+  app.add_option(
+         "--unit", arguments.unit,
+         "length unit of the mesh's coordinates, in place of what its file states; km where neither says one")
+      .check(one_of({"km", "m"}))
+      .default_text("");
   arguments.repair.add_to(app);
 }
 
@@ -125,6 +128,7 @@ void settle_fit_options(const Program& program, FitArguments& arguments) {
       arguments.fit.subtract > 0.0) {
     throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
   }
+  arguments.unit = unit_of_mesh(program, arguments.mesh, {arguments.unit}, {"km", "m"});
   arguments.fit.length_unit = arguments.unit;
   if (arguments.fit.bytes > 0 && !arguments.details.base_only) {
     throw InputError("--bytes: counts the bare body's bytes, to which details would add; add --base-only");

@@ -52,7 +52,9 @@ void add_options(Program& program, Arguments& a) {
   app.add_option("--axis", a.axis, "axis of rotation, through the centre of mass")
       .placeholder("X Y Z (default 0 0 1)")
       .default_text("");
-  app.add_option("--unit", a.unit, "length unit of the mesh's coordinates; km where nothing is said")
+  app.add_option(
+         "--unit", a.unit,
+         "length unit of the mesh's coordinates, in place of what its file states; km where neither says one")
       .check(one_of({"m", "km", "cm", "mm"}))
       .default_text("");
   a.repair.add_to(app);
@@ -135,7 +137,7 @@ BodyGravityOptions options_of(const Program& program, const Arguments& a, const 
           axis_of(a),   a.tolerance,
           a.exact,      a.sample,
           program.seed, a.degree,
-          a.radius,     read_parts(program, a.parts, body, a.density, a.resolution, a.repair)};
+          a.radius,     read_parts(program, a.parts, a.unit, body, a.density, a.resolution, a.repair)};
 }
 
 void write_outputs(Program& program, const Arguments& a, const GravityBody& body,
@@ -150,7 +152,7 @@ void write_outputs(Program& program, const Arguments& a, const GravityBody& body
 void run(Program& program, const Arguments& a) {
   check(program, a);
   nlohmann::ordered_json repair;
-  const GravityBody body = read_gravity_body(program, a.shape, a.unit, a.resolution, a.repair, repair);
+  const GravityBody body = read_gravity_body(program, a.shape, {a.unit}, a.resolution, a.repair, repair);
   const GravityPlaces places = places_of(a, body.mesh);
   const BodyGravity made = body_gravity(body, places, options_of(program, a, body),
                                         [&](const std::string& stage) { return program.progress(stage); });

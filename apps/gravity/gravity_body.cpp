@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "apps/unit_question.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
@@ -12,10 +11,10 @@
 namespace astrolith {
 
 GravityBody read_gravity_body(const Program& program, const std::filesystem::path& file,
-                              const std::string& unit, int resolution, const ShapeRepair& repair,
+                              const UnitChoice& unit, int resolution, const ShapeRepair& repair,
                               nlohmann::ordered_json& figures) {
   if (!is_recipe_name(file)) {
-    const std::string stated = unit.empty() ? "km" : unit;
+    const std::string stated = unit_of_mesh(program, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);
     // Edges of four facets, two each way, are no trouble for gravity.
     const MeshTopology topology = analyze_topology(mesh);
@@ -34,7 +33,7 @@ GravityBody read_gravity_body(const Program& program, const std::filesystem::pat
     return body;
   }
   const Recipe recipe = load_recipe(file);
-  if (!unit.empty() && unit != recipe.length_unit) {
+  if (!unit.given.empty() && unit.given != recipe.length_unit) {
     throw InputError("--unit: the recipe states " + recipe.length_unit + "; leave the option out");
   }
   return body_of_recipe(recipe, resolution, file.string(),

@@ -38,8 +38,9 @@ bool holds(const Box& outer, const Box& inner) {
 
 }  // namespace
 
-std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const GravityBody& whole,
-                                 double density, int resolution, ShapeRepair repair) {
+std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const std::string& unit,
+                                 const GravityBody& whole, double density, int resolution,
+                                 ShapeRepair repair) {
   repair.all_parts = true;
   std::vector<BodyPart> parts;
   std::istringstream all(words);
@@ -50,7 +51,7 @@ std::vector<BodyPart> read_parts(const Program& program, const std::string& word
     nlohmann::ordered_json figures;  // the body's are those of the summary
     BodyPart part{
         read.file,
-        read_gravity_body(program, read.file, recipe ? "" : whole.unit, resolution, repair, figures),
+        read_gravity_body(program, read.file, {recipe ? "" : unit, whole.unit}, resolution, repair, figures),
         read.density,
         (read.density - density) / density,
         {}};

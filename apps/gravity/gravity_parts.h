@@ -11,9 +11,10 @@
 namespace astrolith {
 
 // Reads parts given as FILE=DENSITY,FILE=DENSITY. A file is a closed mesh in the body's unit and frame, or a
-// recipe of that unit. Throws InputError for a word of another form, a negative density, and a part whose box
-// leaves that of the body. All bodies of a file count.
-std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const GravityBody& whole,
-                                 double density, int resolution, ShapeRepair repair);
+// recipe of that unit; `unit` is that of --unit, or empty. Throws InputError for a word of another form, a
+// negative density, and a part whose box leaves that of the body. All bodies of a file count.
+std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const std::string& unit,
+                                 const GravityBody& whole, double density, int resolution,
+                                 ShapeRepair repair);
 
 }  // namespace astrolith

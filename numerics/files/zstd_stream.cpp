@@ -29,6 +29,13 @@ Pointer made(Pointer pointer) {
   return pointer;
 }
 
+auto make_unpacker() {
+  auto unpacker = made(std::unique_ptr<ZSTD_DCtx, FreeUnpacker>(ZSTD_createDCtx()));
+  // 8 MB, the largest window that the zstd program writes without --ultra or --long.
+  ZSTD_DCtx_setParameter(unpacker.get(), ZSTD_d_windowLogMax, 23);
+  return unpacker;
+}
+
 }  // namespace
 
 bool is_zstd(std::string_view bytes) { return bytes.starts_with("\x28\xb5\x2f\xfd"); }
@@ -56,9 +63,7 @@ void pack_zstd(std::FILE* plain, OutputFile& packed) {
 }
 
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes) {
-  const auto unpacker = made(std::unique_ptr<ZSTD_DCtx, FreeUnpacker>(ZSTD_createDCtx()));
-  // 8 MB, the largest window that the zstd program writes without --ultra or --long.
-  ZSTD_DCtx_setParameter(unpacker.get(), ZSTD_d_windowLogMax, 23);
+  const auto unpacker = make_unpacker();
   std::string content;
   std::vector<char> out(kPiece);
   ZSTD_inBuffer input{packed.data(), packed.size(), 0};
@@ -77,6 +82,18 @@ std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes) {
     const bool starved = output.pos < output.size && input.pos == input.size;
     if (left != 0 && starved) throw InputError("is damaged (zstd: it ends too early); copy it again");
   }
+  return content;
+}
+
+std::string unpack_zstd_start(std::string_view packed, std::size_t bytes) {
+  const auto unpacker = make_unpacker();
+  std::string content(bytes, '\0');
+  ZSTD_inBuffer input{packed.data(), packed.size(), 0};
+  ZSTD_outBuffer output{content.data(), content.size(), 0};
+  while (output.pos < output.size && input.pos < input.size) {
+    if (ZSTD_isError(ZSTD_decompressStream(unpacker.get(), &output, &input)) != 0) break;
+  }
+  content.resize(output.pos);
   return content;
 }
 

@@ -23,4 +23,8 @@ void pack_zstd(std::FILE* plain, OutputFile& packed);
 // held: a small file can unpack to any size.
 std::string unpack_zstd(std::string_view packed, std::uint64_t most_bytes);
 
+// The first `bytes` bytes of the content of a file of which `packed` is the beginning; fewer where `packed`
+// does not yield them, or is damaged.
+std::string unpack_zstd_start(std::string_view packed, std::size_t bytes);
+
 }  // namespace astrolith

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of
+from astrolith._mesh import MeshLike, arrays_of, pair_of
 from astrolith._options import Progress
 from astrolith._recipe import Record, records
 
@@ -105,6 +105,8 @@ def compare(
 ) -> Record:
     """Measure how alike two meshes are, and how far apart their surfaces lie as they stand.
 
+    Where both state a unit of length, `b` is brought to that of `a`.
+
     Parameters
     ----------
     samples
@@ -116,14 +118,14 @@ def compare(
     -------
     Record
         The figures of ``compare``: similarity, l2, chi_square, jensen_shannon, earth_movers; mean_distance,
-        p99_distance and max_distance as fractions of the diagonal of a's box; in_units_of_the_files.
+        p99_distance and max_distance as fractions of the diagonal of a's box; in_units_of_the_files; length_unit.
 
     Raises
     ------
     ValueError
         A mesh has no area, or an argument is out of range.
     """
-    of_a, of_b = arrays_of(a, "a"), arrays_of(b, "b")
+    of_a, of_b, unit = pair_of(a, b)
     figures: Record = records(
         _synthesis.compare(
             of_a.name,
@@ -142,4 +144,6 @@ def compare(
             progress,
         )
     )
+    if unit:
+        figures["length_unit"] = unit
     return figures

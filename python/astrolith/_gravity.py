@@ -131,8 +131,8 @@ def gravity(
     axis
         The axis of rotation, which passes through the centre of mass.
     unit
-        The unit of a mesh's coordinates: "m", "km", "cm" or "mm". None: what the mesh states, else km. A recipe
-        states its own.
+        The unit of a mesh's coordinates: "m", "km", "cm" or "mm". None: what the mesh or its file states, else km. A
+        recipe states its own.
     at
         "facets": at their centres; "vertices": at these.
     points

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import warnings
 from typing import Any, Mapping, Optional, Union
 
 import numpy as np
@@ -94,16 +95,39 @@ def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
     return Arrays(name, checked, _arrays.faces_of(faces, f"{name}.faces", len(checked), empty=no_faces), normals)
 
 
-def unit_of(mesh: MeshLike, unit: Optional[str], units: tuple[str, ...]) -> str:
-    """The unit of a mesh's vertices: what the mesh states, else the argument `unit`, else km."""
-    stated = mesh.length_unit if isinstance(mesh, Mesh) else ""
+def stated_unit(mesh: MeshLike) -> str:
+    """The unit that a Mesh or a file states; "" where it states none."""
+    if isinstance(mesh, (str, os.PathLike)):
+        return _synthesis.stated_length_unit(os.fspath(mesh))
+    return mesh.length_unit if isinstance(mesh, Mesh) else ""
+
+
+def unit_of(mesh: MeshLike, unit: Optional[str], units: tuple[str, ...], otherwise: str = "km") -> str:
+    """The unit of a mesh's vertices: the argument `unit`, else what the mesh states, else `otherwise`.
+
+    Without `units` any unit will do. Warns where the mesh states another unit than the argument.
+    """
+    stated = stated_unit(mesh)
     if unit is not None:
-        _arrays.choice(unit, "unit", units)
-    if stated in units and unit not in (None, stated):
-        raise ValueError(f"unit: the mesh states {stated}; leave the argument out")
-    if stated and stated not in units and unit is None:
+        _arrays.choice(unit, "unit", units or tuple(_METRES))
+        if stated not in ("", unit):
+            warnings.warn(f"unit: the mesh states {stated}; it is taken in {unit}, as the argument says", stacklevel=3)
+        return unit
+    if stated and units and stated not in units:
         raise ValueError(f"unit: is missing; the mesh states {stated}, which is none of {', '.join(units)}")
-    return unit or stated or "km"
+    return stated or otherwise
+
+
+_METRES = {"km": 1000.0, "m": 1.0, "cm": 0.01, "mm": 0.001}
+
+
+def pair_of(a: MeshLike, b: MeshLike, unit: str = "") -> tuple[Arrays, Arrays, str]:
+    """Two meshes for a comparison and the unit of the first, "" where unknown; the second is brought to it."""
+    of_a, of_b = arrays_of(a, "a"), arrays_of(b, "b")
+    unit_of_a, unit_of_b = unit_of(a, unit or None, (), ""), unit_of(b, unit or None, (), "")
+    if unit_of_a in _METRES and unit_of_b in _METRES and unit_of_a != unit_of_b:
+        of_b.vertices = of_b.vertices * (_METRES[unit_of_b] / _METRES[unit_of_a])
+    return of_a, of_b, unit_of_a
 
 
 def _plain(array: Any) -> Any:
@@ -124,7 +148,7 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
     Returns
     -------
     Mesh
-        float64 vertices in the file's unit.
+        float64 vertices in the file's unit, which `length_unit` names where the file states it.
 
     Raises
     ------
@@ -132,7 +156,7 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
         The file is missing, damaged or of another kind. The message names the place in the file.
     """
     read = _synthesis.read_mesh(os.fspath(file), points, None)
-    return Mesh(read["vertices"], read["faces"], read.get("normals"))
+    return Mesh(read["vertices"], read["faces"], read.get("normals"), length_unit=stated_unit(file))
 
 
 def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:

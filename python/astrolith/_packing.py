@@ -70,7 +70,7 @@ def pack_spheres(
     density
         Of the body in kg/m3, above 0: the spheres then have masses.
     unit
-        The unit of the vertices, "km" or "m"; default: what a Mesh states, else "km".
+        The unit of the vertices, "km" or "m"; default: what a Mesh or a file states, else "km".
     output
         Write the table of ``fit_shape --packing-only`` to this file (.csv). The table of a file's mesh has the bytes
         that the program writes.

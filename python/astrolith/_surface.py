@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _options, _synthesis
-from astrolith._mesh import MeshLike, arrays_of
+from astrolith._mesh import MeshLike, arrays_of, pair_of
 from astrolith._options import Progress
 from astrolith._recipe import Record, records
 
@@ -120,7 +120,7 @@ def realism(
     floor
         Whether `a` is also judged against itself, sampled again: `b` cannot do better.
     unit
-        "m" or "km": the unit of both meshes, for the lengths in `words`.
+        "m" or "km": the unit of both meshes, for the lengths in `words`; "": what they state.
 
     Returns
     -------
@@ -133,7 +133,8 @@ def realism(
     ValueError
         A mesh has too few triangles or no area, or an argument is out of range.
     """
-    of_a, of_b = arrays_of(a, "a"), arrays_of(b, "b")
+    _arrays.choice(unit, "unit", ("", "m", "km"))
+    of_a, of_b, unit = pair_of(a, b, unit)
     figures: Record = records(
         _synthesis.realism(
             of_a.name,
@@ -147,7 +148,7 @@ def realism(
             float(period),
             float(density),
             bool(floor),
-            _arrays.choice(unit, "unit", ("", "m", "km")),
+            unit,
             _options.seed(seed),
             _options.threads(threads),
             progress,

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _estimation, _options
-from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of
+from astrolith._mesh import Mesh, MeshLike, arrays_of, stated_unit, unit_of
 from astrolith._options import Progress
 from astrolith._packing import Packing, pack_spheres
 from astrolith._recipe import PathLike, Recipe, Record, records
@@ -153,7 +153,7 @@ def fit_shape(
         Seconds after which the best so far is returned, measured figures included; default 0, none. The result then
         depends on the machine.
     unit
-        The unit of the vertices, "km" or "m"; default: what a Mesh states, else "km".
+        The unit of the vertices, "km" or "m"; default: what a Mesh or a file states, else "km".
     seed
         0 to 2**53 - 1; default 1.
     checkpoint
@@ -273,7 +273,7 @@ def repair_mesh(
     (True, True)
     """
     arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
-    unit = mesh.length_unit if isinstance(mesh, Mesh) else ""
+    unit = stated_unit(mesh)
     vertices, triangles, figures = _estimation.repair_mesh(
         arrays.name, arrays.vertices, arrays.faces, bool(wrap), bool(all_parts), unit, progress
     )

@@ -16,6 +16,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
+#include "geometry/io/stated_unit.h"
 #include "numerics/version/code_version.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
@@ -356,6 +357,9 @@ void bind_meshes(nb::module_& module) {
              nb::arg("min_component"), nb::arg("labels"), nb::arg("even"), nb::arg("format"),
              nb::arg("threads"));
   module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"), nb::arg("progress").none());
+  module.def(
+      "stated_length_unit", [](const std::string& file) { return stated_length_unit(file); },
+      nb::arg("file"));
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
              nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),

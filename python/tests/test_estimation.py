@@ -65,7 +65,7 @@ def test_a_time_limit_returns_the_best_so_far_and_a_report_shows_it(worm, tmp_pa
 
 
 def test_a_fit_in_few_bytes_has_the_bytes_of_fit_shape(worm, program, tmp_path):
-    astrolith.write_mesh(worm, tmp_path / "worm.ply")
+    astrolith.write_mesh((worm.vertices, worm.faces), tmp_path / "worm.ply")
     program("fit_shape", "worm.ply", "-o", "program.astro", "--base-only", "--bytes", 150, "--unit", "m",
             "--population", 4, "--seed", 3)  # fmt: skip
     options = {"base_only": True, "bytes": 150, "unit": "m", "population": 4, "seed": 3}
@@ -89,8 +89,8 @@ def test_bytes_are_those_of_a_bare_body(worm, example):
 def test_a_fit_takes_the_unit_that_a_mesh_states(worm, fit_of_metres):
     assert fit_of_metres.recipe.length_unit == "m"
     in_metres = astrolith.Mesh(worm.vertices, worm.faces, length_unit="m")
-    with pytest.raises(ValueError, match="^unit: the mesh states m; leave the argument out"):
-        astrolith.fit_shape(in_metres, unit="km")
+    with pytest.warns(UserWarning, match="^unit: the mesh states m; it is taken in km, as the argument says"):
+        assert astrolith.pack_spheres(in_metres, spheres=2, unit="km").length_unit == "km"
     in_inches = astrolith.Mesh(worm.vertices, worm.faces, length_unit="in")
     with pytest.raises(ValueError, match="^unit: is missing; the mesh states in, which is none of km, m"):
         astrolith.fit_shape(in_inches)

@@ -50,6 +50,19 @@ def test_tables_have_the_bytes_of_gravity(example, program, tmp_path, at):
     assert made.figures == {key: value for key, value in said.items() if key != "shape"}
 
 
+def test_files_state_their_unit(program, tmp_path):
+    ball, file = astrolith.mesh({**BALL, "length_unit": "m"}, resolution=16), tmp_path / "m.ply"
+    astrolith.write_mesh(ball, file)
+    assert astrolith.read_mesh(file).length_unit == "m"
+    mass = astrolith.gravity(ball, 2000.0).figures.body.mass_kg
+    assert astrolith.gravity(file, 2000.0).figures.body.mass_kg == pytest.approx(mass, rel=1e-6)
+    with pytest.warns(UserWarning, match="^unit: the mesh states m; it is taken in km, as the argument says"):
+        assert astrolith.gravity(file, 2000.0, unit="km").figures.body.mass_kg == pytest.approx(1e9 * mass, rel=1e-6)
+    in_km = astrolith.Mesh(ball.vertices / 1000, ball.faces, length_unit="km")
+    compared = astrolith.compare(in_km, file, points=200, samples=500)
+    assert compared.length_unit == "km" and compared.mean_distance < 1e-6
+
+
 def test_recipes_and_points_have_the_bytes_of_gravity(example, program, tmp_path):
     points = np.array([[0.0, 0.0, 0.0], [0.5, 0.25, -0.125], [10.0, 0.0, 0.0]])
     np.savetxt(tmp_path / "points.txt", points)

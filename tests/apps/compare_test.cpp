@@ -44,6 +44,17 @@ TEST_F(Compare, SpheresOfTwoSizesAreAlikeAndApart) {
   EXPECT_NEAR(other["in_units_of_the_files"]["from_b_to_a"]["max"], 2, 0.02);
 }
 
+TEST_F(Compare, BringsBothToOneUnit) {
+  write("km.obj", "# length unit: km\n" + testing::ellipsoid_obj(1, 1, 1, 47, 96));
+  write("m.obj", "# length unit: m\n" + testing::ellipsoid_obj(1000, 1000, 1000, 47, 96));
+  const auto same = compare("km.obj m.obj");
+  EXPECT_EQ(same["length_unit"], "km");
+  EXPECT_LT(same["mean_distance"], 1e-6);
+  EXPECT_GT(compare("ball.obj m.obj")["mean_distance"], 1.0);
+  const std::string said = succeed("km.obj m.obj --points 300 --samples 500 --realism --places 300");
+  EXPECT_TRUE(testing::has(said, "m.obj: from m to km, the unit of km.obj")) << said;
+}
+
 TEST_F(Compare, WritesAFileAndASummary) {
   const testing::Outcome outcome =
       run("ball.obj long.obj -o c.json --points 300 --samples 500 --summary s.json");

@@ -257,6 +257,15 @@ TEST_F(FitShape, SaysWhenTheNameOfTheBodyDoesNotGoWithTheUnit) {
   EXPECT_FALSE(has(succeed("erosion.obj --unit m" + packing), "mean radius"));
 }
 
+TEST_F(FitShape, TakesTheUnitThatTheMeshStates) {
+  write("m.obj", "# length unit: m\n" + testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24));
+  const std::string packing = " -o t.csv --packing-only --spheres 2";
+  succeed("m.obj" + packing);
+  EXPECT_TRUE(has(text("t.csv"), "lengths in m"));
+  EXPECT_TRUE(has(succeed("m.obj --unit km" + packing), "note: m.obj: states its unit as m; taken in km"));
+  EXPECT_TRUE(has(text("t.csv"), "lengths in km"));
+}
+
 TEST_F(FitShape, MeshesThatCanBeMendedAreFitted) {
   const auto said = [&](const std::string& content) {
     return succeed(write("mesh.obj", content) + " -o t.csv --packing-only --spheres 2");

@@ -67,6 +67,25 @@ TEST_F(Gravity, AsksBackWhereItMayBeMistaken) {
       has(run("bennu_v20.obj --density 1190").errors, "km is not that of bennu (0.245 km); is --unit km"));
 }
 
+TEST_F(Gravity, TakesTheUnitThatAFileStates) {
+  const auto mass_of = [&](const std::string& line) {
+    return gravity(line + " --density 2000 --degree 0")["body"]["mass_kg"].get<double>();
+  };
+  const double mass = mass_of("ball.obj");
+  write("metres.obj", "# length unit: m\n" + ellipsoid_obj(1000, 1000, 1000, 31, 64));
+  EXPECT_NEAR(mass_of("metres.obj"), mass, 1e-6 * mass);
+  EXPECT_EQ(run("metres.obj --density 2000 --degree 0 --unit m").errors, "");
+  const Outcome other = run("metres.obj --density 2000 --degree 0 --unit cm");
+  EXPECT_TRUE(has(other.errors, "note: metres.obj: states its unit as m; taken in cm, as --unit says"));
+  EXPECT_NEAR(nlohmann::json::parse(other.output)["body"]["mass_kg"].get<double>() * 1e6, mass, 1e-6 * mass);
+  write("feet.obj", "# length unit: ft\n" + ellipsoid_obj(1, 1, 1, 31, 64));
+  refuse("feet.obj --density 2000", "feet.obj: states its unit as ft, which is none of m, km, cm, mm");
+  write("core.obj", ellipsoid_obj(500, 500, 500, 31, 64));  // states none: in the body's
+  EXPECT_NEAR(
+      gravity("metres.obj --density 2000 --density-of core.obj=4000")["body"]["mass_kg"].get<double>(),
+      1.125 * mass, 1e-3 * mass);
+}
+
 // A ball of 1 km, 2,000 kg/m3: mass and fields within the error of its polyhedron.
 TEST_F(Gravity, OfABallThatTurns) {
   const double period = 5.0, turn = 2 * std::numbers::pi / (3600 * period), density = 2000.0;

@@ -30,6 +30,10 @@ TEST_F(Render, DrawsMeshesInTheColoursOfAProperty) {
   EXPECT_TRUE(plain == picture("--threads 1"));
   succeed("v.ply -o p.png --color age_s --range -1 5 --summary s.json");
   EXPECT_EQ(json("s.json")["range"], nlohmann::json({-1, 5}));
+  const std::string in_metres = picture("--unit m");
+  EXPECT_FALSE(plain == in_metres);
+  write("v.ply", text("v.ply").replace(0, 4, "ply\ncomment length unit: m\n"));
+  EXPECT_TRUE(in_metres == picture(""));
 }
 
 TEST_F(Render, RefusesWhatCannotBeDrawn) {

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays
-from astrolith._mesh import Mesh, MeshLike, arrays_of
+from astrolith._mesh import Mesh, MeshLike, arrays_of, stated_unit
 from astrolith._recipe import PathLike
 from astrolith.bridges._optional import required
 
@@ -38,8 +38,7 @@ class Kernels:
 def _plates(mesh: MeshLike, unit: Optional[str], name: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
     """Vertices in kilometres of the body-fixed frame, and plates whose vertices are counted from 1."""
     arrays = arrays_of(mesh, name)
-    stated = mesh.length_unit if isinstance(mesh, Mesh) else ""
-    scale = _KILOMETRES[_arrays.choice(stated or unit or "km", f"{name}.length_unit", tuple(_KILOMETRES))]
+    scale = _KILOMETRES[_arrays.choice(stated_unit(mesh) or unit or "km", f"{name}.length_unit", tuple(_KILOMETRES))]
     origin = (mesh.origin if isinstance(mesh, Mesh) else None) or (0.0, 0.0, 0.0)
     vertices = (arrays.vertices + np.array(origin)) * scale
     if len(vertices) > _MOST_VERTICES or len(arrays.faces) > _MOST_PLATES:

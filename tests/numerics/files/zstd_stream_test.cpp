@@ -76,5 +76,15 @@ TEST(ZstdStream, DamagedBytesAreRefused) {
   EXPECT_THROW(unpack_zstd(whole + "more", 1'000'000), InputError);
 }
 
+TEST(ZstdStream, ABeginningGivesTheBeginningOfTheContent) {
+  const testing::ScratchFolder folder;
+  const std::string text = noisy(1'000'000), whole = packed(folder, text);
+  for (const std::size_t size : {std::size_t{1}, std::size_t{4096}, text.size(), 2 * text.size()})
+    EXPECT_EQ(unpack_zstd_start(whole, size), text.substr(0, size)) << size;
+  EXPECT_EQ(unpack_zstd_start(std::string_view(whole).substr(0, 1 << 18), 4096), text.substr(0, 4096));
+  EXPECT_EQ(unpack_zstd_start(std::string_view(whole).substr(0, 9), 4096), "");
+  EXPECT_EQ(unpack_zstd_start("no frame", 4096), "");
+}
+
 }  // namespace
 }  // namespace astrolith
