@@ -1,5 +1,8 @@
 #include "apps/picture_options.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "apps/pixel_size.h"
@@ -136,8 +139,19 @@ void PictureOptions::light_from(const Vec3d& direction) {
   sun = {direction.x, direction.y, direction.z};
 }
 
-void PictureOptions::write(const RgbaImage16& image, const std::filesystem::path& file) const {
-  write_png(image, bits, background == "transparent", file);
+void PictureOptions::write(const Program& program, const RenderedPicture& picture,
+                           const std::filesystem::path& file) const {
+  write_png(picture.image, bits, background == "transparent", file);
+  for (const std::size_t view : picture.empty_views) {
+    program.say(fmt::format(
+        "note: {}: the body covers no pixel of view {}; bring its camera nearer, turn it or narrow its fov",
+        file.string(), view + 1));
+  }
+}
+
+bool PictureOptions::has_pinholes() const {
+  const std::vector<Camera> all = cameras_of(cameras);
+  return std::any_of(all.begin(), all.end(), [](const Camera& camera) { return camera.field_of_view > 0.0; });
 }
 
 }  // namespace astrolith

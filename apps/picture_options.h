@@ -39,7 +39,10 @@ struct PictureOptions {
   void look_from(const Vec3d& direction);
   void light_from(const Vec3d& direction);
 
-  void write(const RgbaImage16& image, const std::filesystem::path& file) const;
+  // Writes the picture, and says which of its views show nothing of the body.
+  void write(const Program& program, const RenderedPicture& picture, const std::filesystem::path& file) const;
+
+  bool has_pinholes() const;
 };
 
 }  // namespace astrolith

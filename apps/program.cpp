@@ -239,10 +239,13 @@ void Program::timed(const std::function<void()>& work) {
   start_ = std::chrono::steady_clock::now();
   work();
   for (const std::string& line : notes_) say(line);
-  if (summary_file.empty()) return;
+  if (!summary_file.empty()) save_summary(summary_file);
+}
+
+void Program::save_summary(const std::string& file) {
   if (!summary.contains("seconds")) summary["seconds"] = seconds();
   if (interrupted()) summary["interrupted"] = true;
-  write_summary(summary_file, summary);
+  write_summary(file, summary);
 }
 
 Progress Program::progress(std::string stage) const {

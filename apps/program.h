@@ -69,6 +69,9 @@ class Program {
   // quiet and summary left out, since they do not change the result.
   std::vector<std::pair<std::string, std::string>> given_options() const;
 
+  // Writes the summary so far into a file, with the seconds and an interruption; run() does it in the end.
+  void save_summary(const std::string& file);
+
   // Wall-clock seconds since run() began the work.
   double seconds() const;
   // Seconds that all threads of the program have spent so far, from its start.

@@ -77,7 +77,7 @@ void run(Program& program, const Arguments& a) {
   const TriangleMesh mesh = read_mesh(a.shape);
   PreviewOptions options = a.look.options(program, mesh, unit_of_mesh(program, a.shape, {a.unit, ""}, {}));
   if (!a.color.empty()) color_by(program, a, options);
-  a.look.write(render_picture(mesh, options, program.progress("render")), a.output);
+  a.look.write(program, render_picture(mesh, options, program.progress("render")), a.output);
   program.summary["triangles"] = mesh.triangles.size();
   program.summary["width"] = options.width;
   program.summary["height"] = options.height;

@@ -96,7 +96,7 @@ void write_gravity_preview(const Program& program, const GravityBody& body, cons
   options.marks.values = {range.low, range.high, title_of_column(column.name)};
   paint_sites(body.mesh, sites, options.vertex_colors);
   if (!sites.empty() && look.cameras.empty() && look.views.empty()) options.views = views_from_above(sites);
-  look.write(render_picture(body.mesh, options, program.progress("preview")), file);
+  look.write(program, render_picture(body.mesh, options, program.progress("preview")), file);
   program.say(
       fmt::format("{}: {}; colours from {:.4g} to {:.4g}, the 1st and 99th percentile, of {:.4g} to {:.4g}",
                   file.string(), column.name, range.low, range.high, range.least, range.most));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/density_question.h"
 #include "apps/output_names.h"
@@ -104,7 +105,8 @@ void declare_options(Program& program, Options& options) {
       .add_option(
           "--count", options.count,
           "make N bodies in place of one, with the seeds --seed, --seed + 1 and so on: {n} in the names of "
-          "files stands for the seed, with which --seed makes the same body again")
+          "files stands for the seed, with which --seed makes the same body again. A --summary without {n} "
+          "is one of all bodies")
       .check(in_range(1, kMostInSeries))
       .placeholder("N")
       .default_text("");
@@ -253,34 +255,59 @@ void synthesize(Program& program, Options options) {
   make_mesh(program, options.mesh, made, body_file, options.output);
 }
 
+// The names of all files that a body may have, but for its summary.
+std::vector<fs::path*> names_of(Options& options) {
+  MeshRequest& mesh = options.mesh;
+  return {&options.output,    &options.written_recipe, &mesh.preview.file,
+          &mesh.preview.maps, &mesh.height_map,        &mesh.landforms};
+}
+
 // The options of the body with this seed.
 Options numbered(Options options, std::uint64_t seed) {
-  MeshRequest& mesh = options.mesh;
-  for (fs::path* name : {&options.output, &options.written_recipe, &mesh.preview.file, &mesh.preview.maps,
-                         &mesh.height_map, &mesh.landforms}) {
-    *name = with_seed(*name, seed);
-  }
+  for (fs::path* name : names_of(options)) *name = with_seed(*name, seed);
   options.seeded = true;
   return options;
 }
 
-// Makes bodies one after another, each as --seed makes it.
-void synthesize_series(Program& program, const Options& options) {
-  const MeshRequest& mesh = options.mesh;
-  check_series_names({options.output, options.written_recipe, mesh.preview.file, mesh.preview.maps,
-                      mesh.height_map, mesh.landforms});
+// Makes one body, and takes its own time into its summary.
+void synthesize_timed(Program& program, const Options& options) {
+  const double began = program.seconds();
+  synthesize(program, options);
+  program.summary["seconds"] = program.seconds() - began;
+}
+
+// Makes bodies one after another, each as --seed makes it. A summary with {n} in its name is one of each
+// body, another one that of all.
+void synthesize_series(Program& program, const Options& options, const std::vector<fs::path>& names) {
+  check_series_names(names);
   const std::uint64_t first = program.seed, end = first + static_cast<std::uint64_t>(options.count);
   constexpr std::uint64_t kLargestSeed = 9007199254740991u;  // of --seed
   if (end - 1 > kLargestSeed)
     throw InputError("--count: the last body's seed would be too large; lower --seed");
-  for (std::uint64_t seed = first; seed < end; ++seed) check_outputs(program, numbered(options, seed));
+  const fs::path summary = program.summary_file;
+  const bool one_each = has_seed_mark(summary);
+  for (std::uint64_t seed = first; seed < end; ++seed) {
+    check_outputs(program, numbered(options, seed));
+    if (one_each) require_writable(with_seed(summary, seed));
+  }
   nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   for (program.seed = first; program.seed < end; ++program.seed) {
     program.summary = {{"seed", program.seed}};
-    synthesize(program, numbered(options, program.seed));
+    synthesize_timed(program, numbered(options, program.seed));
+    if (one_each) program.save_summary(with_seed(summary, program.seed));
     bodies.push_back(program.summary);
   }
   program.summary = {{"bodies", bodies}};
+  if (one_each) program.summary_file.clear();
+}
+
+void synthesize_one_or_more(Program& program, Options& options) {
+  std::vector<fs::path> names;
+  for (const fs::path* name : names_of(options)) names.push_back(*name);
+  if (options.count > 0) return synthesize_series(program, options, names);
+  names.emplace_back(program.summary_file);
+  check_single_names(names);
+  synthesize(program, options);
 }
 
 }  // namespace
@@ -294,10 +321,6 @@ int main(int argc, char** argv) {
   astrolith::declare_options(program, options);
   return program.run(argc, argv, [&] {
     if (!options.members.folder.empty()) options.output = options.members.folder / "{member}.ply";
-    if (options.count > 0) {
-      astrolith::synthesize_series(program, options);
-    } else {
-      astrolith::synthesize(program, options);
-    }
+    astrolith::synthesize_one_or_more(program, options);
   });
 }

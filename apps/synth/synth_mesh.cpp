@@ -238,6 +238,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     extent.measure(result.collected());
   }
 
+  require_cameras_outside(program, request.preview, result.collected());
   result.paint();
   std::vector<VertexValues> quantities;
   if (request.gravity.wanted())
@@ -386,6 +387,7 @@ void make_mesh(Program& program, const MeshRequest& request, const Recipe& recip
   check_height_map(request.height_map, region, recipe, resolution);
   report_layers_left_out(program, field, recipe, file, region.is_patch);
   if (request.size.only_predict) return;
+  if (!region.is_cut()) require_cameras_outside(program, request.preview, field);
   const ChosenDevice chosen = request.device.choose(program, lacking_on_gpu(field, region, resolution));
   const MeshJob job{request, recipe, file, region, field, resolution, output};
   if (chosen || !(request.size.max_memory_gb > 0.0)) return make_files(program, job, chosen);

@@ -5,6 +5,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/srgb.h"
+#include "synthesis/field/field_mesh.h"
 
 namespace astrolith {
 namespace {
@@ -79,11 +80,31 @@ PreviewOptions maps_options(const Program& program, const PreviewRequest& reques
   return options;
 }
 
+void require_cameras_outside(const Program& program, const PreviewRequest& request,
+                             const ImplicitField& field) {
+  if (request.file.empty() || !request.look.has_pinholes()) return;
+  constexpr int kCells = 32;  // along the longest side of the body
+  MeshStatistics made;
+  const TriangleMesh coarse = coarse_mesh_of(field, kCells, &made);
+  if (coarse.triangles.empty()) return;
+  // Cameras that stand by the body's box are known to about a cell.
+  const double deep = 2.0 * made.step;
+  for (const Vec3d& place : pinhole_places(coarse, picture_options(program, request, coarse, ""))) {
+    if (field.value(place) > deep) fail_inside();
+  }
+}
+
+void require_cameras_outside(const Program& program, const PreviewRequest& request,
+                             const TriangleMesh& mesh) {
+  if (request.file.empty() || !request.look.has_pinholes()) return;
+  require_cameras_outside(mesh, picture_options(program, request, mesh, ""));
+}
+
 void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit) {
   PreviewOptions options = picture_options(program, request, mesh, unit);
   for (const VertexColor& color : mesh.colors) options.vertex_colors.push_back(linear_color(color));
-  request.look.write(render_picture(mesh, options, program.progress("preview")), request.file);
+  request.look.write(program, render_picture(mesh, options, program.progress("preview")), request.file);
 }
 
 }  // namespace astrolith

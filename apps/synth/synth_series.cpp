@@ -12,6 +12,10 @@ constexpr std::string_view kSeedMark = "{n}";
 
 }  // namespace
 
+bool has_seed_mark(const std::filesystem::path& name) {
+  return name.string().find(kSeedMark) != std::string::npos;
+}
+
 std::filesystem::path with_seed(const std::filesystem::path& name, std::uint64_t number) {
   std::string text = name.string();
   const std::string digits = std::to_string(number);
@@ -21,11 +25,19 @@ std::filesystem::path with_seed(const std::filesystem::path& name, std::uint64_t
   return text;
 }
 
-void check_series_names(std::initializer_list<std::filesystem::path> names) {
+void check_series_names(const std::vector<std::filesystem::path>& names) {
   for (const std::filesystem::path& name : names) {
-    if (name.empty() || name.string().find(kSeedMark) != std::string::npos) continue;
+    if (name.empty() || has_seed_mark(name)) continue;
     throw InputError("--count: every body writes a file of its own; put {n} into the name " + name.string() +
                      ", as in rock_{n}" + name.extension().string());
+  }
+}
+
+void check_single_names(const std::vector<std::filesystem::path>& names) {
+  for (const std::filesystem::path& name : names) {
+    if (!has_seed_mark(name)) continue;
+    throw InputError(name.string() +
+                     ": {n} stands for the seed of each body of --count N; add --count, or leave {n} out");
   }
 }
 

@@ -53,6 +53,7 @@ PictureMaps render_maps(const TriangleMesh& mesh, const PreviewOptions& options,
   check_preview_options(options, mesh);
   const RayScene scene(mesh);
   const PreviewRays rays(mesh, options, scene);
+  rays.require_outside(scene);
   const std::vector<Vec3d> normals =
       mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh);
   PictureMaps maps = empty_maps(options);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
@@ -104,6 +107,7 @@ class Painter {
         rays_(mesh, options, scene_),
         normals_(mesh.normals.size() == mesh.vertices.size() ? mesh.normals : vertex_normals(mesh)),
         places_(sample_places(options.oversampling * options.oversampling, options.seed)) {
+    rays_.require_outside(scene_);
     for (std::size_t view = 0; view < options.views.size(); ++view)
       suns_.push_back(make_sun(rays_.camera(view), options));
     for (int k = 0; k < kTurns * kTurns; ++k) {
@@ -114,6 +118,12 @@ class Painter {
 
   void draw_marks(RgbaImage16& image) const {
     astrolith::draw_marks(image, options_, rays_, rays_.pixel() / scene_.scale());
+  }
+
+  // The bit of the view that a pixel belongs to.
+  std::uint64_t view_bit(int x, int y) const {
+    const std::optional<std::size_t> view = rays_.view_at(x + 0.5, y + 0.5);
+    return view ? std::uint64_t{1} << *view : 0;
   }
 
   Probe probe(int x, int y) const {
@@ -221,19 +231,35 @@ class SrgbTable {
 class BandPainter {
  public:
   BandPainter(const Painter& painter, const PreviewOptions& options, RgbaImage16& image)
-      : painter_(painter), options_(options), image_(image) {}
+      : painter_(painter), options_(options), image_(image), shown_(static_cast<std::size_t>(image.height)) {}
 
   void paint(int first, int end) {
     first_probe_ = std::max(0, first - 1);
     const int end_probe = std::min(image_.height, end + 1);
     probes_.resize(static_cast<std::size_t>(end_probe - first_probe_) * columns());
     parallel_for(first_probe_, end_probe, [&](std::int64_t y) {
-      for (int x = 0; x < image_.width; ++x)
-        probes_[index(x, static_cast<int>(y))] = painter_.probe(x, static_cast<int>(y));
+      std::uint64_t shown = 0;
+      for (int x = 0; x < image_.width; ++x) {
+        Probe& probe = probes_[index(x, static_cast<int>(y))];
+        probe = painter_.probe(x, static_cast<int>(y));
+        if (probe.seen.cover > 0.0f) shown |= painter_.view_bit(x, static_cast<int>(y));
+      }
+      shown_[static_cast<std::size_t>(y)] = shown;
     });
     parallel_for(first, end, [&](std::int64_t y) {
       for (int x = 0; x < image_.width; ++x) paint_pixel(x, static_cast<int>(y), end_probe);
     });
+  }
+
+  // The views that no probe has met the mesh in. Call it when all rows are painted.
+  std::vector<std::size_t> empty_views() const {
+    const std::uint64_t shown =
+        std::accumulate(shown_.begin(), shown_.end(), std::uint64_t{0}, std::bit_or<>());
+    std::vector<std::size_t> empty;
+    for (std::size_t view = 0; view < options_.views.size(); ++view) {
+      if ((shown >> view & 1) == 0) empty.push_back(view);
+    }
+    return empty;
   }
 
  private:
@@ -271,6 +297,7 @@ class BandPainter {
   SrgbTable srgb_;
   int first_probe_ = 0;
   std::vector<Probe> probes_;
+  std::vector<std::uint64_t> shown_;  // for each row, the bits of the views in which a probe met the mesh
 };
 
 }  // namespace
@@ -282,8 +309,25 @@ Sunlight sun_at_phase(double phase_degrees, double azimuth_degrees) {
   return {{-s * portable::sin(azimuth), s * portable::cos(azimuth), portable::cos(phase)}, false};
 }
 
-RgbaImage16 render_picture(const TriangleMesh& mesh, const PreviewOptions& options,
-                           const Progress& progress) {
+std::vector<Vec3d> pinhole_places(const TriangleMesh& mesh, const PreviewOptions& options) {
+  check_preview_options(options, mesh);
+  const RayScene scene(mesh);
+  const PreviewRays rays(mesh, options, scene);
+  std::vector<Vec3d> places;
+  for (std::size_t view = 0; view < options.views.size(); ++view) {
+    if (rays.camera(view).is_pinhole) places.push_back(scene.from_unit(rays.camera(view).eye));
+  }
+  return places;
+}
+
+void require_cameras_outside(const TriangleMesh& mesh, const PreviewOptions& options) {
+  check_preview_options(options, mesh);
+  const RayScene scene(mesh);
+  PreviewRays(mesh, options, scene).require_outside(scene);
+}
+
+RenderedPicture render_picture(const TriangleMesh& mesh, const PreviewOptions& options,
+                               const Progress& progress) {
   check_preview_options(options, mesh);
   const Painter painter(mesh, options);
   RgbaImage16 image{options.width, options.height, {}};
@@ -298,11 +342,11 @@ RgbaImage16 render_picture(const TriangleMesh& mesh, const PreviewOptions& optio
     }
   }
   painter.draw_marks(image);
-  return image;
+  return {std::move(image), bands.empty_views()};
 }
 
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options, const Progress& progress) {
-  return opaque_bytes(render_picture(mesh, options, progress));
+  return opaque_bytes(render_picture(mesh, options, progress).image);
 }
 
 }  // namespace astrolith

@@ -2,6 +2,7 @@
 // bodies, soft shadows and ambient light. The pixels are the same on every run and for any number of threads.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -54,11 +55,26 @@ struct PreviewOptions {
   std::uint64_t seed = 1;                             // decides where samples lie within pixels
 };
 
+struct RenderedPicture {
+  RgbaImage16 image;
+  std::vector<std::size_t> empty_views;  // those whose pixels, seen in their middles, all miss the mesh
+};
+
 // Shading is smooth: it uses mesh.normals where given, and otherwise normals averaged over triangles. Throws
 // InputError for a mesh without triangles, with indices out of range or with positions that are not finite,
 // for options out of range and for a camera inside the mesh. Throws WorkError when progress asks to stop.
-RgbaImage16 render_picture(const TriangleMesh& mesh, const PreviewOptions& options = {},
-                           const Progress& progress = {});
+RenderedPicture render_picture(const TriangleMesh& mesh, const PreviewOptions& options = {},
+                               const Progress& progress = {});
+
+// The places of the pinholes among the views, in lengths of the mesh. Throws InputError for a mesh and
+// options that render_picture refuses, but for a camera inside the mesh.
+std::vector<Vec3d> pinhole_places(const TriangleMesh& mesh, const PreviewOptions& options);
+
+// Throws the InputError of a camera that stands inside the body, with what to do.
+[[noreturn]] void fail_inside();
+
+// Throws InputError where render_picture would refuse a camera inside the mesh.
+void require_cameras_outside(const TriangleMesh& mesh, const PreviewOptions& options);
 
 // The picture in 8 bits, without its transparency.
 RgbImage render_preview(const TriangleMesh& mesh, const PreviewOptions& options = {},

@@ -118,9 +118,6 @@ PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options
     ViewCamera camera = oriented(view);
     if (view.field_of_view > 0.0) {
       place_pinhole(view, scene, mesh, tile_width(), tile_height(), camera);
-      if (is_inside(camera, scene)) {
-        throw InputError("camera: it stands inside the body or below its ground; give a larger distance");
-      }
     } else {
       place_orthographic(view, scene, mesh, camera);
     }
@@ -135,6 +132,16 @@ PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options
   if (pixel_ == kLeastPixel && at_body > 0.0) pixel_ = at_body;
   for (ViewCamera& camera : cameras_) {
     if (!camera.is_pinhole) camera.pixel = pixel_;
+  }
+}
+
+void fail_inside() {
+  throw InputError("camera: it stands inside the body or below its ground; give a larger distance");
+}
+
+void PreviewRays::require_outside(const RayScene& scene) const {
+  for (const ViewCamera& camera : cameras_) {
+    if (camera.is_pinhole && is_inside(camera, scene)) fail_inside();
   }
 }
 

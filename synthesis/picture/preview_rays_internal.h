@@ -36,8 +36,11 @@ struct ViewCamera {
 
 class PreviewRays {
  public:
-  // Throws InputError for a camera along its own up direction, and for one inside the mesh.
+  // Throws InputError for a camera along its own up direction.
   PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options, const RayScene& scene);
+
+  // Throws InputError for a pinhole inside the mesh.
+  void require_outside(const RayScene& scene) const;
 
   // The view whose tile has a place of the picture, in pixels from its top left corner. Tiles that are left
   // over have none.

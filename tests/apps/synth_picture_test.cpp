@@ -36,6 +36,19 @@ TEST_F(SynthPicture, PicturesCanBeTakenFromElsewhere) {
   refuse("r.json -o x.ply --preview p.png --sun 0 0 0", "--sun");
 }
 
+TEST_F(SynthPicture, CamerasThatSeeNothingAreNamed) {
+  const std::string line = "rod.json -o x.ply --resolution 32 --preview p.png --camera ";
+  // The second stands just below the surface of the mesh, where a coarse mesh proves nothing.
+  for (const char* camera : {"\"lat 20 lon 45 fov 30 radii .01\"", "\"at 0 0 .95 target 3 0 .95 fov 30\""}) {
+    refuse(line + camera, "camera: it stands inside the body");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "x.ply"));
+  }
+  EXPECT_TRUE(has(succeed(line + "\"at 0 0 9 target 0 0 20 fov 30\" --camera \"lat 0 fov 30\""),
+                  "note: p.png: the body covers no pixel of view 1"));
+  EXPECT_TRUE(has(succeed(line + "\"lat 0 fov 30 radii 1e6\""), "covers no pixel of view 1"));
+  EXPECT_FALSE(has(succeed(line + "\"lat 0 fov 30 radii 4\""), "no pixel"));
+}
+
 // The width and height of a PNG, from its header.
 std::pair<int, int> size_of_png(const std::string& png) {
   const auto number = [&](std::size_t at) {

@@ -38,6 +38,13 @@ TEST_F(SynthVariation, OneCommandMakesSeveralAsEachIsMadeSingly) {
   succeed("r.json --resolution 24 --count 2 -o plain_{n}.ply");
   succeed("r.json --resolution 24 --seed 2 -o single.ply");
   EXPECT_TRUE(text("single.ply") == text("plain_2.ply"));
+  succeed("r.json --resolution 24 --count 2 -o p_{n}.ply --preview p_{n}.png --summary p_{n}.json");
+  EXPECT_EQ(json("p_2.json").at("sha256"), sha256_of_file(folder_ / "p_2.ply"));
+  EXPECT_EQ(json("p_1.json").at("seed"), 1);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "p_1.png") && std::filesystem::exists(folder_ / "p_2.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "p_{n}.json"));
+  refuse("r.json -o rock_{n}.ply", "rock_{n}.ply: {n} stands for the seed of each body of --count N");
+  refuse("r.json -o rock.ply --summary s_{n}.json", "s_{n}.json: {n} stands for the seed");
   refuse("r.json --count 2 -o rock.glb", "put {n} into the name rock.glb");
   refuse("r.json --count 2 -o rock_{n}.glb --preview p.png", "put {n} into the name p.png");
   refuse("r.json --count 0 -o rock_{n}.glb", "--count");

@@ -46,7 +46,7 @@ TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   const int strip = marks_height(marked);
   ASSERT_GT(strip, 0);
   plain.height -= strip;
-  const RgbaImage16 without = render_picture(mesh, plain), with = render_picture(mesh, marked);
+  const RgbaImage16 without = render_picture(mesh, plain).image, with = render_picture(mesh, marked).image;
   ASSERT_GT(with.pixels.size(), without.pixels.size());
   EXPECT_TRUE(std::equal(without.pixels.begin(), without.pixels.end(), with.pixels.begin()));
   const auto bright = [&](const RgbaImage16& image) {
@@ -56,7 +56,7 @@ TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   EXPECT_GT(bright(with), 300) << "bars and letters";
 
   marked.marks.axes = true;
-  const RgbaImage16 axes = render_picture(mesh, marked);
+  const RgbaImage16 axes = render_picture(mesh, marked).image;
   int changed = 0, over_body = 0;
   for (std::size_t i = 0; i < without.pixels.size(); i += 4) {
     if (axes.pixels[i] == with.pixels[i] && axes.pixels[i + 2] == with.pixels[i + 2]) continue;

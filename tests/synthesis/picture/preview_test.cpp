@@ -129,7 +129,7 @@ TEST(Preview, ColoursOfVerticesShow) {
 TEST(Preview, TransparentPicturesHaveCoverage) {
   PreviewOptions options = one_view();
   options.transparent = true;
-  const RgbaImage16 image = render_picture(sphere_mesh(), options);
+  const RgbaImage16 image = render_picture(sphere_mesh(), options).image;
   const auto alpha = [&](std::size_t x, std::size_t y) { return image.pixels[4 * (64 * y + x) + 3]; };
   EXPECT_EQ(alpha(1, 1), 0);
   EXPECT_EQ(alpha(32, 32), 65535);
@@ -148,7 +148,7 @@ TEST(Preview, LambertAndLommelSeeligerFollowTheirFormulas) {
   options.vertex_colors.assign(sphere_mesh().vertices.size(), {0.5f, 0.5f, 0.5f});
   const auto middle = [&](double lunar_share) {
     options.lunar_share = lunar_share;
-    return linear_of_srgb(render_picture(sphere_mesh(), options).pixels[4 * (64 * 32 + 32)] / 65535.0);
+    return linear_of_srgb(render_picture(sphere_mesh(), options).image.pixels[4 * (64 * 32 + 32)] / 65535.0);
   };
   EXPECT_NEAR(middle(kLambert), 0.5 * 0.5, 0.01);
   EXPECT_NEAR(middle(kLommelSeeliger), 0.5 * 2 * 0.5 / 1.5, 0.01);
