@@ -1,6 +1,7 @@
 // The part of a triangle that a cube on the ground holds, and sums of heights over the cube's square.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -33,14 +34,35 @@ inline GroundPolygon cut_by_plane(const GroundPolygon& polygon, double Vec3d::*a
   return kept;
 }
 
-// The part of a triangle in a cube of this side and these axes about the origin.
+// One coordinate of a triangle's corners.
+struct CornerCoordinate {
+  std::array<double, 3> at;
+  double least, most;
+
+  CornerCoordinate(const std::array<Vec3d, 3>& triangle, const Vec3d& axis)
+      : at{dot(triangle[0], axis), dot(triangle[1], axis), dot(triangle[2], axis)},
+        least(std::min({at[0], at[1], at[2]})),
+        most(std::max({at[0], at[1], at[2]})) {}
+};
+
+// The part of a triangle in a cube of this side and these axes about the origin. Most triangles near a cube lie
+// wholly inside or outside: only planes that have a corner beyond them cut.
 inline GroundPolygon cut_to_cube(const std::array<Vec3d, 3>& triangle, const GroundAxes& axes, double side) {
+  const double half = 0.5 * side;
+  const auto beyond = [half](const CornerCoordinate& c) { return c.least > half || c.most < -half; };
+  const CornerCoordinate x(triangle, axes.right);
+  if (beyond(x)) return {};
+  const CornerCoordinate y(triangle, axes.ahead);
+  if (beyond(y)) return {};
+  const CornerCoordinate z(triangle, axes.up);
+  if (beyond(z)) return {};
   GroundPolygon polygon;
-  for (const Vec3d& p : triangle) polygon.add({dot(p, axes.right), dot(p, axes.ahead), dot(p, axes.up)});
-  for (double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-    polygon = cut_by_plane(polygon, axis, 1.0, 0.5 * side);
-    polygon = cut_by_plane(polygon, axis, -1.0, 0.5 * side);
-  }
+  for (std::size_t k = 0; k < 3; ++k) polygon.add({x.at[k], y.at[k], z.at[k]});
+  const auto cut = [&](const CornerCoordinate& c, double Vec3d::*axis) {
+    if (c.most > half) polygon = cut_by_plane(polygon, axis, 1.0, half);
+    if (c.least < -half) polygon = cut_by_plane(polygon, axis, -1.0, half);
+  };
+  cut(x, &Vec3d::x), cut(y, &Vec3d::y), cut(z, &Vec3d::z);
   return polygon;
 }
 
