@@ -113,9 +113,11 @@ const std::vector<std::string> kInputs{"base", "target", "points"};
 // Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".
 // The result names the program's option of that name instead, if there is one.
 std::string naming_options(const std::string& message, const CLI::App& app) {
-  const std::string name = message.substr(0, message.find(':'));
+  const std::size_t end = std::min(message.find(':'), message.size());
+  std::string name = message.substr(0, end);
+  std::replace(name.begin(), name.end(), '_', '-');
   for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_positional() && option->check_lname(name)) return "--" + message;
+    if (!option->get_positional() && option->check_lname(name)) return "--" + name + message.substr(end);
   }
   return message;
 }

@@ -78,7 +78,7 @@ void add_options(Program& program, Arguments& a) {
   app.add_option(
          "--preview", a.preview,
          "also a picture in colours, with a bar; with --sites one view from above each of the first nine, "
-         "whose ground is orange")
+         "whose ground is orange and has their numbers")
       .placeholder("FILE.png");
   app.add_option("--color", a.color, "what the colours of the picture say")
       .check(one_of(

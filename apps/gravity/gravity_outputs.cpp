@@ -95,6 +95,8 @@ void write_gravity_preview(const Program& program, const GravityBody& body, cons
   options.vertex_colors = sequential_colors(values, range.low, range.high);
   options.marks.values = {range.low, range.high, title_of_column(column.name)};
   paint_sites(body.mesh, sites, options.vertex_colors);
+  for (std::size_t i = 0; i < sites.size() && !look.no_marks; ++i)
+    options.marks.labels.push_back({sites[i].center, std::to_string(i + 1)});
   if (!sites.empty() && look.cameras.empty() && look.views.empty()) options.views = views_from_above(sites);
   look.write(program, render_picture(body.mesh, options, program.progress("preview")), file);
   program.say(

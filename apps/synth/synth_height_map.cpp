@@ -7,6 +7,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
+#include "numerics/vec3_json.h"
 #include "synthesis/picture/geotiff.h"
 
 namespace astrolith {
@@ -20,18 +21,16 @@ std::filesystem::path frame_file(const std::filesystem::path& file) {
   return std::filesystem::path(file).replace_extension(".json");
 }
 
-Json list(const Vec3d& v) { return {v.x, v.y, v.z}; }
-
 Json frame_json(const HeightMap& map, const Region& region, const Recipe& recipe) {
   const double metres = metres_of(recipe.length_unit);
   std::int64_t without = 0;
   for (const float height : map.heights) without += std::isnan(height) ? 1 : 0;
   return {{"pixels", map.side},
           {"metres_per_pixel", metres * map.pixel},
-          {"origin_m", list(metres * (region.center + map.origin))},
-          {"right", list(map.right)},
-          {"ahead", list(map.ahead)},
-          {"up", list(map.up)},
+          {"origin_m", json_of(metres * (region.center + map.origin))},
+          {"right", json_of(map.right)},
+          {"ahead", json_of(map.ahead)},
+          {"up", json_of(map.up)},
           {"body_frame", recipe.frame},
           {"pixel_center",
            "origin + (i + 1/2 - pixels/2) metres_per_pixel right + (pixels/2 - (j + 1/2)) "

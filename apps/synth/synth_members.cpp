@@ -16,6 +16,7 @@
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -175,8 +176,8 @@ class MemberMaker {
     request.landforms = numbered(mesh_.landforms, number);
     if (recipe_.family && !mesh_.preview.file.empty()) {
       set_light_and_view(*recipe_.family, member, request.preview);
-      if (recipe_.family->any_view) line["view"] = {member.view.x, member.view.y, member.view.z};
-      if (recipe_.family->any_sun) line["sun"] = {member.sun.x, member.sun.y, member.sun.z};
+      if (recipe_.family->any_view) line["view"] = json_of(member.view);
+      if (recipe_.family->any_sun) line["sun"] = json_of(member.sun);
     }
     const SilencedProgram silenced(program_);
     make_mesh(program_, request, member.recipe, file_, numbered(files_.mesh, number));

@@ -24,6 +24,7 @@
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 #include "numerics/memory_use.h"
+#include "numerics/vec3_json.h"
 #include "synthesis/field/landform_list.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
@@ -103,12 +104,11 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
   program.summary["cell"] = statistics.step;
   program.summary["active_blocks"] = statistics.active_blocks;
   program.summary["total_blocks"] = statistics.total_blocks;
-  if (region.is_patch) program.summary["origin"] = {region.center.x, region.center.y, region.center.z};
+  if (region.is_patch) program.summary["origin"] = json_of(region.center);
   if (!region.axes) return;
-  const auto list = [](const Vec3d& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
-  program.summary["patch_axes"] = {{"right", list(region.axes->right)},
-                                   {"ahead", list(region.axes->ahead)},
-                                   {"up", list(region.axes->up)}};
+  program.summary["patch_axes"] = {{"right", json_of(region.axes->right)},
+                                   {"ahead", json_of(region.axes->ahead)},
+                                   {"up", json_of(region.axes->up)}};
 }
 
 // A tile of a .ply may hold no triangle, so that the tiles of a body can be made one after the other.

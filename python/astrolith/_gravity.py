@@ -31,7 +31,7 @@ class Gravity:
         The names of the table's columns, with units.
     figures
         What ``gravity`` prints: unit, facets, body (mass, moments and axes), harmonics, values (ranges and means),
-        achieved_error.
+        achieved_error; sites.
     """
 
     table: npt.NDArray[np.float64]
@@ -82,6 +82,12 @@ class Gravity:
         return self._column("elevation_m")
 
     @property
+    def sites(self) -> list[Record]:
+        """The landing sites, best first: center, normal, latitude_deg, longitude_deg, mean_slope_deg, largest_slope_deg,
+        roughness_m, cost_deg and patch, the words of ``synth --patch``. Empty where none were asked for."""
+        return list(self.figures.get("sites", []))
+
+    @property
     def coefficients(self) -> npt.NDArray[np.float64]:
         """(2, degree + 1, degree + 1): C[l, m] and S[l, m] of the spherical harmonics, 4 pi normalised.
 
@@ -99,6 +105,21 @@ def _is_recipe(body: Any) -> bool:
     return isinstance(body, Mapping) or (isinstance(body, (str, os.PathLike)) and os.fspath(body).endswith((".json", ".astro")))
 
 
+def _site_lengths(sites: int, size: Optional[float], distance: Optional[float], at_facets: bool) -> tuple[float, float]:
+    """The side of landing sites and their distance; 0 where none are asked for."""
+    if not sites:
+        for name, value in (("site_size", size), ("site_distance", distance)):
+            if value is not None:
+                raise ValueError(f"{name}: is about sites; pass sites=N")
+        return 0.0, 0.0
+    if size is None:
+        raise ValueError("site_size: is missing; pass the side of a site, in the body's unit")
+    if not at_facets:
+        raise ValueError("sites: need slopes of facets; leave out points and at")
+    side = _arrays.positive(size, "site_size", 1e18)
+    return side, 2.0 * side if distance is None else _arrays.positive(distance, "site_distance", 1e18)
+
+
 def gravity(
     body: Union[MeshLike, RecipeLike],
     density: float,
@@ -114,6 +135,9 @@ def gravity(
     degree: int = 4,
     radius: float = 0.0,
     resolution: int = 128,
+    sites: int = 0,
+    site_size: Optional[float] = None,
+    site_distance: Optional[float] = None,
     seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
@@ -149,6 +173,12 @@ def gravity(
         Their reference radius in the body's unit; 0: the distance of the farthest vertex.
     resolution
         Cells along the longest side of a recipe's body, 8 to 4096.
+    sites
+        How many places to land to find by the slopes of the facets, 0 to 1000: level, smooth, and apart from one another.
+    site_size
+        The side of a site's square in the body's unit: at least 4 mean edges of the mesh, at most a quarter of the body.
+    site_distance
+        Between the centres of two sites at least, in the body's unit; None: two sides.
     seed
         Chooses the sample.
 
@@ -176,6 +206,7 @@ def gravity(
     towards = _arrays.vector(axis, "axis")
     if not any(towards):
         raise ValueError("axis: 0 0 0 is no direction; give another")
+    side, apart = _site_lengths(sites, site_size, site_distance, at == "facets" and points is None)
     name, json, arrays, length_unit = "body", "", None, ""
     if _is_recipe(body):
         json, name = json_of(body, "body")
@@ -201,6 +232,9 @@ def gravity(
         _arrays.integer(sample, "sample", 0, 100000),
         _arrays.integer(degree, "degree", 0, 50),
         _arrays.number(radius, "radius", 0.0, 1e18),
+        _arrays.integer(sites, "sites", 0, 1000),
+        side,
+        apart,
         _options.seed(seed),
         _options.threads(threads),
         progress,

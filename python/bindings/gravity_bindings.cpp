@@ -18,6 +18,7 @@
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
 #include "tasks/gravity/body_gravity.h"
+#include "tasks/gravity/landing_sites.h"
 
 namespace astrolith::python {
 namespace {
@@ -30,6 +31,7 @@ struct GravityArguments {
   std::string at;        // "facets" or "vertices"; `points` come first
   std::optional<std::vector<Vec3d>> points;
   BodyGravityOptions options;
+  SiteSearch sites;  // a count of 0: none
 };
 
 struct GravityTable {
@@ -49,7 +51,13 @@ GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
                                           : body_of_recipe(loaded_recipe(arguments.json, arguments.name),
                                                            arguments.resolution, arguments.name, stage);
   const BodyGravity made = body_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
-  GravityTable table{rows_of(made.columns), {}, made.figures.dump()};
+  nlohmann::ordered_json figures = made.figures;
+  for (const GravityColumn& column : made.columns) {
+    if (arguments.sites.count == 0 || column.name != "slope_deg") continue;
+    figures["sites"] =
+        sites_json(find_landing_sites(body, column.values, arguments.sites, stage("sites")), body);
+  }
+  GravityTable table{rows_of(made.columns), {}, figures.dump()};
   for (const GravityColumn& column : made.columns) table.names.push_back(column.name);
   return table;
 }
@@ -59,8 +67,9 @@ std::tuple<NumpyArray<double>, std::vector<std::string>, std::string> gravity(
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& unit, const std::string& json,
     int resolution, const std::string& at, const std::optional<Rows<double>>& points, double density,
     double period, const std::array<double, 3>& axis, double tolerance, bool exact, int sample, int degree,
-    double radius, std::uint64_t seed, int threads, nb::object progress) {
-  GravityArguments arguments{name, unit, {}, json, resolution, at, {}, {}};
+    double radius, int sites, double site_size, double site_distance, std::uint64_t seed, int threads,
+    nb::object progress) {
+  GravityArguments arguments{name, unit, {}, json, resolution, at, {}, {}, {sites, site_size, site_distance}};
   if (vertices && faces) arguments.mesh = mesh_of(*vertices, *faces, {});
   if (points) arguments.points = points_of(*points);
   arguments.options = {density,   period, normalized(Vec3d{axis[0], axis[1], axis[2]}),
@@ -79,7 +88,8 @@ void bind_gravity(nb::module_& module) {
              nb::arg("faces").noconvert().none(), nb::arg("unit"), nb::arg("json"), nb::arg("resolution"),
              nb::arg("at"), nb::arg("points").noconvert().none(), nb::arg("density"), nb::arg("period"),
              nb::arg("axis"), nb::arg("tolerance"), nb::arg("exact"), nb::arg("sample"), nb::arg("degree"),
-             nb::arg("radius"), nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("radius"), nb::arg("sites"), nb::arg("site_size"), nb::arg("site_distance"),
+             nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
 }
 
 }  // namespace astrolith::python

@@ -76,6 +76,19 @@ def test_recipes_and_points_have_the_bytes_of_gravity(example, program, tmp_path
     assert made.table.tobytes() in (tmp_path / "f.npy").read_bytes()
 
 
+def test_landing_sites_are_those_of_gravity(example, program, tmp_path):
+    program("gravity", example("itokawa_details"), "--density", "1900", "--resolution", "48", "--sites", "3",
+            "--site-size", ".1", "--summary", "s.json")  # fmt: skip
+    made = astrolith.gravity(example("itokawa_details"), 1900.0, resolution=48, sites=3, site_size=0.1)
+    assert made.sites == json.loads((tmp_path / "s.json").read_text())["sites"]
+    assert len(made.sites) == 3 and made.sites[0].cost_deg <= made.sites[1].cost_deg
+    far = astrolith.gravity(example("itokawa_details"), 1900.0, resolution=48, sites=3, site_size=0.1, site_distance=0.3)
+    assert np.linalg.norm(np.subtract(far.sites[0].center, far.sites[1].center)) >= 0.3
+    assert astrolith.gravity(BALL, 1000.0, resolution=16).sites == []
+    with pytest.raises(ValueError, match="^site_size: .* is less than 4 edges of the mesh"):
+        astrolith.gravity(BALL, 1000.0, resolution=16, sites=1, site_size=1e-3)
+
+
 @pytest.mark.parametrize(
     "name, options",
     [
@@ -89,6 +102,11 @@ def test_recipes_and_points_have_the_bytes_of_gravity(example, program, tmp_path
         ("points", {"points": [[0, 0, np.inf]]}),
         ("tolerance", {"tolerance": 1.0}),
         ("degree", {"degree": 51}),
+        ("sites", {"sites": 1001, "site_size": 0.5}),
+        ("sites", {"sites": 1, "site_size": 0.5, "at": "vertices"}),
+        ("site_size", {"sites": 1}),
+        ("site_size", {"site_size": 0.5}),
+        ("site_distance", {"sites": 1, "site_size": 0.5, "site_distance": 0.0}),
     ],
 )
 def test_wrong_arguments(name, options):

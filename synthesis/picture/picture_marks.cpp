@@ -82,6 +82,14 @@ class MarksPainter {
     text(left, length_digits(length) + (unit.empty() ? "" : " " + unit));
   }
 
+  // Words to the upper right of a place, on a dark ground.
+  void label(double px, double py, const std::string& words) {
+    const int left = rounded(px) + 4 * dot_, top = rounded(py) - 12 * dot_;
+    fill_rectangle(image_, left - 2 * dot_, top - dot_, text_width(words, dot_) + 4 * dot_, 10 * dot_,
+                   {25, 25, 25});
+    draw_text(image_, left, top, dot_, words, {255, 255, 255});
+  }
+
   // The axes of the mesh as a view sees them, in the lower left corner of its tile.
   void axes(const ViewCamera& camera, double left, double bottom, double tile_height) {
     const double arm = std::max(8.0 * dot_, 0.045 * tile_height), reach = arm + 9.0 * dot_;
@@ -166,18 +174,22 @@ int marks_height(const PreviewOptions& options) {
 }
 
 void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
-                double length_per_pixel) {
+                const RayScene& scene) {
   const PictureMarks& marks = options.marks;
   if (image.width < kLeastMarkedWidth || image.height < kLeastMarkedHeight) return;
   MarksPainter painter(image, options, marks_height(options));
   if (marks.values) painter.value_bar(*marks.values);
   for (std::size_t view = 0; view < options.views.size(); ++view) {
     const ViewCamera& camera = rays.camera(view);
+    for (const PlaceLabel& label : marks.labels) {
+      const auto at = rays.seen_at(view, scene.to_unit(label.place), scene);
+      if (at) painter.label(at->first, at->second, label.text);
+    }
     if (!marks.axes) continue;
     const auto [left, bottom] = rays.lower_left(view);
     painter.axes(camera, left, bottom, rays.tile_height());
   }
-  if (has_length_bar(options)) painter.length_bar(length_per_pixel, *marks.length_unit);
+  if (has_length_bar(options)) painter.length_bar(rays.pixel() / scene.scale(), *marks.length_unit);
 }
 
 }  // namespace astrolith

@@ -6,6 +6,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
+
+#include "numerics/vec3.h"
 
 namespace astrolith {
 
@@ -27,6 +30,12 @@ ValueRange value_range(std::span<const double> values);
 // without a known unit keep their words.
 std::string title_of_column(const std::string& name);
 
+// A word beside a place of the mesh, in the views that see the place.
+struct PlaceLabel {
+  Vec3d place;  // in lengths of the mesh
+  std::string text;
+};
+
 struct PreviewOptions;
 
 struct PictureMarks {
@@ -34,6 +43,7 @@ struct PictureMarks {
   // The unit of the mesh's lengths, for a scale below orthographic views; none where absent, a plain number
   // where empty.
   std::optional<std::string> length_unit;
+  std::vector<PlaceLabel> labels;
   bool axes = false;  // x, y and z in a corner of each view that shows nothing else
 };
 

@@ -116,9 +116,7 @@ class Painter {
     }
   }
 
-  void draw_marks(RgbaImage16& image) const {
-    astrolith::draw_marks(image, options_, rays_, rays_.pixel() / scene_.scale());
-  }
+  void draw_marks(RgbaImage16& image) const { astrolith::draw_marks(image, options_, rays_, scene_); }
 
   // The bit of the view that a pixel belongs to.
   std::uint64_t view_bit(int x, int y) const {

@@ -175,6 +175,23 @@ PictureRay PreviewRays::ray(std::size_t view, double px, double py) const {
   return {to_float(camera.eye + before * direction), to_float(direction), before};
 }
 
+std::optional<std::pair<double, double>> PreviewRays::seen_at(std::size_t view, const Vec3d& point,
+                                                              const RayScene& scene) const {
+  constexpr double kLifted = 1e-3;  // above the surface that the point lies on
+  const ViewCamera& camera = cameras_[view];
+  const Vec3d offset = point - camera.eye;
+  const double depth = -dot(offset, camera.from);
+  if (!(depth > 0.0)) return std::nullopt;
+  const Vec3d towards = camera.is_pinhole ? normalized(-offset) : camera.from;
+  if (scene.occluded(to_float(point + kLifted * towards), to_float(towards))) return std::nullopt;
+  const double pixel = camera.is_pinhole ? depth * camera.pixel : camera.pixel;
+  const auto [left, bottom] = lower_left(view);
+  const double px = left + 0.5 * tile_width() + dot(offset, camera.right) / pixel;
+  const double py = bottom - 0.5 * tile_height() - dot(offset, camera.up) / pixel;
+  if (!(px >= 0.0 && py >= 0.0 && px < width_) || view_at(px, py) != view) return std::nullopt;
+  return std::pair(px, py);
+}
+
 SeenNormals seen_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& vertex_normals,
                          const RayHit& hit, const Vec3f& to_viewer) {
   Vec3f face = hit.normal;

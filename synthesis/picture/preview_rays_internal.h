@@ -46,6 +46,10 @@ class PreviewRays {
   // over have none.
   std::optional<std::size_t> view_at(double px, double py) const;
   PictureRay ray(std::size_t view, double px, double py) const;
+  // Where a view shows a point of the unit ball, in pixels from the picture's top left corner; none where its
+  // tile does not reach or another part of the mesh is before the point.
+  std::optional<std::pair<double, double>> seen_at(std::size_t view, const Vec3d& point,
+                                                   const RayScene& scene) const;
   const ViewCamera& camera(std::size_t view) const { return cameras_[view]; }
   // The side of a pixel of the orthographic views in the unit ball, and of a plane before each pinhole.
   double pixel() const { return pixel_; }

@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "geometry/mesh_measure.h"
+#include "numerics/vec3_json.h"
 
 namespace astrolith {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json list(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 double farthest_vertex(const TriangleMesh& mesh, const Vec3d& center) {
   double farthest = 0.0;
@@ -27,12 +26,12 @@ Json mass_json(const GravityBody& body, const BodyMass& mass, double volume, dou
   for (std::size_t i = 0; i < 3; ++i) {
     inertia.push_back({fifth * mass.inertia[i][0], fifth * mass.inertia[i][1], fifth * mass.inertia[i][2]});
     moments.push_back(fifth * principal.moments[i]);
-    axes.push_back(list(principal.axes[i]));
+    axes.push_back(json_of(principal.axes[i]));
   }
   return {{"volume_m3", volume * m * m * m},
           {"area_m2", surface_area(body.mesh) * m * m},
           {"mass_kg", density * mass.volume * m * m * m},
-          {"center_of_mass_m", list(m * mass.center)},
+          {"center_of_mass_m", json_of(m * mass.center)},
           {"inertia_kg_m2", inertia},
           {"principal_moments_kg_m2", moments},
           {"principal_axes", axes}};

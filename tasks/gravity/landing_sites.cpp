@@ -14,6 +14,7 @@
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "numerics/portable_angles.h"
+#include "numerics/vec3_json.h"
 #include "tasks/gravity/square_ground_internal.h"
 
 namespace astrolith {
@@ -35,13 +36,13 @@ void check_side(const TriangleMesh& mesh, double side) {
   const double least = kFewestEdges * mean_edge(mesh), most = kLargest * norm(mesh.bounds().extent());
   if (side < least) {
     throw InputError(
-        fmt::format("--site-size: {:.4g} is less than 4 edges of the mesh, which are {:.4g}; take larger "
+        fmt::format("site_size: {:.4g} is less than 4 edges of the mesh, which are {:.4g}; take larger "
                     "sites or a finer mesh",
                     side, least));
   }
   if (side > most) {
     throw InputError(
-        fmt::format("--site-size: {:.4g} is more than a quarter of the body, {:.4g}; take less", side, most));
+        fmt::format("site_size: {:.4g} is more than a quarter of the body, {:.4g}; take less", side, most));
   }
 }
 
@@ -137,8 +138,6 @@ void add_place(LandingSite& site) {
   site.latitude = kDegrees * portable::atan2(p.z, std::sqrt(p.x * p.x + p.y * p.y));
 }
 
-nlohmann::ordered_json list_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 std::vector<LandingSite> find_landing_sites(const GravityBody& body, std::span<const double> slopes,
@@ -186,8 +185,8 @@ std::string patch_words(const LandingSite& site) {
 nlohmann::ordered_json sites_json(std::span<const LandingSite> sites, const GravityBody& body) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const LandingSite& site : sites) {
-    list.push_back({{"center", list_of(site.center)},
-                    {"normal", list_of(site.axes.up)},
+    list.push_back({{"center", json_of(site.center)},
+                    {"normal", json_of(site.axes.up)},
                     {"latitude_deg", site.latitude},
                     {"longitude_deg", site.longitude},
                     {"mean_slope_deg", site.mean_slope},

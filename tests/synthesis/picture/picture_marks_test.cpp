@@ -35,6 +35,23 @@ TEST(PictureMarks, RangesAreThePercentilesOfFiniteValues) {
   EXPECT_LT(value_range({}).low, value_range({}).high);
 }
 
+// The tops of the diamond from above: the upper one is seen, the lower one is hidden by the body.
+TEST(PictureMarks, LabelsStandBesidePlacesThatAreSeen) {
+  const TriangleMesh mesh = diamond();
+  PreviewOptions options;
+  options.width = 200, options.height = 200;
+  for (const char* camera :
+       {"from 0 0 1 up 0 1 0", "lat 90 fov 30", "from 0 0 1 up 0 1 0 fov 20 target 1 0 0"}) {
+    options.views = {parse_camera("--camera", camera)};
+    const std::vector<std::uint16_t> without = render_picture(mesh, options).image.pixels;
+    options.marks.labels = {{mesh.vertices[5], "9"}};
+    EXPECT_TRUE(render_picture(mesh, options).image.pixels == without) << camera;
+    options.marks.labels = {{mesh.vertices[4], "9"}};
+    EXPECT_FALSE(render_picture(mesh, options).image.pixels == without) << camera;
+    options.marks.labels.clear();
+  }
+}
+
 // The rows above the strip of a picture with marks are the picture of that many rows without.
 TEST(PictureMarks, StandBelowTheViewsAndInEmptyCorners) {
   const TriangleMesh mesh = diamond();

@@ -1,0 +1,13 @@
+// Vectors in the JSON of summaries and of files.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "numerics/vec3.h"
+
+namespace astrolith {
+
+// [x, y, z]
+inline nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace astrolith
