@@ -78,12 +78,12 @@ def test_recipes_and_points_have_the_bytes_of_gravity(example, program, tmp_path
 
 def test_landing_sites_are_those_of_gravity(example, program, tmp_path):
     program("gravity", example("itokawa_details"), "--density", "1900", "--resolution", "48", "--sites", "3",
-            "--site-size", ".1", "--summary", "s.json")  # fmt: skip
-    made = astrolith.gravity(example("itokawa_details"), 1900.0, resolution=48, sites=3, site_size=0.1)
+            "--site-size", "60", "--summary", "s.json")  # fmt: skip
+    made = astrolith.gravity(example("itokawa_details"), 1900.0, resolution=48, sites=3, site_size=60)
     assert made.sites == json.loads((tmp_path / "s.json").read_text())["sites"]
     assert len(made.sites) == 3 and made.sites[0].cost_deg <= made.sites[1].cost_deg
-    far = astrolith.gravity(example("itokawa_details"), 1900.0, resolution=48, sites=3, site_size=0.1, site_distance=0.3)
-    assert np.linalg.norm(np.subtract(far.sites[0].center, far.sites[1].center)) >= 0.3
+    far = astrolith.gravity(example("itokawa_details"), 1900.0, resolution=48, sites=3, site_size=60, site_distance=200)
+    assert np.linalg.norm(np.subtract(far.sites[0].center, far.sites[1].center)) >= 200
     assert astrolith.gravity(BALL, 1000.0, resolution=16).sites == []
     with pytest.raises(ValueError, match="^site_size: .* is less than 4 edges of the mesh"):
         astrolith.gravity(BALL, 1000.0, resolution=16, sites=1, site_size=1e-3)
