@@ -26,7 +26,7 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
                           .check(in_range(kMinResolution, kMaxResolution));
   program.app
       .add_option("--triangles", request.triangles,
-                  "choose the resolution that gives this many triangles, to about a tenth, such as 1e6")
+                  "choose the resolution that gives this many triangles, to about a twentieth, such as 1e6")
       .check(in_range(100.0, 1e10))
       .excludes(resolution)
       .default_text("");

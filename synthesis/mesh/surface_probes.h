@@ -1,12 +1,10 @@
 // Improves the estimate of a mesh by looking at it in a few places of its surface.
 //
-// A coarse mesh tells where the surface is and how large. At points that lie evenly over it a window of one
-// block counts the triangles of the finer mesh, for the area of the coarse mesh in the same window. This
-// ratio varies little from place to place, while the triangles in blocks that the surface may cross range
-// from none to many. From each point blocks are followed to both sides along the axis that is nearest to the
-// normal, as long as the surface may cross them. Their number is taken for the area of the coarse mesh in the
-// same column, so that blocks between two sheets of the surface count once. One of them is meshed for its
-// cost.
+// A coarse mesh tells where the surface is and how large. From points that lie evenly over it blocks are
+// followed to both sides along the axis that is nearest to the normal, as long as the surface may cross them.
+// They are counted, with the triangles of the finer mesh in them, for the area of the coarse mesh in the same
+// column: the projections of both surfaces along the axis are alike, however rough the finer one is. Blocks
+// between two sheets of the surface count once. One of the blocks is meshed for its cost.
 #pragma once
 
 #include <algorithm>
@@ -62,10 +60,8 @@ class SurfaceProber {
       const ProcessorClock clock;
       const ProbedSurface::Point place = surface_.point(i);
       const Vec3d center = on_surface(place);
-      const double area = surface_.area_within(window(place.position).samples_box());
       sums.spent_evaluations += kStepsToSurface;
-      if (area > 0.0) sums.triangles_per_area += triangles_around(center, sums) / area;
-      if (costs_) look_along(center, place.normal, i, sums);
+      look_along(column_through(center, nearest_axis(place.normal), shift_of(i)), i, sums);
       ++sums.probes;
       sums.spent_seconds += clock.seconds();
     }
@@ -89,8 +85,6 @@ class SurfaceProber {
     return {{samples, {{1, 1, 1}, {B, B, B}}, false}};
   }
 
-  BlockNode<Block> node_of(const Window& place) const { return {0, 0, 1, field_.gather(place.box())}; }
-
   double value_at(const Vec3d& p) const {
     const std::array<float, 1> x{static_cast<float>(p.x)}, y{static_cast<float>(p.y)},
         z{static_cast<float>(p.z)};
@@ -111,10 +105,7 @@ class SurfaceProber {
     return place.position + offset * place.normal;
   }
 
-  double triangles_around(const Vec3d& center, ProbeSums& sums) const {
-    const Window place = window(center);
-    const BlockNode<Block> node = node_of(place);
-    if (node.field.content() != BlockContent::kMixed) return 0.0;
+  double triangles_in(const Window& place, const BlockNode<Block>& node, ProbeSums& sums) const {
     BlockLayer<B> layer;
     layer.blocks.emplace_back(0, 0);
     LayerBlock<B>& block = layer.blocks.front();
@@ -136,7 +127,7 @@ class SurfaceProber {
   };
 
   Column column_through(const Vec3d& center, const Vec3d& axis, double shift) const {
-    constexpr int kFarthest = 16, kNear = 3;
+    constexpr int kFarthest = 16, kNear = 1;
     const auto place_of = [&](int j) { return window(center + ((shift + double(j)) * side()) * axis); };
     const Block near = field_.gather(joined(place_of(-kNear).box(), place_of(kNear).box()));
     Column column;
@@ -158,15 +149,19 @@ class SurfaceProber {
     return column;
   }
 
-  void look_along(const Vec3d& center, const Vec3d& normal, int index, ProbeSums& sums) const {
-    const Column column = column_through(center, nearest_axis(normal), shift_of(index));
+  void look_along(const Column& column, int index, ProbeSums& sums) const {
     const std::vector<BlockNode<Block>>& mixed = column.mixed;
     const double area = surface_.area_within(column.box);
     if (mixed.empty() || !(area > 0.0)) return;
     // Where the surface lies off the coarse one, a column may hold a scrap of that. It does not count a
     // hundred times.
     constexpr double kLeastArea = 0.25;
-    const double weight = double(mixed.size()) / std::max(area / (side() * side()), kLeastArea);
+    const double squares = std::max(area / (side() * side()), kLeastArea);
+    for (std::size_t k = 0; k < mixed.size(); ++k) {
+      sums.triangles_per_area += triangles_in(column.places[k], mixed[k], sums) / (squares * side() * side());
+    }
+    if (!costs_) return;
+    const double weight = double(mixed.size()) / squares;
     sums.blocks_of_square += weight;
     const std::size_t chosen = static_cast<std::size_t>(index) % mixed.size();
     const BlockCost cost =

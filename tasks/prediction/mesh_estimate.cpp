@@ -176,7 +176,7 @@ TriangleMesh coarse_region(const ImplicitField& field, const Recipe& recipe, con
 int resolution_for_triangles(const ImplicitField& field, const Recipe& recipe, const Region& region,
                              double triangles) {
   const ImplicitField base = base_of(field, recipe);
-  constexpr int kCells = 64, kProbes = 256, kProbesOfGabor = 64, kFirst = 96, kMostSteps = 3;
+  constexpr int kCells = 64, kProbes = 256, kProbesOfGabor = 128, kFirst = 96, kMostSteps = 3;
   constexpr double kNearEnough = 0.02;
   const bool gabor = field.tables().gabor_lists.count > 0;
   const Region whole = region.is_patch ? region : Region{};
