@@ -45,8 +45,8 @@ struct CornerCoordinate {
         most(std::max({at[0], at[1], at[2]})) {}
 };
 
-// The part of a triangle in a cube of this side and these axes about the origin. Most triangles near a cube lie
-// wholly inside or outside: only planes that have a corner beyond them cut.
+// The part of a triangle in a cube of this side and these axes about the origin. Most triangles near a cube
+// lie wholly inside or outside: only planes that have a corner beyond them cut.
 inline GroundPolygon cut_to_cube(const std::array<Vec3d, 3>& triangle, const GroundAxes& axes, double side) {
   const double half = 0.5 * side;
   const auto beyond = [half](const CornerCoordinate& c) { return c.least > half || c.most < -half; };
