@@ -1,11 +1,12 @@
-"""What many functions take: a seed, a number of threads, a progress callback."""
+"""What many functions take: a seed, a number of threads, a progress callback, names of files."""
 
 from __future__ import annotations
 
+import os
 from typing import Any, Callable, Optional
 
 from astrolith import _arrays
-from astrolith._recipe import RecipeLike, json_of, records
+from astrolith._recipe import PathLike, RecipeLike, json_of, records
 
 Progress = Optional[Callable[[float, str], Any]]
 """Called from the calling thread with the share done in [0, 1] and a few words. Returning False stops the work."""
@@ -31,3 +32,17 @@ def seeded(recipe: RecipeLike, number: Optional[int]) -> tuple[str, str]:
     fields = records(json)
     fields["seed"] = seed(number)
     return json_of(fields)[0], name
+
+
+def given(**arguments: Any) -> list[tuple[str, str]]:
+    """The arguments that were given, as a program states its options in the provenance."""
+    return sorted(
+        (name.replace("_", "-"), "true" if value is True else str(value))
+        for name, value in arguments.items()
+        if value is not None and value is not False
+    )
+
+
+def name_of(file: Optional[PathLike]) -> Optional[str]:
+    """The name of a file; None where there is none."""
+    return None if file is None else os.fspath(file)
