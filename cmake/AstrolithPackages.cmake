@@ -6,13 +6,13 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256
 find_package(embree 3 REQUIRED)            # rays for previews, closest points on surfaces
 find_package(OpenMesh REQUIRED)            # half-edges for curvature, decimation
 find_package(nanoflann REQUIRED)            # nearest points of a cloud
-find_package(PNG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)               # command lines
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # .ply.zst
 pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)  # NPZ
+pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)  # PNG
 if(ASTROLITH_ESTIMATION)
   find_package(Ceres REQUIRED)             # least squares
   find_package(NLopt REQUIRED)             # global optimisers
@@ -69,6 +69,7 @@ endif()
 
 if(ASTROLITH_TESTS)
   find_package(GTest REQUIRED)
+  find_package(PNG REQUIRED)  # reads what was written
   include(GoogleTest)
 endif()
 if(ASTROLITH_BENCHMARKS)

@@ -17,9 +17,9 @@ struct GreyPng {
 };
 
 // Decodes a PNG file that was read into memory. Channels have 1 to 16 bits; palettes are expanded, `values`
-// is the luma of colours, and alpha is ignored. Throws
-// InputError, which names `file`: for bytes that are no PNG, for a damaged file, and for sides outside
-// least_side to most_side, before anything is decoded.
+// is the luma of colours, and alpha is ignored. Takes 8 bytes a pixel beside the result. Throws InputError,
+// which names `file`: for bytes that are no PNG, for a damaged file, and for sides outside least_side to
+// most_side, before anything is decoded.
 GreyPng decode_grey_png(const std::vector<std::uint8_t>& bytes, const std::string& file, int least_side,
                         int most_side);
 
