@@ -144,7 +144,8 @@ void PictureOptions::write(const Program& program, const RenderedPicture& pictur
   write_png(picture.image, bits, background == "transparent", file);
   for (const std::size_t view : picture.empty_views) {
     program.say(fmt::format(
-        "note: {}: the body covers no pixel of view {}; bring its camera nearer, turn it or narrow its fov",
+        "note: {}: the body covers no pixel of view {}; change the target of its camera, or bring a pinhole "
+        "nearer",
         file.string(), view + 1));
   }
 }

@@ -33,7 +33,7 @@ struct ModelChoice {
   int squares = 0;  // that were compared; 0: too few with texture, and the simplest model is taken
   int side = 0;     // of a square, pixels; 0 where none was compared
   std::array<HeldOutScore, 3> scores;  // by the number of the model
-  HeldOutScore photo;                  // of the squares themselves, in the place of textures of them
+  HeldOutScore photo;                  // of each square against the others, as if it were a texture
 };
 
 // Cuts a square of at most 256 pixels out of the middle of each quarter of the photo. Each model is fitted to

@@ -37,9 +37,10 @@ struct MeshEstimate {
   double crossed_share = 1.0;      // share of the blocks that the surface crosses; the others it only might
   // The most blocks in one layer, and in three successive layers.
   double blocks_of_layer = 0.0, blocks_of_three_layers = 0.0;
-  int narrowed_squares = 0;     // most squares of one size that the sample narrowed
-  double with_neighbour = 0.7;  // share of the blocks whose lower neighbour is a block too
-  bool whole = false;           // every block was meshed: the counts are exact
+  double places_of_layer = 0.0;  // of blocks in the grid, whether the surface may cross them or not
+  int narrowed_squares = 0;      // most squares of one size that the sample narrowed
+  double with_neighbour = 0.7;   // share of the blocks whose lower neighbour is a block too
+  bool whole = false;            // every block was meshed: the counts are exact
 
   double triangles_per_block() const { return blocks > 0.0 ? triangles / blocks : 0.0; }
 };
@@ -73,6 +74,7 @@ class MeshSampler {
         whole_(field.gather(grid.samples.box({0, 0, 0}, grid.samples.cells, grid.samples.step))),
         size_(size) {
     estimate_.step = grid.samples.step;
+    estimate_.places_of_layer = double(grid.blocks(0)) * double(grid.blocks(1));
     estimate_.whole = true;
   }
 

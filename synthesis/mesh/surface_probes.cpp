@@ -117,8 +117,10 @@ MeshEstimate improved_by_probes(const MeshEstimate& estimate, const ProbedSurfac
   better.crossed_share = better.blocks > 0.0 ? number_of_crossed / better.blocks : 1.0;
   better.evaluations = better.blocks * sums.evaluations / sums.weights;
   better.list_bytes = sums.list_bytes / sums.weights;
-  better.blocks_of_layer = better.blocks * surface.largest_share(side);
-  better.blocks_of_three_layers = better.blocks * surface.largest_share(3.0 * side);
+  // The coarse mesh of a folded surface lies in fewer layers than its blocks.
+  const double places = estimate.places_of_layer;
+  better.blocks_of_layer = std::min(better.blocks * surface.largest_share(side), places);
+  better.blocks_of_three_layers = std::min(better.blocks * surface.largest_share(3.0 * side), 3.0 * places);
   better.sampled_blocks += meshed;
   better.sampled_windows += meshed + double(sums.probes);
   return better;

@@ -38,7 +38,7 @@ void take_exemplar(const std::string& name, const TextureFitOptions& options, co
   fit.recipe.provenance.achieved = {{"filter_distance", score.filters}, {"value_distance", score.values}};
 }
 
-// Squares whose grey values differ by so many standard deviations are no squares of one texture.
+// A photo is no one texture where the grey values of its squares differ by this, in standard deviations.
 constexpr double kUnlikeSquares = 0.5;
 
 nlohmann::ordered_json figures_of(const HeldOutScore& score) {
@@ -133,8 +133,8 @@ std::string choice_sentence(const TextureFit& fit) {
   }
   std::string sentence = fmt::format(
       "{} is taken, the simplest of the best on {} squares of {} pixels that it had not seen; differences in "
-      "values and filters: {}, the squares themselves {:.3f}",
-      taken, c.squares, c.side, scores, c.photo.mean.sum());
+      "values and filters: {}; of the squares from each other {:.3f} +- {:.3f}",
+      taken, c.squares, c.side, scores, c.photo.mean.sum(), c.photo.scatter);
   if (c.photo.mean.values > kUnlikeSquares)
     sentence += "; the photo changes from place to place: crop it to a part that looks alike";
   return sentence;

@@ -91,6 +91,17 @@ TEST_F(FitGabor, AutoComparesAllModelsOnUnseenSquares) {
   EXPECT_EQ(text("s.npy").size() % (64 * 64 * 8), 128u % (64 * 64 * 8));
 }
 
+TEST_F(FitGabor, AutoSaysThatAPhotoChangesFromPlaceToPlace) {
+  constexpr int kSide = 96;
+  std::vector<std::uint8_t> grey;
+  for (int i = 0; i < kSide * kSide; ++i)
+    grey.push_back(static_cast<std::uint8_t>((i % kSide < kSide / 2 ? 40 : 160) + 7919 * i % 61));
+  write("halves.png", testing::png(kSide, kSide, grey));
+  const std::string crop = "crop it to a part that looks alike";
+  EXPECT_TRUE(has(succeed("halves.png -o halves.json --model auto"), crop));
+  EXPECT_FALSE(has(succeed("rock.png -o rock.json --model auto"), crop));
+}
+
 TEST_F(FitGabor, AnExemplarHasItsReportToo) {
   fit("rock.json", "--model exemplar --report report --spectrum s.npy");
   EXPECT_TRUE(exists("report/report.svg"));

@@ -109,9 +109,9 @@ TEST_F(SynthPrediction, MemoryOfAFoldedSurfaceIsMetFromBothSides) {
   const std::string line = "r.json -o out.ply --resolution 240 --threads 1";
   const auto predicted = figures(line + " --predict").at("predicted"), made = figures(line);
   const double memory = predicted.at("peak_bytes").get<double>() / made.at("peak_bytes").get<double>();
-  EXPECT_LE(memory, 1.4);
+  EXPECT_LE(memory, 1.2);
   EXPECT_GE(memory, 1.0 / 1.2);
-  EXPECT_GE(predicted.at("triangles"), 0.4 * made.at("triangles").get<double>());
+  EXPECT_GE(predicted.at("triangles"), 0.8 * made.at("triangles").get<double>());
 }
 
 // Samples are counted, because seconds depend on what else the machine does.
@@ -127,7 +127,7 @@ TEST_F(SynthPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
 TEST_F(SynthPrediction, TrianglesAreMetOnRoughBodiesToo) {
   for (const std::string& content : {kHills, kWithLandforms}) {
     write("r.json", content);
-    EXPECT_NEAR(figures("r.json -o out.ply --triangles 100000").at("triangles"), 100e3, 10e3) << content;
+    EXPECT_NEAR(figures("r.json -o out.ply --triangles 100000").at("triangles"), 100e3, 5.5e3) << content;
   }
 }
 

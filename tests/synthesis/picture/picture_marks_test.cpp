@@ -35,6 +35,44 @@ TEST(PictureMarks, RangesAreThePercentilesOfFiniteValues) {
   EXPECT_LT(value_range({}).low, value_range({}).high);
 }
 
+// The middle of the pixels in which two pictures of one size differ, from the upper left corner.
+Vec3d middle_of_changes(const RgbaImage16& a, const RgbaImage16& b) {
+  Vec3d sum;
+  double count = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); i += 4) {
+    if (a.pixels[i] == b.pixels[i]) continue;
+    const auto pixel = static_cast<int>(i / 4);
+    sum += Vec3d{double(pixel % a.width), double(pixel / a.width), 0.0};
+    count += 1.0;
+  }
+  return (1.0 / count) * sum;
+}
+
+// A label stands to the upper right of its place, which moves against the target of the camera.
+TEST(PictureMarks, LabelsFollowTheirPlaces) {
+  const TriangleMesh mesh = diamond();
+  PreviewOptions options;
+  options.width = 200, options.height = 200;
+  const auto middle = [&](const char* camera) {
+    options.views = {parse_camera("--camera", camera)};
+    options.marks.labels.clear();
+    const RgbaImage16 without = render_picture(mesh, options).image;
+    options.marks.labels = {{mesh.vertices[4], "9"}};
+    return middle_of_changes(render_picture(mesh, options).image, without);
+  };
+  for (const std::string kind : {"", " fov 20"}) {
+    const std::string above = "from 0 0 1 up 0 1 0" + kind;
+    const Vec3d here = middle(above.c_str()), left = middle((above + " target .3 0 0").c_str()),
+                below = middle((above + " target 0 .3 0").c_str());
+    EXPECT_NEAR(here.x, 107.0, 6.0) << kind;
+    EXPECT_NEAR(here.y, 92.0, 6.0) << kind;
+    EXPECT_LT(left.x, here.x - 10.0) << kind;
+    EXPECT_NEAR(left.y, here.y, 2.0) << kind;
+    EXPECT_GT(below.y, here.y + 10.0) << kind;
+    EXPECT_NEAR(below.x, here.x, 2.0) << kind;
+  }
+}
+
 // The tops of the diamond from above: the upper one is seen, the lower one is hidden by the body.
 TEST(PictureMarks, LabelsStandBesidePlacesThatAreSeen) {
   const TriangleMesh mesh = diamond();

@@ -154,6 +154,7 @@ TEST(ShapeFit, ThePlanIsASmoothFunctionOfTheNumberOfMetaballs) {
   EXPECT_EQ(options_for(1000).relocation_iterations, 40);
   EXPECT_DOUBLE_EQ(options_for(1000).least_decrease, 1e-4);
   EXPECT_DOUBLE_EQ(options_for(10000).least_decrease, 1e-3);
+  EXPECT_EQ(options_for(10000).grown_iterations, 12);
 }
 
 TEST(ShapeFit, RefusesOptionsOutOfRange) {
