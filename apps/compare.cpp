@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "apps/mesh_unit.h"
 #include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/shape_options.h"
 #include "apps/shape_repair.h"
 #include "apps/surface_options.h"
-#include "apps/unit_question.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
@@ -51,11 +51,9 @@ void add_options(Program& program, Arguments& arguments) {
       "Kolmogorov-Smirnov distances, p by exchange of regions, and in words what B lacks");
   app.add_flag("--json", arguments.json,
                "print all figures as JSON with --realism too, in place of the ten lines that matter");
-  app.add_option("--unit", arguments.unit,
-                 "unit of both files, for the lengths in these words, in place of what the files state")
+  app.add_option("--unit", arguments.unit, "unit of both files, in place of what they state")
       .check(one_of({"m", "km"}))
-      .default_text("")
-      .needs(realism);
+      .default_text("");
   arguments.surface.add_to(app, realism);
 }
 
@@ -91,13 +89,19 @@ TriangleMesh read_shape(Program& program, const Arguments& arguments, const std:
   return arguments.repair.mended_surface(program, arguments.repair.read(file), file, figures);
 }
 
-// The unit of A. Gives B the same where it has another.
+// The unit of A, "" where it is unknown. Scales B to it, or says that the units differ where the length of
+// one is not known.
 std::string one_unit(const Program& program, const Arguments& arguments, TriangleMesh& b) {
   const UnitChoice choice{arguments.unit, ""};
   const std::string of_a = unit_of_mesh(program, arguments.a, choice, {});
   const std::string of_b = unit_of_mesh(program, arguments.b, choice, {});
+  if (of_a.empty() || of_b.empty() || of_a == of_b) return of_a;
+  if (!has_known_length(of_a) || !has_known_length(of_b)) {
+    program.say(fmt::format("note: {}: is in {}, and {} in {}; nothing was scaled", arguments.b, of_b,
+                            arguments.a, of_a));
+    return of_a;
+  }
   const double ratio = metres_of(of_b) / metres_of(of_a);
-  if (of_a.empty() || of_b.empty() || ratio == 1.0) return of_a;
   for (Vec3d& vertex : b.vertices) vertex = ratio * vertex;
   program.say(fmt::format("{}: from {} to {}, the unit of {}", arguments.b, of_b, of_a, arguments.a));
   return of_a;
@@ -148,8 +152,8 @@ int main(int argc, char** argv) {
   astrolith::Program program(
       "compare",
       "Says as JSON how alike two meshes are in shape (similarity 1: the same; position, "
-      "attitude and size do not matter) and how far apart their surfaces lie as they "
-      "stand (mean, p99 and max distance as fractions of A's bounding-box diagonal). "
+      "attitude and size do not matter) and how far apart their surfaces lie where they "
+      "are, B in A's unit (mean, p99 and max distance as fractions of A's bounding-box diagonal). "
       "With --realism it also says whether the surface of B passes for that of A, in ten lines, and as JSON "
       "with "
       "--json.");

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/mesh_unit.h"
 #include "apps/output_names.h"
 #include "apps/picture_options.h"
 #include "apps/program.h"
-#include "apps/unit_question.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
 #include "numerics/errors.h"

@@ -1,5 +1,5 @@
-// The unit of a mesh's lengths, and the question that a size raises which its body, or no body at all, has.
-// Bodies are known by the names that file names often hold, with radii that tell metres from kilometres.
+// Asks about the unit of a mesh whose size is far from the size of its body, or of any small body. A body is
+// recognised by the name that the file's name begins with; its radius tells metres from kilometres.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,39 +9,12 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "apps/program.h"
-#include "geometry/io/stated_unit.h"
-#include "numerics/errors.h"
-
 namespace astrolith {
-
-struct UnitChoice {
-  std::string given;             // by --unit; empty where it is not
-  std::string otherwise = "km";  // where neither --unit nor the file says one
-};
-
-// The unit of a mesh's lengths: the given one, else what the file states, else `otherwise`. Says so where the
-// file states another unit than the given one. Throws InputError where the file's unit decides and is none of
-// `units`; any unit will do where these are none.
-inline std::string unit_of_mesh(const Program& program, const std::filesystem::path& file,
-                                const UnitChoice& choice, std::initializer_list<std::string_view> units) {
-  const std::string stated = stated_length_unit(file);
-  if (stated.empty()) return choice.given.empty() ? choice.otherwise : choice.given;
-  if (!choice.given.empty() && choice.given != stated) {
-    program.say(fmt::format("note: {}: states its unit as {}; taken in {}, as --unit says", file.string(),
-                            stated, choice.given));
-    return choice.given;
-  }
-  if (units.size() == 0 || std::find(units.begin(), units.end(), stated) != units.end()) return stated;
-  throw InputError(fmt::format("{}: states its unit as {}, which is none of {}; add --unit", file.string(),
-                               stated, fmt::join(units, ", ")));
-}
 
 struct KnownBody {
   std::string_view name;  // lower case

@@ -7,7 +7,7 @@
 
 namespace astrolith {
 
-// [x, y, z]
+// The coordinates as an array [x, y, z].
 inline nlohmann::ordered_json json_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace astrolith

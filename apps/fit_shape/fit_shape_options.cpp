@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "apps/density_question.h"
-#include "apps/unit_question.h"
+#include "apps/mesh_unit.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

@@ -77,8 +77,8 @@ void add_options(Program& program, Arguments& a) {
   declare_sites_options(app, a.sites);
   app.add_option(
          "--preview", a.preview,
-         "also a picture in colours, with a bar; with --sites one view from above each of the first nine, "
-         "whose ground is orange and has their numbers")
+         "also a picture in colours, with a bar; with --sites it has one view from above of each of the "
+         "first nine sites, whose ground is orange and carries the site's number")
       .placeholder("FILE.png");
   app.add_option("--color", a.color, "what the colours of the picture say")
       .check(one_of(

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "apps/unit_question.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"

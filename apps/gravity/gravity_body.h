@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
+#include "apps/mesh_unit.h"
 #include "apps/program.h"
 #include "apps/shape_repair.h"
-#include "apps/unit_question.h"
 #include "tasks/gravity/gravity_body.h"
 
 namespace astrolith {

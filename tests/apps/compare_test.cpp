@@ -55,6 +55,19 @@ TEST_F(Compare, BringsBothToOneUnit) {
   EXPECT_TRUE(testing::has(said, "m.obj: from m to km, the unit of km.obj")) << said;
 }
 
+TEST_F(Compare, ScalesNothingWhereAUnitIsUnknown) {
+  write("m.obj", "# length unit: m\n" + testing::ellipsoid_obj(1, 1, 1, 47, 96));
+  write("ft.obj", "# length unit: ft\n" + testing::ellipsoid_obj(1, 1, 1, 47, 96));
+  write("km.obj", "# length unit: km\n" + testing::ellipsoid_obj(1, 1, 1, 47, 96));
+  for (const std::string other : {"m.obj", "km.obj"}) {
+    const std::string said = succeed("ft.obj " + other + " -o c.json --points 300 --samples 500");
+    EXPECT_TRUE(testing::has(said, "note: " + other + ": is in ")) << said;
+    EXPECT_TRUE(testing::has(said, ", and ft.obj in ft; nothing was scaled")) << said;
+    EXPECT_EQ(json("c.json")["length_unit"], "ft");
+    EXPECT_LT(json("c.json")["mean_distance"], 1e-6);
+  }
+}
+
 TEST_F(Compare, WritesAFileAndASummary) {
   const testing::Outcome outcome =
       run("ball.obj long.obj -o c.json --points 300 --samples 500 --summary s.json");
@@ -73,7 +86,7 @@ TEST_F(Compare, JudgesWhetherASurfacePasses) {
   EXPECT_EQ(same["words"][0], "passes");
   EXPECT_GT(same["floor"]["p"], 0.05);
   EXPECT_FALSE(compare("ball.obj bigger.obj").contains("realism"));
-  refuse("ball.obj bigger.obj --unit km", "--realism");
+  EXPECT_EQ(compare("ball.obj bigger.obj --unit km")["length_unit"], "km");
 }
 
 TEST_F(Compare, SaysTheVerdictInTenLines) {

@@ -264,6 +264,8 @@ TEST_F(FitShape, TakesTheUnitThatTheMeshStates) {
   EXPECT_TRUE(has(text("t.csv"), "lengths in m"));
   EXPECT_TRUE(has(succeed("m.obj --unit km" + packing), "note: m.obj: states its unit as m; taken in km"));
   EXPECT_TRUE(has(text("t.csv"), "lengths in km"));
+  write("cm.obj", "# length unit: cm\n" + testing::ellipsoid_obj(9.0, 8.0, 8.0, 15, 24));
+  refuse("cm.obj" + packing, "cm.obj: states its unit as cm, which is none of km, m; convert its lengths");
 }
 
 TEST_F(FitShape, MeshesThatCanBeMendedAreFitted) {

@@ -13,5 +13,10 @@ TEST(LengthUnit, HasMetres) {
   EXPECT_EQ(metres_of("px"), 1.0);
 }
 
+TEST(LengthUnit, IsKnownOrNot) {
+  for (const char* unit : {"m", "km", "cm", "mm"}) EXPECT_TRUE(has_known_length(unit)) << unit;
+  for (const char* unit : {"", "ft", "px", "body"}) EXPECT_FALSE(has_known_length(unit)) << unit;
+}
+
 }  // namespace
 }  // namespace astrolith
