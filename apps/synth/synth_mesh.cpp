@@ -20,9 +20,11 @@
 #include "apps/synth/synth_tile.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
+#include "geometry/io/stated_unit.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
+#include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
 #include "numerics/vec3_json.h"
 #include "synthesis/field/landform_list.h"
@@ -129,6 +131,12 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
   return triangles + "closed, manifold, genus " + std::to_string(report.genus) + ", " +
          counted(static_cast<std::size_t>(report.components), "component") +
          (crumbs ? " (--min-component 1e-3 leaves out small ones)" : "");
+}
+
+// Programs take lengths of a file that states no unit for kilometres.
+void say_unstated_unit(const Program& program, const std::string& unit, const fs::path& output) {
+  if (unit == "km" || !has_known_length(unit) || tells_length_unit(output)) return;
+  program.say(fmt::format("note: a {} states no unit; read it with --unit {}", mesh_extension(output), unit));
 }
 
 // Whether the format has a place for the colours of vertices.
@@ -244,6 +252,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (request.gravity.wanted())
     quantities = vertex_gravity(program, request.gravity, recipe, result.collected());
   result.write(quantities);
+  say_unstated_unit(program, recipe.length_unit, output);
   const MeshCounts kept = counts_in_file({report.vertices, report.triangles}, output);
   report.vertices = kept.vertices, report.triangles = kept.triangles;
   if (!request.preview.file.empty())

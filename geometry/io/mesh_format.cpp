@@ -8,6 +8,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/mesh_writers_internal.h"
+#include "geometry/io/stated_unit.h"
 #include "geometry/io/text_scanner_internal.h"
 #include "numerics/errors.h"
 
@@ -104,19 +105,20 @@ struct MeshFormat {
   MeshReader reader;                           // null: meshes are only written so
   MeshWriter writer;                           // null: meshes are only read so
   bool (*has)(const MeshFile&);                // whether the content tells the format
+  bool tells_unit;                             // whether what is written states its unit, or has a fixed one
 };
 
 // In the order in which contents are looked at; of the formats of an extension the likeliest comes first.
 constexpr MeshFormat kFormats[] = {
-    {"PLY", {".ply"}, read_ply, write_ply, is_ply},
-    {"binary STL", {".stl"}, read_stl_binary, write_stl, is_binary_stl},
-    {"ascii STL", {".stl"}, read_stl_ascii, nullptr, is_ascii_stl},
-    {"PDS plate model", {".tab", ".plt", ".txt"}, read_plate, write_plate, is_plate},
-    {"Gaskell ICQ", {".icq", ".tab", ".plt", ".txt"}, read_icq, write_icq, is_icq},
-    {"Wavefront OBJ", {".obj", ".tab", ".plt", ".txt"}, read_obj, write_obj, is_obj},
-    {"OFF", {".off"}, read_off, nullptr, is_off},
-    {"BMF", {".bmf"}, read_bmf, nullptr, never},
-    {"glTF", {".glb"}, nullptr, write_glb, never},
+    {"PLY", {".ply"}, read_ply, write_ply, is_ply, true},
+    {"binary STL", {".stl"}, read_stl_binary, write_stl, is_binary_stl, true},
+    {"ascii STL", {".stl"}, read_stl_ascii, nullptr, is_ascii_stl, false},
+    {"PDS plate model", {".tab", ".plt", ".txt"}, read_plate, write_plate, is_plate, false},
+    {"Gaskell ICQ", {".icq", ".tab", ".plt", ".txt"}, read_icq, write_icq, is_icq, false},
+    {"Wavefront OBJ", {".obj", ".tab", ".plt", ".txt"}, read_obj, write_obj, is_obj, true},
+    {"OFF", {".off"}, read_off, nullptr, is_off, false},
+    {"BMF", {".bmf"}, read_bmf, nullptr, never, false},
+    {"glTF", {".glb"}, nullptr, write_glb, never, true},
 };
 
 bool may_end_in(const MeshFormat& format, const std::string& extension) {
@@ -152,6 +154,14 @@ bool is_other_file(const MeshFile& file) {
                      [&](const Signature& other) { return file.bytes.starts_with(other.start); });
 }
 
+// The format in which meshes are written for an extension; null where none is.
+const MeshFormat* written_format(const std::string& extension) {
+  for (const MeshFormat& format : kFormats) {
+    if (format.writer != nullptr && format.extensions[0] == extension) return &format;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 MeshReader reader_for(const MeshFile& file) {
@@ -178,11 +188,14 @@ MeshWriter writer_for(const std::filesystem::path& file) {
   if (file.extension() == ".zst" && extension != ".ply") {
     throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
   }
-  for (const MeshFormat& format : kFormats) {
-    if (format.writer != nullptr && format.extensions[0] == extension) return format.writer;
-  }
+  if (const MeshFormat* format = written_format(extension)) return format->writer;
   throw InputError(file.string() + ": meshes are written as " + extensions_with(&MeshFormat::writer) +
                    "; choose one of these");
+}
+
+bool tells_length_unit(const std::filesystem::path& file) {
+  const MeshFormat* format = written_format(mesh_extension(file));
+  return format != nullptr && format->tells_unit;
 }
 
 bool has_mesh_extension(const std::filesystem::path& file) {

@@ -11,4 +11,8 @@ namespace astrolith {
 // the first 4,096 bytes of the content only.
 std::string stated_length_unit(const std::filesystem::path& file);
 
+// Whether a file of this name that write_mesh() writes tells its unit: in the comment above, or by its
+// format, as a .glb is in metres. False for an extension that is not written.
+bool tells_length_unit(const std::filesystem::path& file);
+
 }  // namespace astrolith

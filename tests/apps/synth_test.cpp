@@ -115,6 +115,13 @@ TEST_F(Synth, WritesIcqAndPlates) {
   EXPECT_TRUE(analyze_topology(icq).closed);
   EXPECT_EQ(made["triangles"], icq.triangles.size());
   EXPECT_EQ(made["vertices"], icq.vertices.size());
+  for (const std::string extension : {".tab", ".icq", ".obj"}) {
+    const std::string said =
+        succeed(write("m.json", ball_recipe("m", 1)) + " --resolution 16 -o m" + extension);
+    EXPECT_EQ(testing::has(said, "note: a " + extension + " states no unit; read it with --unit m\n"),
+              extension != ".obj")
+        << said;
+  }
   write("apart.json", replaced(ball_recipe("km", 1), "]]", "], [9, 0, 0, 1]]"));
   refuse("apart.json -o b.icq --resolution 32", "b.icq");
 }

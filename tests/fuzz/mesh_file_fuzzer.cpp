@@ -1,9 +1,10 @@
-// Mesh files of any format, as programs read them: the content tells the format, and indices and coordinates
-// are checked.
+// Mesh files of any format, as programs read them: the stated unit, then the mesh. The content tells the
+// format, and indices and coordinates are checked.
 #include <cmath>
 
 #include "fuzzed_reader.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/stated_unit.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace {
@@ -28,6 +29,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool packed = is_zstd({reinterpret_cast<const char*>(data), size});
   const fuzz::MemoryBound bound =
       packed ? fuzz::MemoryBound{16 << 20, 20500} : fuzz::MemoryBound{1 << 20, 200};
-  fuzz::run_reader(size, bound, [&] { check_mesh(read_mesh_or_points(file.path())); });
+  fuzz::run_reader(size, bound, [&] {
+    stated_length_unit(file.path());  // unpacks the start of a compressed file
+    check_mesh(read_mesh_or_points(file.path()));
+  });
   return 0;
 }
