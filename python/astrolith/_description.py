@@ -99,13 +99,14 @@ def compare(
     points: int = 10000,
     samples: int = 100000,
     floor: bool = False,
+    unit: str = "",
     seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> Record:
-    """Measure how alike two meshes are, and how far apart their surfaces lie as they stand.
+    """Measure how alike two meshes are, and how far apart their surfaces lie where they are, `b` in the unit of `a`.
 
-    Where both state a unit of length, `b` is brought to that of `a`.
+    Where both state m, km, cm or mm, `b` is scaled to the unit of `a`.
 
     Parameters
     ----------
@@ -113,6 +114,8 @@ def compare(
         Points of each surface for the distances between the surfaces, 100 to 10**7.
     floor
         Whether the similarities of two samplings of `a` and of `b` are measured, too.
+    unit
+        "m" or "km": the unit of both meshes; "": what they state.
 
     Returns
     -------
@@ -125,7 +128,7 @@ def compare(
     ValueError
         A mesh has no area, or an argument is out of range.
     """
-    of_a, of_b, unit = pair_of(a, b)
+    of_a, of_b, unit = pair_of(a, b, unit)
     figures: Record = records(
         _synthesis.compare(
             of_a.name,

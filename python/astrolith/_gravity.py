@@ -13,8 +13,7 @@ from astrolith import _arrays, _options, _synthesis
 from astrolith._mesh import MeshLike, arrays_of, unit_of
 from astrolith._options import Progress
 from astrolith._recipe import RecipeLike, Record, json_of, records
-
-_UNITS = ("m", "km", "cm", "mm")
+from astrolith._units import METRES
 
 
 @dataclasses.dataclass(eq=False)
@@ -107,7 +106,7 @@ def _is_recipe(body: Any) -> bool:
 
 def _site_lengths(sites: int, size: Optional[float], distance: Optional[float], at_facets: bool) -> tuple[float, float]:
     """The side of landing sites and their distance; 0 where none are asked for."""
-    if not sites:
+    if not _arrays.integer(sites, "sites", 0, 1000):
         for name, value in (("site_size", size), ("site_distance", distance)):
             if value is not None:
                 raise ValueError(f"{name}: is about sites; pass sites=N")
@@ -214,7 +213,7 @@ def gravity(
             raise ValueError("unit: a recipe states its own; leave the argument out")
     else:
         arrays = arrays_of(body, "body")
-        name, length_unit = arrays.name, unit_of(body, unit, _UNITS)
+        name, length_unit = arrays.name, unit_of(body, unit, tuple(METRES), "body")
     table, columns, figures = _synthesis.gravity(
         name,
         None if arrays is None else arrays.vertices,

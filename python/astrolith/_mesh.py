@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import sys
 import warnings
 from typing import Any, Mapping, Optional, Union
 
@@ -12,6 +13,7 @@ import numpy.typing as npt
 
 from astrolith import _arrays, _synthesis
 from astrolith._recipe import PathLike, Record
+from astrolith._units import METRES, name_of
 
 MeshLike = Any
 """A Mesh, anything with ``vertices`` and ``faces`` (trimesh has both), a pair of arrays, or the name of a file."""
@@ -96,37 +98,55 @@ def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
 
 
 def stated_unit(mesh: MeshLike) -> str:
-    """The unit that a Mesh or a file states; "" where it states none."""
+    """The unit that a Mesh, a trimesh.Trimesh or a file states; "" where it states none."""
     if isinstance(mesh, (str, os.PathLike)):
         return _synthesis.stated_length_unit(os.fspath(mesh))
-    return mesh.length_unit if isinstance(mesh, Mesh) else ""
+    return mesh.length_unit if isinstance(mesh, Mesh) else name_of(getattr(mesh, "units", None))
 
 
-def unit_of(mesh: MeshLike, unit: Optional[str], units: tuple[str, ...], otherwise: str = "km") -> str:
+def _warn(message: str) -> None:
+    """Warns at the line outside of this package that called into it."""
+    package, level, frame = os.path.dirname(__file__) + os.sep, 1, sys._getframe()
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(package):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, stacklevel=level)
+
+
+def unit_of(mesh: MeshLike, unit: Optional[str], units: tuple[str, ...], name: str, otherwise: str = "km") -> str:
     """The unit of a mesh's vertices: the argument `unit`, else what the mesh states, else `otherwise`.
 
-    Without `units` any unit will do. Warns where the mesh states another unit than the argument.
+    Without `units` any unit will do. Warns where the mesh states another unit than the argument. `name` is that of the
+    mesh's argument; messages name a file instead.
     """
     stated = stated_unit(mesh)
+    named = os.fspath(mesh) if isinstance(mesh, (str, os.PathLike)) else name
     if unit is not None:
-        _arrays.choice(unit, "unit", units or tuple(_METRES))
+        _arrays.choice(unit, "unit", units or tuple(METRES))
         if stated not in ("", unit):
-            warnings.warn(f"unit: the mesh states {stated}; it is taken in {unit}, as the argument says", stacklevel=3)
+            _warn(f"unit: {named} states {stated}; it is taken in {unit}, as the argument says")
         return unit
     if stated and units and stated not in units:
-        raise ValueError(f"unit: is missing; the mesh states {stated}, which is none of {', '.join(units)}")
+        raise ValueError(
+            f"unit: is missing; {named} states {stated}, which is none of {', '.join(units)}; "
+            "convert its lengths to one of these first, or pass unit where the statement is wrong"
+        )
     return stated or otherwise
 
 
-_METRES = {"km": 1000.0, "m": 1.0, "cm": 0.01, "mm": 0.001}
+def pair_of(a: MeshLike, b: MeshLike, unit: str) -> tuple[Arrays, Arrays, str]:
+    """Two meshes for a comparison, and the unit of the first, "" where it is unknown.
 
-
-def pair_of(a: MeshLike, b: MeshLike, unit: str = "") -> tuple[Arrays, Arrays, str]:
-    """Two meshes for a comparison and the unit of the first, "" where unknown; the second is brought to it."""
+    The second is scaled to that unit. Warns where the units differ and the length of one is unknown. `unit` is "m" or
+    "km" for both meshes, or "": what they state.
+    """
+    given = _arrays.choice(unit, "unit", ("", "m", "km")) or None
     of_a, of_b = arrays_of(a, "a"), arrays_of(b, "b")
-    unit_of_a, unit_of_b = unit_of(a, unit or None, (), ""), unit_of(b, unit or None, (), "")
-    if unit_of_a in _METRES and unit_of_b in _METRES and unit_of_a != unit_of_b:
-        of_b.vertices = of_b.vertices * (_METRES[unit_of_b] / _METRES[unit_of_a])
+    unit_of_a, unit_of_b = unit_of(a, given, (), "a", ""), unit_of(b, given, (), "b", "")
+    if unit_of_a in METRES and unit_of_b in METRES:
+        if unit_of_a != unit_of_b:
+            of_b.vertices = of_b.vertices * (METRES[unit_of_b] / METRES[unit_of_a])
+    elif "" not in (unit_of_a, unit_of_b) and unit_of_a != unit_of_b:
+        _warn(f"{of_b.name}: is in {unit_of_b}, and {of_a.name} in {unit_of_a}; nothing was scaled")
     return of_a, of_b, unit_of_a
 
 
@@ -163,7 +183,8 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     """Write .ply (binary, float32; .ply.zst compressed), .obj, .stl (binary), .glb, .icq or .tab, whole or not at all.
 
     A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply,
-    colours into .ply and .glb.
+    colours into .ply and .glb. The unit that the mesh, or the file that it names, states is written into .ply, .obj and
+    .stl. Warns where the format states no unit and lengths are not in kilometres.
 
     Parameters
     ----------
@@ -185,7 +206,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     if uv and not os.fspath(file).endswith(".glb"):
         raise ValueError(f"{os.fspath(file)}: only a .glb gets texture coordinates; leave out uv")
     arrays = arrays_of(mesh, "mesh")
-    made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces)
+    made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces, length_unit=stated_unit(mesh))
     labels = elevations = None
     if made.labels is not None and made.elevations is not None and os.fspath(file).endswith((".ply", ".ply.zst")):
         if arrays.normals is None:
@@ -209,3 +230,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
         made.legend if labels is not None else [],
         uv,
     )
+    unit = made.length_unit
+    if unit != "km" and unit in METRES and not _synthesis.tells_length_unit(os.fspath(file)):
+        extension = os.path.splitext(os.fspath(file))[1]
+        _warn(f'{os.fspath(file)}: a {extension} states no unit; where it is read, pass unit="{unit}"')

@@ -104,7 +104,7 @@ def pack_spheres(
     table = "" if output is None else os.fspath(output)
     if table and not table.endswith(".csv"):
         raise ValueError(f"output: {table} must end in .csv")
-    length_unit = unit_of(mesh, unit, ("km", "m"))
+    length_unit = unit_of(mesh, unit, ("km", "m"), "mesh")
     rows, masses, filling_rate, stopped = _estimation.pack_spheres(
         file or "mesh",
         None if arrays is None else arrays.vertices,

@@ -133,7 +133,6 @@ def realism(
     ValueError
         A mesh has too few triangles or no area, or an argument is out of range.
     """
-    _arrays.choice(unit, "unit", ("", "m", "km"))
     of_a, of_b, unit = pair_of(a, b, unit)
     figures: Record = records(
         _synthesis.realism(

@@ -186,7 +186,7 @@ def fit_shape(
         0.0 if micro_height is None else _arrays.number(micro_height, "micro_height", 1e-12, 1e12),
         _arrays.choice(device or "auto", "device", ("auto", "cpu", "cuda")),
         0.0 if time_limit is None else _arrays.number(time_limit, "time_limit", 0.0, 1e9),
-        unit_of(mesh, unit, ("km", "m")),
+        unit_of(mesh, unit, ("km", "m"), "mesh"),
         _options.name_of(checkpoint) or "",
         _options.name_of(report) or "",
         bool(strict),

@@ -360,6 +360,8 @@ void bind_meshes(nb::module_& module) {
   module.def(
       "stated_length_unit", [](const std::string& file) { return stated_length_unit(file); },
       nb::arg("file"));
+  module.def(
+      "tells_length_unit", [](const std::string& file) { return tells_length_unit(file); }, nb::arg("file"));
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
              nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),

@@ -96,6 +96,16 @@ def test_rays_of_cspice_meet_the_written_plates_of_two_segments(site, tmp_path):
         assert np.abs(np.array(points) - meets)[found].max() <= 1e-9 * radius
 
 
+def test_a_given_unit_wins_over_what_a_file_states(site, tmp_path):
+    body, file = site[0], tmp_path / "body.ply"
+    astrolith.write_mesh(body, file)
+    bridges.write_dsk(file, tmp_path / "m.bds", body=BODY, frame="J2000")
+    with pytest.warns(UserWarning, match=r"^unit: .*body\.ply states m; it is taken in km"):
+        bridges.write_dsk(file, tmp_path / "km.bds", body=BODY, frame="J2000", unit="km")
+    (in_metres,), (in_kilometres,) = (written_plates(tmp_path / name) for name in ("m.bds", "km.bds"))
+    np.testing.assert_allclose(in_kilometres, 1000 * in_metres, rtol=1e-12)
+
+
 def test_the_frame_turns_and_the_radii_are_half_the_box(site, tmp_path):
     body, _ = site
     kernels = bridges.write_kernels(body, tmp_path, "Itokawa", body=BODY, period=12.0, pole=(90.0, 45.0), meridian=30.0)

@@ -33,6 +33,8 @@ def test_trimesh_there_and_back(ball):
     back = bridges.from_trimesh(made)
     assert same(back, ball) and back.length_unit == "m"
     assert astrolith.describe(made, points=200).points == 200
+    masses = [astrolith.gravity(mesh, 2000.0).figures.body.mass_kg for mesh in (made, ball)]
+    assert masses[0] == pytest.approx(masses[1])
 
 
 def test_pyvista_there_and_back(ball):

@@ -89,10 +89,10 @@ def test_bytes_are_those_of_a_bare_body(worm, example):
 def test_a_fit_takes_the_unit_that_a_mesh_states(worm, fit_of_metres):
     assert fit_of_metres.recipe.length_unit == "m"
     in_metres = astrolith.Mesh(worm.vertices, worm.faces, length_unit="m")
-    with pytest.warns(UserWarning, match="^unit: the mesh states m; it is taken in km, as the argument says"):
+    with pytest.warns(UserWarning, match="^unit: mesh states m; it is taken in km, as the argument says"):
         assert astrolith.pack_spheres(in_metres, spheres=2, unit="km").length_unit == "km"
     in_inches = astrolith.Mesh(worm.vertices, worm.faces, length_unit="in")
-    with pytest.raises(ValueError, match="^unit: is missing; the mesh states in, which is none of km, m"):
+    with pytest.raises(ValueError, match="^unit: is missing; mesh states in, which is none of km, m; convert"):
         astrolith.fit_shape(in_inches)
 
 

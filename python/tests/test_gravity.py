@@ -1,6 +1,7 @@
 """Gravity: analytic truth, and the bytes of the program."""
 
 import json
+import types
 
 import astrolith
 import numpy as np
@@ -50,17 +51,41 @@ def test_tables_have_the_bytes_of_gravity(example, program, tmp_path, at):
     assert made.figures == {key: value for key, value in said.items() if key != "shape"}
 
 
-def test_files_state_their_unit(program, tmp_path):
+def test_files_state_their_unit(tmp_path):
     ball, file = astrolith.mesh({**BALL, "length_unit": "m"}, resolution=16), tmp_path / "m.ply"
     astrolith.write_mesh(ball, file)
     assert astrolith.read_mesh(file).length_unit == "m"
     mass = astrolith.gravity(ball, 2000.0).figures.body.mass_kg
     assert astrolith.gravity(file, 2000.0).figures.body.mass_kg == pytest.approx(mass, rel=1e-6)
-    with pytest.warns(UserWarning, match="^unit: the mesh states m; it is taken in km, as the argument says"):
+    with pytest.warns(UserWarning, match=r"^unit: .*m\.ply states m; it is taken in km, as the argument says") as warned:
         assert astrolith.gravity(file, 2000.0, unit="km").figures.body.mass_kg == pytest.approx(1e9 * mass, rel=1e-6)
+    assert warned[0].filename == __file__
     in_km = astrolith.Mesh(ball.vertices / 1000, ball.faces, length_unit="km")
     compared = astrolith.compare(in_km, file, points=200, samples=500)
     assert compared.length_unit == "km" and compared.mean_distance < 1e-6
+    with pytest.warns(UserWarning, match=r"^unit: .*m\.ply states m; it is taken in km") as warned:
+        assert astrolith.compare(in_km, file, unit="km", points=200, samples=500).mean_distance > 1
+    assert warned[0].filename == __file__
+
+
+def test_units_of_unknown_length_scale_nothing():
+    ball = astrolith.mesh(BALL, resolution=16)
+    in_feet = astrolith.Mesh(ball.vertices, ball.faces, length_unit="ft")
+    for a, b in ((ball, in_feet), (in_feet, ball)):
+        with pytest.warns(UserWarning, match="^b: is in .*, and a in .*; nothing was scaled"):
+            compared = astrolith.compare(a, b, points=200, samples=500)
+        assert compared.length_unit == a.length_unit and compared.mean_distance < 1e-6
+
+
+def test_a_trimesh_states_its_unit():
+    ball = astrolith.mesh(BALL, resolution=16)
+    mass = astrolith.gravity(ball, 2000.0).figures.body.mass_kg
+    for word, share in (("kilometers", 1.0), ("km", 1.0), ("meters", 1e-9), (None, 1.0)):
+        other = types.SimpleNamespace(vertices=ball.vertices, faces=ball.faces, units=word)
+        assert astrolith.gravity(other, 2000.0).figures.body.mass_kg == pytest.approx(share * mass, rel=1e-6)
+    other.units = "inches"
+    with pytest.raises(ValueError, match="^unit: is missing; body states inches"):
+        astrolith.gravity(other, 2000.0)
 
 
 def test_recipes_and_points_have_the_bytes_of_gravity(example, program, tmp_path):
@@ -103,6 +128,7 @@ def test_landing_sites_are_those_of_gravity(example, program, tmp_path):
         ("tolerance", {"tolerance": 1.0}),
         ("degree", {"degree": 51}),
         ("sites", {"sites": 1001, "site_size": 0.5}),
+        ("sites", {"sites": -1}),
         ("sites", {"sites": 1, "site_size": 0.5, "at": "vertices"}),
         ("site_size", {"sites": 1}),
         ("site_size", {"site_size": 0.5}),

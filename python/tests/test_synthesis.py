@@ -114,6 +114,17 @@ def test_texture_coordinates_have_the_bytes_of_synth(ball, program, tmp_path):
         astrolith.write_mesh(mesh, tmp_path / "package.ply", uv=True)
 
 
+def test_files_keep_the_unit_of_the_file_that_they_are_written_from(ball, tmp_path):
+    astrolith.write_mesh(astrolith.mesh(ball, resolution=16), tmp_path / "m.ply")
+    for name in ("m.obj", "m.stl"):
+        astrolith.write_mesh(tmp_path / "m.ply", tmp_path / name)
+        assert astrolith.read_mesh(tmp_path / name).length_unit == "m"
+    for name in ("m.tab", "m.icq"):
+        with pytest.warns(UserWarning, match='states no unit; where it is read, pass unit="m"') as warned:
+            astrolith.write_mesh(tmp_path / "m.ply", tmp_path / name)
+        assert warned[0].filename == __file__
+
+
 @pytest.mark.parametrize("extension", ["obj", "stl", "glb"])
 def test_other_formats_and_patches_have_the_bytes_of_synth(ball, program, tmp_path, extension):
     ball.write(tmp_path / "ball.json")

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith._mesh import Mesh, MeshLike, arrays_of, read_mesh
+from astrolith._units import name_of
 from astrolith.bridges._optional import required
 
 
@@ -55,16 +56,14 @@ def to_trimesh(mesh: MeshLike) -> Any:
 def from_trimesh(mesh: Any) -> Mesh:
     """Make a :class:`astrolith.Mesh` of a ``trimesh.Trimesh``.
 
-    Its unit is kept where that is m, km, cm or mm. Normals are kept where they were given or have been computed.
+    Its unit is kept; "meters" become "m". Normals are kept where they were given or have been computed.
     """
     arrays = arrays_of((mesh.vertices, np.ascontiguousarray(mesh.faces)), "mesh")
-    words = {"meters": "m", "kilometers": "km", "centimeters": "cm", "millimeters": "mm"}
-    unit = words.get(mesh.units, mesh.units)
     return Mesh(
         arrays.vertices,
         arrays.faces,
         _normals(mesh.vertex_normals) if "vertex_normals" in mesh._cache else None,
-        length_unit=unit if unit in words.values() else "",
+        length_unit=name_of(mesh.units),
     )
 
 

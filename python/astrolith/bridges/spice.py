@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays
-from astrolith._mesh import Mesh, MeshLike, arrays_of, stated_unit
+from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of
 from astrolith._recipe import PathLike
+from astrolith._units import METRES
 from astrolith.bridges._optional import required
 
 # The limits of type 2 (DSK Required Reading).
@@ -22,7 +23,6 @@ _MOST_COARSE_VOXELS = 100_000
 
 _GENERAL_CLASS = 2  # of surfaces that a ray from the centre may meet more than once
 _LATITUDINAL, _RECTANGULAR = 1, 3
-_KILOMETRES = {"km": 1.0, "m": 1e-3, "cm": 1e-5, "mm": 1e-6}
 _CENTURY = 36525 * 86400.0
 
 
@@ -38,7 +38,7 @@ class Kernels:
 def _plates(mesh: MeshLike, unit: Optional[str], name: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
     """Vertices in kilometres of the body-fixed frame, and plates whose vertices are counted from 1."""
     arrays = arrays_of(mesh, name)
-    scale = _KILOMETRES[_arrays.choice(stated_unit(mesh) or unit or "km", f"{name}.length_unit", tuple(_KILOMETRES))]
+    scale = METRES[unit_of(mesh, unit, tuple(METRES), name)] / METRES["km"]
     origin = (mesh.origin if isinstance(mesh, Mesh) else None) or (0.0, 0.0, 0.0)
     vertices = (arrays.vertices + np.array(origin)) * scale
     if len(vertices) > _MOST_VERTICES or len(arrays.faces) > _MOST_PLATES:
@@ -142,7 +142,7 @@ def write_dsk(
         The surface numbers of the segments, 1, 2, ... by default. A ray that is asked for all surfaces meets the
         nearest, be it of the body or of the patch; ask for one number to choose.
     unit
-        The unit of meshes that state none: "m", "km", "cm" or "mm"; km by default.
+        The unit of all meshes: "m", "km", "cm" or "mm". None: what each mesh or its file states, else km.
 
     Raises
     ------
