@@ -12,7 +12,6 @@
 #include "apps/synth/synth_finish.h"
 #include "apps/synth/synth_members.h"
 #include "apps/synth/synth_mesh.h"
-#include "apps/synth/synth_predict_members.h"
 #include "apps/synth/synth_series.h"
 #include "apps/synth/synth_texture.h"
 #include "geometry/io/mesh_io.h"

@@ -19,8 +19,10 @@
 #include "numerics/vec3_json.h"
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
+#include "synthesis/finish/family_member.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/manifest.h"
+#include "tasks/synthesis/mesh_region.h"
 
 namespace astrolith {
 namespace {
@@ -39,6 +41,10 @@ std::uint64_t member_number(std::string_view text) {
   }
   return number;
 }
+
+struct MemberRange {
+  std::uint64_t begin = 0, end = 0;
+};
 
 MemberRange parse_range(const std::string& text) {
   const std::size_t colon = std::min(text.find(':'), text.size());
@@ -101,6 +107,12 @@ std::string hash_of_family(const Program& program, const Recipe& recipe) {
     text += name + "=" + value + "\n";
   }
   return sha256_of(text);
+}
+
+// Sets what the family draws of a picture's light and view.
+void set_light_and_view(const Family& family, const FamilyMember& member, PreviewRequest& preview) {
+  if (family.any_view) preview.look.look_from(member.view);
+  if (family.any_sun) preview.look.light_from(member.sun);
 }
 
 class MemberMaker {
@@ -251,14 +263,15 @@ void prepare_outputs(const Program& program, const MemberMaker& maker, const Mes
   check_mesh_outputs(program, request, numbered(files.mesh, first));
 }
 
-}  // namespace
-
-MemberRange range_of(const MembersRequest& request) { return parse_range(request.range); }
-
-void set_light_and_view(const Family& family, const FamilyMember& member, PreviewRequest& preview) {
-  if (family.any_view) preview.look.look_from(member.view);
-  if (family.any_sun) preview.look.light_from(member.sun);
+// Makes the folder of the summary, and throws InputError where the summary cannot be written.
+void prepare_summary(const Program& program) {
+  const fs::path file = program.summary_file;
+  if (file.empty()) return;
+  if (file.has_parent_path()) make_output_folder(file.parent_path());
+  require_writable(file);
 }
+
+}  // namespace
 
 void declare_members_options(Program& program, MembersRequest& request) {
   program.makes_folders = [&request] { return !request.range.empty(); };
@@ -300,13 +313,6 @@ void check_members(const MembersRequest& request, const MeshRequest& mesh, const
                     {files.mesh, files.recipe, mesh.preview.file, mesh.preview.maps, mesh.landforms});
 }
 
-void prepare_summary(const Program& program) {
-  const fs::path file = program.summary_file;
-  if (file.empty()) return;
-  if (file.has_parent_path()) make_output_folder(file.parent_path());
-  require_writable(file);
-}
-
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
                   const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
   const MemberRange range = parse_range(request.range);
@@ -329,6 +335,60 @@ void make_members(Program& program, const MembersRequest& request, const MeshReq
   program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", request.manifest.string(),
                           tally.made, tally.there, tally.failed, range.end - range.begin,
                           Program::interrupted() ? "; stopped, the same command goes on" : ""));
+}
+
+namespace {
+
+// The first member, the last and some between.
+std::vector<std::uint64_t> sampled_members(const MemberRange& range) {
+  constexpr std::uint64_t kMembersForOne = 20, kFewest = 2, kMost = 8;
+  const std::uint64_t all = range.end - range.begin;
+  const std::uint64_t count = std::min(all, std::clamp(all / kMembersForOne, kFewest, kMost));
+  std::vector<std::uint64_t> numbers{range.begin};
+  for (std::uint64_t i = 1; i < count; ++i) numbers.push_back(range.begin + (all - 1) * i / (count - 1));
+  return numbers;
+}
+
+}  // namespace
+
+void predict_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
+                     const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
+  check_mesh_request(mesh, recipe, file);
+  const fs::path output = files.mesh.empty() && files.recipe.empty() ? "{member}.ply" : files.mesh;
+  if (!output.empty()) check_mesh_name(mesh, output);
+  prepare_summary(program);
+  const MemberRange range = parse_range(request.range);
+  const std::vector<std::uint64_t> numbers = sampled_members(range);
+  const std::uint64_t members = range.end - range.begin;
+  const double share = static_cast<double>(members) / static_cast<double>(numbers.size());
+  const double start = program.seconds();
+  double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
+  for (const std::uint64_t number : numbers) {
+    const double on_clock = program.seconds(), of_processor = Program::processor_seconds();
+    const Recipe member = family_member(recipe, number).recipe;
+    if (!files.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
+    if (output.empty()) continue;
+    const SilencedProgram silenced(program);
+    make_mesh(program, mesh, member, file, output);
+    const Json& figures = program.summary["predicted"];
+    triangles += share * figures["triangles"].get<double>();
+    file_bytes += share * figures["file_bytes"].get<double>();
+    peak = std::max(peak, figures["peak_bytes"].get<double>());
+    seconds += share * (figures["seconds"].get<double>() - std::min(on_clock, of_processor));
+    processor += share * (figures["processor_seconds"].get<double>() - of_processor);
+  }
+  program.summary["predicted"] = {{"triangles", triangles},
+                                  {"file_bytes", file_bytes},
+                                  {"peak_bytes", peak},
+                                  {"seconds", seconds},
+                                  {"processor_seconds", processor},
+                                  {"members", members},
+                                  {"sampled_members", numbers},
+                                  {"own_seconds", program.seconds() - start}};
+  if (program.quiet) return;
+  print_result(fmt::format("{} members: about {} triangles, {} of files, {} memory, {}; from {} of them\n",
+                           members, rounded_count(triangles), byte_words(file_bytes), byte_words(peak),
+                           seconds_words(seconds, processor), numbers.size()));
 }
 
 }  // namespace astrolith

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "apps/synth/synth_mesh.h"
-#include "synthesis/finish/family_member.h"
 
 namespace astrolith {
 
@@ -15,15 +14,6 @@ struct MembersRequest {
   std::filesystem::path manifest;  // of finished members
   std::filesystem::path folder;    // of their meshes; empty = as the names of the files say
 };
-
-struct MemberRange {
-  std::uint64_t begin = 0, end = 0;
-};
-// Throws InputError for a range without members.
-MemberRange range_of(const MembersRequest& request);
-
-// Sets what the family draws of a picture's light and view.
-void set_light_and_view(const Family& family, const FamilyMember& member, PreviewRequest& preview);
 
 // What each member writes. "{member}" in a name stands for the member's number in seven digits or more.
 struct MemberFiles {
@@ -37,12 +27,15 @@ void declare_members_options(Program& program, MembersRequest& request);
 // and for a name that would be the same for all members.
 void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files);
 
-// Makes the folder of the summary, and throws InputError where the summary cannot be written.
-void prepare_summary(const Program& program);
-
 // Makes the members of the range that the manifest does not have yet. A member that fails is reported, and
 // the others go on. `file` is the recipe's, for messages. Throws InputError where no member can be made.
 void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
                   const MemberFiles& files, const Recipe& recipe, const std::filesystem::path& file);
+
+// States triangles, bytes of meshes and recipes, memory and seconds of the whole range in the summary and on
+// stdout, from a few of its members. Without a name for meshes, .ply is assumed, unless recipes alone are
+// asked for.
+void predict_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
+                     const MemberFiles& files, const Recipe& recipe, const std::filesystem::path& file);
 
 }  // namespace astrolith

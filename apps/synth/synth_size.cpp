@@ -8,8 +8,7 @@
 #include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
-#include "synthesis/field/field_mesh.h"
-#include "tasks/prediction/mesh_estimate.h"
+#include "synthesis/mesh/sample_grid.h"
 
 namespace astrolith {
 namespace {
@@ -38,30 +37,28 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
           "quarters of the machine's memory are refused")
       .check(above_zero())
       .default_text("");
-  program.app.add_flag(
-      "--predict", request.only_predict,
-      "only say how many triangles, bytes (of .ply.zst before it is compressed), how much "
-      "memory and how many seconds the mesh would take; nothing is written but the summary. "
-      "Seconds of the processor are those of all threads together; seconds on idle cores are "
-      "what the clock shows while nothing else runs on them. Most figures are within 30 %. "
-      "Beside the start of the program this takes about 3 % of the predicted seconds, a tenth of those of a "
-      "small mesh, or some 30 milliseconds if these are more. With --members it is said of all files of the "
-      "set: "
-      "small members are made for that, up to eight, in a temporary folder");
+  program.app.add_flag("--predict", request.only_predict,
+                       "only say how many triangles, bytes (of .ply.zst before it is compressed), how much "
+                       "memory and how many "
+                       "seconds the mesh would take, from a coarse mesh and some places of its surface; "
+                       "nothing is written but "
+                       "the summary. Seconds of the processor are those of all threads together; seconds on "
+                       "idle cores are what "
+                       "the clock shows while nothing else runs on them. Triangles are within 30 %, memory "
+                       "within 50 %, seconds "
+                       "within a factor of two. With --members it is said of the meshes and recipes of the "
+                       "set, from up to eight "
+                       "of them");
 }
 
 int choose_resolution(Program& program, const MeshSizeRequest& request, const PlannedMesh& mesh) {
-  const bool by_triangles = request.triangles > 0.0;
   const bool small = request.max_memory_gb <= 0.0 && request.resolution < kWorthPredicting;
-  if (!by_triangles && !request.only_predict && small) return request.resolution;
+  if (request.triangles <= 0.0 && !request.only_predict && small) return request.resolution;
 
-  const int resolution =
-      by_triangles ? resolution_for_triangles(mesh.field, mesh.recipe, mesh.region, request.triangles)
-                   : request.resolution;
   const MeshPrediction predicted =
-      predict_mesh(mesh, resolution,
-                   {program.threads, program.seconds(), program.processor_seconds(), !request.only_predict},
-                   request.only_predict ? kForFigures : kForMemory);
+      predict_mesh(mesh, request.resolution, request.triangles,
+                   {program.threads, program.seconds(), program.processor_seconds(), !request.only_predict});
+  const int resolution = predicted.resolution;
   program.summary["resolution"] = resolution;
   program.summary["predicted"] = {{"triangles", predicted.triangles},
                                   {"file_bytes", predicted.file_bytes},
@@ -70,11 +67,13 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
                                   {"processor_seconds", predicted.processor_seconds},
                                   {"own_seconds", predicted.own_seconds},
                                   {"own_evaluations", predicted.own_evaluations}};
-  require_memory(mesh, resolution, predicted, memory_limit(request.max_memory_gb));
-  program.say(fmt::format("resolution {}: about {} triangles, {} file, {} memory, {}", resolution,
-                          rounded_count(predicted.triangles), byte_words(predicted.file_bytes),
-                          byte_words(predicted.peak_bytes),
-                          seconds_words(predicted.seconds, predicted.processor_seconds)));
+  require_memory(mesh, predicted, memory_limit(request.max_memory_gb));
+  const std::string line = fmt::format("resolution {}: about {} triangles, {} file, {} memory, {}",
+                                       resolution, rounded_count(predicted.triangles),
+                                       byte_words(predicted.file_bytes), byte_words(predicted.peak_bytes),
+                                       seconds_words(predicted.seconds, predicted.processor_seconds));
+  if (!request.only_predict) program.say(line);
+  if (request.only_predict && !program.quiet) print_result(line + "\n");
   return resolution;
 }
 

@@ -136,7 +136,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   }
   MadeMesh made{ArraySink(std::move(labeller)), {}, {}, 0, region, {}, {}, {}};
   made.resolution = arguments.triangles > 0.0
-                        ? resolution_for_triangles(field, recipe, region, arguments.triangles)
+                        ? MeshEstimator(field, recipe, region).resolution_for(arguments.triangles)
                         : arguments.resolution;
   const auto stage = [&](const std::string& name) { return state.progress(name); };
   made.report = make_body_mesh({recipe, field, file, region, made.resolution, arguments.min_component,
@@ -151,12 +151,7 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   return made;
 }
 
-struct PredictedMesh {
-  MeshPrediction takes;
-  int resolution = 0;
-};
-
-PredictedMesh predict_of(const MeshArguments& arguments, const std::string& format, int threads) {
+MeshPrediction predict_of(const MeshArguments& arguments, const std::string& format, int threads) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t processor_start = std::clock();
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
@@ -168,14 +163,11 @@ PredictedMesh predict_of(const MeshArguments& arguments, const std::string& form
   use.twice = arguments.min_component > 0.0;
   use.labels = arguments.labels;
   use.even = arguments.even;
-  const int resolution = arguments.triangles > 0.0
-                             ? resolution_for_triangles(field, recipe, region, arguments.triangles)
-                             : arguments.resolution;
   const PlannedRun run{threads,
                        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                        static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
-  return {predict_mesh({field, recipe, region, "mesh" + format, use}, resolution, run, kForFigures),
-          resolution};
+  return predict_mesh({field, recipe, region, "mesh" + format, use}, arguments.resolution,
+                      arguments.triangles, run);
 }
 
 nb::dict quality_figures(const QualityFigures& quality) {
@@ -269,15 +261,15 @@ Fields predict(const std::string& json, const std::string& name, int resolution,
                const std::string& format, int threads) {
   const MeshArguments arguments{json,    name, resolution,    triangles, patch,
                                 aligned, tile, min_component, labels,    even};
-  const PredictedMesh predicted =
+  const MeshPrediction predicted =
       run_job(nb::none(), threads, [=](JobState&) { return predict_of(arguments, format, threads); });
   Fields figures;
   figures["resolution"] = predicted.resolution;
-  figures["triangles"] = predicted.takes.triangles;
-  figures["file_bytes"] = predicted.takes.file_bytes;
-  figures["peak_bytes"] = predicted.takes.peak_bytes;
-  figures["seconds"] = predicted.takes.seconds;
-  figures["processor_seconds"] = predicted.takes.processor_seconds;
+  figures["triangles"] = predicted.triangles;
+  figures["file_bytes"] = predicted.file_bytes;
+  figures["peak_bytes"] = predicted.peak_bytes;
+  figures["seconds"] = predicted.seconds;
+  figures["processor_seconds"] = predicted.processor_seconds;
   return figures;
 }
 

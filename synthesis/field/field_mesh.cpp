@@ -8,13 +8,6 @@ namespace {
 // Coarse meshes have smaller blocks, whose lists of craters and boulders are shorter.
 constexpr int kCoarseBlockCells = 4;
 
-template <BlockField Field>
-void probe_mesh(const Field& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums) {
-  SurfaceProber<kBlockCells, Field>(field, mesh.surface, mesh.step, mesh.reach, mesh.with_neighbour,
-                                    mesh.warm_up, mesh.costs)
-      .add(first, count, sums);
-}
-
 }  // namespace
 
 MeshStatistics mesh_field(const ImplicitField& field, const Box& bounds, int resolution, MeshSink& sink,
@@ -36,16 +29,6 @@ EvenStatistics even_mesh(const PatchField& field, double step, RecordedMesh& mes
   return even_mesh<PatchField>(field, step, mesh, progress);
 }
 
-MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int resolution, MeshTile tile,
-                          const SampleSize& size) {
-  return sample_field<kBlockCells>(field, bounds, resolution, tile, size);
-}
-
-MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolution,
-                          const SampleSize& size) {
-  return sample_patch<kBlockCells>(field, patch_size, resolution, size);
-}
-
 TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made) {
   MeshCollector collector;
   const MeshStatistics statistics =
@@ -62,12 +45,12 @@ TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int reso
   return std::move(collector.mesh);
 }
 
-void probe(const ImplicitField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums) {
-  probe_mesh(field, mesh, first, count, sums);
+ProbeFigures probe_surface(const ImplicitField& field, const ProbedMesh& mesh, int count) {
+  return probe_surface<kBlockCells>(field, mesh, count);
 }
 
-void probe(const PatchField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums) {
-  probe_mesh(field, mesh, first, count, sums);
+ProbeFigures probe_surface(const PatchField& field, const ProbedMesh& mesh, int count) {
+  return probe_surface<kBlockCells>(field, mesh, count);
 }
 
 }  // namespace astrolith

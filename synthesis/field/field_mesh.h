@@ -6,7 +6,6 @@
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/field/patch_field.h"
 #include "synthesis/mesh/even_mesh.h"
-#include "synthesis/mesh/mesh_sample.h"
 #include "synthesis/mesh/mesher.h"
 #include "synthesis/mesh/surface_probes.h"
 
@@ -24,27 +23,13 @@ EvenStatistics even_mesh(const ImplicitField& field, double step, RecordedMesh& 
 EvenStatistics even_mesh(const PatchField& field, double step, RecordedMesh& mesh,
                          const Progress& progress = {});
 
-// The estimates of these meshes from samples of their blocks (synthesis/mesh/mesh_sample.h).
-MeshEstimate sample_field(const ImplicitField& field, const Box& bounds, int resolution, MeshTile tile,
-                          const SampleSize& size);
-MeshEstimate sample_patch(const PatchField& field, double patch_size, int resolution, const SampleSize& size);
-
 // A coarse mesh of a field, as a place for probes: whole, and of a patch. `made`, if given, gets its counts.
 TriangleMesh coarse_mesh_of(const ImplicitField& field, int resolution, MeshStatistics* made = nullptr);
 TriangleMesh coarse_mesh_of(const PatchField& field, double patch_size, int resolution,
                             MeshStatistics* made = nullptr);
 
-// A mesh to be probed (synthesis/mesh/surface_probes.h).
-struct ProbedMesh {
-  const ProbedSurface& surface;
-  double step;   // edge of its cells, length units
-  double reach;  // how far its surface may lie from the coarse one, length units
-  double with_neighbour;
-  bool warm_up;
-  bool costs = true;  // false: only triangles are counted, which takes less
-};
-// Adds the probes first .. first + count - 1 to the sums.
-void probe(const ImplicitField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums);
-void probe(const PatchField& field, const ProbedMesh& mesh, int first, int count, ProbeSums& sums);
+// The mean of `count` probes of a mesh (synthesis/mesh/surface_probes.h).
+ProbeFigures probe_surface(const ImplicitField& field, const ProbedMesh& mesh, int count);
+ProbeFigures probe_surface(const PatchField& field, const ProbedMesh& mesh, int count);
 
 }  // namespace astrolith

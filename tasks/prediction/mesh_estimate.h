@@ -1,37 +1,56 @@
-// What the mesh of a region takes, estimated before it is made.
+// Counts and seconds of the mesh of a region before it is made, from a coarse mesh and probes along its
+// surface.
 #pragma once
 
 #include "geometry/triangle_mesh.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/mesh/mesh_sample.h"
+#include "synthesis/mesh/surface_probes.h"
 #include "tasks/synthesis/mesh_region.h"
 
 namespace astrolith {
 
-// What an estimate may take: a share of the seconds that are predicted for the mesh, or this many seconds of
-// one processor if these are more. The first sample is taken at any cost. Where few blocks would tell little,
-// `most_share` of the seconds may go into the first probes.
-struct EstimateBudget {
-  double share;
-  double free_seconds;
-  int first_squares, first_blocks;  // of the first sample
-  int first_probes;
-  double most_share;
+struct MeshEstimate {
+  int resolution = 0;
+  double step = 0.0;  // edge of a cell, length units
+  double area = 0.0;  // of the coarse mesh, square length units
+  double triangles = 0.0, blocks = 0.0;
+  double blocks_of_layer = 0.0, blocks_of_three_layers = 0.0;  // the most in successive layers
+  double seconds = 0.0;          // of one processor, without the tiles of Gabor impulses
+  double list_bytes = 0.0;       // memory of the field narrowed to a block
+  double own_evaluations = 0.0;  // of the field, for these figures
+  int probes = 0;                // 0: the mesh was made
 };
 
-// The estimate of the mesh of a region from samples of its blocks, a coarse mesh, and probes along the
-// surface of that. Throws what mesh_region throws.
-MeshEstimate estimate_region(const ImplicitField& field, const Recipe& recipe, const Region& region,
-                             int resolution, const EstimateBudget& budget);
+// Estimates meshes of one region. The number of places it looks at depends on the resolution alone. The field
+// and the recipe must outlive it. All members throw what mesh_region throws.
+class MeshEstimator {
+ public:
+  MeshEstimator(const ImplicitField& field, const Recipe& recipe, const Region& region);
 
-// A coarse mesh of a region, of at most `cells` cells, which stands for the surface where a cost is sampled.
-// Where layers have impulses it is the mesh of the body without its layers. Throws what mesh_region throws.
-TriangleMesh coarse_region(const ImplicitField& field, const Recipe& recipe, const Region& region, int cells);
+  MeshEstimate at(int resolution);
 
-// The resolution at which the whole mesh, or the patch, has about so many triangles. The estimates look at a
-// fixed number of places, so that the resolution is the same on every machine. Throws InputError where the
-// finest mesh has fewer, and WorkError where the surface is too small to tell its size.
-int resolution_for_triangles(const ImplicitField& field, const Recipe& recipe, const Region& region,
-                             double triangles);
+  // The resolution at which the whole mesh, or the patch, has about so many triangles; the same on every
+  // machine. Throws InputError where the finest mesh has fewer, and WorkError where the surface is too small
+  // to tell its size.
+  int resolution_for(double triangles);
+
+  // The coarse mesh of the last estimate, which stands for the surface where a cost is sampled. Where layers
+  // have impulses it is the mesh of the body without its layers.
+  const TriangleMesh& coarse() const { return coarse_; }
+
+ private:
+  MeshEstimate made_at(int resolution);
+  void make_coarse(int cells);
+  double step_at(int resolution) const;
+  ProbeFigures probe(const ProbedSurface& surface, int resolution, int count);
+
+  const ImplicitField& field_;
+  Region region_;
+  ImplicitField base_;  // whose coarse mesh is made
+  TriangleMesh coarse_;
+  int coarse_cells_ = 0;
+  double evaluations_ = 0.0;
+  int most_probes_ = 0;
+};
 
 }  // namespace astrolith

@@ -3,14 +3,166 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
+#include <span>
 #include <thread>
 
+#include "geometry/io/ply_stream_writer.h"
+#include "gravity/polyhedron_gravity.h"
+#include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
-#include "numerics/processor_clock.h"
+#include "numerics/one_thread.h"
+#include "numerics/portable_double.h"
+#include "synthesis/field/field_mesh.h"
+#include "synthesis/field/field_tables.h"
+#include "synthesis/finish/erosion.h"
+#include "synthesis/gabor/gabor_tiles.h"
 
 namespace astrolith {
 namespace {
+
+// Seconds of one processor for a triangle and its half vertex to be checked, written and hashed.
+constexpr double kOutputSeconds = 1.2e-7;
+// Labels, and evening, as shares of the seconds of the mesh.
+constexpr double kLabelShare = 0.5, kEvenShare = 0.5;
+
+// Bytes for a triangle and its half vertex: half a vertex and half a normal as doubles, and a triangle; half
+// of one array is copied as it grows.
+constexpr double kCollected = 36.0 + 6.0;
+// Evening keeps the mesh as it was recorded, and has neighbours, places and vertices before and after a pass.
+constexpr double kRecorded = 24.0 + 6.0, kEvenTables = 50.0;
+// The tables of an erosion: verticals, areas, heights and edges.
+constexpr double kErosionTables = 90.0;
+// The picture, and facets, nodes and multipoles of gravity with its eight columns at half a vertex.
+constexpr double kPicture = 120.0, kGravityTables = 240.0;
+
+// What is done with a mesh, for each triangle.
+struct UseBytes {
+  double file, memory;
+};
+
+UseBytes bytes_of_use(const PlannedMesh& mesh) {
+  const MeshUse& use = mesh.use;
+  const std::string extension = is_ply_name(mesh.output) ? ".ply" : mesh.output.extension().string();
+  const double held = std::max(
+      {use.preview ? kPicture : 0.0, use.erosion ? kErosionTables : 0.0, use.gravity ? kGravityTables : 0.0});
+  // Two numbers of four bytes at half a vertex with labels, eight with gravity.
+  const double values = use.labels ? 4.0 : use.gravity ? 16.0 : 0.0;
+  // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
+  const double mapped = use.texture_coordinates ? 4.0 : 0.0;
+  if (extension == ".ply") return {25.0 + values, held > 0.0 ? kCollected + held : 0.0};
+  if (extension == ".stl") return {50.0, kCollected + held};
+  if (extension == ".glb") return {24.0 + mapped, kCollected + 24.0 + held + 4.0 * mapped};
+  return {75.0, kCollected + held};
+}
+
+// Memory of the mesher and of the check of its mesh: blocks, narrowed fields, triangles and vertices of
+// layers.
+double meshing_bytes(const MeshEstimate& mesh) {
+  constexpr double kNode = sizeof(BlockNode<FieldBlock>) + 96.0;  // and what the allocator adds to its lists
+  // Corners: those of two layers, and the sorted ones of the older layer.
+  constexpr double kCheck = 36.0 + 0.5 * 32.0;
+  if (!(mesh.blocks > 0.0)) return 0.0;
+  const double of_block = mesh.triangles / mesh.blocks;
+  return mesh.blocks_of_three_layers * (sizeof(LayerBlock<kBlockCells>) + of_block * kCheck) +
+         mesh.blocks_of_layer *
+             (2.0 * (mesh.list_bytes + kNode) + of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
+}
+
+// The tiles of Gabor impulses that a mesh draws.
+struct TileCost {
+  double bytes = 0.0;    // that the caches hold at the end, beyond what they hold now
+  double seconds = 0.0;  // of one processor
+};
+
+// From the tiles that the estimate has drawn. A probe draws the tiles that reach its column, so that a tile
+// which k probes need has been drawn with the probability 1 - exp(-k).
+TileCost cost_of_tiles(const ImplicitField& field, const MeshEstimate& mesh, int threads) {
+  TileCost cost;
+  if (mesh.probes == 0) return cost;  // all tiles have been drawn
+  const FieldView& view = field.tables();
+  const std::span<const ImpulseList> lists = view.arrays.span(view.gabor_lists);
+  const std::vector<GaborCacheUse> caches = field.gabor_caches();
+  const std::vector<double> tile_seconds = field.gabor_tile_seconds();
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (!(caches[i].drawn > 0.0)) continue;  // under a mask, or drawn for each point
+    const GaborSurfaceNoise& noise = *gabor_impulses_of(view.layers[lists[i].layer].noise);
+    const SurfaceBand& band = view.arrays[noise.bands][lists[i].element];
+    const double block = kBlockCells * mesh.step;
+    const double reached = double{band.cell} * kTileCells + 2.0 * double{band.reach};
+    const double seen = (reached + 2.0 * block) * (reached + 2.0 * block) * mesh.probes / mesh.area;
+    const double tiles = caches[i].drawn / (1.0 - portable::exp(-seen));
+    const double bytes = tiles * caches[i].drawn_bytes / caches[i].drawn;
+    // Tiles that find no room are drawn anew in each layer of blocks that needs them.
+    const double of_two_layers = bytes * std::min((reached + 3.0 * block) / field.bounds().extent().z, 1.0);
+    const double draws = of_two_layers <= 0.9 * kMostCacheBytes ? 1.0 : std::max(reached / block + 1.0, 1.0);
+    // The heaps of two or more threads have gaps.
+    const double kept = bytes > kMostCacheBytes ? (threads > 1 ? 1.25 : 1.1) * kMostCacheBytes : bytes;
+    cost.bytes += std::max(kept - caches[i].held_bytes, 0.0);
+    cost.seconds += tile_seconds[i] * tiles * draws;
+  }
+  return cost;
+}
+
+// Seconds of one processor.
+template <typename Work>
+double timed(const Work& work) {
+  double seconds = 0.0;
+  on_one_thread([&] {
+    const ProcessorClock clock;
+    work();
+    seconds = clock.seconds();
+  });
+  return seconds;
+}
+
+// How much more a triangle costs in a mesh of `ratio` times as many, if each doubling adds `more` to it.
+double growth(double ratio, double more) { return 1.0 + more * portable::log(ratio) / portable::log(2.0); }
+
+// What an erosion adds.
+struct ErosionCost {
+  double vertical_seconds = 0.0, slide_seconds = 0.0;
+  double bytes = 0.0;  // of the gravity that it slides against, beyond its tables
+};
+
+ErosionCost cost_of_erosion(const PlannedMesh& planned, const MeshEstimate& mesh) {
+  constexpr int kCoarser = 5, kFewestCells = 16, kMostCells = 64, kCellsOfGravity = 48;
+  constexpr double kMoreOfDoubling = 0.08, kBytesOfFacet = 1250.0, kSecondsOfVertical = 8e-8;
+  const Erosion& erosion = *planned.recipe.erosion;
+  const int cells = std::clamp(mesh.resolution / kCoarser, kFewestCells, kMostCells);
+  TriangleMesh coarse = coarse_mesh_of(planned.field, cells);
+  if (coarse.triangles.empty()) return {};
+  std::vector<Vec3d> up;
+  ErosionCost cost;
+  // Gravity is that of a lattice of some cells; each triangle then adds a little.
+  const double finer = std::max(std::min(kCellsOfGravity, mesh.resolution) / double(cells), 1.0);
+  cost.vertical_seconds = finer * finer * timed([&] {
+                            up = vertical_directions(coarse, {erosion.density, erosion.rotation_period});
+                          }) +
+                          kSecondsOfVertical * mesh.triangles;
+  const double ratio = std::max(mesh.triangles / double(coarse.triangles.size()), 1.0);
+  cost.slide_seconds = ratio * growth(ratio, kMoreOfDoubling) *
+                       timed([&] { erode(coarse, up, erosion.talus_angle, erosion.iterations); });
+  const double lattice = std::min(kCellsOfGravity / double(mesh.resolution), 1.0);
+  cost.bytes = std::max(kBytesOfFacet * lattice * lattice - kErosionTables, 0.0) * mesh.triangles;
+  return cost;
+}
+
+// Gravity at all vertices, from some vertices of the coarse mesh.
+double gravity_seconds(const TriangleMesh& coarse, const MeshEstimate& mesh) {
+  constexpr std::size_t kMostPoints = 400;
+  constexpr double kTolerance = 1e-6, kMoreOfDoubling = 0.058;
+  if (coarse.vertices.empty()) return 0.0;
+  std::vector<Vec3d> points;
+  const std::size_t stride = coarse.vertices.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < coarse.vertices.size(); i += stride) points.push_back(coarse.vertices[i]);
+  const double vertices = 0.5 * mesh.triangles;
+  const double ratio = std::max(vertices / double(coarse.vertices.size()), 1.0);
+  const PolyhedronGravity gravity(coarse);
+  return vertices / double(points.size()) * growth(ratio, kMoreOfDoubling) *
+         timed([&] { gravity.at(points, kTolerance); });
+}
 
 int threads_of(const PlannedRun& run) {
   return run.threads > 0 ? run.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -18,52 +170,52 @@ int threads_of(const PlannedRun& run) {
 
 }  // namespace
 
-MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const PlannedRun& run,
-                            const EstimateBudget& budget) {
-  const ProcessorClock clock;
+MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double triangles,
+                            const PlannedRun& run) {
+  const std::clock_t start = std::clock();
   const double peak_before = static_cast<double>(peak_bytes());
-  const MeshEstimate estimate = estimate_region(mesh.field, mesh.recipe, mesh.region, resolution, budget);
-  const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
-  const OutputCost output = output_cost(mesh.output, mesh.use, estimate.triangles);
-  const ErosionCost erosion =
-      mesh.use.erosion ? erosion_cost(mesh.field, mesh.recipe, estimate) : ErosionCost{};
+  MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region);
+  const MeshEstimate estimate =
+      estimator.at(triangles > 0.0 ? estimator.resolution_for(triangles) : resolution);
+  const TileCost tiles = cost_of_tiles(mesh.field, estimate, threads_of(run));
+  const UseBytes use = bytes_of_use(mesh);
+  const ErosionCost erosion = mesh.use.erosion ? cost_of_erosion(mesh, estimate) : ErosionCost{};
+  const double gravity = mesh.use.gravity ? gravity_seconds(estimator.coarse(), estimate) : 0.0;
   const double peak_after = static_cast<double>(peak_bytes());
   give_back_freed_memory();
-  const double held = static_cast<double>(resident_bytes());
-  const double labels = mesh.use.labels ? label_seconds(mesh.field, mesh.recipe, mesh.region, estimate) : 0.0;
-  const double gravity = mesh.use.gravity ? gravity_seconds(mesh.field, mesh.recipe, estimate) : 0.0;
-  const EvenCost even = mesh.use.even ? even_cost(estimate) : EvenCost{};
-  const double working = std::max({meshing_bytes(estimate), erosion.bytes, even.table_bytes}) +
-                         even.recorded_bytes +
-                         more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(run)) +
-                         output.memory * estimate.triangles;
-  const double times = mesh.use.twice ? 2.0 : 1.0;
+  const double even = mesh.use.even ? estimate.triangles : 0.0;
+  const double working = std::max({meshing_bytes(estimate), erosion.bytes, kEvenTables * even}) +
+                         kRecorded * even + tiles.bytes + use.memory * estimate.triangles;
   MeshPrediction predicted;
+  predicted.resolution = estimate.resolution;
   predicted.triangles = estimate.triangles;
-  predicted.file_bytes = output.file * estimate.triangles;
-  predicted.peak_bytes = std::max(run.goes_on ? peak_after : peak_before, held + working);
-  const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
-                          erosion.parallel_seconds + labels + gravity + even.seconds;
-  const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
+  predicted.file_bytes = use.file * estimate.triangles;
+  predicted.peak_bytes =
+      std::max(run.goes_on ? peak_after : peak_before, static_cast<double>(resident_bytes()) + working);
+  const double times = mesh.use.twice ? 2.0 : 1.0;
+  const double shares = times + (mesh.use.labels ? kLabelShare : 0.0) + (mesh.use.even ? kEvenShare : 0.0);
+  const double parallel =
+      shares * estimate.seconds + times * tiles.seconds + erosion.vertical_seconds + gravity;
+  const double serial = times * kOutputSeconds * estimate.triangles + erosion.slide_seconds;
   // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one
   // is nearer to the clock on idle cores.
   predicted.seconds =
       std::min(run.clock_seconds, run.processor_seconds) + parallel / threads_of(run) + serial;
   predicted.processor_seconds = run.processor_seconds + parallel + serial;
-  predicted.own_evaluations = estimate.spent_evaluations;
-  predicted.own_seconds = clock.seconds();
+  predicted.own_evaluations = estimate.own_evaluations;
+  predicted.own_seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   return predicted;
 }
 
-void require_memory(const PlannedMesh& mesh, int resolution, const MeshPrediction& predicted, double limit) {
+void require_memory(const PlannedMesh& mesh, const MeshPrediction& predicted, double limit) {
   if (predicted.peak_bytes <= limit) return;
-  const bool collected =
-      mesh.use.even || output_cost(mesh.output, mesh.use, predicted.triangles).memory > 0.0;
+  const bool collected = mesh.use.even || bytes_of_use(mesh).memory > 0.0;
   throw InputError(fmt::format(
       "{}: the mesh of about {} triangles at resolution {} needs {:.3g} GB of memory, more than {:.3g} GB; "
       "lower the resolution, raise --max-memory{}",
-      mesh.output.string(), rounded_count(predicted.triangles), resolution, predicted.peak_bytes / 1e9,
-      limit / 1e9, collected ? ", or write .ply without --preview and --even, which is streamed" : ""));
+      mesh.output.string(), rounded_count(predicted.triangles), predicted.resolution,
+      predicted.peak_bytes / 1e9, limit / 1e9,
+      collected ? ", or write .ply without --preview and --even, which is streamed" : ""));
 }
 
 }  // namespace astrolith

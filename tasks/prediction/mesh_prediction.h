@@ -1,15 +1,25 @@
-// What the mesh of a recipe will take, from the estimate of its blocks and the costs of its uses.
+// What the mesh of a recipe will take: its estimate, and constants for each triangle of its uses.
 #pragma once
 
 #include <filesystem>
 
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
-#include "tasks/prediction/mesh_cost.h"
 #include "tasks/prediction/mesh_estimate.h"
 #include "tasks/synthesis/mesh_region.h"
 
 namespace astrolith {
+
+// The uses of a mesh that cost more than the mesh.
+struct MeshUse {
+  bool preview = false;
+  bool erosion = false;
+  bool twice = false;  // small pieces are left out, for which the mesh is made twice
+  bool gravity = false;
+  bool labels = false;
+  bool texture_coordinates = false;
+  bool even = false;
+};
 
 // A mesh that is to be made.
 struct PlannedMesh {
@@ -29,24 +39,19 @@ struct PlannedRun {
 };
 
 struct MeshPrediction {
+  int resolution = 0;
   double triangles = 0.0, file_bytes = 0.0, peak_bytes = 0.0;
   double seconds = 0.0;            // on the clock, with all threads on cores that do nothing else
   double processor_seconds = 0.0;  // of all threads together
-  double own_seconds = 0.0;        // that the prediction itself took
-  double own_evaluations = 0.0;    // of the field, by the estimate of its blocks and triangles
+  double own_seconds = 0.0;        // of all threads together, that the prediction itself took
+  double own_evaluations = 0.0;    // of the field, by the estimate
 };
 
-// What a prediction may take. The figures that a user asks for are worth 3 % of the mesh and at least some 30
-// milliseconds. Figures that guard the memory of a mesh should hardly keep it waiting.
-inline constexpr EstimateBudget kForFigures{0.025, 0.01, 96, 32, 32, 0.1},
-    kForMemory{0.015, 0.01, 24, 2, 12, 0.03};
-
-// Predicts the mesh of this resolution. Memory and seconds are those of this process, with what it has taken
-// so far. Throws what mesh_region throws.
-MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const PlannedRun& run,
-                            const EstimateBudget& budget);
+// Predicts the mesh of this resolution, or of about so many triangles where these are above 0. Memory and
+// seconds are those of this process, with what it has taken so far. Throws what MeshEstimator throws.
+MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double triangles, const PlannedRun& run);
 
 // Throws InputError where a prediction needs more memory than these bytes.
-void require_memory(const PlannedMesh& mesh, int resolution, const MeshPrediction& predicted, double limit);
+void require_memory(const PlannedMesh& mesh, const MeshPrediction& predicted, double limit);
 
 }  // namespace astrolith

@@ -41,7 +41,9 @@ TEST_F(SynthPrediction, TrianglesChooseTheResolutionAndMemoryIsKept) {
 }
 
 TEST_F(SynthPrediction, PredictionWritesNothing) {
-  EXPECT_TRUE(has(succeed("r.json -o x.ply --resolution 64 --predict --summary s.json"), "triangles"));
+  const testing::Outcome said = run("r.json -o x.ply --resolution 64 --predict --summary s.json");
+  EXPECT_TRUE(has(said.output, "triangles"));
+  EXPECT_EQ(said.errors, "");
   EXPECT_EQ(folder_.files(), (std::set<std::string>{"r.json", "s.json"}));
   for (const char* figure : {"triangles", "file_bytes", "peak_bytes", "seconds", "processor_seconds"}) {
     EXPECT_GT(json("s.json").at("predicted").at(figure), 0.0) << figure;
@@ -77,27 +79,13 @@ TEST_F(SynthPrediction, MemoryStaysBelowWhatIsAllowed) {
   EXPECT_GE(refused, 1);
 }
 
-// Prediction looks at few blocks, so that it is far quicker than the mesh and not far from the truth.
-TEST_F(SynthPrediction, PredictionMeetsTheMesh) {
+TEST_F(SynthPrediction, MemoryOfImpulsesIsMetFromBothSides) {
+  if (!kMemoryIsTheProgramsOwn) GTEST_SKIP() << "a sanitizer's memory is not predicted";
   const std::string line = write("masked.json", kMaskedByGabor) + " -o out.ply --resolution 96";
   const auto predicted = figures(line + " --predict").at("predicted"), made = figures(line);
-  EXPECT_NEAR(predicted.at("triangles").get<double>() / made.at("triangles").get<double>(), 1.0, 0.3);
-  if (!kMemoryIsTheProgramsOwn) return;
   EXPECT_LE(made.at("peak_bytes"), 1.2 * predicted.at("peak_bytes").get<double>());
   EXPECT_GE(made.at("peak_bytes"), 0.5 * predicted.at("peak_bytes").get<double>());
 }
-
-// A body with craters, boulders and noise.
-const std::string kWithLandforms = R"({"format_version": 1, "length_unit": "m",
-  "body": {"type": "metaballs", "spheres": [[0, 0, 0, 100], [100, 0, 0, 75]]},
-  "layers": [{"type": "simplex", "amplitude": 4, "frequency": 0.02, "octaves": 4},
-             {"type": "craters", "population": {"count": 60, "least_diameter": 10, "greatest_diameter": 60,
-                                                "exponent": 2}},
-             {"type": "boulders", "population": {"count": 80, "least_diameter": 8, "greatest_diameter": 25,
-                                                 "exponent": 2}}]})";
-// Noise in the space around a body.
-const std::string kHills =
-    two_spheres_with(R"({"type": "simplex", "amplitude": 0.08, "frequency": 2, "octaves": 6})");
 
 // A warp that folds the surface leaves many blocks that it might cross and does not, and sheets of surface
 // that a coarse mesh does not show.
@@ -112,50 +100,6 @@ TEST_F(SynthPrediction, MemoryOfAFoldedSurfaceIsMetFromBothSides) {
   EXPECT_LE(memory, 1.2);
   EXPECT_GE(memory, 1.0 / 1.2);
   EXPECT_GE(predicted.at("triangles"), 0.8 * made.at("triangles").get<double>());
-}
-
-// Samples are counted, because seconds depend on what else the machine does.
-TEST_F(SynthPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
-  for (const std::string& content : {kTwoSpheres, kHills, kWithLandforms}) {
-    const std::string line = write("r.json", content) + " -o out.ply --resolution 320";
-    const double own = figures(line + " --predict").at("predicted").at("own_evaluations");
-    EXPECT_GT(own, 0.0);
-    EXPECT_LE(own, 0.05 * figures(line).at("evaluations").get<double>()) << content;
-  }
-}
-
-TEST_F(SynthPrediction, TrianglesAreMetOnRoughBodiesToo) {
-  for (const std::string& content : {kHills, kWithLandforms}) {
-    write("r.json", content);
-    EXPECT_NEAR(figures("r.json -o out.ply --triangles 100000").at("triangles"), 100e3, 5.5e3) << content;
-  }
-}
-
-// Gravity sums over the body at every vertex, and labels evaluate the field there once more.
-TEST_F(SynthPrediction, LabelsAndGravityAreCounted) {
-  std::string layers;
-  for (int i = 0; i < 12; ++i) {
-    layers += std::string(i > 0 ? "," : "") +
-              R"({"type": "simplex", "amplitude": 0.002, "frequency": 2, "octaves": 8, "seed": )" +
-              std::to_string(i) + "}";
-  }
-  const std::string line =
-      write("r.json", two_spheres_with(layers)) + " -o out.ply --resolution 96 --threads 1";
-  const auto predicted = [&](const std::string& more) {
-    return figures(line + " --predict" + more).at("predicted");
-  };
-  // Few samples tell the seconds, which scatter: the least of three predictions counts.
-  double plain = predicted("").at("seconds");
-  for (int again = 0; again < 2; ++again) plain = std::min<double>(plain, predicted("").at("seconds"));
-  for (const std::string of : {" --labels", " --gravity 2000 5"}) {
-    const auto with = predicted(of);
-    if (of != " --labels") {
-      EXPECT_GT(with.at("seconds"), 1.3 * plain);
-    }
-    figures(line + of);
-    const double bytes = static_cast<double>(std::filesystem::file_size(folder_ / "out.ply"));
-    EXPECT_NEAR(with.at("file_bytes").get<double>() / bytes, 1.0, 0.08) << of;
-  }
 }
 
 // An eroded mesh is held in memory, with its edges and verticals, beside the tiles of impulses.

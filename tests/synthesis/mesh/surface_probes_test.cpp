@@ -61,12 +61,12 @@ Counts predicted_over_true(const Recipe& recipe, int count) {
   MeshDiscard sink;
   const MeshStatistics made = mesh_field(field, field.bounds(), kCells, sink);
   const ProbedSurface surface(coarse_mesh_of(field, kCoarse), kEverywhere);
-  const MeshEstimate sample = sample_field(field, field.bounds(), kCells, {}, {24, 6, false});
-  ProbeSums sums;
-  probe(field, {surface, made.step, make_sample_grid(field.bounds(), kCoarse).step, 0.7, false}, 0, count,
-        sums);
-  const MeshEstimate better = improved_by_probes(sample, surface, sums);
-  return {better.triangles / double(made.triangles), better.blocks / double(made.active_blocks)};
+  const double reach = make_sample_grid(field.bounds(), kCoarse).step;
+  const ProbeFigures figures = probe_surface(field, {surface, made.step, reach}, count);
+  EXPECT_GT(figures.seconds, 0.0);
+  EXPECT_GT(figures.evaluations, 0.0);
+  return {figures.triangles * surface.area() / double(made.triangles),
+          figures.blocks * surface.area() / double(made.active_blocks)};
 }
 
 TEST(SurfaceProbes, AFewPlacesTellTheTrianglesOfASmoothBody) {
@@ -75,27 +75,8 @@ TEST(SurfaceProbes, AFewPlacesTellTheTrianglesOfASmoothBody) {
   EXPECT_NEAR(ratio.blocks, 1.0, 0.25);
 }
 
-// The few squares of a wide grid that a small sample narrows may all miss a thin tile's surface.
-TEST(SurfaceProbes, ASampleThatMetNoBlockLeavesTheCountsToTheProbes) {
-  const ImplicitField field(testing::potato_recipe(20, 3));
-  constexpr int kCells = 256, kCoarse = 48;
-  const ProbedSurface surface(coarse_mesh_of(field, kCoarse), kEverywhere);
-  const SampleGrid grid = make_sample_grid(field.bounds(), kCells);
-  MeshEstimate sample;
-  sample.step = grid.step;
-  sample.finding_seconds = 0.5;
-  ProbeSums sums;
-  probe(field, {surface, grid.step, make_sample_grid(field.bounds(), kCoarse).step, 0.7, false}, 0, 24, sums);
-  const MeshEstimate better = improved_by_probes(sample, surface, sums);
-  MeshDiscard sink;
-  const MeshStatistics made = mesh_field(field, field.bounds(), kCells, sink);
-  EXPECT_NEAR(better.triangles / double(made.triangles), 1.0, 0.06);
-  EXPECT_NEAR(better.blocks / double(made.active_blocks), 1.0, 0.25);
-  EXPECT_GT(better.seconds, 0.5);
-}
-
 // Details that the coarse mesh cannot show add triangles.
-TEST(SurfaceProbes, FineDetailsAreSeenInTheWindows) {
+TEST(SurfaceProbes, FineDetailsAreSeenInTheColumns) {
   Recipe recipe = testing::potato_recipe(20, 3);
   recipe.layers.push_back(testing::fractal_layer(0.02, 8.0, 5));
   EXPECT_NEAR(predicted_over_true(recipe, 48).triangles, 1.0, 0.12);
