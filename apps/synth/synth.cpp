@@ -12,7 +12,6 @@
 #include "apps/synth/synth_finish.h"
 #include "apps/synth/synth_members.h"
 #include "apps/synth/synth_mesh.h"
-#include "apps/synth/synth_series.h"
 #include "apps/synth/synth_texture.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
@@ -32,32 +31,29 @@ struct Options {
   fs::path recipe;
   fs::path base;
   std::string base_lengths = "units";
-  fs::path output;
-  fs::path written_recipe;  // where to write the recipe that is made; empty = nowhere
+  BodyRequest body;  // its recipe is the one that is made
   TextureRequest texture;
-  MeshRequest mesh;
   MembersRequest members;
   FinishOptions finish;
   bool like = false;  // whether reliefs are drawn anew
   bool fill_unseen = false;
-  int count = 0;        // of bodies with seeds of their own; 0 = one body
-  bool seeded = false;  // whether the seed replaces the recipe's
-  int finer = 0;        // levels of reliefs below their models
-  double vary = 0.0;    // 0 = the recipe itself
-  fs::path target;      // the mesh that a variation is to be like; empty = the recipe's own body
+  std::string count;  // of bodies, an option that --members replaces
+  int finer = 0;      // levels of reliefs below their models
+  double vary = 0.0;  // 0 = the recipe itself
+  fs::path target;    // the mesh that a variation is to be like; empty = the recipe's own body
 };
 
 void declare_options(Program& program, Options& options) {
   program.app.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
       .required();
   program.app
-      .add_option("-o,--output", options.output,
+      .add_option("-o,--output", options.body.output,
                   "the mesh: .ply (binary, streamed; .ply.zst is compressed), .obj, .stl, .glb, .icq or .tab "
                   "(PDS plates), in the "
                   "recipe's length unit; with --texture .png or .tif; needed unless --predict or "
                   "--write-recipe is given")
       .placeholder("FILE");
-  declare_mesh_options(program, options.mesh);
+  declare_mesh_options(program, options.body.mesh);
   program.app
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; a relief "
@@ -100,17 +96,9 @@ void declare_options(Program& program, Options& options) {
                   "fitted to")
       .needs(vary)
       .placeholder("MESH");
+  program.app.add_option("--count", options.count, "is written --members A:B").placeholder("N");
   program.app
-      .add_option(
-          "--count", options.count,
-          "make N bodies in place of one, with the seeds --seed, --seed + 1 and so on: {n} in the names of "
-          "files stands for the seed, with which --seed makes the same body again. A --summary without {n} "
-          "is one of all bodies")
-      .check(in_range(1, kMostInSeries))
-      .placeholder("N")
-      .default_text("");
-  program.app
-      .add_option("--write-recipe", options.written_recipe,
+      .add_option("--write-recipe", options.body.recipe,
                   "also write the recipe that is made, with the layers of --base, the variation and the seed "
                   "in it, as JSON or compact (.astro); without -o nothing else")
       .placeholder("FILE.json");
@@ -125,7 +113,7 @@ void declare_options(Program& program, Options& options) {
         "--reflectance",  "--ambient",   "--background",    "--no-marks",  "--picture-bits", "--aligned"}) {
     program.app.option("--texture").excludes(program.app.option(of_mesh));
   }
-  for (const char* of_one : {"--texture", "--vary", "--target", "--tile", "--height-map", "--count"}) {
+  for (const char* of_one : {"--texture", "--tile"}) {
     program.app.option("--members").excludes(program.app.option(of_one));
   }
   program.app.option("--seed")
@@ -134,8 +122,8 @@ void declare_options(Program& program, Options& options) {
 }
 
 void make_texture(Program& program, const Options& options, const Recipe& recipe) {
-  require_extension(options.output, {".png", ".tif", ".tiff"});
-  const std::vector<fs::path> files = texture_files(options.texture, options.output);
+  require_extension(options.body.output, {".png", ".tif", ".tiff"});
+  const std::vector<fs::path> files = texture_files(options.texture, options.body.output);
   for (const fs::path& file : files) {
     require_writable(file);
     for (const Layer& layer : recipe.layers) {
@@ -143,7 +131,7 @@ void make_texture(Program& program, const Options& options, const Recipe& recipe
       if (named != nullptr && named->pixels) require_other_file(file, named->pixels->file);
     }
   }
-  write_texture(program, options.texture, recipe, options.recipe, options.output);
+  write_texture(program, options.texture, recipe, options.recipe, options.body.output);
   summarize_output(program, files.front());
 }
 
@@ -177,7 +165,7 @@ Recipe read_input(const Program& program, const Options& options) {
     change_reliefs(recipe, options.recipe, "--finer continues",
                    [&](ReliefLayer& relief) { relief.finer = options.finer; });
   }
-  if (options.seeded && !(options.vary > 0.0)) recipe.seed = program.seed;
+  if (program.app.option("--seed").count() > 0 && !(options.vary > 0.0)) recipe.seed = program.seed;
   return recipe;
 }
 
@@ -192,44 +180,57 @@ TriangleMesh target_of(const Program& program, const Options& options, const Rec
   return read_mesh(options.target);
 }
 
-Recipe varied(Program& program, const Options& options, const Recipe& recipe) {
+Recipe varied(Program& program, const Options& options, const Recipe& recipe, std::uint64_t seed) {
   const TriangleMesh target = target_of(program, options, recipe);
   const SimilarityMeasure similarity =
       target.triangles.empty() ? SimilarityMeasure() : similarity_with(target);
-  Variation variation =
-      find_variation(recipe, similarity, options.vary, program.seed, program.progress("vary"));
+  Variation variation = find_variation(recipe, similarity, options.vary, seed, program.progress("vary"));
   const std::string whose = options.target.empty() ? "the recipe's own body" : options.target.string();
   program.summary["similarity"] = variation.similarity;
   program.summary["similarity_with"] = options.target.empty() ? "recipe" : "target";
   program.summary["variation"] = figures_of(variation);
-  program.say(fmt::format("variation {}: similarity {:.4f} with {}; {}", program.seed, variation.similarity,
-                          whose, words_of(variation)));
+  program.say(fmt::format("variation {}: similarity {:.4f} with {}; {}", seed, variation.similarity, whose,
+                          words_of(variation)));
   return std::move(variation.recipe);
 }
 
 // Refuses outputs that cannot be written before any work.
 void check_outputs(const Program& program, const Options& options) {
-  check_finish(options.finish);
-  if (options.mesh.gravity.wanted()) question_density(program, options.mesh.gravity.density_and_period[0]);
-  if (!options.members.range.empty()) {
-    check_members(options.members, options.mesh, {options.output, options.written_recipe});
+  const bool single = options.members.range.empty();
+  if (!options.count.empty()) {
+    throw InputError("--count: write --members A:B, bodies A to B - 1, with {member} in the names of files");
   }
-  if (!options.written_recipe.empty()) {
-    require_extension(options.written_recipe, {".json", ".astro"});
-    if (options.members.range.empty()) require_writable(options.written_recipe);
+  check_finish(options.finish);
+  if (options.body.mesh.gravity.wanted())
+    question_density(program, options.body.mesh.gravity.density_and_period[0]);
+  check_members(options.members, options.body);
+  if (!options.body.recipe.empty()) {
+    require_extension(options.body.recipe, {".json", ".astro"});
+    if (single) require_writable(options.body.recipe);
   }
   if (options.texture.size.empty()) {
     if (options.texture.tileable) throw InputError("--tileable: is about --texture; add --texture WxH");
-    if (options.members.range.empty()) check_mesh_outputs(program, options.mesh, options.output);
-  } else if (!options.output.empty()) {
-    require_extension(options.output, {".png", ".tif", ".tiff"});
+    if (single) check_mesh_outputs(program, options.body.mesh, options.body.output);
+  } else if (!options.body.output.empty()) {
+    require_extension(options.body.output, {".png", ".tif", ".tiff"});
   }
-  if (!options.output.empty() || !options.written_recipe.empty() || options.mesh.size.only_predict) return;
+  if (!options.body.output.empty() || !options.body.recipe.empty() || options.body.mesh.size.only_predict)
+    return;
   throw InputError("--output: is required; name the file to make, such as -o body.ply");
 }
 
-void synthesize(Program& program, Options options) {
-  options.seeded = options.seeded || program.app.option("--seed").count() > 0;
+// Refuses members that would not differ as the options say.
+void check_members_of(const Program& program, const Options& options, const Recipe& recipe) {
+  const bool varied = options.vary > 0.0;
+  if (recipe.family && varied)
+    throw InputError("--vary: members of a family differ as the recipe says; leave out --vary or --members");
+  if (!recipe.family && program.app.option("--seed").count() > 0)
+    throw InputError(
+        "--seed: bodies of --members have their numbers as seeds, but for those of a family; leave "
+        "out --seed, and name other numbers");
+}
+
+void synthesize(Program& program, const Options& options) {
   check_outputs(program, options);
   const Recipe recipe = read_input(program, options);
   program.summary["length_unit"] = recipe.length_unit;
@@ -239,74 +240,28 @@ void synthesize(Program& program, Options options) {
                      ": body: absent; lay its layers on a body with --base BODY.json, or draw its height map "
                      "with --texture WxH");
   }
-  const fs::path& body_file = options.base.empty() ? options.recipe : options.base;
-  const double patch_side = options.mesh.patch.empty() ? 0.0 : options.mesh.patch.back();
+  const fs::path& file = options.base.empty() ? options.recipe : options.base;
+  const BodyRequest& body = options.body;
+  const double patch_side = body.mesh.patch.empty() ? 0.0 : body.mesh.patch.back();
+  const auto variation = [&](std::uint64_t seed) {
+    return finished(program, options.finish, varied(program, options, recipe, seed), file.string(),
+                    patch_side);
+  };
+  const bool is_varied = options.vary > 0.0;
+  const Recipe whole =
+      is_varied ? recipe : finished(program, options.finish, recipe, file.string(), patch_side);
   if (!options.members.range.empty()) {
-    const auto job = options.mesh.size.only_predict ? predict_members : make_members;
-    return job(program, options.members, options.mesh, {options.output, options.written_recipe},
-               finished(program, options.finish, recipe, body_file.string(), patch_side), body_file);
+    check_members_of(program, options, recipe);
+    const auto draw = [&](std::uint64_t number) {
+      return is_varied ? FamilyMember{variation(number), {}, {}, {}} : family_member(whole, number);
+    };
+    const auto job = body.mesh.size.only_predict ? predict_members : make_members;
+    return job(program, options.members, body, {whole, file, draw});
   }
-  const Recipe made =
-      finished(program, options.finish, options.vary > 0.0 ? varied(program, options, recipe) : recipe,
-               body_file.string(), patch_side);
-  if (!options.written_recipe.empty()) write_loaded_recipe(made, options.written_recipe);
-  if (options.output.empty() && !options.mesh.size.only_predict) return;
-  make_mesh(program, options.mesh, made, body_file, options.output);
-}
-
-// The names of all files that a body may have, but for its summary.
-std::vector<fs::path*> names_of(Options& options) {
-  MeshRequest& mesh = options.mesh;
-  return {&options.output,    &options.written_recipe, &mesh.preview.file,
-          &mesh.preview.maps, &mesh.height_map,        &mesh.landforms};
-}
-
-// The options of the body with this seed.
-Options numbered(Options options, std::uint64_t seed) {
-  for (fs::path* name : names_of(options)) *name = with_seed(*name, seed);
-  options.seeded = true;
-  return options;
-}
-
-// Makes one body, and takes its own time into its summary.
-void synthesize_timed(Program& program, const Options& options) {
-  const double began = program.seconds();
-  synthesize(program, options);
-  program.summary["seconds"] = program.seconds() - began;
-}
-
-// Makes bodies one after another, each as --seed makes it. A summary with {n} in its name is one of each
-// body, another one that of all.
-void synthesize_series(Program& program, const Options& options, const std::vector<fs::path>& names) {
-  check_series_names(names);
-  const std::uint64_t first = program.seed, end = first + static_cast<std::uint64_t>(options.count);
-  constexpr std::uint64_t kLargestSeed = 9007199254740991u;  // of --seed
-  if (end - 1 > kLargestSeed)
-    throw InputError("--count: the last body's seed would be too large; lower --seed");
-  const fs::path summary = program.summary_file;
-  const bool one_each = has_seed_mark(summary);
-  for (std::uint64_t seed = first; seed < end; ++seed) {
-    check_outputs(program, numbered(options, seed));
-    if (one_each) require_writable(with_seed(summary, seed));
-  }
-  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
-  for (program.seed = first; program.seed < end; ++program.seed) {
-    program.summary = {{"seed", program.seed}};
-    synthesize_timed(program, numbered(options, program.seed));
-    if (one_each) program.save_summary(with_seed(summary, program.seed));
-    bodies.push_back(program.summary);
-  }
-  program.summary = {{"bodies", bodies}};
-  if (one_each) program.summary_file.clear();
-}
-
-void synthesize_one_or_more(Program& program, Options& options) {
-  std::vector<fs::path> names;
-  for (const fs::path* name : names_of(options)) names.push_back(*name);
-  if (options.count > 0) return synthesize_series(program, options, names);
-  names.emplace_back(program.summary_file);
-  check_single_names(names);
-  synthesize(program, options);
+  const Recipe made = is_varied ? variation(program.seed) : whole;
+  if (!body.recipe.empty()) write_loaded_recipe(made, body.recipe);
+  if (body.output.empty() && !body.mesh.size.only_predict) return;
+  make_mesh(program, body.mesh, made, file, body.output);
 }
 
 }  // namespace
@@ -319,7 +274,7 @@ int main(int argc, char** argv) {
   astrolith::Options options;
   astrolith::declare_options(program, options);
   return program.run(argc, argv, [&] {
-    if (!options.members.folder.empty()) options.output = options.members.folder / "{member}.ply";
-    astrolith::synthesize_one_or_more(program, options);
+    if (!options.members.folder.empty()) options.body.output = options.members.folder / "{member}.ply";
+    astrolith::synthesize(program, options);
   });
 }

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "apps/program.h"
-#include "apps/synth/synth_region.h"
 #include "geometry/triangle_mesh.h"
 #include "recipe/recipe.h"
+#include "tasks/synthesis/mesh_region.h"
 
 namespace astrolith {
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "apps/counted.h"
-#include "apps/synth/silenced_program.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
@@ -58,12 +57,7 @@ MemberRange parse_range(const std::string& text) {
   return range;
 }
 
-void require_mark(const fs::path& name, const std::string& option) {
-  if (name.empty() || name.string().find(kNumberMark) != std::string::npos) return;
-  throw InputError(
-      option + ": every member writes a file of its own; put {member} into the name, as in body_{member}" +
-      name.extension().string());
-}
+bool has_mark(const fs::path& name) { return name.string().find(kNumberMark) != std::string::npos; }
 
 fs::path numbered(const fs::path& pattern, std::uint64_t member) {
   std::string name = pattern.string();
@@ -84,21 +78,42 @@ bool is_numbered(const fs::path& pattern, const fs::path& name) {
   return parsed.ec == std::errc() && numbered(pattern, number) == name;
 }
 
-void require_no_output(const fs::path& manifest, const std::vector<fs::path>& patterns) {
-  if (manifest.empty()) return;
-  for (const fs::path& pattern : patterns) {
-    if (pattern.empty() ||
-        !is_numbered(fs::absolute(pattern).lexically_normal(), fs::absolute(manifest).lexically_normal()))
-      continue;
-    throw InputError("manifest: " + manifest.string() +
-                     " is also the name of a member's file; choose another");
+struct NamedFile {
+  const char* option;
+  fs::path* name;
+};
+
+// All files that a body may have, but the frame of a height map, in the order of the manifest's lines.
+std::vector<NamedFile> files_of(BodyRequest& body) {
+  return {{"--output", &body.output},
+          {"--preview", &body.mesh.preview.file},
+          {"--preview-maps", &body.mesh.preview.maps},
+          {"--height-map", &body.mesh.height_map},
+          {"--feature-list", &body.mesh.landforms},
+          {"--write-recipe", &body.recipe}};
+}
+
+BodyRequest numbered(BodyRequest body, std::uint64_t member) {
+  for (const NamedFile& file : files_of(body)) *file.name = numbered(*file.name, member);
+  return body;
+}
+
+// The names of the files of a member.
+std::vector<fs::path> names_of(BodyRequest member) {
+  std::vector<fs::path> names;
+  for (const NamedFile& file : files_of(member)) {
+    if (file.name->empty()) continue;
+    names.push_back(*file.name);
+    if (file.name == &member.mesh.height_map)
+      names.push_back(fs::path(*file.name).replace_extension(".json"));
   }
+  return names;
 }
 
 // The SHA-256 of what all members have in common: the recipe and the options that change files.
 std::string hash_of_family(const Program& program, const Recipe& recipe) {
   constexpr std::array kNoEffect{"base",         "device",       "members",    "manifest", "preview",
-                                 "preview-maps", "feature-list", "max-memory", "out"};
+                                 "preview-maps", "feature-list", "max-memory", "out",      "height-map"};
   Recipe undescribed = recipe;
   undescribed.description.clear();
   std::string text = recipe_to_json(undescribed);
@@ -109,54 +124,81 @@ std::string hash_of_family(const Program& program, const Recipe& recipe) {
   return sha256_of(text);
 }
 
-// Sets what the family draws of a picture's light and view.
-void set_light_and_view(const Family& family, const FamilyMember& member, PreviewRequest& preview) {
-  if (family.any_view) preview.look.look_from(member.view);
-  if (family.any_sun) preview.look.light_from(member.sun);
-}
+// While it lives, the program says nothing and writes another summary.
+class SilencedProgram {
+ public:
+  explicit SilencedProgram(Program& program)
+      : program_(program),
+        quiet_(std::exchange(program.quiet, true)),
+        summary_(std::exchange(program.summary, {})) {}
+  SilencedProgram(const SilencedProgram&) = delete;
+  SilencedProgram& operator=(const SilencedProgram&) = delete;
+  ~SilencedProgram() {
+    program_.quiet = quiet_;
+    program_.summary = std::move(summary_);
+  }
+
+ private:
+  Program& program_;
+  bool quiet_;
+  Json summary_;
+};
 
 class MemberMaker {
  public:
-  MemberMaker(Program& program, const MembersRequest& request, const MeshRequest& mesh,
-              const MemberFiles& files, const Recipe& recipe, const fs::path& file)
+  MemberMaker(Program& program, const MembersRequest& request, const BodyRequest& body,
+              const MemberSource& source)
       : program_(program),
-        mesh_(mesh),
-        files_(files),
-        recipe_(recipe),
-        file_(file),
+        body_(body),
+        source_(source),
+        file_(request.manifest),
         manifest_(request.manifest),
-        family_(hash_of_family(program, recipe)) {}
+        family_(hash_of_family(program, source.recipe)) {}
 
   const Manifest& manifest() const { return manifest_; }
 
   // Throws InputError where members of the manifest were made otherwise: their bytes need not be those that
   // this program and these options make.
-  void require_same_set(const fs::path& manifest) const {
+  void require_same_set() const {
     const std::string instead =
         "name another manifest and other files, or remove it to make all members anew";
     if (manifest_.has_other_family(family_)) {
-      throw InputError(manifest.string() + ": has members of another recipe, or made with other options; " +
+      throw InputError(file_.string() + ": has members of another recipe, or made with other options; " +
                        instead);
     }
     const std::string other = manifest_.other_version(version());
     if (other.empty()) return;
-    throw InputError(manifest.string() + ": has members that " + other + " made, and this is " + version() +
+    throw InputError(file_.string() + ": has members that " + other + " made, and this is " + version() +
                      "; go on with that program, " + instead);
   }
 
-  bool is_finished(std::uint64_t member) const { return manifest_.has(member, family_, names_of(member)); }
+  bool is_finished(std::uint64_t member) const {
+    return manifest_.has(member, family_, names_of(numbered(body_, member)));
+  }
 
   void make(std::uint64_t number) const {
     make_folders(number);
     const auto start = std::chrono::steady_clock::now();
-    const FamilyMember member = family_member(recipe_, number);
+    BodyRequest body = numbered(body_, number);
+    const SilencedProgram silenced(program_);
+    const FamilyMember member = source_.draw(number);
     Json line = {
         {"member", number}, {"family", family_}, {"seed", member.recipe.seed}, {"drawn", Json::object()}};
     for (const auto& [field, value] : member.drawn) line["drawn"][field] = value;
-    make_mesh_of(number, member, line);
-    if (!files_.recipe.empty()) write_loaded_recipe(member.recipe, numbered(files_.recipe, number));
+    if (const auto& family = source_.recipe.family; family && !body.mesh.preview.file.empty()) {
+      if (family->any_view)
+        body.mesh.preview.look.look_from(member.view), line["view"] = json_of(member.view);
+      if (family->any_sun) body.mesh.preview.look.light_from(member.sun), line["sun"] = json_of(member.sun);
+    }
+    if (!body.output.empty()) make_mesh(program_, body.mesh, member.recipe, source_.file, body.output);
+    for (const char* figure : {"similarity", "similarity_with", "variation", "vertices", "triangles",
+                               "closed", "manifold", "genus", "components"}) {
+      if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];
+    }
+    if (!body.recipe.empty()) write_loaded_recipe(member.recipe, body.recipe);
+    if (file_.empty()) return;
     std::vector<ManifestFile> written;
-    for (const fs::path& name : names_of(number)) written.push_back(manifest_.file_of(name));
+    for (const fs::path& name : names_of(body)) written.push_back(manifest_.file_of(name));
     line["files"] = to_json(written);
     line["version"] = version();
     line["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -164,50 +206,21 @@ class MemberMaker {
   }
 
   void make_folders(std::uint64_t number) const {
-    for (const fs::path& name : names_of(number)) {
+    for (const fs::path& name : names_of(numbered(body_, number))) {
       if (name.has_parent_path()) make_output_folder(name.parent_path());
     }
   }
 
-  // The names of all files of a member, in the order of the manifest's lines.
-  std::vector<fs::path> names_of(std::uint64_t member) const {
-    std::vector<fs::path> names;
-    for (const fs::path& pattern :
-         {files_.mesh, mesh_.preview.file, mesh_.preview.maps, mesh_.landforms, files_.recipe}) {
-      if (!pattern.empty()) names.push_back(numbered(pattern, member));
-    }
-    return names;
-  }
-
  private:
-  void make_mesh_of(std::uint64_t number, const FamilyMember& member, Json& line) const {
-    if (files_.mesh.empty()) return;
-    MeshRequest request = mesh_;
-    request.preview.file = numbered(mesh_.preview.file, number);
-    request.preview.maps = numbered(mesh_.preview.maps, number);
-    request.landforms = numbered(mesh_.landforms, number);
-    if (recipe_.family && !mesh_.preview.file.empty()) {
-      set_light_and_view(*recipe_.family, member, request.preview);
-      if (recipe_.family->any_view) line["view"] = json_of(member.view);
-      if (recipe_.family->any_sun) line["sun"] = json_of(member.sun);
-    }
-    const SilencedProgram silenced(program_);
-    make_mesh(program_, request, member.recipe, file_, numbered(files_.mesh, number));
-    for (const char* figure : {"vertices", "triangles", "closed", "manifold", "genus", "components"}) {
-      if (program_.summary.contains(figure)) line[figure] = program_.summary[figure];
-    }
-  }
-
   // Two programs with changes that no commit holds differ by the digest of these changes.
   std::string version() const {
     return program_.tool() + (kCodeVersion.changes.empty() ? "" : " " + kCodeVersion.changes);
   }
 
   Program& program_;
-  const MeshRequest& mesh_;
-  const MemberFiles& files_;
-  const Recipe& recipe_;
-  const fs::path& file_;
+  const BodyRequest& body_;
+  const MemberSource& source_;
+  fs::path file_;  // the manifest; empty = none
   Manifest manifest_;
   std::string family_;
 };
@@ -252,17 +265,6 @@ Tally make_range(Program& program, const MemberMaker& maker, const MemberRange& 
   return tally;
 }
 
-// Folders are made, and what cannot be written is refused, before any work.
-void prepare_outputs(const Program& program, const MemberMaker& maker, const MeshRequest& mesh,
-                     const MemberFiles& files, std::uint64_t first) {
-  maker.make_folders(first);
-  MeshRequest request = mesh;
-  request.preview.file = numbered(mesh.preview.file, first);
-  request.preview.maps = numbered(mesh.preview.maps, first);
-  request.landforms = numbered(mesh.landforms, first);
-  check_mesh_outputs(program, request, numbered(files.mesh, first));
-}
-
 // Makes the folder of the summary, and throws InputError where the summary cannot be written.
 void prepare_summary(const Program& program) {
   const fs::path file = program.summary_file;
@@ -277,10 +279,12 @@ void declare_members_options(Program& program, MembersRequest& request) {
   program.makes_folders = [&request] { return !request.range.empty(); };
   Option members =
       program.app
-          .add_option("--members", request.range,
-                      "make members A to B - 1 of the recipe's family instead, each with files of its own: "
-                      "{member} in their names stands for its number. Member 4711 is the same body on every "
-                      "machine. Needs a --manifest, but for --predict")
+          .add_option(
+              "--members", request.range,
+              "make bodies A to B - 1 of the recipe instead, each with files of its own: {member} in "
+              "their names stands for its number. They are members of the recipe's family, or else have "
+              "their numbers as seeds; with --vary they are the variations of these numbers. Member "
+              "4711 is the same body on every machine")
           .placeholder("A:B");
   program.app.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
       .needs(members)
@@ -294,46 +298,59 @@ void declare_members_options(Program& program, MembersRequest& request) {
       .placeholder("FILE.jsonl");
 }
 
-void check_members(const MembersRequest& request, const MeshRequest& mesh, const MemberFiles& files) {
-  parse_range(request.range);
-  const bool pictures = !mesh.preview.file.empty() || !mesh.preview.maps.empty() || !mesh.landforms.empty();
-  if (files.mesh.empty() && !files.recipe.empty() && pictures)
+void check_members(const MembersRequest& request, BodyRequest body) {
+  const bool many = !request.range.empty();
+  if (many) parse_range(request.range);
+  const fs::path manifest = fs::absolute(request.manifest).lexically_normal();
+  for (const auto& [option, file] : files_of(body)) {
+    if (file->empty()) continue;
+    if (many && !has_mark(*file))
+      throw InputError(
+          std::string(option) +
+          ": every member writes a file of its own; put {member} into the name, as in body_{member}" +
+          file->extension().string());
+    if (!many && has_mark(*file))
+      throw InputError(
+          file->string() +
+          ": {member} stands for the number of each body of --members A:B; add --members, or leave "
+          "{member} out");
+    if (many && !request.manifest.empty() && is_numbered(fs::absolute(*file).lexically_normal(), manifest))
+      throw InputError("manifest: " + request.manifest.string() +
+                       " is also the name of a member's file; choose another");
+  }
+  const bool pictures =
+      !body.mesh.preview.file.empty() || !body.mesh.preview.maps.empty() || !body.mesh.landforms.empty();
+  if (many && body.output.empty() && !body.recipe.empty() && pictures)
     throw InputError(
         "--write-recipe without -o keeps recipes alone; leave out --preview, --preview-maps and "
-        "--feature-list, or "
-        "add -o");
-  if (request.manifest.empty() && !mesh.size.only_predict)
-    throw InputError("manifest: is required with --members; add --manifest bodies.jsonl");
-  require_mark(files.mesh, "--output");
-  require_mark(files.recipe, "--write-recipe");
-  require_mark(mesh.preview.file, "--preview");
-  require_mark(mesh.preview.maps, "--preview-maps");
-  require_mark(mesh.landforms, "--feature-list");
-  require_no_output(request.manifest,
-                    {files.mesh, files.recipe, mesh.preview.file, mesh.preview.maps, mesh.landforms});
+        "--feature-list, "
+        "or add -o");
 }
 
-void make_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
-                  const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
+void make_members(Program& program, const MembersRequest& request, const BodyRequest& body,
+                  const MemberSource& source) {
   const MemberRange range = parse_range(request.range);
-  if (!files.mesh.empty()) check_mesh_request(mesh, recipe, file);
+  const std::string set = request.manifest.empty() ? "members" : request.manifest.string();
+  if (!body.output.empty()) check_mesh_request(body.mesh, source.recipe, source.file);
   if (request.manifest.has_parent_path()) make_output_folder(request.manifest.parent_path());
-  const MemberMaker maker(program, request, mesh, files, recipe, file);
-  maker.require_same_set(request.manifest);
-  prepare_outputs(program, maker, mesh, files, range.begin);
+  const MemberMaker maker(program, request, body, source);
+  maker.require_same_set();
+  // Folders are made, and what cannot be written is refused, before any work.
+  maker.make_folders(range.begin);
+  const BodyRequest first = numbered(body, range.begin);
+  check_mesh_outputs(program, first.mesh, first.output);
   prepare_summary(program);
   if (const int unreadable = maker.manifest().unreadable_lines(); unreadable > 0) {
-    program.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again",
-                            request.manifest.string(),
+    program.say(fmt::format("note: {}: {} cut short or of another kind; such members are made again", set,
                             counted(static_cast<std::size_t>(unreadable), "line")));
   }
   const Tally tally = make_range(program, maker, range);
-  for (const fs::path& name : maker.names_of(range.begin)) sync_file_system(fs::absolute(name).parent_path());
-  sync_file_system(request.manifest);
+  for (const fs::path& name : names_of(first)) sync_file_system(fs::absolute(name).parent_path());
+  if (!request.manifest.empty()) sync_file_system(request.manifest);
   program.summary["members"] = {
       {"made", tally.made}, {"already_there", tally.there}, {"failed", tally.failed}};
-  program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", request.manifest.string(),
-                          tally.made, tally.there, tally.failed, range.end - range.begin,
+  program.say(fmt::format("{}: {} made, {} already there, {} failed, of {}{}", set, tally.made, tally.there,
+                          tally.failed, range.end - range.begin,
                           Program::interrupted() ? "; stopped, the same command goes on" : ""));
 }
 
@@ -351,11 +368,11 @@ std::vector<std::uint64_t> sampled_members(const MemberRange& range) {
 
 }  // namespace
 
-void predict_members(Program& program, const MembersRequest& request, const MeshRequest& mesh,
-                     const MemberFiles& files, const Recipe& recipe, const fs::path& file) {
-  check_mesh_request(mesh, recipe, file);
-  const fs::path output = files.mesh.empty() && files.recipe.empty() ? "{member}.ply" : files.mesh;
-  if (!output.empty()) check_mesh_name(mesh, output);
+void predict_members(Program& program, const MembersRequest& request, const BodyRequest& body,
+                     const MemberSource& source) {
+  check_mesh_request(body.mesh, source.recipe, source.file);
+  const fs::path output = body.output.empty() && body.recipe.empty() ? "{member}.ply" : body.output;
+  if (!output.empty()) check_mesh_name(body.mesh, output);
   prepare_summary(program);
   const MemberRange range = parse_range(request.range);
   const std::vector<std::uint64_t> numbers = sampled_members(range);
@@ -365,11 +382,11 @@ void predict_members(Program& program, const MembersRequest& request, const Mesh
   double triangles = 0.0, file_bytes = 0.0, peak = 0.0, seconds = 0.0, processor = 0.0;
   for (const std::uint64_t number : numbers) {
     const double on_clock = program.seconds(), of_processor = Program::processor_seconds();
-    const Recipe member = family_member(recipe, number).recipe;
-    if (!files.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
-    if (output.empty()) continue;
     const SilencedProgram silenced(program);
-    make_mesh(program, mesh, member, file, output);
+    const Recipe member = source.draw(number).recipe;
+    if (!body.recipe.empty()) file_bytes += share * static_cast<double>(recipe_to_json(member).size());
+    if (output.empty()) continue;
+    make_mesh(program, body.mesh, member, source.file, output);
     const Json& figures = program.summary["predicted"];
     triangles += share * figures["triangles"].get<double>();
     file_bytes += share * figures["file_bytes"].get<double>();

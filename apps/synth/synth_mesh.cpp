@@ -2,24 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <memory>
+#include <cstdio>
 #include <new>
 #include <optional>
 #include <utility>
 
 #include "apps/counted.h"
 #include "apps/output_names.h"
-#include "apps/synth/synth_erosion.h"
-#include "apps/synth/synth_even.h"
 #include "apps/synth/synth_height_map.h"
-#include "apps/synth/synth_left_out.h"
-#include "apps/synth/synth_preview_maps.h"
-#include "apps/synth/synth_region.h"
-#include "apps/synth/synth_sinks.h"
-#include "apps/synth/synth_tile.h"
-#include "geometry/io/mesh_io.h"
-#include "geometry/io/ply_stream_writer.h"
+#include "apps/synth/synth_output.h"
+#include "apps/synth/synth_reports.h"
 #include "geometry/io/stated_unit.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
@@ -28,14 +20,33 @@
 #include "numerics/memory_use.h"
 #include "numerics/vec3_json.h"
 #include "synthesis/field/landform_list.h"
-#include "synthesis/field/surface_colors.h"
-#include "synthesis/field/surface_labels.h"
 #include "tasks/synthesis/body_mesh.h"
+#include "tasks/synthesis/erode_body.h"
 
 namespace astrolith {
 namespace {
 
 namespace fs = std::filesystem;
+
+Region parse_tile(const std::string& text) {
+  int number = 0, count = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%6d/%6d%c", &number, &count, &rest) != 2) {
+    throw InputError("tile: \"" + text + "\" is no tile; write I/N with I from 1 to N, such as 3/16");
+  }
+  return tile_region(number, count);
+}
+
+// The region that the options name.
+Region region_of(const MeshRequest& request) {
+  const std::vector<double>& patch = request.patch;
+  if (!patch.empty()) {
+    Region region = patch_region({patch[0], patch[1], patch[2]}, patch[3]);
+    region.aligned = request.aligned;
+    return region;
+  }
+  return request.tile.empty() ? Region{} : parse_tile(request.tile);
+}
 
 void check_request(const MeshRequest& request, const Region& region, const Recipe& recipe,
                    const fs::path& file) {
@@ -65,7 +76,7 @@ void check_request(const MeshRequest& request, const Region& region, const Recip
 }  // namespace
 
 void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const fs::path& file) {
-  check_request(request, parse_region(request.tile, request.patch, request.aligned), recipe, file);
+  check_request(request, region_of(request), recipe, file);
 }
 
 void check_mesh_name(const MeshRequest& request, const fs::path& output) {
@@ -139,77 +150,6 @@ void say_unstated_unit(const Program& program, const std::string& unit, const fs
   program.say(fmt::format("note: a {} states no unit; read it with --unit {}", mesh_extension(output), unit));
 }
 
-// Whether the format has a place for the colours of vertices.
-bool holds_colors(const fs::path& output) { return is_ply_name(output) || output.extension() == ".glb"; }
-
-// Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
-// erosion changes the finished mesh. The other formats, erosion and the picture need the whole mesh in
-// memory.
-class MeshOutput {
- public:
-  MeshOutput(const std::string& tool, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
-             const Region& region, const ImplicitField& field, const fs::path& output)
-      : output_(output),
-        center_(region.center),
-        info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
-    if (region.is_patch) info_.origin = region.center;
-    info_.texture_coordinates = request.texture_coordinates;
-    if (has_colors(recipe) && (holds_colors(output) || !request.preview.file.empty())) {
-      colors_.emplace(recipe, file.string(), field);
-    }
-    if (request.labels) {
-      labels_.emplace(recipe, field, region.cube());
-      info_.notes = labels_->legend();
-    }
-    const bool streamed = is_ply_name(output) && !recipe.erosion && !request.gravity.wanted();
-    if (!streamed || !request.preview.file.empty() || !request.height_map.empty()) sinks_.add(collector_);
-    if (streamed) stream(request.points);
-  }
-  MeshOutput(const MeshOutput&) = delete;
-  MeshOutput& operator=(const MeshOutput&) = delete;
-
-  MeshSink& sink() { return sinks_; }
-  // The mesh in memory; empty where nothing needs it there.
-  TriangleMesh& collected() { return collector_.mesh; }
-
-  // Paints the mesh in memory. Call it when the mesh is complete.
-  void paint() {
-    if (colors_) collector_.mesh.colors = colors_->colors_of(center_, collector_.mesh);
-  }
-
-  // Completes the file. Before that it does not exist. Quantities, if any, are properties of its vertices.
-  void write(const std::vector<VertexValues>& quantities) {
-    if (writer_) {
-      writer_->finish();
-    } else if (!quantities.empty()) {
-      write_ply_values(collector_.mesh, quantities, output_, info_);
-    } else {
-      write_mesh(collector_.mesh, output_, info_);
-    }
-  }
-
- private:
-  void stream(bool only_points) {
-    VertexLabeller labeller;
-    VertexPainter painter;
-    if (labels_) labeller = [this](auto vertices, auto out) { labels_->label(center_, vertices, out); };
-    if (colors_) painter = [this](auto vertices, auto out) { colors_->paint(center_, vertices, out); };
-    writer_ = std::make_unique<PlyStreamWriter>(output_, info_, std::move(labeller), std::move(painter));
-    points_ = std::make_unique<PointsOnly>(*writer_);
-    sinks_.add(only_points ? static_cast<MeshSink&>(*points_) : *writer_);
-  }
-
-  fs::path output_;
-  Vec3d center_;  // of the patch; 0 for a whole mesh
-  MeshFileInfo info_;
-  std::optional<SurfaceColors> colors_;  // absent where nothing shows them
-  std::optional<SurfaceLabels> labels_;
-  MeshCollector collector_;
-  std::unique_ptr<PlyStreamWriter> writer_;
-  std::unique_ptr<PointsOnly> points_;
-  SinkList sinks_;
-};
-
 // A mesh to be made: what was asked for, and what was found out about it.
 struct MeshJob {
   const MeshRequest& request;
@@ -242,7 +182,9 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (request.least_component > 0.0) program.summary["dropped_components"] = made.dropped_components;
   if (made.even && report.triangles > 0) report_even(program, *made.even, recipe.length_unit);
   if (recipe.erosion) {
-    erode_mesh(program, *recipe.erosion, result.collected());
+    TriangleMesh& mesh = result.collected();
+    const ErosionStatistics done = erode_body(*recipe.erosion, mesh, program.progress("erosion"));
+    report_erosion(program, *recipe.erosion, done, mesh.vertices.size());
     extent.measure(result.collected());
   }
 
@@ -382,7 +324,7 @@ FieldRegion region_on_surface(Program& program, const Recipe& recipe, const fs::
 
 void make_mesh(Program& program, const MeshRequest& request, const Recipe& recipe, const fs::path& file,
                const fs::path& output) {
-  const Region asked = parse_region(request.tile, request.patch, request.aligned);
+  const Region asked = region_of(request);
   check_request(request, asked, recipe, file);
   const auto [region, field] = region_on_surface(program, recipe, file, asked);
   const MeshUse use{!request.preview.file.empty() || !request.height_map.empty(),

@@ -1,4 +1,4 @@
-// The picture of synth's mesh.
+// The picture of synth's mesh, and its maps: depth, normal, layer and landform of each pixel.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,10 @@
 #include "apps/picture_options.h"
 #include "apps/program.h"
 #include "geometry/triangle_mesh.h"
+#include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/picture/preview.h"
+#include "tasks/synthesis/mesh_region.h"
 
 namespace astrolith {
 
@@ -35,7 +37,22 @@ void require_cameras_outside(const Program& program, const PreviewRequest& reque
 void write_preview(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
                    const std::string& unit);
 
-// The cameras of the request with the size of its maps.
-PreviewOptions maps_options(const Program& program, const PreviewRequest& request, const TriangleMesh& mesh);
+// Where the surface of a mesh comes from.
+struct MapsSource {
+  const Recipe& recipe;
+  const std::filesystem::path& file;  // of the recipe, for messages
+  const Region& region;
+  const ImplicitField& field;  // of the recipe in the region
+  double cell;                 // side of the mesh's cells, length units
+};
+
+// Writes the maps as NPZ, with these arrays (h x w pixels, v views):
+//   depth (h, w) float32, normal (h, w, 3) float32, view (h, w) int8,
+//   right, up, from, corner, eye (v, 3) float64, pixel () float64    as in synthesis/picture/picture_maps.h
+//   layer (h, w) int32       the label of synthesis/field/surface_labels.h; -1 where the ray meets nothing
+//   instance (h, w) int32    the row of the feature list, from 0; -1 for none
+// An eroded mesh has no layer and no instance, because erosion moves what layers made; a line says so.
+void write_preview_maps(Program& program, const PreviewRequest& request, const TriangleMesh& mesh,
+                        const MapsSource& source);
 
 }  // namespace astrolith

@@ -51,7 +51,7 @@ Vec3d any_direction(double least_z, CounterRandom random) {
 }  // namespace
 
 FamilyMember family_member(const Recipe& recipe, std::uint64_t number) {
-  const std::uint64_t seed = CounterRandom(recipe.seed, number).next() >> 11;
+  const std::uint64_t seed = recipe.family ? CounterRandom(recipe.seed, number).next() >> 11 : number;
   FamilyMember member{recipe,
                       {},
                       any_direction(-1.0, CounterRandom(seed, kView)),

@@ -61,19 +61,14 @@ double even(int index, double ratio) {
 
 ProbedSurface::ProbedSurface(TriangleMesh mesh, const Box& within) : mesh_(std::move(mesh)) {
   double sum = 0.0;
-  std::vector<Triangle> kept;
   std::vector<Box> boxes;
   for (const Triangle& triangle : mesh_.triangles) {
     const Corners t = corners_of(mesh_, triangle);
-    const double area = 0.5 * norm(t.doubled_area());
-    if (!holds(within, (1.0 / 3.0) * (t.a + t.b + t.c)) || !(area > 0.0)) continue;
-    sum += area;
-    kept.push_back(triangle);
+    if (holds(within, (1.0 / 3.0) * (t.a + t.b + t.c))) sum += 0.5 * norm(t.doubled_area());
     areas_.push_back(sum);
     Box& box = boxes.emplace_back();
     for (const Vec3d& p : {t.a, t.b, t.c}) box.extend(p);
   }
-  mesh_.triangles = std::move(kept);
   tree_ = BoxTree(boxes);
 }
 

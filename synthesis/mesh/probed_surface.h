@@ -11,10 +11,10 @@ namespace astrolith {
 class ProbedSurface {
  public:
   ProbedSurface() = default;
-  // Triangles whose centres lie outside `within` are left out.
+  // Points are drawn from the triangles whose centres lie within the box, and area() is theirs.
   ProbedSurface(TriangleMesh mesh, const Box& within);
 
-  bool empty() const { return areas_.empty(); }
+  bool empty() const { return !(area() > 0.0); }
   double area() const { return areas_.empty() ? 0.0 : areas_.back(); }  // square length units
 
   struct Point {
@@ -28,7 +28,7 @@ class ProbedSurface {
   // The largest share of the area that lies in a slab of this height across the z axis; 0 to 1.
   double largest_share(double height) const;
 
-  // The area of the surface within a box.
+  // The area within a box, of all triangles.
   double area_within(const Box& box) const;
 
  private:

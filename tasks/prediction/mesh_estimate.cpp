@@ -24,10 +24,12 @@ SampleGrid grid_of(const ImplicitField& field, const Region& region, int resolut
                          : make_sample_grid(field.bounds(), resolution);
 }
 
-// The slab of space in which a tile of the mesh lies.
-Box slab_of(const ImplicitField& field, const Region& region, int resolution) {
+// The part of space in which the mesh lies: the cube of a patch, the slab of a tile.
+Box space_of(const ImplicitField& field, const Region& region, int resolution) {
+  const Vec3d half = 0.5 * region.size * Vec3d{1, 1, 1};
+  if (region.is_patch) return {-1.0 * half, half};
   Box slab = kEverywhere;
-  if (region.is_patch || region.tile.count <= 1) return slab;
+  if (region.tile.count <= 1) return slab;
   const SampleGrid grid = make_sample_grid(field.bounds(), resolution);
   const CellWindow window = window_of_tile<kBlockCells>(grid, region.tile);
   slab.min.z = double{grid.z(window.first[2] - 1)};
@@ -65,17 +67,19 @@ MeshEstimator::MeshEstimator(const ImplicitField& field, const Recipe& recipe, c
 void MeshEstimator::make_coarse(int cells) {
   if (cells <= coarse_cells_) return;
   MeshStatistics made;
-  coarse_ = region_.is_patch
-                ? coarse_mesh_of(PatchField(base_, region_.center, region_.axes), region_.size, cells, &made)
-                : coarse_mesh_of(base_, cells, &made);
+  // Columns at the border of a patch hold a part of the surface beside it.
+  constexpr double kWider = 1.25;
+  coarse_ = region_.is_patch ? coarse_mesh_of(PatchField(base_, region_.center, region_.axes),
+                                              kWider * region_.size, cells, &made)
+                             : coarse_mesh_of(base_, cells, &made);
   coarse_cells_ = cells;
+  coarse_step_ = made.step;
   evaluations_ += double(made.evaluations);
 }
 
 ProbeFigures MeshEstimator::probe(const ProbedSurface& surface, int resolution, int count) {
   const FieldView& view = field_.tables();
-  const double cell = grid_of(field_, region_, coarse_cells_).step;
-  const double reach = has_impulses(view) ? std::max(cell, field_.height_bound()) : cell;
+  const double reach = has_impulses(view) ? std::max(coarse_step_, field_.height_bound()) : coarse_step_;
   const ProbedMesh mesh{surface, grid_of(field_, region_, resolution).step, reach,
                         view.gabor_lists.count > 0};
   most_probes_ = std::max(most_probes_, count);
@@ -96,7 +100,7 @@ MeshEstimate MeshEstimator::made_at(int resolution) {
     seconds = clock.seconds();
   });
   coarse_ = std::move(collector.mesh);
-  coarse_cells_ = resolution;
+  coarse_cells_ = 0;  // the next estimate makes another one
   const ProbedSurface surface(coarse_, kEverywhere);
   MeshEstimate estimate{resolution, made.step, surface.area(), double(made.triangles),
                         double(made.active_blocks)};
@@ -115,7 +119,7 @@ MeshEstimate MeshEstimator::at(int resolution) {
   make_coarse(std::clamp(resolution / kCoarser, kFewestCells, kMostCells));
   const SampleGrid grid = grid_of(field_, region_, resolution);
   MeshEstimate estimate{resolution, grid.step};
-  const ProbedSurface surface(coarse_, slab_of(field_, region_, resolution));
+  const ProbedSurface surface(coarse_, space_of(field_, region_, resolution));
   if (!surface.empty()) {
     const double wanted = double(resolution) * resolution / kCellsOfProbe;
     const int probes = std::clamp(int(wanted), kFewestProbes, kMostProbes);
@@ -138,7 +142,7 @@ int MeshEstimator::resolution_for(double triangles) {
   // directions.
   constexpr double kOfSquare = 3.0;
   make_coarse(kCells);
-  const ProbedSurface surface(coarse_, kEverywhere);
+  const ProbedSurface surface(coarse_, region_.is_patch ? space_of(field_, region_, kCells) : kEverywhere);
   if (surface.empty())
     throw WorkError("mesher: the surface is too small to tell its size; give a resolution");
   int resolution = kCells;

@@ -49,6 +49,7 @@ class MeshEstimator {
   ImplicitField base_;  // whose coarse mesh is made
   TriangleMesh coarse_;
   int coarse_cells_ = 0;
+  double coarse_step_ = 0.0;
   double evaluations_ = 0.0;
   int most_probes_ = 0;
 };

@@ -198,7 +198,6 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
            {"0:2 -o body.ply --manifest m.jsonl", "--output: every member writes"},
            {"0:2 --preview {member}.png --preview-maps a.npz" + outputs,
             "--preview-maps: every member writes"},
-           {"0:2 -o {member}.ply", "--manifest: is required"},
            {"0:2 -o {member}.ply --manifest \"\"", "--manifest: is given without a name"},
            {"0:2 --manifest m.jsonl --out \"\"", "--out: is given without a name"},
            {"0:2 --write-recipe {member}.astro --preview {member}.png --manifest m.jsonl",
@@ -214,6 +213,37 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
            {"0:2 -o {member}.ply --manifest 0000012.ply", "--manifest: "}}) {
     refuse("r.json --members " + words, culprit);
   }
+}
+
+// Without a family a member is the body that --seed makes of its number, and needs no manifest.
+TEST_F(SynthMembers, BodiesOfOneRecipeDifferByTheirSeeds) {
+  write("r.json", replaced(kFamily, kFamily.substr(kFamily.find(",\n  \"family\"")), "}"));
+  succeed("r.json --resolution 24 --members 5:7 -o plain_{member}.ply --preview p_{member}.png");
+  succeed("r.json --resolution 24 --seed 6 -o single.ply");
+  EXPECT_TRUE(text("single.ply") == text("plain_0000006.ply"));
+  EXPECT_TRUE(exists("p_0000005.png") && exists("p_0000006.png"));
+  EXPECT_EQ(folder_.files().size(), 6u);
+  refuse("r.json --members 0:2 --seed 3 -o {member}.ply",
+         "--seed: bodies of --members have their numbers as seeds");
+}
+
+TEST_F(SynthMembers, VariationsAreMadeByTheirNumbers) {
+  succeed("r.json --resolution 24 --vary 0.3 --seed 6 -o single.glb --write-recipe single.json");
+  refuse("r.json --members 6:8 --vary 0.3 -o {member}.ply", "--vary: members of a family");
+  write("r.json", replaced(kFamily, kFamily.substr(kFamily.find(",\n  \"family\"")), "}"));
+  succeed(
+      "r.json --resolution 24 --vary 0.3 --members 6:8 -o rock_{member}.glb --write-recipe "
+      "rock_{member}.json "
+      "--manifest m.jsonl");
+  EXPECT_TRUE(text("single.glb") == text("rock_0000006.glb"));
+  EXPECT_TRUE(text("single.json") == text("rock_0000006.json"));
+  EXPECT_FALSE(text("rock_0000006.glb") == text("rock_0000007.glb"));
+  EXPECT_TRUE(has(text("m.jsonl"), "\"similarity\":"));
+}
+
+TEST_F(SynthMembers, MarksAndTheFormerOptionAreExplained) {
+  refuse("r.json -o rock_{member}.ply", "{member} stands for the number of each body of --members A:B");
+  refuse("r.json --count 2 -o rock_{n}.ply", "--count: write --members A:B");
 }
 
 TEST_F(SynthMembers, BothWaysToNameFilesGoOnWithOneSet) {

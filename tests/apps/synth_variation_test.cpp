@@ -23,33 +23,6 @@ TEST_F(SynthVariation, VariationsAreAsAlikeAsAskedAndStayInOnePiece) {
   refuse("r.json -o no.ply --vary 1.5", "--vary");
 }
 
-TEST_F(SynthVariation, OneCommandMakesSeveralAsEachIsMadeSingly) {
-  succeed(
-      "r.json --resolution 24 --vary 0.3 --count 3 --seed 5 -o rock_{n}.glb --write-recipe rock_{n}.json "
-      "--summary s.json");
-  const auto bodies = json("s.json").at("bodies");
-  ASSERT_EQ(bodies.size(), 3u);
-  EXPECT_EQ(bodies[1].at("seed"), 6);
-  EXPECT_EQ(bodies[1].at("sha256"), sha256_of_file(folder_ / "rock_6.glb"));
-  succeed("r.json --resolution 24 --vary 0.3 --seed 6 -o single.glb --write-recipe single.json");
-  EXPECT_TRUE(text("single.glb") == text("rock_6.glb"));
-  EXPECT_TRUE(text("single.json") == text("rock_6.json"));
-  EXPECT_FALSE(text("rock_5.glb") == text("rock_7.glb"));
-  succeed("r.json --resolution 24 --count 2 -o plain_{n}.ply");
-  succeed("r.json --resolution 24 --seed 2 -o single.ply");
-  EXPECT_TRUE(text("single.ply") == text("plain_2.ply"));
-  succeed("r.json --resolution 24 --count 2 -o p_{n}.ply --preview p_{n}.png --summary p_{n}.json");
-  EXPECT_EQ(json("p_2.json").at("sha256"), sha256_of_file(folder_ / "p_2.ply"));
-  EXPECT_EQ(json("p_1.json").at("seed"), 1);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "p_1.png") && std::filesystem::exists(folder_ / "p_2.png"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "p_{n}.json"));
-  refuse("r.json -o rock_{n}.ply", "rock_{n}.ply: {n} stands for the seed of each body of --count N");
-  refuse("r.json -o rock.ply --summary s_{n}.json", "s_{n}.json: {n} stands for the seed");
-  refuse("r.json --count 2 -o rock.glb", "put {n} into the name rock.glb");
-  refuse("r.json --count 2 -o rock_{n}.glb --preview p.png", "put {n} into the name p.png");
-  refuse("r.json --count 0 -o rock_{n}.glb", "--count");
-}
-
 // Two samplings of one body are less alike than 0.999, so that every other body is refused.
 TEST_F(SynthVariation, AVariationThatWouldBeTheSameBodyIsRefusedLong) {
   write("bare.json", kTwoSpheres.substr(0, kTwoSpheres.find(",\n  \"layers\"")) + "}");

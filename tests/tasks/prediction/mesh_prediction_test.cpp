@@ -1,7 +1,5 @@
 #include "tasks/prediction/mesh_prediction.h"
 
-#include <gtest/gtest.h>
-
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"

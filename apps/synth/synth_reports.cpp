@@ -1,9 +1,8 @@
-#include "apps/synth/synth_left_out.h"
+#include "apps/synth/synth_reports.h"
 
 #include <fmt/format.h>
 
 #include <map>
-#include <string>
 #include <utility>
 
 namespace astrolith {
@@ -71,6 +70,44 @@ void report_layers_left_out(Program& program, const ImplicitField& field, const 
                             is_patch || !field.has_local_form() ? "" : "; a --patch shows it"));
   }
   program.summary["layers_left_out"] = std::move(list);
+}
+
+void report_erosion(Program& program, const Erosion& erosion, const ErosionStatistics& done,
+                    std::size_t vertices) {
+  program.summary["erosion"] = {{"settled", done.settled},
+                                {"sweeps", done.sweeps},
+                                {"steepest_before", done.steepest_before},
+                                {"steepest_after", done.steepest_after},
+                                {"talus_angle", erosion.talus_angle},
+                                {"moved_vertices", done.moved_vertices},
+                                {"rock_vertices", done.rock_vertices},
+                                {"volume_moved", done.volume_moved}};
+  const std::string words = fmt::format(
+      "erosion: {} of {} vertices moved, {} are rock; the steepest loose slope is {:.2f} degrees, before "
+      "{:.2f}",
+      done.moved_vertices, vertices, done.rock_vertices, done.steepest_after, done.steepest_before);
+  const std::string remedy = done.sweeps < erosion.iterations ? "no slide lowers it; raise --resolution"
+                                                              : "raise erosion.iterations";
+  program.say(words + (done.settled
+                           ? fmt::format("; settled below {:g}", erosion.talus_angle)
+                           : fmt::format("; not settled below {:g}: {}", erosion.talus_angle, remedy)));
+}
+
+void report_even(Program& program, const EvenStatistics& done, const std::string& unit) {
+  program.summary["even"] = {
+      {"quality_before", {{"first_percentile", done.before.first_percentile}, {"mean", done.before.mean}}},
+      {"quality_after", {{"first_percentile", done.after.first_percentile}, {"mean", done.after.mean}}},
+      {"mean_move", done.mean_move},
+      {"largest_move", done.largest_move},
+      {"largest_value", done.largest_value},
+      {"moved_vertices", done.moved},
+      {"kept_vertices", done.kept}};
+  program.say(fmt::format(
+      "even: quality {:.2f} at the first percentile, before {:.2f}, and {:.2f} in the mean, before "
+      "{:.2f}; {} vertices moved along the surface, by {:.3g} {} in the mean and {:.3g} at most, "
+      "{} stay; |F| <= {:.2g}",
+      done.after.first_percentile, done.before.first_percentile, done.after.mean, done.before.mean,
+      done.moved, done.mean_move, unit, done.largest_move, done.kept, done.largest_value));
 }
 
 }  // namespace astrolith
