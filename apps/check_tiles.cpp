@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/counted.h"
 #include "apps/program.h"
 #include "geometry/io/ply_stream_reader.h"
 #include "numerics/errors.h"
 #include "numerics/files/sha256.h"
 #include "numerics/memory_use.h"
 #include "synthesis/mesh/manifold_check.h"
+#include "tasks/job/words.h"
 #include "tasks/synthesis/tile_certificate.h"
 
 namespace astrolith {
@@ -39,7 +39,8 @@ void add_options(Program& program, Arguments& arguments) {
       .add_option("summaries", arguments.summaries,
                   "the files that synth --tile I/N --summary FILE.json wrote")
       .required()
-      .placeholder("FILE.json...");
+      .placeholder("FILE.json...")
+      .reads();
   program.app
       .add_option("--meshes", arguments.meshes,
                   "also read the tiles' meshes (.ply) in this folder, one after the other, and confirm what "

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "apps/evaluation_json.h"
-#include "apps/output_names.h"
 #include "apps/program.h"
 #include "descriptor/classification/class_folders.h"
 #include "descriptor/classification/classifier_file.h"
@@ -14,6 +13,7 @@
 #include "descriptor/classification/feature_table.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "tasks/job/output_names.h"
 
 namespace astrolith {
 namespace {
@@ -34,18 +34,18 @@ struct Arguments {
   Option bins, points, eigenvalues;
 };
 
-CommandLine add_train(Program& program, Arguments& a) {
-  CommandLine train = program.app.add_command(
+OptionTable& add_train(Program& program, Arguments& a) {
+  OptionTable& train = program.app.add_command(
       "train",
       "Learns classes from folders: each folder of meshes is a class of its name. Give the folders, or "
       "one that holds them.");
   train.add_option("folders", a.folders, "folders of meshes, or folders of such folders")
       .required()
-      .placeholder("DIR...")
-      .default_text("");
+      .placeholder("DIR...");
   train.add_option("-o,--output", a.output, "the classifier to write (JSON, which YAML readers read too)")
       .required()
-      .placeholder("MODEL.yml");
+      .placeholder("MODEL.yml")
+      .writes();
   train.add_option("--features", a.kind, "what the classes are told apart by")
       .check(one_of({"wahl", "ahd", "d2", "shapedna"}));
   a.bins = train.add_option("--bins", a.features.bins, "histogram bins for each axis; 64 for d2 unless given")
@@ -67,16 +67,15 @@ CommandLine add_train(Program& program, Arguments& a) {
   return train;
 }
 
-CommandLine add_predict(Program& program, Arguments& a) {
-  CommandLine predict = program.app.add_command(
+void add_predict(Program& program, Arguments& a) {
+  OptionTable& predict = program.app.add_command(
       "predict",
       "Prints the class of each mesh and the share of votes for every class, a line of JSON each.");
-  predict.add_option("model", a.model, "what train wrote").required().placeholder("MODEL.yml");
+  predict.add_option("model", a.model, "what train wrote").required().placeholder("MODEL.yml").reads();
   predict.add_option("meshes", a.meshes, "meshes, or folders of meshes")
       .required()
       .placeholder("MESH...")
-      .default_text("");
-  return predict;
+      .reads();
 }
 
 // An option that the features do not have would be passed over in silence.
@@ -137,8 +136,7 @@ void train(Program& program, Arguments& a) {
   a.training.forest.seed = program.seed;
   const LabelledFiles files = find_classes(a.folders);
   for (const fs::path& file : files.files) {
-    require_other_file(a.output, file);
-    if (!program.summary_file.empty()) require_other_file(program.summary_file, file);
+    program.options.require_not_written(file);
   }
   for (const fs::path& file : files.skipped) say_skipped(program, file);
   const LabelledFeatures data = labelled(files, features_with_failures(program, files.files, features));
@@ -206,7 +204,7 @@ int main(int argc, char** argv) {
                              "Learns classes of shapes from folders of meshes, and names the class of "
                              "others. \"classify train --help\" states the options of training.");
   astrolith::Arguments arguments;
-  const astrolith::CommandLine training = astrolith::add_train(program, arguments);
+  const astrolith::OptionTable& training = astrolith::add_train(program, arguments);
   astrolith::add_predict(program, arguments);
   program.app.require_command();
   return program.run(argc, argv, [&] {

@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mesh_unit.h"
-#include "apps/output_names.h"
 #include "apps/program.h"
-#include "apps/shape_options.h"
-#include "apps/shape_repair.h"
-#include "apps/surface_options.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
+#include "tasks/job/output_names.h"
+#include "tasks/repair/mesh_unit.h"
+#include "tasks/repair/shape_repair.h"
 #include "tasks/synthesis/comparison.h"
+#include "tasks/synthesis/shape_options.h"
+#include "tasks/synthesis/surface_options.h"
 #include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
@@ -32,12 +32,13 @@ struct Arguments {
 };
 
 void add_options(Program& program, Arguments& arguments) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   const std::string formats = "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf";
-  app.add_option("a", arguments.a, formats).required().placeholder("A");
-  app.add_option("b", arguments.b, formats).required().placeholder("B");
+  app.add_option("a", arguments.a, formats).required().placeholder("A").reads();
+  app.add_option("b", arguments.b, formats).required().placeholder("B").reads();
   app.add_option("-o,--output", arguments.output, "write the JSON here rather than to stdout")
-      .placeholder("FILE.json");
+      .placeholder("FILE.json")
+      .writes();
   arguments.options.add_to(app);
   arguments.repair.add_to(app, false);
   app.add_option("--samples", arguments.samples,

@@ -4,18 +4,18 @@
 #include <string>
 #include <utility>
 
-#include "apps/device_option.h"
-#include "apps/output_names.h"
 #include "apps/program.h"
-#include "apps/shape_options.h"
-#include "apps/shape_repair.h"
-#include "apps/surface_options.h"
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/stated_unit.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
+#include "tasks/job/output_names.h"
+#include "tasks/repair/shape_repair.h"
 #include "tasks/synthesis/describe_file.h"
+#include "tasks/synthesis/device_option.h"
+#include "tasks/synthesis/shape_options.h"
+#include "tasks/synthesis/surface_options.h"
 #include "tasks/synthesis/surface_report.h"
 
 namespace astrolith {
@@ -31,17 +31,19 @@ struct Arguments {
 };
 
 void add_options(Program& program, Arguments& arguments) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   app.add_option("shape", arguments.shape,
                  "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; or ply of points with normals")
       .required()
-      .placeholder("MESH");
+      .placeholder("MESH")
+      .reads();
   app.add_option(
          "-o,--output", arguments.output,
          "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]; with --surface "
          "the figures (.json) or the values at every place (.csv)")
       .required()
-      .placeholder("H.npy");
+      .placeholder("H.npy")
+      .writes();
   arguments.options.add_to(app);
   arguments.repair.add_to(app, false);
   arguments.device.add_to(app);

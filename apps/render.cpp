@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/mesh_unit.h"
-#include "apps/output_names.h"
-#include "apps/picture_options.h"
 #include "apps/program.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/colormap.h"
+#include "tasks/job/output_names.h"
+#include "tasks/repair/mesh_unit.h"
+#include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
 namespace {
@@ -27,11 +27,12 @@ struct Arguments {
 };
 
 void add_options(Program& program, Arguments& a) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   app.add_option("shape", a.shape, "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf")
       .required()
-      .placeholder("MESH");
-  app.add_option("-o,--output", a.output, "the picture").required().placeholder("FILE.png");
+      .placeholder("MESH")
+      .reads();
+  app.add_option("-o,--output", a.output, "the picture").required().placeholder("FILE.png").writes();
   Option color = app.add_option(
       "--color", a.color,
       "colours by this property of the vertices of a .ply, such as slope_deg of gravity -o, with "

@@ -220,7 +220,7 @@ void run(Program& program, Arguments& a) {
 }
 
 void declare_options(Program& program, Arguments& a) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   app.add_option("meshes", a.meshes, "a model of each body, named after it up to the first _")
       .required()
       .placeholder("MESH...")

@@ -184,7 +184,7 @@ void run(Program& program, Arguments& a) {
 }
 
 void declare_options(Program& program, Arguments& a) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   app.add_option("folders", a.folders, "a folder of class folders, or a folder for each class")
       .required()
       .placeholder("DIR...")

@@ -2,20 +2,21 @@
 #include <string>
 #include <tuple>
 
-#include "apps/density_question.h"
 #include "apps/gravity/gravity_body.h"
 #include "apps/gravity/gravity_outputs.h"
 #include "apps/gravity/gravity_parts.h"
 #include "apps/gravity/gravity_sites.h"
-#include "apps/output_names.h"
-#include "apps/picture_options.h"
 #include "apps/program.h"
-#include "apps/shape_repair.h"
 #include "geometry/io/points_io.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "tasks/gravity/body_gravity.h"
+#include "tasks/job/density_question.h"
+#include "tasks/job/output_names.h"
+#include "tasks/repair/shape_repair.h"
+#include "tasks/synthesis/load_recipe.h"
+#include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
 namespace {
@@ -32,20 +33,23 @@ struct Arguments {
 };
 
 void add_options(Program& program, Arguments& a) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   app.add_option("shape", a.shape,
                  "closed mesh (obj, ply, stl, off, PDS plate .tab, ICQ, bmf) or recipe (.json, .astro)")
       .required()
-      .placeholder("SHAPE");
+      .placeholder("SHAPE")
+      .reads(recipe_and_images);
   app.add_option("-o,--output", a.output, "table of all places (.csv, .npy), or the mesh with values (.ply)")
-      .placeholder("FILE");
+      .placeholder("FILE")
+      .writes();
   app.add_option("--density", a.density, "kg/m3, of the whole body").placeholder("N").default_text("");
   app.add_option(
          "--density-of", a.parts,
          "closed parts inside the body with densities of their own, in the body's unit and frame: lobes, "
          "boulders, a core, a cavity of 0")
       .placeholder("FILE=N,FILE=N ...")
-      .default_text("");
+      .default_text("")
+      .reads(files_of_parts);
   app.add_option("--period", a.period, "of rotation, hours; without it the body is at rest")
       .placeholder("N")
       .default_text("");
@@ -61,7 +65,8 @@ void add_options(Program& program, Arguments& a) {
   app.add_option("--at", a.at, "places: centres of facets, or vertices")
       .check(one_of({"facets", "vertices"}));
   app.add_option("--points", a.points, "places: lines of x, y, z in the body's unit, inside or outside")
-      .placeholder("FILE");
+      .placeholder("FILE")
+      .reads();
   app.add_option("--tolerance", a.tolerance, "bound of the error of each acceleration, relative")
       .check(in_range(1e-12, 0.1));
   app.add_flag("--exact", a.exact, "sum over all facets exactly; takes minutes for 50,000 facets");
@@ -79,7 +84,8 @@ void add_options(Program& program, Arguments& a) {
          "--preview", a.preview,
          "also a picture in colours, with a bar; with --sites it has one view from above of each of the "
          "first nine sites, whose ground is orange and carries the site's number")
-      .placeholder("FILE.png");
+      .placeholder("FILE.png")
+      .writes();
   app.add_option("--color", a.color, "what the colours of the picture say")
       .check(one_of(
           {"slope_deg", "elevation_m", "potential_J_kg", "geopotential_J_kg", "effective_gravity_m_s2"}));

@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "apps/unit_question.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tasks/repair/unit_question.h"
 #include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/mesh_unit.h"
 #include "apps/program.h"
-#include "apps/shape_repair.h"
 #include "tasks/gravity/gravity_body.h"
+#include "tasks/repair/mesh_unit.h"
+#include "tasks/repair/shape_repair.h"
 
 namespace astrolith {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/picture_options.h"
 #include "apps/program.h"
 #include "tasks/gravity/gravity_body.h"
 #include "tasks/gravity/gravity_table.h"
 #include "tasks/gravity/landing_sites.h"
+#include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
 

@@ -3,10 +3,10 @@
 #include <charconv>
 #include <sstream>
 
-#include "apps/density_question.h"
 #include "apps/gravity/gravity_body.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tasks/job/density_question.h"
 
 namespace astrolith {
 namespace {
@@ -37,6 +37,15 @@ bool holds(const Box& outer, const Box& inner) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> files_of_parts(const std::vector<std::string>& words) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& list : words) {
+    std::istringstream all(list);
+    for (std::string word; std::getline(all, word, ',');) files.emplace_back(word.substr(0, word.rfind('=')));
+  }
+  return files;
+}
 
 std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const std::string& unit,
                                  const GravityBody& whole, double density, int resolution,

@@ -5,10 +5,13 @@
 #include <vector>
 
 #include "apps/program.h"
-#include "apps/shape_repair.h"
 #include "tasks/gravity/body_parts.h"
+#include "tasks/repair/shape_repair.h"
 
 namespace astrolith {
+
+// The files of words such as FILE=DENSITY,FILE=DENSITY.
+std::vector<std::filesystem::path> files_of_parts(const std::vector<std::string>& words);
 
 // Reads parts given as FILE=DENSITY,FILE=DENSITY. A file is a closed mesh in the body's unit and frame, or a
 // recipe of that unit; `unit` is that of --unit, or empty. Throws InputError for a word of another form, a

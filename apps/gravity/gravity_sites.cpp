@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "apps/output_names.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "recipe/recipe_json.h"
+#include "tasks/job/output_names.h"
 
 namespace astrolith {
 namespace {
@@ -36,7 +36,7 @@ void write_list(const nlohmann::ordered_json& sites, const std::filesystem::path
 
 }  // namespace
 
-void declare_sites_options(CommandLine& app, SitesRequest& request) {
+void declare_sites_options(OptionTable& app, SitesRequest& request) {
   Option sites =
       app.add_option(
              "--sites", request.count,
@@ -57,7 +57,8 @@ void declare_sites_options(CommandLine& app, SitesRequest& request) {
       .default_text("2 L");
   app.add_option("--site-list", request.list, "also the sites as a table, best first")
       .needs(sites)
-      .placeholder("FILE.csv");
+      .placeholder("FILE.csv")
+      .writes();
 }
 
 void check_sites(const Program& program, const SitesRequest& request, bool of_facets) {

@@ -20,7 +20,7 @@ struct SitesRequest {
   std::filesystem::path list;  // .csv; empty = none
 };
 
-void declare_sites_options(CommandLine& app, SitesRequest& request);
+void declare_sites_options(OptionTable& app, SitesRequest& request);
 
 // Throws InputError for options that lack one another, for a list that cannot be written, and for sites where
 // the places are not facets.

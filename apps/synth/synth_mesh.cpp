@@ -8,8 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "apps/counted.h"
-#include "apps/output_names.h"
 #include "apps/synth/synth_erosion.h"
 #include "apps/synth/synth_even.h"
 #include "apps/synth/synth_height_map.h"
@@ -30,6 +28,8 @@
 #include "synthesis/field/landform_list.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
 #include "tasks/synthesis/body_mesh.h"
 
 namespace astrolith {
@@ -324,7 +324,8 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .add_option(
           "--height-map", request.height_map,
           "also the patch as a GeoTIFF of metres over its mean plane, and its frame beside it as JSON")
-      .placeholder("FILE.tif");
+      .placeholder("FILE.tif")
+      .writes(height_map_files);
   program.app.add_flag("--points", request.points,
                        "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
                        "(.ply without faces)");
@@ -350,7 +351,8 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .add_option("--feature-list", request.landforms,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
                   "sizes, ages and angles (degrees), in the recipe's unit")
-      .placeholder("FILE.csv|FILE.json");
+      .placeholder("FILE.csv|FILE.json")
+      .writes();
 }
 
 namespace {

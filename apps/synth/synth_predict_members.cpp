@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/counted.h"
 #include "apps/synth/silenced_program.h"
+#include "tasks/job/words.h"
 #include "tasks/prediction/set_prediction.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/mesh_region.h"

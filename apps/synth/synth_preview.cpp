@@ -1,11 +1,11 @@
 #include "apps/synth/synth_preview.h"
 
-#include "apps/output_names.h"
-#include "apps/pixel_size.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/srgb.h"
 #include "synthesis/field/field_mesh.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/pixel_size.h"
 
 namespace astrolith {
 namespace {
@@ -37,14 +37,16 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
       .add_option("--preview", request.file,
                   "also a picture of the mesh under sunlight, with shadows: from +x, +y, +z and obliquely, a "
                   "patch from above its ground and obliquely")
-      .placeholder("FILE.png");
+      .placeholder("FILE.png")
+      .writes();
   request.look.add_to(program.app);
   program.app.option("--picture-size").placeholder("WxH (default 1280x960, 640x480 of --members)");
   program.app
       .add_option("--preview-maps", request.maps,
                   "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
                   "instance, the row of the --feature-list; with the cameras")
-      .placeholder("FILE.npz");
+      .placeholder("FILE.npz")
+      .writes();
   program.app.add_option("--maps-size", request.maps_size, "pixels of the maps")
       .placeholder("WxH (default that of the picture)")
       .default_text("");

@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/picture_options.h"
 #include "apps/program.h"
 #include "geometry/triangle_mesh.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/picture/preview.h"
+#include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
 

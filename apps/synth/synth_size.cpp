@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
 #include "synthesis/field/field_mesh.h"
+#include "tasks/job/words.h"
 #include "tasks/prediction/mesh_estimate.h"
 
 namespace astrolith {

@@ -2,8 +2,10 @@
 
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <chrono>
 #include <list>
+#include <regex>
 
 #include "numerics/errors.h"
 #include "numerics/printable_text.h"
@@ -124,14 +126,25 @@ void join_background_work() {
   background().jobs.clear();
 }
 
+std::string python_words(std::string message) {
+  static const std::regex option("--([a-z][a-z0-9-]*)");
+  std::string words;
+  for (std::smatch found; std::regex_search(message, found, option); message = found.suffix()) {
+    std::string name = found[1];
+    std::replace(name.begin(), name.end(), '-', '_');
+    words += found.prefix().str() + name;
+  }
+  return words + message;
+}
+
 void declare_common(nb::module_& module) {
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);
     } catch (const InputError& e) {
-      PyErr_SetString(PyExc_ValueError, printable(e.what()).c_str());
+      PyErr_SetString(PyExc_ValueError, printable(python_words(e.what())).c_str());
     } catch (const WorkError& e) {
-      PyErr_SetString(PyExc_RuntimeError, printable(e.what()).c_str());
+      PyErr_SetString(PyExc_RuntimeError, printable(python_words(e.what())).c_str());
     }
   });
   module.def("join_background_work", &join_background_work,

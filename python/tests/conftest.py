@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORM = {"format_version": 1, "length_unit": "km",
         "body": {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2,
                  "spheres": [[1.2 * (k - 4.5), 0, 0, 0.8 + 0.1 * (k % 2)] for k in range(10)]}}  # fmt: skip
-FAST = {"spheres": 12, "population": 4, "generations": 2, "seed": 3}
+FAST = {"spheres": 12, "population": 4, "generations": 2, "noise_seeds": 0, "seed": 3}
 
 
 @pytest.fixture(autouse=True)

@@ -131,4 +131,25 @@ void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
   write_recipe(recipe, file);
 }
 
+std::vector<std::filesystem::path> recipe_and_images(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files(names.begin(), names.end());
+  for (const std::string& name : names) try {
+      for (Layer& layer : read_recipe(name).layers) {
+        const NamedImage* named = image_of(layer);
+        if (named != nullptr && !named->image.empty())
+          files.push_back(std::filesystem::path(name).parent_path() / named->image);
+      }
+    } catch (const std::exception&) {  // is told where the recipe is read
+    }
+  return files;
+}
+
+std::vector<std::filesystem::path> recipe_and_relief(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files(names.begin(), names.end());
+  for (const std::string& name : names) {
+    if (!is_compact_name(name)) files.push_back(relief_image_name(name, 0));
+  }
+  return files;
+}
+
 }  // namespace astrolith

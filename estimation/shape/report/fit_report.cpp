@@ -231,4 +231,14 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
   write_report_page(page, folder / "index.html");
 }
 
+std::vector<std::filesystem::path> fit_report_files(const std::vector<std::string>& folders) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path folder : folders) {
+    for (const char* name : {"index.html", "target_and_fit.png", "distance_map.png", "error_histogram.png",
+                             "convergence.png", "quantile_curves.png", "roughness_maps.png"})
+      files.push_back(folder / name);
+  }
+  return files;
+}
+
 }  // namespace astrolith

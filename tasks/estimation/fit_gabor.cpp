@@ -1,5 +1,5 @@
-// fit_gabor IMAGE -o RECIPE: a photo of rock becomes layers of noise with its spectrum, or an exemplar of
-// itself.
+#include "tasks/estimation/fit_gabor.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,21 +8,18 @@
 #include <string>
 #include <utility>
 
-#include "apps/counted.h"
-#include "apps/output_names.h"
-#include "apps/program.h"
 #include "estimation/gabor/fit_memory.h"
 #include "estimation/gabor/image/image_reader.h"
-#include "estimation/gabor/photo_fit.h"
 #include "numerics/errors.h"
+#include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
 #include "tasks/estimation/exemplar_recipe.h"
 #include "tasks/estimation/photo_recipe.h"
-#include "tasks/estimation/texture_fit.h"
-#include "tasks/estimation/texture_outputs.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {
@@ -30,37 +27,22 @@ namespace {
 // Photos whose spectrum holds less than this share of their variance get a note.
 constexpr double kMostVariance = 0.95;
 
-struct Options {
-  std::string image;
-  std::string image_sha256;  // before it was read
-  std::string output;
-  std::string report_folder;
-  std::string spectrum_file;
-  std::string model = "gabor";
-  std::string target = "smoothed";
-  std::string solver = "working-set";
-  std::string unit = "m";
-  std::string channels = "luminance";
-  std::string detrend_by = "subtraction";
-  std::string evaluation = "impulses";
-  double mm_per_px = 0.0;      // 0 = no physical scale
-  double height_rms = -1.0;    // negative = the exemplar's own
-  double max_memory_gb = 0.0;  // 0 = three quarters of the machine's
-  PhotoFitOptions photo;
-};
-
 // The photo, and the preparation of its colours and its brightness.
-void add_photo_options(CommandLine& app, Options& o) {
+void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option(
          "image", o.image,
          "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
          "alpha is ignored, of several pages or frames the first is taken")
-      .required();
+      .required()
+      .reads();
   app.add_option(
          "-o,--output", o.output,
          "recipe to write, with one Gabor layer (up to three with --channels pca) or, of the models phase "
          "and exemplar, one layer whose image becomes RECIPE_exemplar.png beside it")
-      .required();
+      .required()
+      .writes([](const auto& words) {
+        return std::vector<std::filesystem::path>{words.front(), exemplar_image_of(words.front())};
+      });
   app.add_option(
          "--model", o.model,
          "how the texture is made: gabor (noise with the photo's spectrum in a few lobes), phase (an image "
@@ -90,7 +72,7 @@ void add_photo_options(CommandLine& app, Options& o) {
 }
 
 // The size of the layer and of its recipe.
-void add_layer_options(CommandLine& app, Options& o) {
+void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
       .check(in_range(1, 1000));
   app.add_option(
@@ -114,7 +96,7 @@ void add_layer_options(CommandLine& app, Options& o) {
       .default_text("");
 }
 
-void add_pursuit_options(CommandLine& app, Options& o) {
+void add_pursuit_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option("--spectrum-estimate", o.target,
                  "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
                  "nearest to the true one) or periodogram (raw, of the periodic component, as in Galerne et "
@@ -134,7 +116,7 @@ void add_pursuit_options(CommandLine& app, Options& o) {
 }
 
 // The limit of memory, and the files that can be written beside the recipe.
-void add_output_options(CommandLine& app, Options& o) {
+void add_output_options(OptionTable& app, PhotoFitArguments& o) {
   app.add_option("--max-memory", o.max_memory_gb,
                  "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
                  "of the machine's")
@@ -145,28 +127,24 @@ void add_output_options(CommandLine& app, Options& o) {
          "folder for a page, index.html, with photo and texture as reliefs to turn; for a figure, "
          "report.png and report.svg, of both and their spectra, of the lobes and the gap of the pursuit, "
          "or of the grey values and the layer's image; and for its pictures pixel by pixel")
-      .placeholder("DIR");
+      .placeholder("DIR")
+      .writes(texture_report_files);
   app.add_option(
          "--spectrum", o.spectrum_file,
          "write the power spectrum of the lobes, or of a texture of another model, on the image's DFT grid "
          "(.npy, float64, frequency 0 first, |DFT|^2 / (width height)); images above 1024 pixels use a "
          "grid of at most 1024; with several layers an array (layers, height, width)")
-      .placeholder("FILE.npy");
-}
-
-void add_options(Program& program, Options& o) {
-  add_photo_options(program.app, o);
-  add_layer_options(program.app, o);
-  add_pursuit_options(program.app, o);
-  add_output_options(program.app, o);
+      .placeholder("FILE.npy")
+      .writes();
 }
 
 // Predicts the memory of the fit before the image is decoded. Throws InputError where the fit needs more than
 // allowed.
-void predict_memory(Program& program, const Options& o, const PhotoFitOptions& photo) {
-  const ImageSize size = read_image_size(o.image);
+void predict_memory(Job& job, const PhotoFitArguments& o, const PhotoFitOptions& photo) {
+  const ImageSize size = o.in_memory ? ImageSize{o.in_memory->front().width, o.in_memory->front().height}
+                                     : read_image_size(o.image);
   const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty(), o.model != "gabor");
-  program.summary["predicted"] = {{"peak_bytes", predicted}};
+  job.summary["predicted"] = {{"peak_bytes", predicted}};
   if (predicted > memory_limit(o.max_memory_gb)) {
     throw InputError(
         fmt::format("{}: fitting {} x {} pixels needs {:.2f} GB of memory, more than {:.2f} GB; "
@@ -175,68 +153,67 @@ void predict_memory(Program& program, const Options& o, const PhotoFitOptions& p
   }
   constexpr double kWorthSaying = 1e9;
   if (predicted > kWorthSaying) {
-    program.say(fmt::format("{}: {} x {} pixels, about {:.1f} GB of memory", o.image, size.width, size.height,
-                            predicted / 1e9));
+    job.say(fmt::format("{}: {} x {} pixels, about {:.1f} GB of memory", o.image, size.width, size.height,
+                        predicted / 1e9));
   }
 }
 
-PhotoRecipeOptions recipe_options(const Program& program, const Options& o) {
-  return {std::filesystem::path(o.image).stem().string(),
+PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
+  return {o.in_memory ? "" : std::filesystem::path(o.image).stem().string(),
           o.mm_per_px,
           o.unit,
           o.height_rms,
-          program.seed,
+          job.seed,
           o.evaluation == "tiles" ? GaborEvaluation::kTiles : GaborEvaluation::kImpulses};
 }
 
-void set_provenance(const Program& program, const Options& o, Recipe& recipe) {
-  recipe.provenance.tool = program.tool();
-  recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
-  recipe.provenance.input_sha256 = o.image_sha256;
-  recipe.provenance.options = program.given_options();
+void set_provenance(const Job& job, const PhotoFitArguments& o, Recipe& recipe) {
+  recipe.provenance.tool = job.tool();
+  if (!o.in_memory) {
+    recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
+    recipe.provenance.input_sha256 = o.image_sha256;
+  }
+  recipe.provenance.options = job.options.given();
 }
 
-PhotoFitOptions photo_options(const Program& program, const Options& o) {
+PhotoFitOptions photo_options(const Job& job, const PhotoFitArguments& o) {
   PhotoFitOptions photo = o.photo;
   photo.colors = o.channels == "pca";
   photo.trend = o.detrend_by == "division" ? TrendModel::kMultiplied : TrendModel::kAdded;
   photo.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
   photo.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
-  photo.seed = program.seed;
+  photo.seed = job.seed;
   return photo;
 }
 
 // Options that are about lobes say nothing of the models without any.
-void check_model(const Program& program, const Options& o) {
+void check_model(const Job& job, const PhotoFitArguments& o) {
   if (o.model != "phase" && o.model != "exemplar") return;
   for (const char* name :
        {"--lobes", "--penalty", "--gap", "--solver", "--evaluation", "--spectrum-estimate"}) {
-    if (program.app.option(name).count() > 0) {
+    if (job.options.option(name).count() > 0) {
       throw InputError(
           fmt::format("{}: is about lobes, which --model {} has none of; leave it out", name, o.model));
     }
   }
 }
 
-void require_outputs(const Options& o) {
-  require_extension(o.output, {".json", ".astro"});
+void require_outputs(const PhotoFitArguments& o) {
+  if (!o.output.empty()) {
+    require_extension(o.output, {".json", ".astro"});
+    require_writable(o.output);
+    if (o.model != "gabor") require_writable(exemplar_image_of(o.output));
+  } else if (o.model != "gabor") {
+    throw InputError(
+        "--output: is missing; a layer with an image wants a recipe's file, beside which the image lies");
+  }
   if (!o.spectrum_file.empty()) require_extension(o.spectrum_file, {".npy"});
-  require_writable(o.output);
-  if (o.model != "gabor") {
-    const std::filesystem::path image = exemplar_image_of(o.output);
-    require_writable(image);
-    require_other_file(image, o.image);
-  }
   if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
-  if (o.report_folder.empty()) return;
-  make_output_folder(o.report_folder);
-  for (const auto& entry : std::filesystem::directory_iterator(o.report_folder)) {
-    require_other_file(entry.path(), o.image);
-  }
+  if (!o.report_folder.empty()) make_output_folder(o.report_folder);
 }
 
 // What may mend a weak fit.
-std::string remedy(const PhotoFit& photo, const Options& o) {
+std::string remedy(const PhotoFit& photo, const PhotoFitArguments& o) {
   const bool full = std::any_of(photo.channels.begin(), photo.channels.end(), [&](const FittedChannel& c) {
     return static_cast<int>(c.fit.lobes.size()) >= o.photo.fit.max_lobes;
   });
@@ -245,9 +222,9 @@ std::string remedy(const PhotoFit& photo, const Options& o) {
                                      : "try a smaller --penalty";
 }
 
-void say_lobes(const PhotoFit& photo, const Options& o, const Program& program) {
+void say_lobes(const PhotoFit& photo, const PhotoFitArguments& o, const Job& job) {
   const std::size_t layers = photo.channels.size();
-  program.say(fmt::format(
+  job.say(fmt::format(
       "{}{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the smoothed one of the photo and, speckle "
       "aside, "
       "{:.3f} from the photo's own (weak above {:.3f}), {:.1f} % of the variance in the right octave",
@@ -255,104 +232,101 @@ void say_lobes(const PhotoFit& photo, const Options& o, const Program& program) 
       photo.pursuit_gap(), photo.spectrum_distance(), photo.spectrum_residual(), photo.weak_above(),
       100.0 * photo.band_overlap()));
   if (photo.weak()) {
-    program.say("note: weak fit: a good one would be nearer to the photo's spectrum; " + remedy(photo, o));
+    job.say("note: weak fit: a good one would be nearer to the photo's spectrum; " + remedy(photo, o));
   }
-  if (!photo.pursuit_reached()) program.say("note: the pursuit ended before the --gap asked for");
+  if (!photo.pursuit_reached()) job.say("note: the pursuit ended before the --gap asked for");
   const double held = photo.variance_in_spectrum();
   if (held < kMostVariance) {
     const GreyImage& image = photo.channels.front().exemplar;
     const bool tiled = std::max(image.width, image.height) > o.photo.fit.largest_side;
-    program.say(fmt::format(
+    job.say(fmt::format(
         "note: {:.0f} % of the photo's variance lies in features wider than {}, which the noise lacks{}",
         100.0 * (1.0 - held),
         tiled ? fmt::format("{} pixels", o.photo.fit.largest_side) : "it, or in light from one side",
         tiled ? "; scale the photo down to that size to keep them" : ""));
   }
-  program.say(photo.gaussianity().value().sentence);
+  job.say(photo.gaussianity().value().sentence);
 }
 
-void say_exemplar(const PreparedExemplar& exemplar, const Program& program) {
+void say_exemplar(const PreparedExemplar& exemplar, const Job& job) {
   const TextureScore& score = exemplar.scores[static_cast<int>(exemplar.variant)];
-  program.say(fmt::format(
+  job.say(fmt::format(
       "exemplar: {}; a texture of it differs from the photo itself by {:.3f} in values and {:.3f} in filters",
       variant_word(exemplar.variant), score.values, score.filters));
 }
 
-void say_phases(const TextureFit& fit, const Program& program) {
+void say_phases(const TextureFit& fit, const Job& job) {
   const ExemplarImage& image = *fit.image->pixels;
-  program.say(fmt::format("random phases: an image of {} x {} pixels with the photo's spectrum", image.width,
-                          image.height));
+  job.say(fmt::format("random phases: an image of {} x {} pixels with the photo's spectrum", image.width,
+                      image.height));
   const double held = variance_in_phases(fit);
   if (held < kMostVariance) {
-    program.say(fmt::format(
+    job.say(fmt::format(
         "note: {:.0f} % of the photo's variance lies in features wider than it, or in light from one side, "
         "which random phases lack",
         100.0 * (1.0 - held)));
   }
-  program.say(fit.gaussianity.value().sentence);
+  job.say(fit.gaussianity.value().sentence);
 }
 
-void say_result(const TextureFit& fit, const Options& o, const Program& program) {
+void say_result(const TextureFit& fit, const PhotoFitArguments& o, const Job& job) {
   if (o.mm_per_px > 0.0 && o.height_rms < 0.0) {
-    program.say(fmt::format(
+    job.say(fmt::format(
         "note: without --height-rms white is a height of 1 {}; half a pixel is --height-rms {:.3g}", o.unit,
         0.5e-3 * o.mm_per_px / metres_of(o.unit)));
   }
-  if (fit.lobes) say_lobes(*fit.lobes, o, program);
-  if (fit.model == TextureModel::kPhase) say_phases(fit, program);
-  if (fit.exemplar) say_exemplar(*fit.exemplar, program);
+  if (fit.lobes) say_lobes(*fit.lobes, o, job);
+  if (fit.model == TextureModel::kPhase) say_phases(fit, job);
+  if (fit.exemplar) say_exemplar(*fit.exemplar, job);
 }
 
-void write_beside(const TextureFit& fit, const Options& o, Program& program) {
-  const FitTexture texture = synthesize_like_photo(fit, program.progress("synthesis"));
-  program.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(fit, texture);
+// Returns the spectra where they are wanted.
+SpectraArray write_beside(const TextureFit& fit, const PhotoFitArguments& o, Job& job) {
+  const FitTexture texture = synthesize_like_photo(fit, job.progress("synthesis"));
+  job.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(fit, texture);
   if (!o.report_folder.empty()) {
     write_texture_reports(std::filesystem::path(o.image).filename().string(), fit, texture, o.report_folder);
   }
-  if (!o.spectrum_file.empty()) write_spectra(fit, texture, o.spectrum_file);
-}
-
-void work(Program& program, Options& o) {
-  check_model(program, o);
-  require_outputs(o);
-  o.image_sha256 = sha256_of_file(o.image);
-  const TextureFitOptions options{model_named(o.model), photo_options(program, o),
-                                  recipe_options(program, o)};
-  predict_memory(program, o, options.photo);
-  ColorImageFile read = read_image(o.image, options.photo.colors);
-  for (const std::string& remark : read.remarks) program.say(o.image + ": " + remark);
-  if (!report(program.progress("photo"), 0.0, "read"))
-    throw WorkError(o.image + ": stopped; nothing is written");
-  TextureFit fit = fit_texture(std::move(read.planes), o.image, options,
-                               [&](const std::string& stage) { return program.progress(stage); });
-  set_provenance(program, o, fit.recipe);
-  write_texture_recipe(fit, fit.recipe, o.output);
-  program.summary.update(texture_figures(fit));
-  if (fit.choice) program.say(choice_sentence(fit));
-  if (Program::interrupted()) {
-    program.say(std::string("stopped by ") + Program::stopped_by() +
-                ": the recipe holds the best so far; no synthesis, no report");
-    return;
-  }
-  write_beside(fit, o, program);
-  program.summary["peak_bytes"] = peak_bytes();
-  say_result(fit, o, program);
+  if (o.spectrum_file.empty() && !o.wants_spectra) return {};
+  SpectraArray spectra = fitted_spectra(fit, texture);
+  if (!o.spectrum_file.empty()) write_npy(spectra.power, spectra.shape, o.spectrum_file);
+  return spectra;
 }
 
 }  // namespace
-}  // namespace astrolith
 
-int main(int argc, char** argv) {
-  using namespace astrolith;
-  Program program(
-      "fit_gabor",
-      "Fits the texture of a photo of rock: Gabor noise, a sparse sum of Gaussians in its power spectrum, by "
-      "non-negative basis pursuit with a certified duality gap; noise with its whole spectrum; or the photo "
-      "itself as an exemplar. Of lobes the summary says how far their spectrum is from the photo's "
-      "(spectrum_residual; 0: as good as can be told, above weak_above: weak), the share of the variance in "
-      "the right octave (band_overlap) and the variance of a texture made of them over that of the photo's "
-      "pixels (variance_ratio_synthesized).");
-  Options options;
-  add_options(program, options);
-  return program.run(argc, argv, [&] { work(program, options); });
+void declare_photo_fit(Job& job, PhotoFitArguments& o) {
+  add_photo_options(job.options, o);
+  add_layer_options(job.options, o);
+  add_pursuit_options(job.options, o);
+  add_output_options(job.options, o);
 }
+
+FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
+  check_model(job, o);
+  require_outputs(o);
+  if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
+  const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};
+  predict_memory(job, o, options.photo);
+  ColorImageFile photo =
+      o.in_memory ? ColorImageFile{*o.in_memory, {}} : read_image(o.image, options.photo.colors);
+  for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
+  if (!report(job.progress("photo"), 0.0, "read")) throw WorkError(o.image + ": stopped; nothing is written");
+  FittedPhoto result{fit_texture(std::move(photo.planes), o.image, options, job.stages()), {}};
+  TextureFit& fit = result.fit;
+  set_provenance(job, o, fit.recipe);
+  if (!o.output.empty()) write_texture_recipe(fit, fit.recipe, o.output);
+  job.summary.update(texture_figures(fit));
+  if (fit.choice) job.say(choice_sentence(fit));
+  if (job.stopped()) {
+    job.say(std::string("stopped by ") + job.stopped_by() +
+            ": the recipe holds the best so far; no synthesis, no report");
+    return result;
+  }
+  result.spectra = write_beside(fit, o, job);
+  job.summary["peak_bytes"] = peak_bytes();
+  say_result(fit, o, job);
+  return result;
+}
+
+}  // namespace astrolith

@@ -5,9 +5,9 @@
 #include <tuple>
 #include <vector>
 
-#include "apps/program.h"
 #include "geometry/triangle_mesh.h"
 #include "synthesis/picture/preview.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
@@ -25,22 +25,22 @@ struct PictureOptions {
   int bits = 8;
   bool no_marks = false;
 
-  void add_to(CommandLine& app);
+  void add_to(OptionTable& app);
 
   // Throws InputError where the options cannot be, or where one of them is given and `has_picture` is not
   // set.
-  void check(const Program& program, bool has_picture, const std::string& remedy) const;
+  void check(const Job& job, bool has_picture, const std::string& remedy) const;
 
   // The size, the cameras, the light, and, unless --no-marks is given, axes and a scale in the mesh's unit;
   // without colours.
-  PreviewOptions options(const Program& program, const TriangleMesh& mesh, const std::string& unit) const;
+  PreviewOptions options(const Job& job, const TriangleMesh& mesh, const std::string& unit) const;
 
   // Looks from one direction under one sun instead, each where it is given.
   void look_from(const Vec3d& direction);
   void light_from(const Vec3d& direction);
 
   // Writes the picture, and says which of its views show nothing of the body.
-  void write(const Program& program, const RenderedPicture& picture, const std::filesystem::path& file) const;
+  void write(const Job& job, const RenderedPicture& picture, const std::filesystem::path& file) const;
 
   bool has_pinholes() const;
 };

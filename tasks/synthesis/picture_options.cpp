@@ -1,12 +1,12 @@
-#include "apps/picture_options.h"
+#include "tasks/synthesis/picture_options.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "apps/pixel_size.h"
 #include "numerics/errors.h"
+#include "tasks/job/pixel_size.h"
 
 namespace astrolith {
 namespace {
@@ -36,7 +36,7 @@ std::vector<Camera> cameras_of(const std::vector<std::string>& words) {
 
 }  // namespace
 
-void PictureOptions::add_to(CommandLine& app) {
+void PictureOptions::add_to(OptionTable& app) {
   app.add_option("--picture-size", size, "pixels of the picture")
       .placeholder("WxH (default 1280x960)")
       .default_text("");
@@ -78,10 +78,10 @@ void PictureOptions::add_to(CommandLine& app) {
   app.add_flag("--no-marks", no_marks, "without the scale of lengths and the axes");
 }
 
-void PictureOptions::check(const Program& program, bool has_picture, const std::string& remedy) const {
+void PictureOptions::check(const Job& job, bool has_picture, const std::string& remedy) const {
   if (!has_picture) {
     for (const char* name : kPictureOptions) {
-      if (program.app.option(name).count() > 0)
+      if (job.options.option(name).count() > 0)
         throw InputError(std::string(name) + ": is about a picture; " + remedy);
     }
     return;
@@ -95,7 +95,7 @@ void PictureOptions::check(const Program& program, bool has_picture, const std::
   for (const Direction& view : views) require_direction("--view", vector_of(view));
   require_direction("--sun", vector_of(sun));
   int suns = 0;
-  for (const char* name : {"--sun", "--sun-body", "--phase"}) suns += program.app.option(name).count() > 0;
+  for (const char* name : {"--sun", "--sun-body", "--phase"}) suns += job.options.option(name).count() > 0;
   if (suns > 1) throw InputError("--sun, --sun-body and --phase place one sun; give one of them");
   if (!sun_body.empty()) require_direction("--sun-body", {sun_body[0], sun_body[1], sun_body[2]});
   if (!phase.empty() && !(phase[0] >= 0.0 && phase[0] <= 180.0 && std::fabs(phase[1]) <= 360.0)) {
@@ -103,7 +103,7 @@ void PictureOptions::check(const Program& program, bool has_picture, const std::
   }
 }
 
-PreviewOptions PictureOptions::options(const Program& program, const TriangleMesh& mesh,
+PreviewOptions PictureOptions::options(const Job& job, const TriangleMesh& mesh,
                                        const std::string& unit) const {
   PreviewOptions made;
   if (!size.empty()) {
@@ -111,7 +111,7 @@ PreviewOptions PictureOptions::options(const Program& program, const TriangleMes
     made.width = pixels.width;
     made.height = pixels.height;
   }
-  made.seed = program.seed;
+  made.seed = job.seed;
   made.sun.direction = vector_of(sun);
   if (!sun_body.empty()) made.sun = {{sun_body[0], sun_body[1], sun_body[2]}, true};
   if (!phase.empty()) made.sun = sun_at_phase(phase[0], phase[1]);
@@ -139,11 +139,11 @@ void PictureOptions::light_from(const Vec3d& direction) {
   sun = {direction.x, direction.y, direction.z};
 }
 
-void PictureOptions::write(const Program& program, const RenderedPicture& picture,
+void PictureOptions::write(const Job& job, const RenderedPicture& picture,
                            const std::filesystem::path& file) const {
   write_png(picture.image, bits, background == "transparent", file);
   for (const std::size_t view : picture.empty_views) {
-    program.say(fmt::format(
+    job.say(fmt::format(
         "note: {}: the body covers no pixel of view {}; change the target of its camera, or bring a pinhole "
         "nearer",
         file.string(), view + 1));

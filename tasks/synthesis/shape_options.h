@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "apps/command_line.h"
 #include "descriptor/shape_description.h"
+#include "tasks/job/option_table.h"
 
 namespace astrolith {
 
@@ -12,7 +12,7 @@ struct ShapeOptions {
   std::string features = "ahd";
   DescriptionOptions description;
 
-  void add_to(CommandLine& app) {
+  void add_to(OptionTable& app) {
     app.add_option("--features", features,
                    "wahl: the four of a pair of points; ahd: also curvature and normal perturbation")
         .check(one_of({"wahl", "ahd"}));

@@ -1,4 +1,4 @@
-#include "apps/shape_repair.h"
+#include "tasks/repair/shape_repair.h"
 
 #include <utility>
 
@@ -8,7 +8,7 @@
 
 namespace astrolith {
 
-void ShapeRepair::add_to(CommandLine& app, bool of_bodies) {
+void ShapeRepair::add_to(OptionTable& app, bool of_bodies) {
   const Option refuse = app.add_flag("--strict", strict,
                                      of_bodies ? "refuse a mesh that is not closed, in place of its repair"
                                                : "take a mesh as it is, in place of the repair of its cracks "
@@ -36,17 +36,17 @@ TriangleMesh ShapeRepair::read(const std::filesystem::path& file) const {
   return read_mesh_to_repair(file, wrap);
 }
 
-TriangleMesh ShapeRepair::closed_body(const Program& program, TriangleMesh mesh, const std::string& name,
+TriangleMesh ShapeRepair::closed_body(const Job& job, TriangleMesh mesh, const std::string& name,
                                       const std::string& unit, const RepairOptions& options,
                                       nlohmann::ordered_json& figures) const {
   if (strict) return mesh;
-  MeshRepair repair = repair_mesh(std::move(mesh), name, options, program.progress("repair"));
-  if (const std::string words = repair_words(repair, unit); !words.empty()) program.say(name + ": " + words);
+  MeshRepair repair = repair_mesh(std::move(mesh), name, options, job.progress("repair"));
+  if (const std::string words = repair_words(repair, unit); !words.empty()) job.say(name + ": " + words);
   if (repair.changed || repair.bodies > 1) figures = repair_json(repair);
   return std::move(repair.mesh);
 }
 
-TriangleMesh ShapeRepair::mended_surface(const Program& program, TriangleMesh mesh, const std::string& name,
+TriangleMesh ShapeRepair::mended_surface(const Job& job, TriangleMesh mesh, const std::string& name,
                                          nlohmann::ordered_json& figures) const {
   const bool points = mesh.triangles.empty();
   if (strict || (points && !wrap)) return mesh;
@@ -57,9 +57,9 @@ TriangleMesh ShapeRepair::mended_surface(const Program& program, TriangleMesh me
   RepairOptions options = this->options();
   options.all_parts = options.caller_welds = true;
   try {
-    MeshRepair repair = repair_mesh(mesh, name, options, program.progress("repair"));
+    MeshRepair repair = repair_mesh(mesh, name, options, job.progress("repair"));
     if (!repair.changed) return mesh;
-    program.say(name + ": " + repair_words(repair, ""));
+    job.say(name + ": " + repair_words(repair, ""));
     figures = repair_json(repair);
     return std::move(repair.mesh);
   } catch (const InputError&) {

@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include "apps/program.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
 // Says so where a density in kg/m^3 looks like one in g/cm^3: comets have some 500 kg/m^3, fresh snow 100.
-inline void question_density(const Program& program, double density) {
+inline void question_density(const Job& job, double density) {
   if (!(density > 0.0 && density < 50.0)) return;
-  program.say(fmt::format("note: a density of {:g} kg/m^3 is that of no solid; for {:g} g/cm^3 give {:g}",
-                          density, density, 1000.0 * density));
+  job.say(fmt::format("note: a density of {:g} kg/m^3 is that of no solid; for {:g} g/cm^3 give {:g}",
+                      density, density, 1000.0 * density));
 }
 
 }  // namespace astrolith

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "apps/command_line.h"
-#include "apps/density_question.h"
 #include "descriptor/surface/surface_statistics.h"
+#include "tasks/job/density_question.h"
+#include "tasks/job/option_table.h"
 
 namespace astrolith {
 
@@ -13,7 +13,7 @@ struct SurfaceOptions {
   SurfaceStatisticsOptions statistics;
 
   // `flag` is the option without which these mean nothing.
-  void add_to(CommandLine& app, const Option& flag) {
+  void add_to(OptionTable& app, const Option& flag) {
     app.add_option("--surface-points", statistics.points,
                    "evenly spread points that stand for a surface; they decide the edge in which all radii "
                    "count. 0: as many as the mesh, or the coarser of two meshes, has vertices, up to 60,000")
@@ -30,10 +30,10 @@ struct SurfaceOptions {
         .check(above_zero())
         .needs(flag);
   }
-  SurfaceStatisticsOptions of(const Program& program) const {
-    question_density(program, statistics.density);
+  SurfaceStatisticsOptions of(const Job& job) const {
+    question_density(job, statistics.density);
     SurfaceStatisticsOptions options = statistics;
-    options.seed = program.seed;
+    options.seed = job.seed;
     return options;
   }
 };

@@ -1,4 +1,4 @@
-#include "apps/mesh_unit.h"
+#include "tasks/repair/mesh_unit.h"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,13 @@
 
 namespace astrolith {
 
-std::string unit_of_mesh(const Program& program, const std::filesystem::path& file, const UnitChoice& choice,
+std::string unit_of_mesh(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
                          std::initializer_list<std::string_view> units) {
   const std::string stated = stated_length_unit(file);
   if (stated.empty()) return choice.given.empty() ? choice.otherwise : choice.given;
   if (!choice.given.empty() && choice.given != stated) {
-    program.say(fmt::format("note: {}: states its unit as {}; taken in {}, as --unit says", file.string(),
-                            stated, choice.given));
+    job.say(fmt::format("note: {}: states its unit as {}; taken in {}, as --unit says", file.string(), stated,
+                        choice.given));
     return choice.given;
   }
   if (units.size() == 0 || std::find(units.begin(), units.end(), stated) != units.end()) return stated;

@@ -1,11 +1,13 @@
-#include "apps/fit_shape/fit_shape_options.h"
+#include "tasks/estimation/fit_shape.h"
 
 #include <algorithm>
 #include <iterator>
 
-#include "apps/density_question.h"
-#include "apps/mesh_unit.h"
+#include "estimation/shape/report/fit_report.h"
 #include "numerics/errors.h"
+#include "tasks/job/density_question.h"
+#include "tasks/repair/mesh_unit.h"
+#include "tasks/synthesis/load_recipe.h"
 
 namespace astrolith {
 namespace {
@@ -16,17 +18,24 @@ Kernel kernel_named(const std::string& word) {
 }
 
 // The input, the output and the fit of the metaballs.
-void declare_base_options(CommandLine& app, FitArguments& arguments) {
+void declare_base_options(OptionTable& app, FitArguments& arguments) {
   app.add_option(
          "mesh", arguments.mesh,
          "mesh of a closed body: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
          "memory a facet")
       .required()
-      .placeholder("MESH");
+      .placeholder("MESH")
+      .reads();
   app.add_option("-o,--output", arguments.output,
                  "the recipe to write, as JSON or compact (.astro); with --packing-only a .csv")
       .required()
-      .placeholder("RECIPE.json");
+      .placeholder("RECIPE.json")
+      .writes([&arguments](const auto& words) {
+        std::vector<std::string> recipes = words;
+        for (const auto& file : variation_files(words.front(), arguments.details.variations))
+          recipes.push_back(file.string());
+        return recipe_and_relief(recipes);
+      });
   app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs").check(in_range(1, 10000));
   app.add_option(
          "--bytes", arguments.fit.bytes,
@@ -53,7 +62,7 @@ void declare_base_options(CommandLine& app, FitArguments& arguments) {
 }
 
 // The end of a fit, its checkpoint and its unit.
-void declare_run_options(CommandLine& app, FitArguments& arguments) {
+void declare_run_options(OptionTable& app, FitArguments& arguments) {
   app.add_option(
          "--tolerance", arguments.fit.tolerance,
          "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
@@ -75,7 +84,8 @@ void declare_run_options(CommandLine& app, FitArguments& arguments) {
          "--checkpoint", arguments.checkpoint,
          "keep the progress of the fit in this file; where the file exists, go on from there. The result is "
          "the result of a run without a stop")
-      .placeholder("FILE.json");
+      .placeholder("FILE.json")
+      .writes();
   app.add_option(
          "--unit", arguments.unit,
          "length unit of the mesh's coordinates, in place of what its file states; km where neither says one")
@@ -85,7 +95,7 @@ void declare_run_options(CommandLine& app, FitArguments& arguments) {
 }
 
 // The packing of spheres, and the report, which a packing does not have.
-void declare_packing_options(CommandLine& app, FitArguments& arguments) {
+void declare_packing_options(OptionTable& app, FitArguments& arguments) {
   Option packing_only = app.add_flag(
       "--packing-only", arguments.packing_only,
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
@@ -105,36 +115,37 @@ void declare_packing_options(CommandLine& app, FitArguments& arguments) {
          "write a page, index.html, with target and fit to turn, and pictures of both, of distances and "
          "convergence here")
       .excludes(packing_only)
-      .placeholder("DIR");
+      .placeholder("DIR")
+      .writes(fit_report_files);
 }
 
 }  // namespace
 
-void declare_fit_options(Program& program, FitArguments& arguments) {
-  declare_base_options(program.app, arguments);
-  declare_detail_options(program, arguments.details);
-  declare_run_options(program.app, arguments);
-  declare_packing_options(program.app, arguments);
-  Option bytes = program.app.option("--bytes");
+void declare_fit_options(Job& job, FitArguments& arguments) {
+  declare_base_options(job.options, arguments);
+  declare_detail_options(job, arguments.details);
+  declare_run_options(job.options, arguments);
+  declare_packing_options(job.options, arguments);
+  Option bytes = job.options.option("--bytes");
   for (const char* option : {"--packing-only", "--variations", "--micro"}) {
-    bytes.excludes(program.app.option(option));
+    bytes.excludes(job.options.option(option));
   }
 }
 
-void settle_fit_options(const Program& program, FitArguments& arguments) {
-  arguments.fit.seed = program.seed;
+void settle_fit_options(const Job& job, FitArguments& arguments) {
+  arguments.fit.seed = job.seed;
   arguments.fit.kernel = kernel_named(arguments.kernel);
-  if (arguments.fit.kernel != Kernel::kGaussian && program.app.option("--subtract").count() > 0 &&
+  if (arguments.fit.kernel != Kernel::kGaussian && job.options.option("--subtract").count() > 0 &&
       arguments.fit.subtract > 0.0) {
     throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
   }
-  arguments.unit = unit_of_mesh(program, arguments.mesh, {arguments.unit}, {"km", "m"});
+  if (!arguments.in_memory) arguments.unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
   arguments.fit.length_unit = arguments.unit;
   if (arguments.fit.bytes > 0 && !arguments.details.base_only) {
     throw InputError("--bytes: counts the bare body's bytes, to which details would add; add --base-only");
   }
-  question_density(program, arguments.density);
-  if (arguments.fit.bytes > 0 && program.app.option("--spheres").count() == 0) {
+  question_density(job, arguments.density);
+  if (arguments.fit.bytes > 0 && job.options.option("--spheres").count() == 0) {
     arguments.fit.spheres = spheres_for_bytes(arguments.fit.bytes);
   }
   arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/program.h"
 #include "geometry/triangle_mesh.h"
+#include "tasks/job/job.h"
 #include "tasks/repair/mesh_repair.h"
 
 namespace astrolith {
@@ -14,7 +14,7 @@ struct ShapeRepair {
   bool strict = false, wrap = false, all_parts = false;
 
   // Programs of surfaces take all bodies of a scene: they have no --all-parts.
-  void add_to(CommandLine& app, bool of_bodies = true);
+  void add_to(OptionTable& app, bool of_bodies = true);
   RepairOptions options() const;
 
   // Reads a mesh. With --wrap also points: .xyz, or a file of points with normals.
@@ -23,13 +23,13 @@ struct ShapeRepair {
   // The closed body of a mesh in `unit`. Says what was done; `figures` gets the fields repair.* of the
   // summary, or nothing where nothing was done. With --strict the mesh comes back as it is. Throws InputError
   // for a mesh that cannot be repaired.
-  TriangleMesh closed_body(const Program& program, TriangleMesh mesh, const std::string& name,
+  TriangleMesh closed_body(const Job& job, TriangleMesh mesh, const std::string& name,
                            const std::string& unit, const RepairOptions& options,
                            nlohmann::ordered_json& figures) const;
 
   // The mesh repaired for a program that takes any surface: a mesh that cannot be repaired, such as a patch,
   // comes back as it is, and so does one that is closed.
-  TriangleMesh mended_surface(const Program& program, TriangleMesh mesh, const std::string& name,
+  TriangleMesh mended_surface(const Job& job, TriangleMesh mesh, const std::string& name,
                               nlohmann::ordered_json& figures) const;
 };
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "apps/program.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
@@ -18,7 +18,7 @@ struct UnitChoice {
 // The unit of a mesh's lengths: the given one, else what the file states, else `otherwise`. Says so where the
 // file states another unit than the given one. Throws InputError where the file's unit decides and is none of
 // `units`; any unit will do where these are none.
-std::string unit_of_mesh(const Program& program, const std::filesystem::path& file, const UnitChoice& choice,
+std::string unit_of_mesh(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
                          std::initializer_list<std::string_view> units);
 
 }  // namespace astrolith
