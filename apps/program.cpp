@@ -124,7 +124,7 @@ void declare(OptionTable& options, CLI::App& parser) {
 
 }  // namespace
 
-void print_result(const std::string& text) {
+void Program::print_result(const std::string& text) {
   if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return;
   throw WorkError(errno == EPIPE ? "stdout: nobody reads it any more"
                                  : "stdout: writing failed; is the disk full?");

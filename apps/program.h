@@ -19,10 +19,6 @@
 
 namespace astrolith {
 
-// Writes what a program was asked for to stdout, at once. Throws WorkError where it cannot be written, as
-// where nobody reads it any more.
-void print_result(const std::string& text);
-
 class Program : public Job {
  public:
   Program(std::string name, std::string description);
@@ -49,6 +45,8 @@ class Program : public Job {
   void note(const std::string& line) override {
     if (!quiet) notes_.push_back(line);
   }
+  // Writes to stdout.
+  void print_result(const std::string& text) override;
   // Prints one line to stderr, also with --quiet; the exit status will be 1.
   void report_failure(const std::string& line) override;
 

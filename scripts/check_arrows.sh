@@ -53,6 +53,7 @@ tasks/job                  -> numerics
 tasks/repair               -> numerics geometry tasks/job
 tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/job tasks/repair tasks/synthesis
 tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair
+tasks/description          -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair tasks/synthesis
 tasks/prediction           -> numerics recipe geometry gravity synthesis tasks/synthesis
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation_json.h"
+#include "tasks/description/evaluation_json.h"
 #include "apps/experiments/noisy_bodies.h"
 #include "apps/program.h"
 #include "descriptor/classification/shape_classifier.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/evaluation_json.h"
+#include "tasks/description/evaluation_json.h"
 #include "apps/program.h"
 #include "descriptor/classification/cross_validation.h"
 #include "descriptor/classification/feature_table.h"

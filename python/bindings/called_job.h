@@ -29,6 +29,7 @@ class CalledJob : public Job {
   const char* stopped_by() const override { return "the caller"; }
   void say(const std::string& line) const override { remarks_.push_back(line); }
   void note(const std::string& line) override { say(line); }
+  void print_result(const std::string&) override {}  // the figures have it
   void report_failure(const std::string& line) override { say(line); }
 
   // Fills the declared options. Throws InputError where a value, a combination or a file cannot be.

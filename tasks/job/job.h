@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -11,6 +12,9 @@
 #include "tasks/job/option_table.h"
 
 namespace astrolith {
+
+// The work of a job whose options have been declared.
+using JobWork = std::function<void()>;
 
 class Job {
  public:
@@ -28,6 +32,8 @@ class Job {
   virtual void say(const std::string& line) const = 0;
   // Tells a person the line once the work is done. Work that fails tells no notes.
   virtual void note(const std::string& line) = 0;
+  // Hands over the text of a result, at once. Throws WorkError where nobody takes it any more.
+  virtual void print_result(const std::string& text) = 0;
   // Reports a part of the work that failed while the rest goes on.
   virtual void report_failure(const std::string& line) = 0;
 

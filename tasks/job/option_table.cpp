@@ -103,15 +103,15 @@ bool stands_for(const fs::path& name, const fs::path& file) {
     const auto mark =
         std::find_if(std::begin(kMarks), std::end(kMarks), [&](auto m) { return rest.starts_with(m); });
     if (mark != std::end(kMarks)) {
-      pattern += '*', marked = true;
+      pattern += "+([0-9])", marked = true;
       rest.remove_prefix(mark->size());
       continue;
     }
-    if (std::string_view("*?[\\").find(rest.front()) != std::string_view::npos) pattern += '\\';
+    if (std::string_view("*?+@![(|)\\").find(rest.front()) != std::string_view::npos) pattern += '\\';
     pattern += rest.front();
     rest.remove_prefix(1);
   }
-  return marked && ::fnmatch(place(pattern).c_str(), place(file).c_str(), FNM_PATHNAME) == 0;
+  return marked && ::fnmatch(place(pattern).c_str(), place(file).c_str(), FNM_PATHNAME | FNM_EXTMATCH) == 0;
 }
 
 void require_input_kept(const fs::path& output, const fs::path& input) {
@@ -310,10 +310,12 @@ void OptionTable::check_combination() const {
 
 void OptionTable::check_files() const {
   const std::vector<const OptionRow*> given = given_rows();
+  for (const OptionRow* row : given) {
+    if (row->writes && row->words.front().empty())
+      throw InputError(row->name() + ": is given without a name; give one, or leave it out");
+  }
   for (std::size_t i = 0; i < given.size(); ++i) {
     if (!given[i]->writes) continue;
-    if (given[i]->words.front().empty())
-      throw InputError(given[i]->name() + ": is given without a name; give one, or leave it out");
     for (const fs::path& output : given[i]->writes(given[i]->words)) {
       for (std::size_t j = 0; j < given.size(); ++j) {
         if (given[j]->reads) {

@@ -142,6 +142,8 @@ TEST(OptionTable, NamesOfMembersStandForManyFiles) {
   EXPECT_NE(files.refused({{"input", input}, {"output", (folder / "body_{member}.json")}}), "");
   EXPECT_NE(files.refused({{"list", (folder / "b3.ply")}, {"output", (folder / "b{n}.ply")}}), "");
   EXPECT_EQ(files.refused({{"input", input}, {"output", (folder / "rock_{member}.json")}}), "");
+  EXPECT_EQ(files.refused({{"list", folder / "{member}.relief.png"}, {"output", folder / "{member}.png"}}),
+            "");
 }
 
 TEST(OptionTable, AFileThatTurnsUpLaterIsKept) {

@@ -1,4 +1,4 @@
-#include "apps/gravity/gravity_body.h"
+#include "tasks/gravity/gravity_input.h"
 
 #include <utility>
 
@@ -11,25 +11,23 @@
 
 namespace astrolith {
 
-GravityBody read_gravity_body(const Program& program, const std::filesystem::path& file,
-                              const UnitChoice& unit, int resolution, const ShapeRepair& repair,
-                              nlohmann::ordered_json& figures) {
+GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file, const UnitChoice& unit,
+                              int resolution, const ShapeRepair& repair, nlohmann::ordered_json& figures) {
   if (!is_recipe_name(file)) {
-    const std::string stated = unit_of_mesh(program, file, unit, {"m", "km", "cm", "mm"});
+    const std::string stated = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
     TriangleMesh mesh = repair.read(file);
     // Edges of four facets, two each way, are no trouble for gravity.
     const MeshTopology topology = analyze_topology(mesh);
     const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0;
     if (!touches) {
-      mesh = repair.closed_body(program, std::move(mesh), file.string(), stated, repair.options(), figures);
+      mesh = repair.closed_body(job, std::move(mesh), file.string(), stated, repair.options(), figures);
     }
     GravityBody body = body_of_mesh(std::move(mesh), stated, file.string());
     if (const std::string asked = unit_question(file, volume(body.mesh), body.metres); !asked.empty())
-      program.say(asked);
+      job.say(asked);
     if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
-      program.say(
-          file.string() + ": holds " + std::to_string(surfaces) +
-          " surfaces apart from one another, bodies or cavities: their gravity is that of all together");
+      job.say(file.string() + ": holds " + std::to_string(surfaces) +
+              " surfaces apart from one another, bodies or cavities: their gravity is that of all together");
     }
     return body;
   }
@@ -38,7 +36,7 @@ GravityBody read_gravity_body(const Program& program, const std::filesystem::pat
     throw InputError("--unit: the recipe states " + recipe.length_unit + "; leave the option out");
   }
   return body_of_recipe(recipe, resolution, file.string(),
-                        [&](const std::string& stage) { return program.progress(stage); });
+                        [&](const std::string& stage) { return job.progress(stage); });
 }
 
 }  // namespace astrolith

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/program.h"
 #include "tasks/gravity/gravity_body.h"
+#include "tasks/job/job.h"
 #include "tasks/repair/mesh_unit.h"
 #include "tasks/repair/shape_repair.h"
 
@@ -15,8 +15,7 @@ namespace astrolith {
 // `resolution` cells along its longest side. A mesh that is no closed body is repaired as `repair` says;
 // `figures` are those of the repair. Throws InputError for files that are no closed body and cannot become
 // one.
-GravityBody read_gravity_body(const Program& program, const std::filesystem::path& file,
-                              const UnitChoice& unit, int resolution, const ShapeRepair& repair,
-                              nlohmann::ordered_json& figures);
+GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file, const UnitChoice& unit,
+                              int resolution, const ShapeRepair& repair, nlohmann::ordered_json& figures);
 
 }  // namespace astrolith

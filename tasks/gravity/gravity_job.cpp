@@ -1,18 +1,20 @@
-// gravity: potential, slope and elevation of a body of uniform density that turns.
+#include "tasks/gravity/gravity_job.h"
+
+#include <memory>
 #include <string>
 #include <tuple>
 
-#include "apps/gravity/gravity_body.h"
-#include "apps/gravity/gravity_outputs.h"
-#include "apps/gravity/gravity_parts.h"
-#include "apps/gravity/gravity_sites.h"
-#include "apps/program.h"
 #include "geometry/io/points_io.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "tasks/gravity/body_gravity.h"
+#include "tasks/gravity/gravity_input.h"
+#include "tasks/gravity/gravity_outputs.h"
+#include "tasks/gravity/gravity_parts.h"
+#include "tasks/gravity/gravity_sites.h"
 #include "tasks/job/density_question.h"
+#include "tasks/job/job.h"
 #include "tasks/job/output_names.h"
 #include "tasks/repair/shape_repair.h"
 #include "tasks/synthesis/load_recipe.h"
@@ -32,8 +34,8 @@ struct Arguments {
   SitesRequest sites;
 };
 
-void add_options(Program& program, Arguments& a) {
-  OptionTable& app = program.app;
+void add_options(Job& job, Arguments& a) {
+  OptionTable& app = job.options;
   app.add_option("shape", a.shape,
                  "closed mesh (obj, ply, stl, off, PDS plate .tab, ICQ, bmf) or recipe (.json, .astro)")
       .required()
@@ -100,19 +102,19 @@ Vec3d axis_of(const Arguments& a) {
   return axis;
 }
 
-void check(const Program& program, const Arguments& a) {
+void check(const Job& job, const Arguments& a) {
   if (!(a.density > 0.0)) {
     throw InputError("--density: must be above 0 kg/m3; give one, such as 2000 for an asteroid of rubble");
   }
-  question_density(program, a.density);
-  if (program.app.option("--period").count() > 0 && !(a.period > 0.0)) {
+  question_density(job, a.density);
+  if (job.options.option("--period").count() > 0 && !(a.period > 0.0)) {
     throw InputError("--period: must be above 0 hours; leave it out for a body at rest");
   }
   axis_of(a);
-  if (!a.points.empty() && (!a.preview.empty() || program.app.option("--at").count() > 0)) {
+  if (!a.points.empty() && (!a.preview.empty() || job.options.option("--at").count() > 0)) {
     throw InputError("--points: gives places of its own; leave out --at and --preview");
   }
-  check_sites(program, a.sites, a.at == "facets" && a.points.empty());
+  check_sites(job, a.sites, a.at == "facets" && a.points.empty());
   if (!a.output.empty()) {
     require_extension(a.output, {".csv", ".npy", ".ply"});
     if (a.output.ends_with(".ply") && (a.at != "vertices" || !a.points.empty())) {
@@ -121,7 +123,7 @@ void check(const Program& program, const Arguments& a) {
     }
     require_writable(a.output);
   }
-  a.look.check(program, !a.preview.empty(), "add --preview FILE.png");
+  a.look.check(job, !a.preview.empty(), "add --preview FILE.png");
   if (!a.preview.empty()) {
     require_extension(a.preview, {".png"});
     require_writable(a.preview);
@@ -133,55 +135,50 @@ GravityPlaces places_of(const Arguments& a, const TriangleMesh& mesh) {
   return a.at == "vertices" ? vertex_places(mesh) : facet_places(mesh);
 }
 
-void print(const nlohmann::ordered_json& result) {
+void print(Job& job, const nlohmann::ordered_json& result) {
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  print_result(result.dump(2, ' ', false, replace) + "\n");
+  job.print_result(result.dump(2, ' ', false, replace) + "\n");
 }
 
-BodyGravityOptions options_of(const Program& program, const Arguments& a, const GravityBody& body) {
-  return {a.density,    a.period,
-          axis_of(a),   a.tolerance,
-          a.exact,      a.sample,
-          program.seed, a.degree,
-          a.radius,     read_parts(program, a.parts, a.unit, body, a.density, a.resolution, a.repair)};
+BodyGravityOptions options_of(const Job& job, const Arguments& a, const GravityBody& body) {
+  return {a.density,  a.period,
+          axis_of(a), a.tolerance,
+          a.exact,    a.sample,
+          job.seed,   a.degree,
+          a.radius,   read_parts(job, a.parts, a.unit, body, a.density, a.resolution, a.repair)};
 }
 
-void write_outputs(Program& program, const Arguments& a, const GravityBody& body,
+void write_outputs(Job& job, const Arguments& a, const GravityBody& body,
                    const std::vector<GravityColumn>& columns, const std::vector<LandingSite>& sites) {
-  if (!a.output.empty()) write_gravity(columns, body, a.output, program.tool());
+  if (!a.output.empty()) write_gravity(columns, body, a.output, job.tool());
   if (a.preview.empty()) return;
   for (const GravityColumn& column : columns) {
-    if (column.name == a.color) write_gravity_preview(program, body, column, sites, a.look, a.preview);
+    if (column.name == a.color) write_gravity_preview(job, body, column, sites, a.look, a.preview);
   }
 }
 
-void run(Program& program, const Arguments& a) {
-  check(program, a);
+void run(Job& job, const Arguments& a) {
+  check(job, a);
   nlohmann::ordered_json repair;
-  const GravityBody body = read_gravity_body(program, a.shape, {a.unit}, a.resolution, a.repair, repair);
+  const GravityBody body = read_gravity_body(job, a.shape, {a.unit}, a.resolution, a.repair, repair);
   const GravityPlaces places = places_of(a, body.mesh);
-  const BodyGravity made = body_gravity(body, places, options_of(program, a, body),
-                                        [&](const std::string& stage) { return program.progress(stage); });
+  const BodyGravity made = body_gravity(body, places, options_of(job, a, body),
+                                        [&](const std::string& stage) { return job.progress(stage); });
   nlohmann::ordered_json result{{"shape", a.shape}};
   result.update(made.figures);
   if (!repair.is_null()) result["repair"] = repair;
-  const std::vector<LandingSite> sites = landing_sites(program, a.sites, a.shape, body, made.columns, result);
-  write_outputs(program, a, body, made.columns, sites);
-  print(result);
-  program.summary = result;
+  const std::vector<LandingSite> sites = landing_sites(job, a.sites, a.shape, body, made.columns, result);
+  write_outputs(job, a, body, made.columns, sites);
+  print(job, result);
+  job.summary = result;
 }
 
 }  // namespace
-}  // namespace astrolith
 
-int main(int argc, char** argv) {
-  astrolith::Program program("gravity",
-                             "Computes gravitational potential, acceleration, geopotential, slope and "
-                             "elevation of a body of uniform "
-                             "density that turns: at its facets, at its vertices, or at points inside and "
-                             "outside. Prints mass, moments "
-                             "and gravity harmonics as JSON.");
-  astrolith::Arguments arguments;
-  astrolith::add_options(program, arguments);
-  return program.run(argc, argv, [&] { astrolith::run(program, arguments); });
+JobWork declare_gravity(Job& job) {
+  const auto arguments = std::make_shared<Arguments>();
+  add_options(job, *arguments);
+  return [&job, arguments] { run(job, *arguments); };
 }
+
+}  // namespace astrolith

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/program.h"
 #include "tasks/gravity/gravity_body.h"
 #include "tasks/gravity/gravity_table.h"
 #include "tasks/gravity/landing_sites.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
@@ -24,13 +24,12 @@ void declare_sites_options(OptionTable& app, SitesRequest& request);
 
 // Throws InputError for options that lack one another, for a list that cannot be written, and for sites where
 // the places are not facets.
-void check_sites(const Program& program, const SitesRequest& request, bool of_facets);
+void check_sites(const Job& job, const SitesRequest& request, bool of_facets);
 
 // Finds the sites by the slopes among the columns, says them, writes the list, and adds them to the figures.
 // `shape` is the body's file. Returns none where none are asked for.
-std::vector<LandingSite> landing_sites(Program& program, const SitesRequest& request,
-                                       const std::string& shape, const GravityBody& body,
-                                       const std::vector<GravityColumn>& columns,
+std::vector<LandingSite> landing_sites(Job& job, const SitesRequest& request, const std::string& shape,
+                                       const GravityBody& body, const std::vector<GravityColumn>& columns,
                                        nlohmann::ordered_json& figures);
 
 }  // namespace astrolith

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/program.h"
 #include "tasks/gravity/gravity_body.h"
 #include "tasks/gravity/gravity_table.h"
 #include "tasks/gravity/landing_sites.h"
+#include "tasks/job/job.h"
 #include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
@@ -20,7 +20,7 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
 
 // The mesh in the colours of one column, which has a value for each vertex, or for each facet. Sites, if any,
 // are orange, and the first nine are each seen from above unless there are cameras.
-void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
+void write_gravity_preview(const Job& job, const GravityBody& body, const GravityColumn& column,
                            const std::vector<LandingSite>& sites, const PictureOptions& look,
                            const std::filesystem::path& file);
 

@@ -1,4 +1,4 @@
-#include "apps/gravity/gravity_sites.h"
+#include "tasks/gravity/gravity_sites.h"
 
 #include <fmt/format.h>
 
@@ -61,11 +61,11 @@ void declare_sites_options(OptionTable& app, SitesRequest& request) {
       .writes();
 }
 
-void check_sites(const Program& program, const SitesRequest& request, bool of_facets) {
+void check_sites(const Job& job, const SitesRequest& request, bool of_facets) {
   if (request.count == 0) return;
   if (!(request.side > 0.0))
     throw InputError("--sites: has no size of a site; add --site-size L, in the body's unit");
-  if (program.app.option("--site-distance").count() > 0 && !(request.distance > 0.0))
+  if (job.options.option("--site-distance").count() > 0 && !(request.distance > 0.0))
     throw InputError("--site-distance: must be above 0; leave it out for 2 L");
   if (!of_facets) throw InputError("--sites: needs slopes of facets; leave out --points and --at");
   if (request.list.empty()) return;
@@ -73,29 +73,27 @@ void check_sites(const Program& program, const SitesRequest& request, bool of_fa
   require_writable(request.list);
 }
 
-std::vector<LandingSite> landing_sites(Program& program, const SitesRequest& request,
-                                       const std::string& shape, const GravityBody& body,
-                                       const std::vector<GravityColumn>& columns,
+std::vector<LandingSite> landing_sites(Job& job, const SitesRequest& request, const std::string& shape,
+                                       const GravityBody& body, const std::vector<GravityColumn>& columns,
                                        nlohmann::ordered_json& figures) {
   if (request.count == 0) return {};
   const auto slopes = std::find_if(columns.begin(), columns.end(),
                                    [](const GravityColumn& column) { return column.name == "slope_deg"; });
   const SiteSearch search{request.count, request.side, distance_of(request)};
-  std::vector<LandingSite> sites =
-      find_landing_sites(body, slopes->values, search, program.progress("sites"));
+  std::vector<LandingSite> sites = find_landing_sites(body, slopes->values, search, job.progress("sites"));
   figures["sites"] = sites_json(sites, body);
   const std::string recipe = is_recipe_name(shape) ? shape : "RECIPE.json";  // of a measured mesh, its fit
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const LandingSite& site = sites[i];
-    program.say(
+    job.say(
         fmt::format("site {}: slope {:.2f} degrees, {:.2f} at most, roughness {:.3g} m: synth {} --patch {} "
                     "--aligned -o site_{}.ply --height-map site_{}.tif",
                     i + 1, site.mean_slope, site.largest_slope, body.metres * site.roughness, recipe,
                     patch_words(site), i + 1, i + 1));
   }
   if (static_cast<int>(sites.size()) < request.count) {
-    program.say(fmt::format("note: the body has {} sites of this size at this distance, not {}", sites.size(),
-                            request.count));
+    job.say(fmt::format("note: the body has {} sites of this size at this distance, not {}", sites.size(),
+                        request.count));
   }
   if (!request.list.empty()) write_list(figures["sites"], request.list);
   return sites;

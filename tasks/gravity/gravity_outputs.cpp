@@ -1,4 +1,4 @@
-#include "apps/gravity/gravity_outputs.h"
+#include "tasks/gravity/gravity_outputs.h"
 
 #include <fmt/format.h>
 
@@ -86,20 +86,20 @@ void write_gravity(const std::vector<GravityColumn>& columns, const GravityBody&
   write_ply_values(body.mesh, quantities, file, {body.unit, "as the input's", "gravity by " + tool, {}});
 }
 
-void write_gravity_preview(const Program& program, const GravityBody& body, const GravityColumn& column,
+void write_gravity_preview(const Job& job, const GravityBody& body, const GravityColumn& column,
                            const std::vector<LandingSite>& sites, const PictureOptions& look,
                            const std::filesystem::path& file) {
   const std::vector<double> values = values_of_vertices(body.mesh, column.values);
   const ValueRange range = value_range(values);
-  PreviewOptions options = look.options(program, body.mesh, body.unit);
+  PreviewOptions options = look.options(job, body.mesh, body.unit);
   options.vertex_colors = sequential_colors(values, range.low, range.high);
   options.marks.values = {range.low, range.high, title_of_column(column.name)};
   paint_sites(body.mesh, sites, options.vertex_colors);
   for (std::size_t i = 0; i < sites.size() && !look.no_marks; ++i)
     options.marks.labels.push_back({sites[i].center, std::to_string(i + 1)});
   if (!sites.empty() && look.cameras.empty() && look.views.empty()) options.views = views_from_above(sites);
-  look.write(program, render_picture(body.mesh, options, program.progress("preview")), file);
-  program.say(
+  look.write(job, render_picture(body.mesh, options, job.progress("preview")), file);
+  job.say(
       fmt::format("{}: {}; colours from {:.4g} to {:.4g}, the 1st and 99th percentile, of {:.4g} to {:.4g}",
                   file.string(), column.name, range.low, range.high, range.least, range.most));
 }

@@ -1,11 +1,11 @@
-#include "apps/gravity/gravity_parts.h"
+#include "tasks/gravity/gravity_parts.h"
 
 #include <charconv>
 #include <sstream>
 
-#include "apps/gravity/gravity_body.h"
 #include "numerics/errors.h"
 #include "recipe/recipe_json.h"
+#include "tasks/gravity/gravity_input.h"
 #include "tasks/job/density_question.h"
 
 namespace astrolith {
@@ -47,7 +47,7 @@ std::vector<std::filesystem::path> files_of_parts(const std::vector<std::string>
   return files;
 }
 
-std::vector<BodyPart> read_parts(const Program& program, const std::string& words, const std::string& unit,
+std::vector<BodyPart> read_parts(const Job& job, const std::string& words, const std::string& unit,
                                  const GravityBody& whole, double density, int resolution,
                                  ShapeRepair repair) {
   repair.all_parts = true;
@@ -55,12 +55,12 @@ std::vector<BodyPart> read_parts(const Program& program, const std::string& word
   std::istringstream all(words);
   for (std::string word; std::getline(all, word, ',');) {
     const PartWord read = parse(word);
-    question_density(program, read.density);
+    question_density(job, read.density);
     const bool recipe = is_recipe_name(read.file);
     nlohmann::ordered_json figures;  // the body's are those of the summary
     BodyPart part{
         read.file,
-        read_gravity_body(program, read.file, {recipe ? "" : unit, whole.unit}, resolution, repair, figures),
+        read_gravity_body(job, read.file, {recipe ? "" : unit, whole.unit}, resolution, repair, figures),
         read.density,
         (read.density - density) / density,
         {}};
