@@ -97,6 +97,14 @@ class FieldVisitor {
     required(name, text);
     choose(name, value, values, word_of, text);
   }
+  // A field of older recipes. A reader takes the one word that changes nothing, and fails with `message` on
+  // any other; other visitors do not see the field.
+  void retired(std::string_view name, std::string_view harmless, std::string_view message) {
+    if (!reading()) return;
+    std::string word(harmless);
+    field(name, word);
+    if (word != harmless) place_->field(name).fail(quote_text(word) + " " + std::string(message));
+  }
   // Makes the current value an array of numbers, written on one line.
   template <class... T, class... Limits>
   void row(const Column<T, Limits>&... columns) {

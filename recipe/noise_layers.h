@@ -152,17 +152,6 @@ struct LayerColor {
   Vec3d mean;  // added everywhere; the first of an exemplar's layers holds the mean colour
 };
 
-// How the lobes of a Gabor layer become heights on a surface:
-//   impulses  sparse convolution for every lobe, whose spectrum is exact to 1 %
-//   tiles     wide lobes as a random-phase tile, tiled and blended, and narrow lobes as impulses: faster, and
-//             less exact. synthesis/exemplar/phase_tile.h tells which lobes are wide.
-// A texture on a plane is made of impulses either way.
-enum class GaborEvaluation { kImpulses, kTiles };
-inline constexpr GaborEvaluation kGaborEvaluations[] = {GaborEvaluation::kImpulses, GaborEvaluation::kTiles};
-constexpr std::string_view evaluation_word(GaborEvaluation evaluation) {
-  return evaluation == GaborEvaluation::kImpulses ? "impulses" : "tiles";
-}
-
 // Bandwidth-quantised Gabor noise (thesis eq. 5.7 to 5.11) fitted to an exemplar.
 // Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
 struct GaborLayer {
@@ -182,9 +171,8 @@ struct GaborLayer {
   double pixel_size = 1.0;       // length units per exemplar pixel, > 0
   double height_rms = 0.0;       // length units, >= 0; a photo does not show it, so the user states it
   int impulses_per_kernel = 32;  // mean number of impulses under one kernel, for each bandwidth, 1 .. 1024
-  GaborEvaluation evaluation = GaborEvaluation::kImpulses;
-  double exemplar_mean = 0.0;  // mean grey value, full scale = 1
-  double exemplar_rms = 0.0;   // standard deviation of grey values after the fit's preprocessing, >= 0
+  double exemplar_mean = 0.0;    // mean grey value, full scale = 1
+  double exemplar_rms = 0.0;     // standard deviation of grey values after the fit's preprocessing, >= 0
   std::optional<LayerColor> color;
   std::vector<GaborLobe> lobes;  // at least one
 

@@ -129,12 +129,6 @@ def test_a_texture_of_a_photo_has_the_recipe_of_fit_gabor(example, program, tmp_
     assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
     of_array = astrolith.fit_texture(grey, lobes=6, seed=2)
     assert of_array.recipe.layers[0].lobes == fit.recipe.layers[0].lobes
-    program("fit_gabor", "rock.png", "-o", "program.json", "--lobes", "6", "--seed", "2", "--evaluation", "tiles")
-    fit = astrolith.fit_texture(tmp_path / "rock.png", lobes=6, seed=2, evaluation="tiles")
-    fit.recipe.write(tmp_path / "package.json")
-    assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
-    with pytest.raises(ValueError, match="^evaluation: "):
-        astrolith.fit_texture(grey, evaluation="tile")
 
 
 @pytest.mark.parametrize("channels", ["luminance", "pca"])

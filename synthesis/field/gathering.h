@@ -103,7 +103,7 @@ template <class Write>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
                                const Box& box, Write&& write) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];
-  const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[from.layer].noise);
+  const GaborSurfaceNoise& noise = *f.layers[from.layer].noise.get_if<GaborSurfaceNoise>();
   const SurfaceBand& band = f.arrays[noise.bands][from.element];
   const FloatBox at = outer_float_box(projected_block(f, box), noise.low, noise.high);
   const GaborTarget target = gabor_target(band.a, at.center, at.half);
@@ -122,7 +122,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
 inline double gabor_margin(const FieldView& f) {
   double margin = 0.0;
   for (const ImpulseList& list : f.arrays.span(f.gabor_lists)) {
-    const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[list.layer].noise);
+    const GaborSurfaceNoise& noise = *f.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][list.element];
     margin = std::max(margin, 1.01 * double{band.reach} + 2.0 * double{band.cell});
   }

@@ -212,7 +212,7 @@ std::vector<double> ImplicitField::gabor_tile_seconds() const {
   const std::span<const ImpulseList> lists = f.arrays.span(f.gabor_lists);
   std::vector<double> seconds;
   for (std::size_t i = 0; i < lists.size(); ++i) {
-    const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[lists[i].layer].noise);
+    const GaborSurfaceNoise& noise = *f.layers[lists[i].layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][lists[i].element];
     seconds.push_back(GaborTiles(band, ground, model_->gabor_caches[i]).seconds_of_tile());
   }

@@ -1,24 +1,17 @@
 #include "synthesis/field/layer_maker.h"
 
-#include <utility>
-
 namespace astrolith {
 namespace {
-
-// The maker of a layer on the surface, from what prepare() made for all sites.
-template <class Kind, class Prepared>
-LayerMaker maker_on_surface(const Kind& layer, Prepared prepared, const LayerSource& source) {
-  return [&layer, prepared = std::move(prepared), source](const LayerSite& site, ArrayStore& arrays) {
-    const auto noise = placed(layer, prepared, source, site, arrays);
-    static_assert(noise.kTraits.on_surface && noise.kTraits.lifts <= Kind::kTraits.on_layers);
-    return LayerNoise(noise);
-  };
-}
 
 template <class Kind>
 LayerMaker maker_of(const Kind& layer, const LayerSource& source, ArrayStore& arrays) {
   if constexpr (Kind::kTraits.on_surface) {
-    return maker_on_surface(layer, prepare(layer, source, arrays), source);
+    return [&layer, prepared = prepare(layer, source, arrays), source](const LayerSite& site,
+                                                                       ArrayStore& of_site) {
+      const auto noise = placed(layer, prepared, source, site, of_site);
+      static_assert(noise.kTraits.on_surface && noise.kTraits.lifts <= Kind::kTraits.on_layers);
+      return LayerNoise(noise);
+    };
   } else {
     return [&layer, source](const LayerSite& site, ArrayStore& of_site) {
       const auto noise = make_noise(layer, source.recipe.seed, source.number, site.frame, of_site);
@@ -28,11 +21,8 @@ LayerMaker maker_of(const Kind& layer, const LayerSource& source, ArrayStore& ar
   }
 }
 
-// Gabor layers become one of two kinds of noise.
-LayerMaker maker_of(const GaborLayer& layer, const LayerSource& source, ArrayStore& arrays) {
-  if (layer.evaluation == GaborEvaluation::kTiles) {
-    return maker_on_surface(layer, prepare_tiles(layer, source, arrays), source);
-  }
+// Gabor noise has nothing that all sites share.
+LayerMaker maker_of(const GaborLayer& layer, const LayerSource& source, ArrayStore&) {
   return [&layer, source](const LayerSite& site, ArrayStore& of_site) {
     return LayerNoise(
         make_noise(layer, source.recipe.seed, source.number, site.frame, site.body_side, of_site));

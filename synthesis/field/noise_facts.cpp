@@ -46,7 +46,7 @@ std::uint32_t num_impulse_lists(const LayerNoise& noise) {
     if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
       return n.kinds.count;
     } else if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
-      return gabor_impulses(n).bands.count;
+      return n.bands.count;
     } else {
       expect_no_impulses<Noise>();
       return 0;
@@ -56,10 +56,8 @@ std::uint32_t num_impulse_lists(const LayerNoise& noise) {
 
 double draws_at_a_point(const LayerNoise& noise, const ArrayView& arrays) {
   return noise.visit([&]<class Noise>(const Noise& n) {
-    if constexpr (Noise::kTraits.lists == NoiseLists::kSpots) {
+    if constexpr (Noise::kTraits.lists == NoiseLists::kSpots || Noise::kTraits.lists == NoiseLists::kGabor) {
       return draws_at_a_point(n, arrays);
-    } else if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
-      return draws_at_a_point(gabor_impulses(n), arrays);
     } else {
       expect_no_impulses<Noise>();
       return 0.0;

@@ -55,9 +55,6 @@ struct GaborSurfaceNoise {
   NoiseDetail detail;
 };
 
-// The impulses of a kind of noise that has lists of them.
-ASTROLITH_HD inline const GaborSurfaceNoise& gabor_impulses(const GaborSurfaceNoise& noise) { return noise; }
-
 // `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
 // frame holds the surface; points outside it are moved to its border. Bands whose grids reach beyond 2^20
 // cells from the frame's origin are left out, since float coordinates could not tell neighbouring cells

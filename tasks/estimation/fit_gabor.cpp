@@ -80,11 +80,6 @@ void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
          "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
       .check(above_zero())
       .default_text("");
-  app.add_option("--evaluation", o.evaluation,
-                 "how the Gabor layer's lobes become heights on a surface: impulses (exact) or tiles (wide "
-                 "lobes as random-phase tiles, many times faster); the summary's tiles_distance says what "
-                 "tiles cost")
-      .check(one_of({"impulses", "tiles"}));
   app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
       .check(one_of({"m", "km"}));
   app.add_option(
@@ -159,12 +154,8 @@ void predict_memory(Job& job, const PhotoFitArguments& o, const PhotoFitOptions&
 }
 
 PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
-  return {o.in_memory ? "" : std::filesystem::path(o.image).stem().string(),
-          o.mm_per_px,
-          o.unit,
-          o.height_rms,
-          job.seed,
-          o.evaluation == "tiles" ? GaborEvaluation::kTiles : GaborEvaluation::kImpulses};
+  return {o.in_memory ? "" : std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit,
+          o.height_rms, job.seed};
 }
 
 void set_provenance(const Job& job, const PhotoFitArguments& o, Recipe& recipe) {
@@ -189,8 +180,7 @@ PhotoFitOptions photo_options(const Job& job, const PhotoFitArguments& o) {
 // Options that are about lobes say nothing of the models without any.
 void check_model(const Job& job, const PhotoFitArguments& o) {
   if (o.model != "phase" && o.model != "exemplar") return;
-  for (const char* name :
-       {"--lobes", "--penalty", "--gap", "--solver", "--evaluation", "--spectrum-estimate"}) {
+  for (const char* name : {"--lobes", "--penalty", "--gap", "--solver", "--spectrum-estimate"}) {
     if (job.options.option(name).count() > 0) {
       throw InputError(
           fmt::format("{}: is about lobes, which --model {} has none of; leave it out", name, o.model));

@@ -25,7 +25,6 @@ struct PhotoFitArguments {
   std::string unit = "m";
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";
-  std::string evaluation = "impulses";
   double mm_per_px = 0.0;      // 0 = no physical scale
   double height_rms = -1.0;    // negative = the exemplar's own
   double max_memory_gb = 0.0;  // 0 = three quarters of the machine's

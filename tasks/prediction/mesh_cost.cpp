@@ -78,7 +78,7 @@ double draws_of_tile(const SurfaceBand& band, const MeshEstimate& mesh, double b
 }
 
 const SurfaceBand& band_of(const FieldView& field, const ImpulseList& list) {
-  const GaborSurfaceNoise& noise = *gabor_impulses_of(field.layers[list.layer].noise);
+  const GaborSurfaceNoise& noise = *field.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
   return field.arrays[noise.bands][list.element];
 }
 

@@ -32,7 +32,7 @@ inline const std::string kCompleteRecipe = R"({
   "layers": [
     {"type": "simplex", "name": "grit", "amplitude": 0.02, "frequency": 3, "octaves": 6, "gain": 0.5,
      "lacunarity": 1.95, "scale": [1, 1, 2], "bias": [0.5, 0, 0], "weight": 1, "gradient_modulation": 0.25},
-    {"type": "gabor", "name": "rock", "pixel_size": 0.001, "height_rms": 0.002, "impulses_per_kernel": 32, "evaluation": "tiles",
+    {"type": "gabor", "name": "rock", "pixel_size": 0.001, "height_rms": 0.002, "impulses_per_kernel": 32,
      "exemplar_mean": 0.4, "exemplar_rms": 0.1,
      "color": {"axis": [0.6, 0.8, 0], "mean": [0.5, 0.25, 0.1]}, "lobes": [[4, 0.125, -0.25, 0.75], [12, 0.5, 0, 0.25]]},
     {"type": "worley", "amplitude": 0.03, "distance": "f2-f1", "warp": {"amplitude": 0.5, "frequency": 4}},
@@ -274,7 +274,8 @@ inline std::vector<Spoiled> spoiled_recipes() {
       {R"(1.95)", R"(1)", R"(layers[0].lacunarity: must be above 1 and at most 16, is 1)"},
       {R"("pixel_size": 0.001)", R"("pixel_size": 0)", R"(layers[1].pixel_size: must be above 0 (from)"},
       {R"("height_rms": 0.002)", R"("height_rms": -1)", R"(layers[1].height_rms: must be from 0)"},
-      {R"("evaluation": "tiles")", R"("evaluation": "tile")", R"(layers[1].evaluation: must be "impulses")"},
+      {R"("impulses_per_kernel": 32)", R"("impulses_per_kernel": 32, "evaluation": "tiles")",
+       R"(layers[1].evaluation: "tiles" is gone; leave it out)"},
       {R"("impulses_per_kernel": 32)", R"("impulses_per_kernel": 0)",
        R"(layers[1].impulses_per_kernel: must be an integer from 1 to 1024)"},
       {R"("exemplar_rms": 0.1)", R"("exemplar_rms": -0.1)", R"(layers[1].exemplar_rms: must be from 0)"},

@@ -41,9 +41,9 @@ TEST(NoiseFacts, ImpulsesHaveLists) {
   SpotNoise spots;
   spots.kinds.count = 3;
   EXPECT_EQ(num_impulse_lists(LayerNoise(spots)), 3u);
-  TiledGaborNoise tiled;
-  tiled.narrow.bands.count = 2;
-  EXPECT_EQ(num_impulse_lists(LayerNoise(tiled)), 2u);
+  GaborSurfaceNoise gabor;
+  gabor.bands.count = 2;
+  EXPECT_EQ(num_impulse_lists(LayerNoise(gabor)), 2u);
   EXPECT_EQ(draws_at_a_point(LayerNoise(PhasorNoise{}), {}), 0.0);
 }
 
