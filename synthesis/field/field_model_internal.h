@@ -52,6 +52,7 @@ struct FieldModel {
   // Other landforms of a patch are evaluated in the body's frame.
   std::vector<std::optional<PatchCraters>> patch_craters;    // by the number of the list of craters
   std::vector<std::optional<BoulderKernel>> patch_boulders;  // by the number of the boulder
+  bool has_patch_layers = false;                             // whether one of these is there
 
   std::vector<LayerLeftOut> left_out;
 

@@ -185,7 +185,7 @@ bool ImplicitField::has_local_form() const { return model_->body.plain(); }
 
 std::span<const LayerLeftOut> ImplicitField::left_out() const { return model_->left_out; }
 
-bool ImplicitField::has_patch_layers() const { return !model_->patch_noises.empty(); }
+bool ImplicitField::has_patch_layers() const { return model_->has_patch_layers; }
 
 double ImplicitField::height_bound() const { return model_->height_bound; }
 

@@ -29,7 +29,9 @@ Box box_about(const Vec3d& center, double reach) {
 
 LandformInstances::LandformInstances(const ImplicitField& field, const Recipe& recipe,
                                      const std::optional<PatchCube>& patch, double cell)
-    : bare_(bare_body(recipe)), listed_(listed_landforms(field, patch)) {
+    : bare_(bare_body(recipe)),
+      origin_(patch ? patch->center : Vec3d{}),
+      listed_(listed_landforms(field, patch)) {
   std::vector<Box> rock_boxes, rim_boxes;
   for (std::size_t row = 0; row < listed_.size(); ++row) {
     const ListedLandform& listed = listed_[row];
@@ -40,7 +42,9 @@ LandformInstances::LandformInstances(const ImplicitField& field, const Recipe& r
           box_about(listed.crater->position, 0.5 * listed.crater->diameter + field.height_bound()));
     } else {
       const auto& layer = std::get<BoulderLayer>(recipe.layers[static_cast<std::size_t>(listed.layer)]);
-      const FieldBoulder rock = field_boulders(layer, {listed.boulder, 1}).front();
+      PlacedBoulder moved = *listed.boulder;
+      moved.center -= origin_;
+      const FieldBoulder rock = field_boulders(layer, {&moved, 1}).front();
       rocks_.push_back({static_cast<std::int32_t>(row), rock.kernel});
       rock_boxes.push_back(rock.box);
     }
@@ -55,10 +59,11 @@ std::int32_t LandformInstances::row_at(const Vec3d& p, float ground) const {
 }
 
 std::int32_t LandformInstances::boulder_at(const Vec3d& p, float ground) const {
-  const Vec3f at = to_float(p);
+  const Vec3d local = p - origin_;
+  const Vec3f at = to_float(local);
   std::int32_t row = -1;
   float outermost = ground;
-  for (const std::uint32_t k : rock_tree_.touching({p, p})) {
+  for (const std::uint32_t k : rock_tree_.touching({local, local})) {
     const Rock& rock = rocks_[k];
     const float inside = boulder_distance(rock.kernel, boulder_coordinates(rock.kernel, at.x, at.y, at.z));
     if (inside > outermost) {

@@ -40,6 +40,7 @@ class LandformInstances {
   std::int32_t crater_at(const Vec3d& p) const;
 
   BareBody bare_;
+  Vec3d origin_;  // of the coordinates of rocks
   std::vector<ListedLandform> listed_;
   std::vector<Rock> rocks_;         // boulders
   std::vector<std::int32_t> rims_;  // the rows of the craters

@@ -5,6 +5,8 @@
 
 #include "numerics/parallel_for.h"
 #include "synthesis/field/layer_joins_internal.h"
+#include "synthesis/field/layer_maker.h"
+#include "synthesis/field/noise_facts.h"
 
 namespace astrolith {
 namespace {
@@ -30,18 +32,9 @@ double reach_by_cells(const BoulderLayer& layer) {
 }
 double reach_by_cells(const CraterLayer&) { return 0.0; }
 
-// Takes the landforms out of a layer that height_reach() does without. Returns a bound of what they add to
-// elevations, length units.
-double take_out(CraterLayer& layer) {
-  if (!is_drawn_by_cells(layer)) return 0.0;
-  const double rise = crater_rise(layer);
-  layer.population.reset();
-  return rise;
-}
-double take_out(BoulderLayer& layer) {
-  layer = {};
-  return 0.0;
-}
+// A bound of what the landforms of a layer add to elevations, length units. Boulders lie on elevations.
+double rise_of(const CraterLayer& layer) { return crater_rise(layer); }
+double rise_of(const BoulderLayer&) { return 0.0; }
 
 }  // namespace
 
@@ -87,6 +80,7 @@ void LandformLayers::add_patch_craters(const CraterLayer& layer, const CraterRel
   CraterRelief moved = relief;
   moved.craters = model.arrays.add(craters);
   model.patch_craters.back() = PatchCraters{moved, crater_tree(craters)};
+  model.has_patch_layers = true;
 }
 
 void LandformLayers::add_boulders(const Progress& progress) {
@@ -117,6 +111,7 @@ void LandformLayers::add_patch_boulders(const BoulderLayer& layer, std::vector<P
   if (!is_drawn_by_cells(layer) || !model.patch) {
     return model.patch_boulders.resize(model.patch_boulders.size() + boulders.size());
   }
+  model.has_patch_layers = true;
   for (PlacedBoulder& boulder : boulders) boulder.center -= model.patch->center;
   for (const FieldBoulder& boulder : field_boulders(layer, boulders)) {
     model.patch_boulders.emplace_back(boulder.kernel);
@@ -169,27 +164,26 @@ double LandformLayers::widest_boulder() const {
   return widest;
 }
 
-// A bound of all elevations, those of later layers too; length units. It is found without the populations
-// that are drawn by cells, whose craters rise by a bound of their own.
+// A bound of all elevations, those of this layer and of later ones too; length units.
 double LandformLayers::height_reach() {
-  if (height_reach_) return *height_reach_;
-  Recipe others = stack_.recipe;
-  double rise = 0.0;
-  for (Layer& layer : others.layers) {
-    std::visit(
-        [&]<class Kind>(Kind& l) {
-          if constexpr (!Kind::kTraits.is_noise) rise += take_out(l);
-        },
-        layer);
+  const NoiseFrame whole(Box{{}, {}});  // a domain without extent leaves out no size of a layer
+  double bound = stack_.model.height_bound;
+  for (int i = stack_.index; i < static_cast<int>(stack_.recipe.layers.size()); ++i) {
+    const Layer& layer = stack_.recipe.layers[static_cast<std::size_t>(i)];
+    const auto add = [&]<class Kind>(const Kind& kind) {
+      if constexpr (!Kind::kTraits.is_noise) {
+        bound += rise_of(kind);
+      } else if (has_height(layer)) {
+        ArrayStore discarded;
+        const LayerSource source{stack_.recipe, layer_number(kind.seed, i), stack_.place_of(i)};
+        const LayerNoise noise =
+            layer_maker(layer, source, discarded)(stack_.site(whole, stack_.model.layers.size()), discarded);
+        bound = elevation_bound(kind.use.combination, bound, height_bound_of(noise));
+      }
+    };
+    std::visit(add, layer);
   }
-  FieldModel model;
-  model.patch = stack_.model.patch;
-  model.body = make_body(*others.body, others.seed, model.arrays);
-  model.update();
-  model.metaballs = all_metaballs(model.body, model.tables.arrays);
-  add_layers(others, stack_.name, model);
-  height_reach_ = model.height_bound + rise;
-  return *height_reach_;
+  return bound;
 }
 
 // The weight of the places of a population; empty where it is 1 everywhere. It reads the model as it is

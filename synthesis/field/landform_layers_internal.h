@@ -45,8 +45,7 @@ class LandformLayers {
 
   StackState& stack_;
   std::vector<BoulderLayerAt> boulder_layers_;
-  std::optional<BareSurface> bare_;     // made for the first layer that needs it
-  std::optional<double> height_reach_;  // set by height_reach()
+  std::optional<BareSurface> bare_;  // made for the first layer that needs it
 };
 
 }  // namespace astrolith

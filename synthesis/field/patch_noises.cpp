@@ -44,6 +44,7 @@ void PatchNoises::add(const PatchLayer& layer, double warp) {
   stack_.report_left_out(layer.index, detail_of(noise));
   model.layers[layer.layer].in_patch = static_cast<std::int32_t>(model.patch_noises.size());
   model.patch_noises.push_back(noise);
+  model.has_patch_layers = true;
   model.patch_caches.emplace_back();
   if (traits_of(noise).lists == NoiseLists::kGabor) {
     model.patch_caches.back().resize(num_impulse_lists(noise));

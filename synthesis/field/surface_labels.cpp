@@ -30,8 +30,8 @@ SurfaceLabels::SurfaceLabels(const Recipe& recipe, const ImplicitField& field,
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) {
     legend_.push_back(meaning(i + 1, recipe.layers[i]));
   }
-  const double largest =
-      in_patch_ ? std::max(patch->side, field.height_bound()) : largest_coordinate(field.bounds());
+  const double largest = in_patch_ && field.has_local_form() ? std::max(patch->side, field.height_bound())
+                                                             : largest_coordinate(field.bounds());
   rounding_ = static_cast<float>(kRounding * largest);
 }
 

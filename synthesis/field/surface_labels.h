@@ -25,8 +25,8 @@ class SurfaceLabels {
   SurfaceLabels(const Recipe& recipe, const ImplicitField& field, const std::optional<PatchCube>& patch = {});
 
   // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. The origin is the
-  // centre of the patch, if there is one. Elevations are
-  // above the bare body, in length units. Both spans have one size.
+  // centre of the patch, if there is one. Elevations are above the bare body, in length units. Both spans
+  // have one size.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels) const;
   // Also sets ground[i] to F of the body without its boulders at the point, length units.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,

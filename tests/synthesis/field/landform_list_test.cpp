@@ -77,6 +77,25 @@ TEST(LandformList, WhatTheMeshDoesNotShowIsNotResolved) {
   EXPECT_EQ(LandformInstances(field, recipe, {}, 2.01).row_at(floor, 0.0f), -1);
 }
 
+// A boulder of a patch is looked for in the coordinates of the patch: its top is its own, to the digits of
+// the size of the boulder, where float coordinates of the body are ten times as coarse.
+TEST(LandformList, FineBouldersOfAPatchAreFound) {
+  Recipe recipe = testing::sphere_recipe(1e4);
+  BoulderLayer boulders;
+  boulders.boulders.resize(1);
+  boulders.boulders[0].place = {{1, 2, 3}, true};
+  boulders.boulders[0].axes = {1e-4, 1e-4, 1e-4};
+  boulders.roughness = 0.0;
+  recipe.layers = {boulders};
+  const PatchCube cube{1e4 * normalized(Vec3d{1, 2, 3}), 1e-3};
+  const ImplicitField field(recipe, "recipe", cube);
+  const LandformInstances landforms(field, recipe, cube, 1e-6);
+  const PlacedBoulder& rock = field.boulders()[0].boulders[0];
+  const Vec3d up = normalized(rock.center);
+  EXPECT_EQ(landforms.row_at(rock.center + 0.49e-4 * up, 0.0f), 0);
+  EXPECT_EQ(landforms.row_at(rock.center + 0.51e-4 * up, 0.0f), -1);
+}
+
 TEST(LandformList, APatchHasItsOwnInItsFrame) {
   const Recipe recipe = cratered_ball();
   const PatchCube cube{{0, 0, 10}, 3};
