@@ -8,7 +8,7 @@
 
 #include "cuda/backend_lists.h"
 #include "cuda/field_on_backend.h"
-#include "cuda/pair_tiles.h"
+#include "cuda/pair_groups.h"
 #include "synthesis/body/body_at_point.h"
 
 namespace astrolith {

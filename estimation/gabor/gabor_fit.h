@@ -30,7 +30,7 @@ struct GaborFitOptions {
   int max_lobes = 80;           // >= 1
   double penalty_ratio = 0.03;  // penalty over the largest useful one, (0, 1)
   double relative_gap = 1e-4;   // certified at the end of the pursuit
-  int largest_side = 1024;      // larger exemplars are averaged over tiles of this side
+  int largest_side = 1024;      // larger exemplars are averaged over segments of this side
 };
 
 struct GaborFit {

@@ -36,9 +36,9 @@ def render(
     Parameters
     ----------
     views
-        Directions from the body to the viewer, one tile each.
+        Directions from the body to the viewer, one panel each.
     cameras
-        Cameras in the words of ``synth --camera``, such as ``"lat 20 lon 45 fov 30 radii 4"``, one tile each.
+        Cameras in the words of ``synth --camera``, such as ``"lat 20 lon 45 fov 30 radii 4"``, one panel each.
         Without views and cameras: +x, +y, +z and obliquely, a patch from above.
     sun
         The direction towards the sun in the axes of each view: right, up, to the viewer.

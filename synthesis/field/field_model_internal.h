@@ -9,7 +9,7 @@
 #include "numerics/box_tree.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/gabor/gabor_bricks.h"
 
 namespace astrolith {
 
@@ -33,10 +33,10 @@ struct FieldModel {
   FieldView tables{};  // a view of the members above, made by update()
 
   // Search structures of the CPU.
-  ReachingMetaballs metaballs;               // all metaballs of the body
-  std::vector<BoxTree> crater_trees;         // one tree for each list of craters
-  BoxTree boulder_tree;                      // the boxes that boulders reach
-  std::vector<GaborTileCache> gabor_caches;  // one cache for each list of Gabor impulses
+  ReachingMetaballs metaballs;                // all metaballs of the body
+  std::vector<BoxTree> crater_trees;          // one tree for each list of craters
+  BoxTree boulder_tree;                       // the boxes that boulders reach
+  std::vector<GaborBrickCache> gabor_caches;  // one cache for each list of Gabor impulses
 
   // Landforms as they lie on the body, for ImplicitField::craters() and boulders().
   std::vector<LayerCraters> placed_craters;
@@ -46,7 +46,7 @@ struct FieldModel {
   // their impulses. The body's warp is there if any layer is. The bounds of layers hold in both frames.
   std::optional<PatchCube> patch;
   std::vector<LayerNoise> patch_noises;
-  std::vector<std::vector<GaborTileCache>> patch_caches;  // by noise and band
+  std::vector<std::vector<GaborBrickCache>> patch_caches;  // by noise and band
   std::optional<CoordinateWarp> patch_warp;
   // Landforms that are drawn by cells are small, so that their places need the digits of local coordinates.
   // Other landforms of a patch are evaluated in the body's frame.

@@ -202,11 +202,11 @@ FieldBlock ImplicitField::gather(const Box& box) const {
 
 std::vector<GaborCacheUse> ImplicitField::gabor_caches() const {
   std::vector<GaborCacheUse> uses;
-  for (const GaborTileCache& cache : model_->gabor_caches) uses.push_back(use_of(cache));
+  for (const GaborBrickCache& cache : model_->gabor_caches) uses.push_back(use_of(cache));
   return uses;
 }
 
-std::vector<double> ImplicitField::gabor_tile_seconds() const {
+std::vector<double> ImplicitField::gabor_brick_seconds() const {
   const FieldView& f = model_->tables;
   const BodyGround ground{model_->body, f.arrays, model_->metaballs.lists()};
   const std::span<const ImpulseList> lists = f.arrays.span(f.gabor_lists);
@@ -214,7 +214,7 @@ std::vector<double> ImplicitField::gabor_tile_seconds() const {
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const GaborSurfaceNoise& noise = *f.layers[lists[i].layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][lists[i].element];
-    seconds.push_back(GaborTiles(band, ground, model_->gabor_caches[i]).seconds_of_tile());
+    seconds.push_back(GaborBricks(band, ground, model_->gabor_caches[i]).seconds_of_brick());
   }
   return seconds;
 }

@@ -31,7 +31,7 @@
 
 namespace astrolith {
 
-struct GaborCacheUse;  // synthesis/gabor/gabor_tiles.h
+struct GaborCacheUse;  // synthesis/gabor/gabor_bricks.h
 struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
 struct LayerPaint;     // synthesis/field/layer_paint_internal.h
@@ -182,8 +182,8 @@ class ImplicitField {
 
   // What the cache of each list of Gabor impulses holds; tables().gabor_lists says which bands these are.
   std::vector<GaborCacheUse> gabor_caches() const;
-  // Seconds of one processor to draw a tile of each list, from tiles that its cache holds.
-  std::vector<double> gabor_tile_seconds() const;
+  // Seconds of one processor to draw a brick of each list, from bricks that its cache holds.
+  std::vector<double> gabor_brick_seconds() const;
 
   // The place in the recipe of each layer of the tables, which lack boulders and layers that act on nothing.
   std::span<const int> recipe_layers() const;

@@ -76,7 +76,7 @@ double finest_length(const GaborBand& band, double pixel_size) {
 }
 
 GaborSurfacePoints add_bands(const GaborSurfaceNoise& noise, const BodyGround& ground,
-                             const GaborTileCache* caches, int n, const float* x, const float* y,
+                             const GaborBrickCache* caches, int n, const float* x, const float* y,
                              const float* z, bool with_slopes) {
   const PointsInDomain p(noise.low, noise.high, n, x, y, z);
   GaborSurfacePoints points(n, p.x(), p.y(), p.z(), with_slopes);
@@ -131,14 +131,14 @@ double draws_at_a_point(const GaborSurfaceNoise& noise, const ArrayView& arrays)
   return draws;
 }
 
-void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
+void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborBrickCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height) {
   add_bands(noise, ground, caches, n, x, y, z, false).store_heights(height);
   for (int i = 0; i < n; ++i) height[i] = math::clamp(height[i], -noise.clip, noise.clip);
 }
 
 void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const BodyGround& ground,
-                                  const GaborTileCache* caches, int n, const float* x, const float* y,
+                                  const GaborBrickCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height) {
   const auto count = static_cast<std::size_t>(n / 4);
   const auto center_of = [](const float* c) { return tetrahedron_center(c[0], c[1], c[2], c[3]); };

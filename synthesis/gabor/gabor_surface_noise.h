@@ -20,7 +20,7 @@
 
 namespace astrolith {
 
-struct GaborTileCache;  // synthesis/gabor/gabor_tiles.h
+struct GaborBrickCache;  // synthesis/gabor/gabor_bricks.h
 
 // The noise and its slope at a point, with one more impulse added.
 ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float disc_scale, float amplitude,
@@ -113,14 +113,14 @@ ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const A
 
 // Writes height[i] = n(p_i) at points of the bare surface. The loop is vectorised and gives the same bits as
 // height_at. `caches` has one element for each band.
-void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
+void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborBrickCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height);
 
 // Writes the heights at the corners of small tetrahedra, to first order about their centres. Points 4 t to 4
 // t + 3 are the corners of tetrahedron t. Differences of these heights give gradients; a tetrahedron costs
 // about as much as one point.
 void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const BodyGround& ground,
-                                  const GaborTileCache* caches, int n, const float* x, const float* y,
+                                  const GaborBrickCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height);
 
 // An interval that holds n(p) for every point, length units. It does not depend on the box.

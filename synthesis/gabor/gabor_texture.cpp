@@ -2,27 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "numerics/portable_angles.h"
 #include "synthesis/gabor/gabor_bands.h"
 #include "synthesis/gabor/gabor_kernel.h"
-#include "synthesis/gabor/gabor_plane_tile.h"
-#include "synthesis/gabor/gabor_tiling.h"
+#include "synthesis/gabor/gabor_plane_square.h"
 
 namespace astrolith {
 namespace {
 
+// c(n, f) of torus_variance(). `frequency` is f / a, and `period` is n in units of 1/a.
+double periodic_sum(double period, double frequency) {
+  double sum = 1.0;
+  for (int j = 1; j * period < 2.0 * static_cast<double>(kGaborReach); ++j) {
+    const double tau = j * period;
+    sum += 2.0 * gabor_profile_correlation(tau) * portable::cos(2.0 * std::numbers::pi * frequency * tau);
+  }
+  return sum;
+}
+
 // The factor that gives the periodic noise the variance of the endless noise.
-double tiling_gain(const GaborLayer& layer, const TextureOptions& options) {
+double torus_gain(const GaborLayer& layer, const TextureOptions& options) {
   if (options.period_width == 0 && options.period_height == 0) return 1.0;
   // A period far below the size of a kernel would need thousands of copies of the kernel at each pixel.
   constexpr double kCopies = 16.0;
   double largest = 0.0;
   for (const GaborBand& band : gabor_bands(layer)) largest = std::max(largest, 2.0 * kGaborReach / band.a);
   const bool tiny = kCopies * std::min(options.period_width, options.period_height) < largest;
-  const double variance = tiny ? 0.0 : tiled_variance(layer, options.period_width, options.period_height);
+  const double variance = tiny ? 0.0 : torus_variance(layer, options.period_width, options.period_height);
   if (!(variance >= 0.5 && variance <= 2.0)) {
     throw InputError("texture size " + std::to_string(options.period_width) + "x" +
                      std::to_string(options.period_height) +
@@ -54,7 +65,7 @@ int count_impulses(const GaborLayer& layer, const PlaneBand& band) {
 }
 
 std::vector<PlaneBand> plane_bands(const GaborLayer& layer, const TextureOptions& options) {
-  const double gain = tiling_gain(layer, options);
+  const double gain = torus_gain(layer, options);
   std::vector<PlaneBand> bands;
   for (GaborBand& band : gabor_bands(layer)) {
     PlaneBand plane{std::move(band), 0, 0.0, 0.0, 0, 0, 0.0, 0, 0.0f};
@@ -73,17 +84,47 @@ std::vector<PlaneBand> plane_bands(const GaborLayer& layer, const TextureOptions
   return bands;
 }
 
-void store(const TextureTile& tile, int width, int height, float clip, std::vector<float>& texture) {
-  const int columns = std::min(kTextureTile, width - tile.x), rows = std::min(kTextureTile, height - tile.y);
+void store(const TextureSquare& square, int width, int height, float clip, std::vector<float>& texture) {
+  const int columns = std::min(kTextureSquare, width - square.x),
+            rows = std::min(kTextureSquare, height - square.y);
   for (int y = 0; y < rows; ++y) {
-    const auto* row = &tile.height[static_cast<std::size_t>(y * kTextureTile)];
-    float* out = &texture[static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(width) +
-                          static_cast<std::size_t>(tile.x)];
+    const auto* row = &square.height[static_cast<std::size_t>(y * kTextureSquare)];
+    float* out = &texture[static_cast<std::size_t>(square.y + y) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(square.x)];
     for (int x = 0; x < columns; ++x) out[x] = math::clamp(row[x], -clip, clip);
   }
 }
 
 }  // namespace
+
+double gabor_profile_correlation(double tau) {
+  constexpr int kSteps = 256;
+  const double reach = static_cast<double>(kGaborReach);
+  const double begin = tau - reach;  // both profiles are nonzero between begin and reach
+  if (!(begin < reach)) return 0.0;
+  const double step = (reach - begin) / kSteps;
+  double sum = 0.0;  // trapezoidal rule; values and slopes are 0 at both ends
+  for (int i = 1; i < kSteps; ++i) {
+    const double u = begin + i * step;
+    sum += static_cast<double>(gabor_profile(static_cast<float>(u))) *
+           static_cast<double>(gabor_profile(static_cast<float>(u - tau)));
+  }
+  return sum * step / kGaborProfileEnergy;
+}
+
+double torus_variance(const GaborLayer& layer, int width, int height) {
+  double total = 0.0;
+  for (const GaborBand& band : gabor_bands(layer)) {
+    double before = 0.0;
+    for (const GaborBand::Lobe& lobe : band.lobes) {
+      const double share = band.variance_share * (static_cast<double>(lobe.cumulative) - before);
+      before = static_cast<double>(lobe.cumulative);
+      total += share * periodic_sum(band.a * width, static_cast<double>(lobe.frequency_x)) *
+               periodic_sum(band.a * height, static_cast<double>(lobe.frequency_y));
+    }
+  }
+  return total;
+}
 
 std::vector<float> synthesize_texture(const GaborLayer& layer, int width, int height,
                                       const TextureOptions& options, const Progress& progress) {
@@ -94,13 +135,13 @@ std::vector<float> synthesize_texture(const GaborLayer& layer, int width, int he
   const std::vector<PlaneBand> bands = plane_bands(layer, options);
   const float clip = static_cast<float>(kGaborClip * layer.height_rms);
   std::vector<float> texture(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const int tiles_x = (width - 1) / kTextureTile + 1, tiles_y = (height - 1) / kTextureTile + 1;
-  for (int ty = 0; ty < tiles_y; ++ty) {
-    if (!report(progress, static_cast<double>(ty) / tiles_y, "texture")) return texture;
-    parallel_for(0, tiles_x, [&](std::int64_t tx) {
-      TextureTile tile{static_cast<int>(tx) * kTextureTile, ty * kTextureTile, {}};
-      for (const PlaneBand& band : bands) add_band(band, tile);
-      store(tile, width, height, clip, texture);
+  const int squares_x = (width - 1) / kTextureSquare + 1, squares_y = (height - 1) / kTextureSquare + 1;
+  for (int ty = 0; ty < squares_y; ++ty) {
+    if (!report(progress, static_cast<double>(ty) / squares_y, "texture")) return texture;
+    parallel_for(0, squares_x, [&](std::int64_t tx) {
+      TextureSquare square{static_cast<int>(tx) * kTextureSquare, ty * kTextureSquare, {}};
+      for (const PlaneBand& band : bands) add_band(band, square);
+      store(square, width, height, clip, texture);
     });
   }
   report(progress, 1.0, "texture");

@@ -90,9 +90,9 @@ class MarksPainter {
     draw_text(image_, left, top, dot_, words, {255, 255, 255});
   }
 
-  // The axes of the mesh as a view sees them, in the lower left corner of its tile.
-  void axes(const ViewCamera& camera, double left, double bottom, double tile_height) {
-    const double arm = std::max(8.0 * dot_, 0.045 * tile_height), reach = arm + 9.0 * dot_;
+  // The axes of the mesh as a view sees them, in the lower left corner of its panel.
+  void axes(const ViewCamera& camera, double left, double bottom, double panel_height) {
+    const double arm = std::max(8.0 * dot_, 0.045 * panel_height), reach = arm + 9.0 * dot_;
     const int x = static_cast<int>(left + reach), y = static_cast<int>(bottom - reach);
     if (!is_empty(x, y, static_cast<int>(reach))) return;
     constexpr std::array<PictureInk, 3> kInks{{{235, 90, 80}, {95, 190, 95}, {100, 140, 245}}};
@@ -187,7 +187,7 @@ void draw_marks(RgbaImage16& image, const PreviewOptions& options, const Preview
     }
     if (!marks.axes) continue;
     const auto [left, bottom] = rays.lower_left(view);
-    painter.axes(camera, left, bottom, rays.tile_height());
+    painter.axes(camera, left, bottom, rays.panel_height());
   }
   if (has_length_bar(options)) painter.length_bar(rays.pixel() / scene.scale(), *marks.length_unit);
 }

@@ -228,12 +228,12 @@ void say_lobes(const PhotoFit& photo, const PhotoFitArguments& o, const Job& job
   const double held = photo.variance_in_spectrum();
   if (held < kMostVariance) {
     const GreyImage& image = photo.channels.front().exemplar;
-    const bool tiled = std::max(image.width, image.height) > o.photo.fit.largest_side;
+    const bool cut = std::max(image.width, image.height) > o.photo.fit.largest_side;
     job.say(fmt::format(
         "note: {:.0f} % of the photo's variance lies in features wider than {}, which the noise lacks{}",
         100.0 * (1.0 - held),
-        tiled ? fmt::format("{} pixels", o.photo.fit.largest_side) : "it, or in light from one side",
-        tiled ? "; scale the photo down to that size to keep them" : ""));
+        cut ? fmt::format("{} pixels", o.photo.fit.largest_side) : "it, or in light from one side",
+        cut ? "; scale the photo down to that size to keep them" : ""));
   }
   job.say(photo.gaussianity().value().sentence);
 }

@@ -22,7 +22,7 @@
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/surface_labels.h"
 #include "synthesis/finish/erosion.h"
-#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/gabor/gabor_bricks.h"
 #include "synthesis/mesh/manifold_check.h"
 #include "tasks/prediction/mesh_estimate.h"
 
@@ -36,14 +36,14 @@ constexpr double kMeanProjection = 1.5;
 // Tables of an erosion for each triangle: verticals, areas, heights and edges.
 constexpr double kBytesOfSlides = 90.0;
 
-// The tiles of a band that touch a layer of `volume` along the surface, or lie within reach of it.
-double tiles_along_surface(const SurfaceBand& band, const MeshEstimate& mesh, double volume,
-                           const Vec3d& extent) {
-  const double tile = double{band.cell} * kTileCells;
+// The bricks of a band that touch a layer of `volume` along the surface, or lie within reach of it.
+double bricks_along_surface(const SurfaceBand& band, const MeshEstimate& mesh, double volume,
+                            const Vec3d& extent) {
+  const double brick = double{band.cell} * kBrickCells;
   const double area = mesh.vertices * mesh.step * mesh.step / kMeanProjection;
-  const double whole = volume + kMeanProjection * area * (tile + 2.0 * double{band.reach});
-  const auto along = [&](double length) { return (length + 2.0 * double{band.reach}) / tile + 1.0; };
-  return std::min(whole / (tile * tile * tile), along(extent.x) * along(extent.y) * along(extent.z));
+  const double whole = volume + kMeanProjection * area * (brick + 2.0 * double{band.reach});
+  const auto along = [&](double length) { return (length + 2.0 * double{band.reach}) / brick + 1.0; };
+  return std::min(whole / (brick * brick * brick), along(extent.x) * along(extent.y) * along(extent.z));
 }
 
 // The layer in which a mesh evaluates impulses. Points of a plain body are projected onto it, so that half a
@@ -55,24 +55,26 @@ double volume_of_blocks(const ImplicitField& field, const MeshEstimate& mesh) {
   return mesh.blocks * portable::whole_power(block, 3);
 }
 
-// The tiles of a band that a mesh draws, from the tiles that its sample has drawn. A block that is looked at
-// draws all tiles that reach it, so that a tile which k blocks need has been drawn with the probability
+// The bricks of a band that a mesh draws, from the bricks that its sample has drawn. A block that is looked
+// at draws all bricks that reach it, so that a brick which k blocks need has been drawn with the probability
 // 1 - exp(-k looked / all). Blocks in which the noise does not count, as under a mask, draw none and count
 // alike.
-double tiles_of_mesh(const SurfaceBand& band, const ImplicitField& field, const MeshEstimate& mesh,
-                     double drawn) {
+double bricks_of_mesh(const SurfaceBand& band, const ImplicitField& field, const MeshEstimate& mesh,
+                      double drawn) {
   const double block = kBlockCells * mesh.step;
-  const double wide = 1.0 + (double{band.cell} * kTileCells + 2.0 * double{band.reach}) / block;
+  const double wide = 1.0 + (double{band.cell} * kBrickCells + 2.0 * double{band.reach}) / block;
   const double looked = mesh.sampled_windows / std::max(mesh.blocks, mesh.sampled_windows);
   const double found = 1.0 - portable::exp(-wide * wide * looked);
-  const double most = tiles_along_surface(band, mesh, volume_of_blocks(field, mesh), field.bounds().extent());
+  const double most =
+      bricks_along_surface(band, mesh, volume_of_blocks(field, mesh), field.bounds().extent());
   return std::max(std::min(drawn / found, most), drawn);
 }
 
-// How often a tile is drawn. Tiles that find no room are drawn anew in each layer of blocks that needs them.
-double draws_of_tile(const SurfaceBand& band, const MeshEstimate& mesh, double bytes, double height) {
+// How often a brick is drawn. Bricks that find no room are drawn anew in each layer of blocks that needs
+// them.
+double draws_of_brick(const SurfaceBand& band, const MeshEstimate& mesh, double bytes, double height) {
   const double block = kBlockCells * mesh.step;
-  const double wide = double{band.cell} * kTileCells + 2.0 * double{band.reach} + block;
+  const double wide = double{band.cell} * kBrickCells + 2.0 * double{band.reach} + block;
   const double of_two_layers = bytes * std::min((wide + 2.0 * block) / height, 1.0);
   return of_two_layers <= 0.9 * kMostCacheBytes ? 1.0 : std::max(wide / block, 1.0);
 }
@@ -82,7 +84,7 @@ const SurfaceBand& band_of(const FieldView& field, const ImpulseList& list) {
   return field.arrays[noise.bands][list.element];
 }
 
-// The memory of the cache of one list whose tiles all together take so many bytes.
+// The memory of the cache of one list whose bricks all together take so many bytes.
 double kept_bytes(double bytes, int threads) {
   // The memory of heaps over what they hold. Two or more threads have heaps of their own.
   const double gaps = threads > 1 ? 1.25 : 1.1;
@@ -170,19 +172,19 @@ GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh) {
   const FieldView& view = field.tables();
   const std::span<const ImpulseList> lists = view.arrays.span(view.gabor_lists);
   const std::vector<GaborCacheUse> caches = field.gabor_caches();
-  const std::vector<double> tile_seconds = field.gabor_tile_seconds();
+  const std::vector<double> brick_seconds = field.gabor_brick_seconds();
   const Vec3d extent = field.bounds().extent();
   GaborCost cost;
   cost.bytes.resize(lists.size());
   for (std::size_t i = 0; i < lists.size(); ++i) {
     const GaborCacheUse& cache = caches[i];
     if (!(cache.drawn > 0.0) || !(mesh.sampled_blocks > 0.0))
-      continue;  // too many cells for tiles: impulses are drawn for each point
+      continue;  // too many cells for bricks: impulses are drawn for each point
     const SurfaceBand& band = band_of(view, lists[i]);
-    const double tiles = tiles_of_mesh(band, field, mesh, cache.drawn);
-    const double bytes = tiles * cache.drawn_bytes / cache.drawn;
+    const double bricks = bricks_of_mesh(band, field, mesh, cache.drawn);
+    const double bytes = bricks * cache.drawn_bytes / cache.drawn;
     cost.bytes[i] = bytes;
-    cost.seconds += tile_seconds[i] * tiles * draws_of_tile(band, mesh, bytes, extent.z);
+    cost.seconds += brick_seconds[i] * bricks * draws_of_brick(band, mesh, bytes, extent.z);
   }
   return cost;
 }
@@ -264,7 +266,7 @@ double label_seconds(const ImplicitField& field, const Recipe& recipe, const Reg
     const auto first =
         static_cast<std::size_t>(double(coarse.vertices.size() - run) * (i + 0.5) / double(runs));
     const std::vector<MeshVertex> vertices = repeated(coarse, first, run, kLabelsChunk);
-    // The first time draws tiles of impulses, which the mesh has drawn when its vertices are labelled.
+    // The first time draws bricks of impulses, which the mesh has drawn when its vertices are labelled.
     if (has_impulses) labels.label(region.center, vertices, made);
     const ProcessorClock clock;
     labels.label(region.center, vertices, made);

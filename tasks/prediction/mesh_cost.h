@@ -7,7 +7,7 @@
 
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/gabor/gabor_bricks.h"
 #include "synthesis/mesh/mesh_sample.h"
 #include "tasks/synthesis/mesh_region.h"
 
@@ -31,15 +31,15 @@ struct OutputCost {
 };
 OutputCost output_cost(const std::filesystem::path& output, const MeshUse& use, double triangles);
 
-// The tiles of Gabor impulses that a mesh draws.
+// The bricks of Gabor impulses that a mesh draws.
 struct GaborCost {
-  std::vector<double> bytes;  // of each list of impulses, if all tiles were kept
+  std::vector<double> bytes;  // of each list of impulses, if all bricks were kept
   double seconds = 0.0;       // of one processor
 };
 GaborCost gabor_cost(const ImplicitField& field, const MeshEstimate& mesh);
 
-// The memory of the caches of Gabor tiles at the end, beyond what they hold at the time of `before`. A list
-// whose tiles take more than a cache is drawn again and again, which leaves gaps in the heaps of threads.
+// The memory of the caches of Gabor bricks at the end, beyond what they hold at the time of `before`. A list
+// whose bricks take more than a cache is drawn again and again, which leaves gaps in the heaps of threads.
 double more_cache_bytes(std::span<const GaborCacheUse> before, std::span<const double> bytes, int threads);
 
 // Memory of the mesher and of the check of its mesh, bytes, without its output and without caches.

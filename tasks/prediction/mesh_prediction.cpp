@@ -23,7 +23,7 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const Plann
   const ProcessorClock clock;
   const double peak_before = static_cast<double>(peak_bytes());
   const MeshEstimate estimate = estimate_region(mesh.field, mesh.recipe, mesh.region, resolution, budget);
-  const GaborCost gabor_tiles = gabor_cost(mesh.field, estimate);
+  const GaborCost gabor_bricks = gabor_cost(mesh.field, estimate);
   const OutputCost output = output_cost(mesh.output, mesh.use, estimate.triangles);
   const ErosionCost erosion =
       mesh.use.erosion ? erosion_cost(mesh.field, mesh.recipe, estimate) : ErosionCost{};
@@ -35,14 +35,14 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, const Plann
   const EvenCost even = mesh.use.even ? even_cost(estimate) : EvenCost{};
   const double working = std::max({meshing_bytes(estimate), erosion.bytes, even.table_bytes}) +
                          even.recorded_bytes +
-                         more_cache_bytes(mesh.field.gabor_caches(), gabor_tiles.bytes, threads_of(run)) +
+                         more_cache_bytes(mesh.field.gabor_caches(), gabor_bricks.bytes, threads_of(run)) +
                          output.memory * estimate.triangles;
   const double times = mesh.use.twice ? 2.0 : 1.0;
   MeshPrediction predicted;
   predicted.triangles = estimate.triangles;
   predicted.file_bytes = output.file * estimate.triangles;
   predicted.peak_bytes = std::max(run.goes_on ? peak_after : peak_before, held + working);
-  const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_tiles.seconds) +
+  const double parallel = times * (estimate.seconds + fresh_memory_seconds(estimate) + gabor_bricks.seconds) +
                           erosion.parallel_seconds + labels + gravity + even.seconds;
   const double serial = times * output_seconds_per_triangle() * estimate.triangles + erosion.serial_seconds;
   // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one

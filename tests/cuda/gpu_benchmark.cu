@@ -17,7 +17,7 @@
 #include "cuda/field_on_backend.h"
 #include "cuda/mesher/mesh_field.h"
 #include "cuda/pair_count.h"
-#include "cuda/pair_tiles.h"
+#include "cuda/pair_groups.h"
 #include "synthesis/field/field_at_point.h"
 #include "tests/synthesis/bodies.h"
 

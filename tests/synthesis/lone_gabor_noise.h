@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "synthesis/gabor/gabor_bricks.h"
 #include "synthesis/gabor/gabor_surface_noise.h"
-#include "synthesis/gabor/gabor_tiles.h"
 
 namespace astrolith::testing {
 
@@ -31,7 +31,7 @@ class LoneGaborNoise {
   BodyTables tables_;
   ReachingMetaballs metaballs_;
   GaborSurfaceNoise noise_;
-  std::vector<GaborTileCache> caches_;  // by band
+  std::vector<GaborBrickCache> caches_;  // by band
 };
 
 }  // namespace astrolith::testing

@@ -86,7 +86,7 @@ inline BoulderLayer random_boulders(CounterRandom& random) {
 
 constexpr std::uint64_t kLayerKinds = 10;
 
-// A layer of a kind: the last kinds are exemplars, Gabor noise by tiles and impulses, by impulses, fractals.
+// A layer of a kind: the last kinds are exemplars, Gabor noise and fractals.
 inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
   switch (kind) {
     case 0:

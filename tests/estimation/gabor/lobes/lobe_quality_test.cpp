@@ -42,8 +42,8 @@ TEST(LobeQuality, ThePerfectModelIsNeverWeak) {
   EXPECT_NEAR(perfect / count, 0.477, 0.01);
 }
 
-// Tiles that overlap scatter as their taper says: the perfect model of white noise scores no residual.
-TEST(LobeQuality, TheScatterOfOverlappingTilesIsRight) {
+// Segments that overlap scatter as their taper says: the perfect model of white noise scores no residual.
+TEST(LobeQuality, TheScatterOfOverlappingSegmentsIsRight) {
   CounterRandom random(5);
   GreyImage image{300, 200, {}};
   for (int i = 0; i < 300 * 200; ++i) image.values.push_back(random.normal());

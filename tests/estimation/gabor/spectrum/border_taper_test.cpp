@@ -10,22 +10,22 @@ namespace astrolith {
 namespace {
 
 // The decision is statistical: the cut of one of these textures continues by chance.
-TEST(BorderTaper, TellsATileFromACut) {
-  int false_cuts = 0, false_tiles = 0;
+TEST(BorderTaper, TellsAPeriodFromACut) {
+  int false_cuts = 0, false_periods = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const PowerSpectrum& s : {testing::four_lobe_spectrum(), testing::steep_spectrum()}) {
-      const GreyImage tile = testing::realisation_of(s, seed), cut = tile.part(0, 0, 64, 64);
-      false_cuts += !tiles_along_x(tile) + !tiles_along_y(tile);
-      false_tiles += tiles_along_x(cut) + tiles_along_y(cut);
+      const GreyImage period = testing::realisation_of(s, seed), cut = period.part(0, 0, 64, 64);
+      false_cuts += !repeats_along_x(period) + !repeats_along_y(period);
+      false_periods += repeats_along_x(cut) + repeats_along_y(cut);
     }
   }
-  EXPECT_EQ(false_cuts, 0);   // of 20
-  EXPECT_LE(false_tiles, 1);  // of 20
+  EXPECT_EQ(false_cuts, 0);     // of 20
+  EXPECT_LE(false_periods, 1);  // of 20
 }
 
 // One bright layer of rock, or one bright grain, bends the image more than a cut border does.
 TEST(BorderTaper, OneStrongStratumOrGrainDoesNotHideACut) {
-  int false_tiles = 0;
+  int false_periods = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     for (const PowerSpectrum& s : {testing::four_lobe_spectrum(), testing::steep_spectrum()}) {
       const GreyImage cut = testing::realisation_of(s, seed).part(0, 0, 64, 64);
@@ -35,26 +35,27 @@ TEST(BorderTaper, OneStrongStratumOrGrainDoesNotHideACut) {
         level.values[static_cast<std::size_t>(41 * 64 + i)] -= 10.0;
       }
       grain.values[30 * 64 + 37] += 200.0;
-      false_tiles +=
-          tiles_along_x(upright) + tiles_along_y(level) + tiles_along_x(grain) + tiles_along_y(grain);
+      false_periods +=
+          repeats_along_x(upright) + repeats_along_y(level) + repeats_along_x(grain) + repeats_along_y(grain);
     }
   }
-  EXPECT_LE(false_tiles, 2);  // of 40; the cut that continues by chance is taken for a tile twice
+  EXPECT_LE(false_periods, 2);  // of 40; the cut that continues by chance is taken for a period twice
 }
 
-TEST(BorderTaper, AStrongStratumInATileDoesNotHideThatItTiles) {
+TEST(BorderTaper, AStrongStratumInAPeriodDoesNotHideIt) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    GreyImage tile = testing::realisation_of(testing::steep_spectrum(), seed);
-    for (int i = 0; i < tile.height; ++i) tile.values[static_cast<std::size_t>(i * tile.width + 20)] += 10.0;
-    EXPECT_TRUE(tiles_along_x(tile) && tiles_along_y(tile)) << seed;
+    GreyImage period = testing::realisation_of(testing::steep_spectrum(), seed);
+    for (int i = 0; i < period.height; ++i)
+      period.values[static_cast<std::size_t>(i * period.width + 20)] += 10.0;
+    EXPECT_TRUE(repeats_along_x(period) && repeats_along_y(period)) << seed;
   }
 }
 
-TEST(BorderTaper, LeavesATileAsItIs) {
-  const GreyImage tile = testing::realisation_of(testing::four_lobe_spectrum(), 2);
-  const BorderTaper taper = taper_of(tile);
+TEST(BorderTaper, LeavesAPeriodAsItIs) {
+  const GreyImage period = testing::realisation_of(testing::four_lobe_spectrum(), 2);
+  const BorderTaper taper = taper_of(period);
   EXPECT_DOUBLE_EQ(taper.looks(), 1.0);
-  EXPECT_LT(optimal_transport_distance(power_spectrum(faded(tile, taper)), power_spectrum(tile)), 1e-6);
+  EXPECT_LT(optimal_transport_distance(power_spectrum(faded(period, taper)), power_spectrum(period)), 1e-6);
 }
 
 TEST(BorderTaper, FadesACut) {

@@ -32,8 +32,8 @@ TEST(PowerSpectrum, MeanPowerIsTheVariance) {
   }
 }
 
-// A photo of 12,000 x 5,000 pixels has 200 tiles, which take seconds.
-TEST(PowerSpectrum, AMeanOverTilesIsReportedAndStops) {
+// A photo of 12,000 x 5,000 pixels has 200 segments, which take seconds.
+TEST(PowerSpectrum, AMeanOverSegmentsIsReportedAndStops) {
   const GreyImage image = white_noise(160, 96, 3);
   int reports = 0;
   exemplar_periodogram(image, 32, Borders::kTaper, [&](double, std::string_view) { return ++reports > 0; });
@@ -68,7 +68,7 @@ TEST(PowerSpectrum, OfACosineIsTwoBins) {
   EXPECT_NEAR(s.variance(), 0.02, 1e-13);
 }
 
-TEST(PowerSpectrum, LargeExemplarsAreAveragedOverTiles) {
+TEST(PowerSpectrum, LargeExemplarsAreAveragedOverSegments) {
   const GreyImage image = white_noise(150, 100, 5);
   const PowerSpectrum s = exemplar_periodogram(image, 64);
   EXPECT_EQ(s.width, 64);

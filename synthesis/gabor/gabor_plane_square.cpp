@@ -2,10 +2,10 @@
 //
 //   e(dx) e(dy) cos(A + B) = [e(dx) cos A] [e(dy) cos B] - [e(dx) sin A] [e(dy) sin B].
 //
-// An impulse therefore costs a few profile values for each column and row of a tile, and two fma for each
+// An impulse therefore costs a few profile values for each column and row of a square, and two fma for each
 // pixel. The positions of many impulses are drawn at once, one in each lane of a vector. The profiles of a
 // kernel fill whole vectors: as many lanes for its columns as for its rows.
-#include "synthesis/gabor/gabor_plane_tile.h"
+#include "synthesis/gabor/gabor_plane_square.h"
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ struct PlaneImpulses {
   std::array<std::uint32_t, kDrawnAtOnce> cell_hash, number;
   std::array<int, kDrawnAtOnce> cell_x, cell_y;
 
-  std::array<float, kDrawnAtOnce> offset_x, offset_y;  // of the centre of the tile's first pixel, pixels
+  std::array<float, kDrawnAtOnce> offset_x, offset_y;  // of the centre of the square's first pixel, pixels
   std::array<int, kDrawnAtOnce> begin_x, end_x, begin_y, end_y;  // the pixels that the kernel reaches
   std::array<float, kDrawnAtOnce> phase, lobe;                   // uniform in [0, 1)
 };
@@ -37,13 +37,13 @@ ASTROLITH_KERNEL float unit_of(std::uint32_t hash) {
   return static_cast<float>(static_cast<std::int32_t>(hash >> 8)) * 0x1p-24f;
 }
 
-// Places the impulses along one axis: the pixels of the tile, counted from `first`, whose centres the kernels
-// reach.
+// Places the impulses along one axis: the pixels of the square, counted from `first`, whose centres the
+// kernels reach.
 ASTROLITH_SIMD_CLONES void place_along(std::size_t n, std::uint32_t axis, double side, double reach,
                                        int first, const std::uint32_t* __restrict cell_hash,
                                        const std::uint32_t* __restrict number, const int* __restrict cell,
                                        float* __restrict offset, int* __restrict begin, int* __restrict end) {
-  const double center = first + 0.5, last = kTextureTile;
+  const double center = first + 0.5, last = kTextureSquare;
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t hash = hash_append(cell_hash[i], number[i]);
@@ -67,7 +67,7 @@ ASTROLITH_SIMD_CLONES void draw_lobes(std::size_t n, const std::uint32_t* __rest
   }
 }
 
-// One impulse on a tile.
+// One impulse on a square.
 struct PlaneImpulse {
   float a, amplitude;
   float offset_x, offset_y, frequency_x, frequency_y, phase;
@@ -80,8 +80,8 @@ struct PlaneImpulse {
 template <int kWidth>
 ASTROLITH_KERNEL void add_kernel(const PlaneImpulse& k, float* __restrict height) {
   constexpr int kBlock = std::min(kWidth, 16), kProfileBlock = std::min(2 * kWidth, 16);
-  const int first_x = k.begin_x < kTextureTile - kWidth ? k.begin_x : kTextureTile - kWidth;
-  const int first_y = k.begin_y < kTextureTile - kWidth ? k.begin_y : kTextureTile - kWidth;
+  const int first_x = k.begin_x < kTextureSquare - kWidth ? k.begin_x : kTextureSquare - kWidth;
+  const int first_y = k.begin_y < kTextureSquare - kWidth ? k.begin_y : kTextureSquare - kWidth;
   const int begin_x = k.begin_x - first_x, end_x = k.end_x - first_x;
   const int begin_y = kWidth + k.begin_y - first_y, end_y = kWidth + k.end_y - first_y;
   std::array<float, std::size_t{2 * kWidth}> cosine, sine;
@@ -102,7 +102,7 @@ ASTROLITH_KERNEL void add_kernel(const PlaneImpulse& k, float* __restrict height
   const int first_block = begin_x / kBlock * kBlock;
   for (int y = begin_y; y < end_y; ++y) {
     const float c = cosine[static_cast<std::size_t>(y)], s = -sine[static_cast<std::size_t>(y)];
-    float* row = height + (first_y + y - kWidth) * kTextureTile + first_x;
+    float* row = height + (first_y + y - kWidth) * kTextureSquare + first_x;
     for (int block = first_block; block < end_x; block += kBlock) {
 #pragma omp simd
       for (int x = block; x < block + kBlock; ++x) {
@@ -113,7 +113,7 @@ ASTROLITH_KERNEL void add_kernel(const PlaneImpulse& k, float* __restrict height
   }
 }
 
-// Adds the kernels of impulses that reach the tile.
+// Adds the kernels of impulses that reach the square.
 ASTROLITH_SIMD_CLONES void add_kernels(const PlaneImpulse* impulses, std::size_t n,
                                        float* __restrict height) {
   for (std::size_t i = 0; i < n; ++i) {
@@ -133,12 +133,12 @@ ASTROLITH_SIMD_CLONES void add_kernels(const PlaneImpulse* impulses, std::size_t
   }
 }
 
-void add_impulses(const PlaneBand& band, PlaneImpulses& drawn, TextureTile& tile) {
+void add_impulses(const PlaneBand& band, PlaneImpulses& drawn, TextureSquare& square) {
   PlaneImpulses& d = drawn;
   const std::size_t n = d.count;
-  place_along(n, 0, band.cell_x, band.reach, tile.x, d.cell_hash.data(), d.number.data(), d.cell_x.data(),
+  place_along(n, 0, band.cell_x, band.reach, square.x, d.cell_hash.data(), d.number.data(), d.cell_x.data(),
               d.offset_x.data(), d.begin_x.data(), d.end_x.data());
-  place_along(n, 1, band.cell_y, band.reach, tile.y, d.cell_hash.data(), d.number.data(), d.cell_y.data(),
+  place_along(n, 1, band.cell_y, band.reach, square.y, d.cell_hash.data(), d.number.data(), d.cell_y.data(),
               d.offset_y.data(), d.begin_y.data(), d.end_y.data());
   draw_lobes(n, d.cell_hash.data(), d.number.data(), d.phase.data(), d.lobe.data());
   std::array<PlaneImpulse, kDrawnAtOnce> reaching;
@@ -158,7 +158,7 @@ void add_impulses(const PlaneBand& band, PlaneImpulses& drawn, TextureTile& tile
                          d.begin_y[i],
                          d.end_y[i]};
   }
-  add_kernels(reaching.data(), count, tile.height.data());
+  add_kernels(reaching.data(), count, square.height.data());
   d.count = 0;
 }
 
@@ -166,13 +166,13 @@ int wrapped(int cell, int wrap) { return wrap == 0 ? cell : ((cell % wrap) + wra
 
 }  // namespace
 
-void add_band(const PlaneBand& band, TextureTile& tile) {
+void add_band(const PlaneBand& band, TextureSquare& square) {
   const auto cell_of = [](double pixel, double side) { return static_cast<int>(std::floor(pixel / side)); };
-  const int last_x = cell_of(tile.x + kTextureTile + band.reach, band.cell_x);
-  const int last_y = cell_of(tile.y + kTextureTile + band.reach, band.cell_y);
+  const int last_x = cell_of(square.x + kTextureSquare + band.reach, band.cell_x);
+  const int last_y = cell_of(square.y + kTextureSquare + band.reach, band.cell_y);
   PlaneImpulses drawn;
-  for (int cy = cell_of(tile.y - band.reach, band.cell_y); cy <= last_y; ++cy) {
-    for (int cx = cell_of(tile.x - band.reach, band.cell_x); cx <= last_x; ++cx) {
+  for (int cy = cell_of(square.y - band.reach, band.cell_y); cy <= last_y; ++cy) {
+    for (int cx = cell_of(square.x - band.reach, band.cell_x); cx <= last_x; ++cx) {
       const std::uint32_t cell = hash_cell(band.seed, wrapped(cx, band.wrap_x), wrapped(cy, band.wrap_y), 0);
       for (int j = 0; j < band.impulses_per_cell; ++j) {
         const std::size_t i = drawn.count++;
@@ -180,11 +180,11 @@ void add_band(const PlaneBand& band, TextureTile& tile) {
         drawn.number[i] = static_cast<std::uint32_t>(j);
         drawn.cell_x[i] = cx;
         drawn.cell_y[i] = cy;
-        if (drawn.count == kDrawnAtOnce) add_impulses(band, drawn, tile);
+        if (drawn.count == kDrawnAtOnce) add_impulses(band, drawn, square);
       }
     }
   }
-  add_impulses(band, drawn, tile);
+  add_impulses(band, drawn, square);
 }
 
 }  // namespace astrolith

@@ -1,4 +1,4 @@
-// Gabor noise of one band on a square tile of pixels in the plane.
+// Gabor noise of one band on a square of pixels in the plane.
 #pragma once
 
 #include <array>
@@ -19,15 +19,15 @@ struct PlaneBand {
   float amplitude;
 };
 
-// The side, in pixels, of the square tile that one task makes. The heights of a tile stay in the first cache.
-inline constexpr int kTextureTile = 64;
+// The side, in pixels, of the square that one task makes. The heights of a square stay in the first cache.
+inline constexpr int kTextureSquare = 64;
 
-struct TextureTile {
+struct TextureSquare {
   int x, y;  // first column and row
-  std::array<float, std::size_t{kTextureTile * kTextureTile}> height;
+  std::array<float, std::size_t{kTextureSquare * kTextureSquare}> height;
 };
 
-// Adds the noise of a band to the heights of a tile.
-void add_band(const PlaneBand& band, TextureTile& tile);
+// Adds the noise of a band to the heights of a square.
+void add_band(const PlaneBand& band, TextureSquare& square);
 
 }  // namespace astrolith

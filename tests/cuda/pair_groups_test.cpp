@@ -1,5 +1,5 @@
 // Compares the GPU's pair count with the CPU's: on the host thread by thread, and on a GPU if there is one.
-#include "cuda/pair_tiles.h"
+#include "cuda/pair_groups.h"
 
 #include "cuda/device.h"
 #include "cuda/host_backend.h"
@@ -51,14 +51,14 @@ Counts on_twin(const Surflets& s, int num_local, int bins) {
   return count_pairs_on(backend, s.points, s.normals, s.local, num_local, bins, {});
 }
 
-TEST(PairTiles, HoldEveryPairOnce) {
+TEST(PairGroups, HoldEveryPairOnce) {
   for (const std::vector<std::int64_t>& first :
        {std::vector<std::int64_t>{0, 0}, {0, 1}, {0, 2}, {0, 256}, {0, 257}, {0, 3, 3, 800, 801}}) {
     const auto n = static_cast<std::size_t>(first.back());
     std::vector<int> times(n * n, 0);
-    for (const PairTile& t : pair_tiles(first)) {
-      ASSERT_LE(t.end_row - t.first_row, kTileRows);
-      ASSERT_LE(t.end_column - t.first_column, kTileColumns);
+    for (const PairGroup& t : pair_groups(first)) {
+      ASSERT_LE(t.end_row - t.first_row, kGroupRows);
+      ASSERT_LE(t.end_column - t.first_column, kGroupColumns);
       for (std::size_t i = t.first_row; i < t.end_row; ++i) {
         ASSERT_GE(static_cast<std::int64_t>(i), first[static_cast<std::size_t>(t.row_code)]);
         ASSERT_LT(static_cast<std::int64_t>(i), first[static_cast<std::size_t>(t.row_code) + 1]);
@@ -74,18 +74,18 @@ TEST(PairTiles, HoldEveryPairOnce) {
   }
 }
 
-// Numbers of points at and around the sizes of groups, chunks and tiles.
-TEST(PairTiles, CountWhatTheCpuCounts) {
+// Numbers of points at and around the sizes of groups of threads, chunks and groups of pairs.
+TEST(PairGroups, CountWhatTheCpuCounts) {
   for (const int n : {0, 1, 2, 3, 31, 127, 128, 129, 255, 256, 257, 511, 513, 1000}) {
     const Surflets wahl = random_input(n, 1, 5), ahd = random_input(n, 25, 6);
     ASSERT_EQ(on_twin(wahl, 1, 5), on_cpu(wahl, 1, 5)) << n;
     ASSERT_EQ(on_twin(ahd, 25, 5), on_cpu(ahd, 25, 5)) << n;
   }
-  const Surflets many = random_input(4500, 1, 7);  // two tiles of columns
+  const Surflets many = random_input(4500, 1, 7);  // two groups of columns
   EXPECT_EQ(on_twin(many, 1, 5), on_cpu(many, 1, 5));
 }
 
-TEST(PairTiles, TakeThreadsInAnyOrder) {
+TEST(PairGroups, TakeThreadsInAnyOrder) {
   const Surflets s = random_input(700, 4, 12);
   for (const std::size_t seed : {1, 2, 31}) {
     HostBackend backend(std::size_t{1} << 30, {seed});
@@ -93,7 +93,7 @@ TEST(PairTiles, TakeThreadsInAnyOrder) {
   }
 }
 
-TEST(PairTiles, CountTiesAsTheCpu) {
+TEST(PairGroups, CountTiesAsTheCpu) {
   for (const int num_local : {1, 9}) {
     EXPECT_EQ(on_twin(tied_input(num_local), num_local, 5), on_cpu(tied_input(num_local), num_local, 5));
     EXPECT_EQ(on_twin(tied_input(num_local), num_local, 4), on_cpu(tied_input(num_local), num_local, 4));
@@ -101,7 +101,7 @@ TEST(PairTiles, CountTiesAsTheCpu) {
 }
 
 // Nine and ten bins have more codes than shared memory has counters.
-TEST(PairTiles, CountWithEveryNumberOfBins) {
+TEST(PairGroups, CountWithEveryNumberOfBins) {
   for (int bins = kMinBins; bins <= kMaxBins; ++bins) {
     const Surflets s = random_input(400, 4, 8);
     ASSERT_EQ(on_twin(s, 4, bins), on_cpu(s, 4, bins)) << bins;
@@ -109,7 +109,7 @@ TEST(PairTiles, CountWithEveryNumberOfBins) {
 }
 
 // Sets of many sizes, among them an empty set and a set of one point.
-TEST(PairTiles, CountSetsTogetherAsOneByOne) {
+TEST(PairGroups, CountSetsTogetherAsOneByOne) {
   std::vector<SurfletArrays> sets;
   Counts one_by_one;
   for (const int n : {300, 0, 1, 700, 2}) {
@@ -122,7 +122,7 @@ TEST(PairTiles, CountSetsTogetherAsOneByOne) {
   EXPECT_EQ(count_sets_on(backend, sets, 5, {}), one_by_one);
 }
 
-TEST(PairTiles, StopWhenAskedTo) {
+TEST(PairGroups, StopWhenAskedTo) {
   HostBackend backend;
   const Surflets s = random_input(300, 1, 9);
   const Progress stop = [](double, std::string_view) { return false; };
