@@ -7,7 +7,7 @@
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
 #include "numerics/vec3_json.h"
-#include "synthesis/picture/geotiff.h"
+#include "synthesis/picture/image_file.h"
 #include "tasks/job/output_names.h"
 
 namespace astrolith {

@@ -25,7 +25,7 @@
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
 #include "numerics/vec3_json.h"
-#include "synthesis/field/landform_list.h"
+#include "synthesis/field/feature_list.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
 #include "tasks/job/output_names.h"
@@ -263,7 +263,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (!request.height_map.empty())
     write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
   if (!request.landforms.empty())
-    write_landform_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
+    write_feature_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   if (has_colors(recipe)) {
     program.summary["vertex_colors"] = holds_colors(output);

@@ -9,7 +9,7 @@
 #include "apps/synth/npz_file.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
-#include "synthesis/field/landform_instances.h"
+#include "synthesis/field/feature_list.h"
 #include "synthesis/field/surface_labels.h"
 #include "synthesis/picture/picture_maps.h"
 
@@ -45,7 +45,7 @@ SeenPixels seen_in_rows(const PictureMaps& maps, int first, int end) {
 
 LayerMaps label_pixels(const PictureMaps& maps, const MapsSource& source, const Progress& progress) {
   const SurfaceLabels labels(source.recipe, source.field, source.region.cube());
-  const LandformInstances landforms(source.field, source.recipe, source.region.cube(), source.cell);
+  const FeatureFinder landforms(source.field, source.recipe, source.region.cube(), source.cell);
   const Vec3d origin = source.region.center;
   LayerMaps made{std::vector<std::int32_t>(maps.depth.size(), kNothing),
                  std::vector<std::int32_t>(maps.depth.size(), kNothing)};

@@ -90,6 +90,10 @@ std::array<float, 3> float_parts(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+PlaneExemplarOptions options_of(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+  return {drawing.recipe.seed, layer_number(layer.seed, static_cast<int>(drawing.index)), drawing.tileable};
+}
+
 }  // namespace
 
 std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::string& place, int width,
@@ -133,6 +137,20 @@ std::vector<float> synthesize_exemplar_colors(const ExemplarLayer& layer, const 
     for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = math::fma(axis[i % 3], values[i / 3], rgb[i]);
   }
   return rgb;
+}
+
+PlaneTexture heights_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+  PlaneTexture texture;
+  const ExemplarLayer high = with_height(layer, texture);
+  texture.values = synthesize_exemplar(high, drawing.place, drawing.width, drawing.height,
+                                       options_of(layer, drawing), drawing.progress);
+  texture.height_rms = exemplar_height_rms(high);
+  return texture;
+}
+
+PlaneTexture colors_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+  return {3, synthesize_exemplar_colors(layer, drawing.place, drawing.width, drawing.height,
+                                        options_of(layer, drawing), drawing.progress)};
 }
 
 }  // namespace astrolith

@@ -76,6 +76,12 @@ float value_at(const FieldModel& model, const Vec3d& p);
 // model may still lack the layers after it.
 float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& p);
 
+// F of the body with the first `layers` layers of the model and without boulders, at points in the
+// coordinates of `frame`, for layers that are placed on these. If the body is plain, the points are displaced
+// by its warp. The result is empty if none of the layers changes an elevation. It is valid until the model
+// changes; `model.tables` must be up to date.
+FieldBelow field_below(const FieldModel& model, std::size_t layers, const NoiseFrame& frame);
+
 // The noise of a layer in the frame of the field's patch, if it has one there, else in the body's frame.
 const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer);
 

@@ -5,12 +5,11 @@
 #include <limits>
 #include <vector>
 
+#include "numerics/interval.h"
 #include "numerics/portable_double.h"
 #include "synthesis/gabor/gabor_bands.h"
 #include "synthesis/gabor/gabor_surface_points.h"
 #include "synthesis/noise/points_in_domain.h"
-
-#include "numerics/interval.h"
 
 namespace astrolith {
 namespace {
@@ -34,11 +33,6 @@ double farthest_impulse(double size) {
 // The distance from an impulse to the rim of its support, in units of 1/a.
 const double kRimReach = std::sqrt(double{kGaborDiscReach} * double{kGaborDiscReach} +
                                    double{kGaborSlabReach} * double{kGaborSlabReach});
-
-double longest_side(const Box& box) {
-  const Vec3d e = box.extent();
-  return std::max({e.x, e.y, e.z});
-}
 
 // One bandwidth at the scale of a domain. The variance is density K^2/2 (integral of P^2) (integral of W^2);
 // the factor 1/2 comes from the uniform phase.
@@ -86,11 +80,6 @@ GaborSurfacePoints add_bands(const GaborSurfaceNoise& noise, const BodyGround& g
 }
 
 }  // namespace
-
-GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
-                             ArrayStore& arrays) {
-  return make_noise(layer, seed, layer_index, NoiseFrame(domain), longest_side(domain), arrays);
-}
 
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
                              const NoiseFrame& frame, double body_side, ArrayStore& arrays) {

@@ -62,9 +62,6 @@ struct GaborSurfaceNoise {
 // `body_side` is the longest side of the box that holds the body, length units.
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
                              const NoiseFrame& frame, double body_side, ArrayStore& arrays);
-// The noise in the body's frame, whose domain is that box.
-GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
-                             ArrayStore& arrays);
 
 // The number of cells that the impulses of all bands are drawn from for a cubic box; `side` is in length
 // units.

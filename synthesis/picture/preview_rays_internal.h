@@ -90,4 +90,8 @@ struct SeenNormals {
 SeenNormals seen_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& vertex_normals,
                          const RayHit& hit, const Vec3f& to_viewer);
 
+// Draws the marks of a picture into it (picture_marks.h).
+void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
+                const RayScene& scene);
+
 }  // namespace astrolith

@@ -15,10 +15,11 @@
 #include "cuda/device.h"
 #include "cuda/device_backend.h"
 #include "cuda/field_on_backend.h"
-#include "cuda/mesher/mesh_field.h"
+#include "cuda/mesher/gpu_mesher.h"
 #include "cuda/pair_count.h"
 #include "cuda/pair_groups.h"
 #include "synthesis/field/field_at_point.h"
+#include "tests/synthesis/block_lists.h"
 #include "tests/synthesis/bodies.h"
 
 namespace astrolith {
@@ -162,6 +163,47 @@ void run_counted_kernels(DeviceBackend& backend) {
   backend.wait();
 }
 
+// The lists of blocks in the memory of a backend.
+template <class Backend>
+class BlocksOnBackend {
+ public:
+  BlocksOnBackend(Backend& backend, const BlockListStore& store)
+      : view_(store.view()),
+        metaballs_(upload(backend, store.metaballs, view_.metaballs)),
+        first_metaball_(upload(backend, store.first_metaball, view_.first_metaball)),
+        spots_(upload(backend, store.spots, view_.spots)),
+        first_spot_(upload(backend, store.first_spot, view_.first_spot)),
+        gabor_(upload(backend, store.gabor, view_.gabor)),
+        first_gabor_(upload(backend, store.first_gabor, view_.first_gabor)),
+        landforms_(upload(backend, store.landforms, view_.landforms)),
+        first_landform_(upload(backend, store.first_landform, view_.first_landform)) {}
+
+  // The lists in the backend's memory. The view is valid while this object lives.
+  BlockListArrays view() const { return view_; }
+
+ private:
+  template <typename T>
+  using Array = typename Backend::template Array<T>;
+
+  // Uploads the values and sets a pointer of the view to them.
+  template <typename T>
+  static Array<T> upload(Backend& backend, const std::vector<T>& values, const T*& pointer) {
+    Array<T> array = backend.upload(std::span<const T>(values));
+    pointer = array.data();
+    return array;
+  }
+
+  BlockListArrays view_;
+  Array<MetaballSphere<float>> metaballs_;
+  Array<std::uint32_t> first_metaball_;
+  Array<SpotImpulse> spots_;
+  Array<std::uint32_t> first_spot_;
+  Array<GaborImpulse> gabor_;
+  Array<std::uint32_t> first_gabor_;
+  Array<std::uint32_t> landforms_;
+  Array<std::uint32_t> first_landform_;
+};
+
 void measure_field(DeviceBackend& backend, const ImplicitField& field, const Limits& limits) {
   const FieldOnBackend<DeviceBackend> on_device(backend, field.tables());
   const Vec3d c = field.bounds().center();
@@ -231,7 +273,8 @@ void measure_swarm(const Limits& limits) {
   CounterRandom random(2);
   const PreparedMetaballs body = prepare_metaballs(*testing::potato_recipe(50, 4).body);
   ProbeLines lines;
-  lines.metaballs.add(std::span<const MetaballSphere<float>>(body.spheres));
+  lines.metaballs = body.spheres;
+  lines.first_metaball = {0, static_cast<std::uint32_t>(body.spheres.size())};
   lines.parameters = body.parameters;
   lines.reach = 0.05f;
   lines.steps = 3;

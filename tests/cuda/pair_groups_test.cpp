@@ -2,9 +2,9 @@
 #include "cuda/pair_groups.h"
 
 #include "cuda/device.h"
-#include "cuda/host_backend.h"
 #include "cuda/pair_count.h"
 #include "numerics/errors.h"
+#include "tests/cuda/host_backend.h"
 #include "tests/descriptor/surflets.h"
 
 namespace astrolith {

@@ -5,11 +5,10 @@
 #include <filesystem>
 
 #include "cuda/device.h"
-#include "cuda/host_backend.h"
-#include "cuda/mesher/gpu_obstacle.h"
-#include "cuda/mesher/mesh_field.h"
+#include "cuda/mesher/gpu_mesher.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
+#include "tests/cuda/host_backend.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/exemplars.h"

@@ -1,5 +1,5 @@
 #include "synthesis/noise/fractal_noise.h"
-#include "synthesis/noise/lone_noise.h"
+#include "tests/synthesis/lone_noise.h"
 
 #include <cmath>
 #include <utility>

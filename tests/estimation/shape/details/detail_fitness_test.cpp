@@ -2,7 +2,7 @@
 
 #include "cuda/candidates_on_gpu.h"
 #include "cuda/device.h"
-#include "cuda/host_backend.h"
+#include "tests/cuda/host_backend.h"
 #include "tests/estimation/shape/details/known_details.h"
 
 namespace astrolith {

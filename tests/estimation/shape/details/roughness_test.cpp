@@ -5,7 +5,7 @@
 
 #include "numerics/hash_random.h"
 #include "synthesis/noise/fractal_noise.h"
-#include "synthesis/noise/lone_noise.h"
+#include "tests/synthesis/lone_noise.h"
 
 namespace astrolith {
 namespace {

@@ -1,12 +1,8 @@
-#include "synthesis/field/landform_layers_internal.h"
-
 #include <algorithm>
 #include <limits>
 
 #include "numerics/parallel_for.h"
-#include "synthesis/field/layer_joins_internal.h"
-#include "synthesis/field/layer_maker.h"
-#include "synthesis/field/noise_facts.h"
+#include "synthesis/field/layer_stack_internal.h"
 
 namespace astrolith {
 namespace {
@@ -26,19 +22,9 @@ bool is_drawn_by_cells(const Landforms& layer) {
   return layer.population && layer.population->drawn.by_cells;
 }
 
-// How far a boulder of the layer that is drawn by cells reaches at most, length units; craters reach nowhere.
-double reach_by_cells(const BoulderLayer& layer) {
-  return is_drawn_by_cells(layer) ? boulder_reach(layer) * layer.population->drawn.greatest_diameter : 0.0;
-}
-double reach_by_cells(const CraterLayer&) { return 0.0; }
-
-// A bound of what the landforms of a layer add to elevations, length units. Boulders lie on elevations.
-double rise_of(const CraterLayer& layer) { return crater_rise(layer); }
-double rise_of(const BoulderLayer&) { return 0.0; }
-
 }  // namespace
 
-void LandformLayers::add(const CraterLayer& layer) {
+void StackLandforms::add(const CraterLayer& layer) {
   FieldModel& model = stack_.model;
   std::vector<PlacedCrater> craters =
       place_craters(layer, bare(), stack_.recipe.seed, layer_number(layer.seed, stack_.index), stack_.place(),
@@ -64,7 +50,7 @@ void LandformLayers::add(const CraterLayer& layer) {
 
 // Adds the craters in the frame of the patch, if the layer draws them by cells. Their bases and all but
 // their centres are those in the body's frame.
-void LandformLayers::add_patch_craters(const CraterLayer& layer, const CraterRelief& relief,
+void StackLandforms::add_patch_craters(const CraterLayer& layer, const CraterRelief& relief,
                                        std::span<const Vec3d> centers) {
   FieldModel& model = stack_.model;
   model.patch_craters.emplace_back();
@@ -83,7 +69,7 @@ void LandformLayers::add_patch_craters(const CraterLayer& layer, const CraterRel
   model.has_patch_layers = true;
 }
 
-void LandformLayers::add_boulders(const Progress& progress) {
+void StackLandforms::add_boulders(const Progress& progress) {
   FieldModel& model = stack_.model;
   model.update();
   const Terrain terrain{[&model](const Vec3d& p) { return static_cast<double>(value_at(model, p)); },
@@ -106,7 +92,7 @@ void LandformLayers::add_boulders(const Progress& progress) {
 }
 
 // Adds the boulders in the frame of the patch, if the layer draws them by cells.
-void LandformLayers::add_patch_boulders(const BoulderLayer& layer, std::vector<PlacedBoulder> boulders) {
+void StackLandforms::add_patch_boulders(const BoulderLayer& layer, std::vector<PlacedBoulder> boulders) {
   FieldModel& model = stack_.model;
   if (!is_drawn_by_cells(layer) || !model.patch) {
     return model.patch_boulders.resize(model.patch_boulders.size() + boulders.size());
@@ -120,7 +106,7 @@ void LandformLayers::add_patch_boulders(const BoulderLayer& layer, std::vector<P
 
 // Where the drawn craters of a layer may lie. The base of a crater depends on older ones that cover its
 // centre, so that craters matter somewhat beyond what they cover.
-DrawingPlaces LandformLayers::crater_places(const CraterLayer& layer) {
+DrawingPlaces StackLandforms::crater_places(const CraterLayer& layer) {
   constexpr double kReachOfBases = 4.0;  // extents of the largest crater
   if (!layer.population) return {};
   const Population& drawn = layer.population->drawn;
@@ -135,10 +121,10 @@ DrawingPlaces LandformLayers::crater_places(const CraterLayer& layer) {
   return places;
 }
 
-DrawingPlaces LandformLayers::boulder_places(const BoulderLayer& layer, const Progress& progress) {
+DrawingPlaces StackLandforms::boulder_places(const BoulderLayer& layer, const Progress& progress) {
   if (!layer.population) return {};
   const Population& drawn = layer.population->drawn;
-  DrawingPlaces places{weight_of(drawn), {}, boulder_reach(layer), stack_.model.height_bound, progress};
+  DrawingPlaces places{weight_of(drawn), {}, drawn_reach(layer), stack_.model.height_bound, progress};
   if (!drawn.by_cells) return places;
   report_sizes_left_out(drawn);
   if (stack_.model.patch) places.region = patch_box();
@@ -146,18 +132,22 @@ DrawingPlaces LandformLayers::boulder_places(const BoulderLayer& layer, const Pr
 }
 
 // The patch, with a margin for the differences that give normals.
-Box LandformLayers::patch_box() const {
+Box StackLandforms::patch_box() const {
   const Vec3d& center = stack_.model.patch->center;
   return widened(Box{center, center}, 0.51 * stack_.model.patch->side);
 }
 
 // How far a boulder that is drawn by cells reaches at most, of later layers too; length units.
-double LandformLayers::widest_boulder() const {
+double StackLandforms::widest_boulder() const {
   double widest = 0.0;
   for (const Layer& layer : stack_.recipe.layers) {
     std::visit(
         [&]<class Kind>(const Kind& l) {
-          if constexpr (!Kind::kTraits.is_noise) widest = std::max(widest, reach_by_cells(l));
+          if constexpr (!Kind::kTraits.is_noise) {
+            if (is_drawn_by_cells(l)) {
+              widest = std::max(widest, drawn_reach(l) * l.population->drawn.greatest_diameter);
+            }
+          }
         },
         layer);
   }
@@ -165,7 +155,7 @@ double LandformLayers::widest_boulder() const {
 }
 
 // A bound of all elevations, those of this layer and of later ones too; length units.
-double LandformLayers::height_reach() {
+double StackLandforms::height_reach() {
   const NoiseFrame whole(Box{{}, {}});  // a domain without extent leaves out no size of a layer
   double bound = stack_.model.height_bound;
   for (int i = stack_.index; i < static_cast<int>(stack_.recipe.layers.size()); ++i) {
@@ -188,7 +178,7 @@ double LandformLayers::height_reach() {
 
 // The weight of the places of a population; empty where it is 1 everywhere. It reads the model as it is
 // when it is called.
-PlaceWeight LandformLayers::weight_of(const Population& drawn) {
+PlaceWeight StackLandforms::weight_of(const Population& drawn) {
   if (!drawn.locality && !drawn.mask) return {};
   stack_.update_model();
   const std::string place = stack_.place() + ".population";
@@ -214,20 +204,20 @@ PlaceWeight LandformLayers::weight_of(const Population& drawn) {
       };
 }
 
-void LandformLayers::report_sizes_left_out(const Population& drawn) {
+void StackLandforms::report_sizes_left_out(const Population& drawn) {
   const SizesByCells sizes = sizes_by_cells(drawn, bare(), !stack_.model.patch);
   if (sizes.number_left_out == 0.0) return;
   stack_.model.left_out.push_back(
       {stack_.index, sizes.share_left_out, drawn.least_diameter, sizes.number_left_out});
 }
 
-const BareSurface& LandformLayers::bare() {
+const BareSurface& StackLandforms::bare() {
   if (!bare_) bare_.emplace(bare_body(stack_.recipe));
   return *bare_;
 }
 
 // Points of the bare surface, as craters are given them: on the metaballs' side of a plain body's warp.
-std::vector<Vec3d> LandformLayers::unwarped(std::vector<Vec3d> points) const {
+std::vector<Vec3d> StackLandforms::unwarped(std::vector<Vec3d> points) const {
   const FieldView& tables = stack_.model.tables;
   const BodyLeaf& first = tables.leaf(0);
   if (!stack_.model.body.plain() || !first.warped) return points;

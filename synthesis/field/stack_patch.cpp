@@ -2,8 +2,7 @@
 #include <limits>
 #include <span>
 
-#include "synthesis/field/noise_facts.h"
-#include "synthesis/field/patch_noises_internal.h"
+#include "synthesis/field/layer_stack_internal.h"
 
 namespace astrolith {
 

@@ -1,4 +1,4 @@
-#include "synthesis/field/noise_facts.h"
+#include "synthesis/field/layer_noise.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@ namespace {
 // No trait has a default, so that a kind that forgets one does not compile.
 static_assert(!std::is_default_constructible_v<NoiseTraits>);
 
-TEST(NoiseFacts, CratersHaveNoHeights) {
+TEST(LayerNoiseFacts, CratersHaveNoHeights) {
   const LayerNoise craters(CraterRelief{});
   EXPECT_FALSE(traits_of(craters).has_heights);
   EXPECT_EQ(height_bound_of(craters), 0.0);
@@ -18,7 +18,7 @@ TEST(NoiseFacts, CratersHaveNoHeights) {
   EXPECT_EQ(num_impulse_lists(craters), 0u);
 }
 
-TEST(NoiseFacts, HeightsHaveABoundAndADetail) {
+TEST(LayerNoiseFacts, HeightsHaveABoundAndADetail) {
   ExemplarNoise exemplar;
   exemplar.height_bound = 0.25;
   exemplar.detail = {0.125, 1.0};
@@ -29,7 +29,7 @@ TEST(NoiseFacts, HeightsHaveABoundAndADetail) {
   EXPECT_EQ(detail_of(noise).left_out, 1.0);
 }
 
-TEST(NoiseFacts, AWarpTakesTheLocalForm) {
+TEST(LayerNoiseFacts, AWarpTakesTheLocalForm) {
   FractalNoise fractal;
   EXPECT_TRUE(has_local_form(LayerNoise(fractal)));
   fractal.warped = true;
@@ -37,7 +37,7 @@ TEST(NoiseFacts, AWarpTakesTheLocalForm) {
   EXPECT_FALSE(has_local_form(LayerNoise(SparseNoise{})));
 }
 
-TEST(NoiseFacts, ImpulsesHaveLists) {
+TEST(LayerNoiseFacts, ImpulsesHaveLists) {
   SpotNoise spots;
   spots.kinds.count = 3;
   EXPECT_EQ(num_impulse_lists(LayerNoise(spots)), 3u);

@@ -1,4 +1,4 @@
-#include "cuda/mesher/mesh_field.h"
+#include "cuda/mesher/gpu_mesher.h"
 
 #include "cuda/device_backend.h"
 #include "cuda/mesher/backend_mesher.h"

@@ -1,4 +1,4 @@
-#include "synthesis/field/landform_list.h"
+#include "synthesis/field/feature_list.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "synthesis/field/landform_instances.h"
-#include "synthesis/field/listed_landforms.h"
-#include "synthesis/field/surface_crossing.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/synthesis/bodies.h"
 
@@ -33,7 +30,7 @@ Recipe cratered_ball() {
 
 nlohmann::json listed(const Recipe& recipe, const std::optional<PatchCube>& patch) {
   const testing::ScratchFolder folder;
-  write_landform_list(ImplicitField(recipe, "recipe", patch), recipe, patch, 0.7, folder / "list.json");
+  write_feature_list(ImplicitField(recipe, "recipe", patch), recipe, patch, 0.7, folder / "list.json");
   std::ifstream file(folder / "list.json");
   return nlohmann::json::parse(file);
 }
@@ -42,7 +39,7 @@ Vec3d point(const nlohmann::json& feature, const std::string& prefix) {
   return {feature[prefix + "x"], feature[prefix + "y"], feature[prefix + "z"]};
 }
 
-TEST(LandformList, PlacesLieOnTheFinishedSurface) {
+TEST(FeatureList, PlacesLieOnTheFinishedSurface) {
   const Recipe recipe = cratered_ball();
   const ImplicitField field(recipe);
   const nlohmann::json list = listed(recipe, {});
@@ -59,10 +56,10 @@ TEST(LandformList, PlacesLieOnTheFinishedSurface) {
 }
 
 // The crater is 4 wide and .544 deep with its rim; the boulder is 1.5 across and stands .7 above the ground.
-TEST(LandformList, WhatTheMeshDoesNotShowIsNotResolved) {
+TEST(FeatureList, WhatTheMeshDoesNotShowIsNotResolved) {
   const Recipe recipe = cratered_ball();
   const ImplicitField field(recipe);
-  const std::vector<ListedLandform> both = listed_landforms(field, {});
+  const std::vector<Feature> both = features_of(field, {});
   EXPECT_TRUE(is_resolved(both[0], 2.0));
   EXPECT_FALSE(is_resolved(both[0], 2.01)) << "fewer than two cells across";
   EXPECT_TRUE(is_resolved(both[1], 0.75));
@@ -73,13 +70,13 @@ TEST(LandformList, WhatTheMeshDoesNotShowIsNotResolved) {
   EXPECT_FALSE(is_resolved({1, &flat, nullptr}, 0.51)) << "shallower than a tenth of a cell";
   EXPECT_TRUE(listed(recipe, {})["features"][0]["resolved"]);
   const Vec3d floor = point(listed(recipe, {})["features"][0], "");
-  EXPECT_EQ(LandformInstances(field, recipe, {}, 0.7).row_at(floor, 0.0f), 0);
-  EXPECT_EQ(LandformInstances(field, recipe, {}, 2.01).row_at(floor, 0.0f), -1);
+  EXPECT_EQ(FeatureFinder(field, recipe, {}, 0.7).row_at(floor, 0.0f), 0);
+  EXPECT_EQ(FeatureFinder(field, recipe, {}, 2.01).row_at(floor, 0.0f), -1);
 }
 
 // A boulder of a patch is looked for in the coordinates of the patch: its top is its own, to the digits of
 // the size of the boulder, where float coordinates of the body are ten times as coarse.
-TEST(LandformList, FineBouldersOfAPatchAreFound) {
+TEST(FeatureList, FineBouldersOfAPatchAreFound) {
   Recipe recipe = testing::sphere_recipe(1e4);
   BoulderLayer boulders;
   boulders.boulders.resize(1);
@@ -89,14 +86,14 @@ TEST(LandformList, FineBouldersOfAPatchAreFound) {
   recipe.layers = {boulders};
   const PatchCube cube{1e4 * normalized(Vec3d{1, 2, 3}), 1e-3};
   const ImplicitField field(recipe, "recipe", cube);
-  const LandformInstances landforms(field, recipe, cube, 1e-6);
+  const FeatureFinder landforms(field, recipe, cube, 1e-6);
   const PlacedBoulder& rock = field.boulders()[0].boulders[0];
   const Vec3d up = normalized(rock.center);
   EXPECT_EQ(landforms.row_at(rock.center + 0.49e-4 * up, 0.0f), 0);
   EXPECT_EQ(landforms.row_at(rock.center + 0.51e-4 * up, 0.0f), -1);
 }
 
-TEST(LandformList, APatchHasItsOwnInItsFrame) {
+TEST(FeatureList, APatchHasItsOwnInItsFrame) {
   const Recipe recipe = cratered_ball();
   const PatchCube cube{{0, 0, 10}, 3};
   const nlohmann::json list = listed(recipe, cube);

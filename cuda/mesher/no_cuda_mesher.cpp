@@ -1,6 +1,6 @@
 // The mesher of a build without a CUDA compiler. Callers must ask probe_device() (cuda/device.h) first, so
 // that it is never called.
-#include "cuda/mesher/mesh_field.h"
+#include "cuda/mesher/gpu_mesher.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

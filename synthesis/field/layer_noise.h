@@ -1,6 +1,8 @@
-// How each kind of layer in a recipe becomes noise of the field's tables.
+// The noise that a layer becomes: how it is made, and what is asked of it whatever its kind. Noise without
+// heights has none of these facts.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "recipe/recipe.h"
@@ -20,5 +22,20 @@ LayerMaker layer_maker(const Layer& layer, const LayerSource& source, ArrayStore
 // How far beyond points a layer looks at the surface below it, length units; 0 for kinds that do not lie on
 // other layers.
 double reach_below(const Layer& layer);
+
+// A bound of the |height|, length units.
+double height_bound_of(const LayerNoise& noise);
+
+// How fine the noise is, and what its frame could not hold of it.
+NoiseDetail detail_of(const LayerNoise& noise);
+
+// Whether the noise of the body's frame keeps all digits of coordinates local to a patch.
+bool has_local_form(const LayerNoise& noise);
+
+// The number of lists of impulses that a block has for the noise.
+std::uint32_t num_impulse_lists(const LayerNoise& noise);
+
+// The number of random draws that the impulses around a point take; 0 for noise without impulses.
+double draws_at_a_point(const LayerNoise& noise, const ArrayView& arrays);
 
 }  // namespace astrolith

@@ -1,23 +1,51 @@
-#include "synthesis/field/block_lists.h"
+// The lists of the elements that reach blocks (synthesis/field/field_tables.h), gathered on the host block by
+// block.
+#pragma once
 
+#include <vector>
+
+#include "synthesis/field/field_tables.h"
 #include "synthesis/field/gathering.h"
 
 namespace astrolith {
-namespace {
+
+class BlockListStore {
+ public:
+  // A store for blocks of this field.
+  explicit BlockListStore(const FieldView& field)
+      : leaves_(field.body.leaves.count),
+        spot_lists_(field.spot_lists.count),
+        gabor_lists_(field.gabor_lists.count),
+        landform_lists_(field.num_landform_lists()) {}
+
+  // Appends the lists of a block of the field that the store was made for.
+  void add(const FieldView& field, const Box& box);
+
+  // A view of this object's arrays, valid until a block is added.
+  BlockListArrays view() const;
+
+  std::vector<MetaballSphere<float>> metaballs;
+  std::vector<std::uint32_t> first_metaball{0};  // (blocks * leaves + 1)
+  std::vector<SpotImpulse> spots;
+  std::vector<std::uint32_t> first_spot{0};  // (blocks * spot lists + 1)
+  std::vector<GaborImpulse> gabor;
+  std::vector<std::uint32_t> first_gabor{0};     // (blocks * Gabor lists + 1)
+  std::vector<std::uint32_t> landforms;          // numbers of craters and boulders
+  std::vector<std::uint32_t> first_landform{0};  // (blocks * landform lists + 1)
+
+ private:
+  void add_metaballs(const FieldView& field, const Box& box);
+  void add_landforms(const FieldView& field, const Box& box);
+
+  std::uint32_t leaves_, spot_lists_, gabor_lists_, landform_lists_;  // lists of one block
+};
 
 template <class T>
 void end_list(const std::vector<T>& items, std::vector<std::uint32_t>& first) {
   first.push_back(static_cast<std::uint32_t>(items.size()));
 }
 
-}  // namespace
-
-void BlockListStore::add(std::span<const MetaballSphere<float>> of_leaf) {
-  metaballs.insert(metaballs.end(), of_leaf.begin(), of_leaf.end());
-  end_list(metaballs, first_metaball);
-}
-
-void BlockListStore::add_metaballs(const FieldView& field, const Box& box) {
+inline void BlockListStore::add_metaballs(const FieldView& field, const Box& box) {
   const Box at = body_box(field.body, field.arrays, box);
   for (std::uint32_t l = 0; l < leaves_; ++l) {
     const BodyLeaf& leaf = field.leaf(l);
@@ -29,7 +57,7 @@ void BlockListStore::add_metaballs(const FieldView& field, const Box& box) {
   }
 }
 
-void BlockListStore::add_landforms(const FieldView& field, const Box& box) {
+inline void BlockListStore::add_landforms(const FieldView& field, const Box& box) {
   const Box projected = projected_block(field, box);
   for (std::uint32_t list = 0; list < field.crater_layers.count; ++list) {
     for (std::uint32_t i = 0; i < field.craters(list).craters.count; ++i) {
@@ -43,7 +71,7 @@ void BlockListStore::add_landforms(const FieldView& field, const Box& box) {
   end_list(landforms, first_landform);
 }
 
-void BlockListStore::add(const FieldView& field, const Box& box) {
+inline void BlockListStore::add(const FieldView& field, const Box& box) {
   add_metaballs(field, box);
   add_landforms(field, box);
   for (std::uint32_t list = 0; list < spot_lists_; ++list) {
@@ -58,7 +86,7 @@ void BlockListStore::add(const FieldView& field, const Box& box) {
   }
 }
 
-BlockListArrays BlockListStore::view() const {
+inline BlockListArrays BlockListStore::view() const {
   return {metaballs.data(), first_metaball.data(), spots.data(),     first_spot.data(),
           gabor.data(),     first_gabor.data(),    landforms.data(), first_landform.data(),
           leaves_,          spot_lists_,           gabor_lists_,     landform_lists_};

@@ -1,16 +1,16 @@
 #include <cmath>
 
 #include "numerics/errors.h"
-#include "synthesis/field/layer_joins_internal.h"
+#include "synthesis/field/layer_stack_internal.h"
 
 namespace astrolith {
 
-LayerJoins::LayerJoins(StackState& stack) : stack_(stack), domain_(stack.supports) {
+StackJoins::StackJoins(StackState& stack) : stack_(stack), domain_(stack.supports) {
   const BodyLeaf& first = stack.model.tables.leaf(0);
   if (stack.model.body.plain() && first.warped) domain_ = widened(domain_, first.warp.bound);
 }
 
-LayerJoin LayerJoins::join(const LayerUse& use, double height, bool has_height) {
+LayerJoin StackJoins::join(const LayerUse& use, double height, bool has_height) {
   LayerJoin join;
   join.how = use.combination;
   if (!has_height) join.how.kind = Combine::kMask;
@@ -28,7 +28,7 @@ LayerJoin LayerJoins::join(const LayerUse& use, double height, bool has_height) 
   return join;
 }
 
-void LayerJoins::set_mask(const LayerMask& mask, LayerJoin& join) const {
+void StackJoins::set_mask(const LayerMask& mask, LayerJoin& join) const {
   const auto slot = slots_.find(stack_.masking());
   if (slot == slots_.end()) fail_without_height(mask, stack_.place());
   join.mask = slot->second;
@@ -36,14 +36,14 @@ void LayerJoins::set_mask(const LayerMask& mask, LayerJoin& join) const {
 }
 
 // Finds a slot for the heights if later layers of noise read them.
-void LayerJoins::keep_heights(LayerJoin& join) {
+void StackJoins::keep_heights(LayerJoin& join) {
   const int last_use = stack_.masks.last_use[static_cast<std::size_t>(stack_.index)];
   if (last_use < 0) return;
   slots_[stack_.index] = join.keeps = mask_slots_.take(stack_.index, last_use);
   stack_.model.num_kept_heights = static_cast<std::uint32_t>(mask_slots_.count());
 }
 
-void LayerJoins::bound_change(LayerJoin& join) {
+void StackJoins::bound_change(LayerJoin& join) {
   double& bound = stack_.model.height_bound;
   const double before = bound;
   bound = elevation_bound(join.how, before, join.height_bound);
@@ -52,7 +52,7 @@ void LayerJoins::bound_change(LayerJoin& join) {
 }
 
 // Widens the domain of the later layers, whose coordinates a warp displaces by up to |direction| * height.
-void LayerJoins::displace_later(const Vec3d& direction, double height) {
+void StackJoins::displace_later(const Vec3d& direction, double height) {
   const Vec3d d{std::fabs(direction.x) * height, std::fabs(direction.y) * height,
                 std::fabs(direction.z) * height};
   displaced_ += d;
