@@ -47,7 +47,7 @@ void declare_base_options(CommandLine& app, FitArguments& arguments) {
       .check(in_range(std::int64_t{0}, std::int64_t{10000000}));
   app.add_option("--optimizer", arguments.optimizer,
                  "optimizer of the base's global parameters and of the details")
-      .check(one_of({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
+      .check(one_of({"pso", "crs2", "isres", "esch", "sbplx"}));
   app.add_option("--population", arguments.fit.population, "population of the optimizer")
       .check(in_range(1, 10000));
 }

@@ -75,8 +75,6 @@ def fit_texture(
     unit: Optional[str] = None,
     height_rms: Optional[float] = None,
     evaluation: Optional[str] = None,
-    spectrum_estimate: Optional[str] = None,
-    solver: Optional[str] = None,
     penalty: Optional[float] = None,
     gap: Optional[float] = None,
     max_memory: Optional[float] = None,
@@ -115,10 +113,6 @@ def fit_texture(
     evaluation
         How a Gabor layer's lobes become heights on a surface: "impulses" (default; exact) or "tiles" (wide lobes as
         random-phase tiles, many times faster). ``figures.channels[].tiles_distance`` says what tiles cost.
-    spectrum_estimate
-        "smoothed" (default) or "periodogram".
-    solver
-        "working-set" (default) or "fista".
     penalty, gap
         Sparsity penalty over the largest useful one (default 0.03), and the certified gap (default 1e-4).
     max_memory
@@ -147,7 +141,7 @@ def fit_texture(
         if not colors and len(planes) == 3:
             planes = _luma(planes)
     kind = _arrays.choice(model or "gabor", "model", ("gabor", "phase", "exemplar", "auto"))
-    about_lobes = {"lobes": lobes, "penalty": penalty, "gap": gap, "solver": solver, "evaluation": evaluation, "spectrum_estimate": spectrum_estimate}  # fmt: skip
+    about_lobes = {"lobes": lobes, "penalty": penalty, "gap": gap, "evaluation": evaluation}  # fmt: skip
     for name, value in about_lobes.items():
         if kind in ("phase", "exemplar") and value is not None:
             raise ValueError(f'{name}: is about lobes, which model "{kind}" has none of; leave it out')
@@ -159,7 +153,7 @@ def fit_texture(
         most_bytes = 1e9 * _arrays.number(max_memory, "max_memory", 1e-9, 1e9)
     given = _options.given(
         model=model, max_memory=max_memory, channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
-        height_rms=height_rms, evaluation=evaluation, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty,
+        height_rms=height_rms, evaluation=evaluation, penalty=penalty,
         gap=gap, seed=seed,
     )  # fmt: skip
     json, figures, power = _estimation.fit_texture(
@@ -178,8 +172,6 @@ def fit_texture(
         _arrays.choice(unit or "m", "unit", ("m", "km")),
         -1.0 if height_rms is None else _arrays.number(height_rms, "height_rms", 0.0, 1e12),
         _arrays.choice(evaluation or "impulses", "evaluation", ("impulses", "tiles")) == "tiles",
-        _arrays.choice(spectrum_estimate or "smoothed", "spectrum_estimate", ("smoothed", "periodogram")) != "smoothed",
-        _arrays.choice(solver or "working-set", "solver", ("working-set", "fista")) == "fista",
         0.03 if penalty is None else _arrays.number(penalty, "penalty", 1e-4, 0.99),
         1e-4 if gap is None else _arrays.number(gap, "gap", 1e-8, 0.5),
         given,

@@ -47,7 +47,7 @@ def _most_spheres(spheres: Optional[int], size: Optional[int]) -> int:
 
 
 _KERNELS = ("gaussian", "metaball", "soft_object", "wyvill", "cauchy")
-_OPTIMIZERS = ("pso", "crs2", "isres", "esch", "sbplx", "cmaes")
+_OPTIMIZERS = ("pso", "crs2", "isres", "esch", "sbplx")
 
 
 def fit_shape(
@@ -101,7 +101,7 @@ def fit_shape(
     tolerance
         No more metaballs once the mean distance is below this fraction of the diagonal.
     optimizer
-        "pso" (default), "crs2", "isres", "esch", "sbplx" or "cmaes".
+        "pso" (default), "crs2", "isres", "esch" or "sbplx".
     population, generations
         Of the search for details: default 20 and 100.
     base_only

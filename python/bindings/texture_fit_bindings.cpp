@@ -131,16 +131,14 @@ TextureResult fit_texture(const std::string& name, const std::optional<Planes>& 
                           const std::string& model, const std::string& output, const std::string& report,
                           double most_bytes, bool spectrum, bool colors, int detrend, bool by_division,
                           int lobes, double mm_per_px, const std::string& unit, double height_rms, bool tiles,
-                          bool periodogram, bool fista, double penalty, double gap, const Options& given,
-                          std::uint64_t seed, int threads, nb::object progress) {
+                          double penalty, double gap, const Options& given, std::uint64_t seed, int threads,
+                          nb::object progress) {
   TextureArguments arguments{name, {}, model, output, report, most_bytes, spectrum, {}, given};
   arguments.fit.model = model_named(model);
   PhotoFitOptions& options = arguments.fit.photo;
   options.colors = colors;
   options.detrend_degree = detrend;
   options.trend = by_division ? TrendModel::kMultiplied : TrendModel::kAdded;
-  options.fit.target = periodogram ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
-  options.fit.solver = fista ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
   options.fit.max_lobes = lobes;
   options.fit.penalty_ratio = penalty;
   options.fit.relative_gap = gap;
@@ -161,8 +159,8 @@ void declare_texture_fit(nb::module_& module) {
              nb::arg("model"), nb::arg("output"), nb::arg("report"), nb::arg("most_bytes"),
              nb::arg("spectrum"), nb::arg("colors"), nb::arg("detrend"), nb::arg("by_division"),
              nb::arg("lobes"), nb::arg("mm_per_px"), nb::arg("unit"), nb::arg("height_rms"), nb::arg("tiles"),
-             nb::arg("periodogram"), nb::arg("fista"), nb::arg("penalty"), nb::arg("gap"), nb::arg("options"),
-             nb::arg("seed"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("penalty"), nb::arg("gap"), nb::arg("options"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
 }
 
 }  // namespace astrolith::python
