@@ -149,13 +149,6 @@ def package():
     return astrolith
 
 
-def run_benchmark(name, report, pattern, *arguments):
-    """Runs the Google benchmarks whose names match; report: the JSON to write."""
-    subprocess.run([find_program(name), f"--benchmark_filter={pattern}", f"--benchmark_out={report}",
-                    "--benchmark_out_format=json", *map(str, arguments)],
-                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-
 def run_peer(script, *arguments, peers=False):
     """What notebooks/peers/SCRIPT prints as JSON; peers: it needs the packages of notebooks/requirements.txt."""
     python = needed(OUT / "venv/bin/python") if peers else sys.executable

@@ -1,19 +1,11 @@
 #include "apps/fit_shape/fit_shape_options.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "apps/density_question.h"
 #include "apps/mesh_unit.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
-
-Kernel kernel_named(const std::string& word) {
-  return *std::find_if(std::begin(kKernels), std::end(kKernels),
-                       [&](Kernel kernel) { return kernel_word(kernel) == word; });
-}
 
 // The input, the output and the fit of the metaballs.
 void declare_base_options(CommandLine& app, FitArguments& arguments) {
@@ -35,12 +27,9 @@ void declare_base_options(CommandLine& app, FitArguments& arguments) {
          "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
       .check(in_range(100, 1000000))
       .default_text("");
-  app.add_option("--kernel", arguments.kernel, "kernel of the metaballs")
-      .check(one_of({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
-  app.add_option("--subtract", arguments.fit.subtract,
-                 "largest share of the metaballs that may be subtractive; only Gaussian metaballs may be. 0: "
-                 "none, for "
-                 "mascons or other programs")
+  app.add_option(
+         "--subtract", arguments.fit.subtract,
+         "largest share of the metaballs that may be subtractive; 0: none, for mascons or other programs")
       .check(in_range(0.0, 0.9));
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
@@ -91,8 +80,8 @@ void declare_packing_options(CommandLine& app, FitArguments& arguments) {
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
   for (const char* option :
-       {"--kernel", "--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only",
-        "--details", "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
+       {"--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only", "--details",
+        "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
     packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,
@@ -123,11 +112,6 @@ void declare_fit_options(Program& program, FitArguments& arguments) {
 
 void settle_fit_options(const Program& program, FitArguments& arguments) {
   arguments.fit.seed = program.seed;
-  arguments.fit.kernel = kernel_named(arguments.kernel);
-  if (arguments.fit.kernel != Kernel::kGaussian && program.app.option("--subtract").count() > 0 &&
-      arguments.fit.subtract > 0.0) {
-    throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
-  }
   arguments.unit = unit_of_mesh(program, arguments.mesh, {arguments.unit}, {"km", "m"});
   arguments.fit.length_unit = arguments.unit;
   if (arguments.fit.bytes > 0 && !arguments.details.base_only) {

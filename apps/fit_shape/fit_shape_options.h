@@ -14,7 +14,6 @@ struct FitArguments {
   std::string mesh, output, report, checkpoint;
   std::string mesh_sha256;  // of the file as it was read
   std::string optimizer = "pso";
-  std::string kernel = "gaussian";
   std::string unit;         // of the mesh, once settled
   double time_limit = 0.0;  // seconds; 0 = none
   int noise_seeds = 3;      // of the verdict on the surface; 0 = no verdict

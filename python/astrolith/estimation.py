@@ -46,7 +46,6 @@ def _most_spheres(spheres: Optional[int], size: Optional[int]) -> int:
     return 200 if size is None else 0
 
 
-_KERNELS = ("gaussian", "metaball", "soft_object", "wyvill", "cauchy")
 _OPTIMIZERS = ("pso", "crs2", "isres", "esch", "sbplx")
 
 
@@ -56,7 +55,6 @@ def fit_shape(
     *,
     spheres: Optional[int] = None,
     bytes: Optional[int] = None,
-    kernel: Optional[str] = None,
     subtract: Optional[float] = None,
     points: Optional[int] = None,
     tolerance: Optional[float] = None,
@@ -92,10 +90,8 @@ def fit_shape(
     bytes
         Round the numbers of the metaballs so that ``recipe.write("name.astro")`` takes at most so many bytes, 100 to
         1000000, for the least error. The recipe then states no provenance. Needs `base_only`, and takes no `micro`.
-    kernel
-        "gaussian" (default), "metaball", "soft_object", "wyvill" or "cauchy".
     subtract
-        Largest share of the metaballs that may be subtractive, 0 to 0.9; default 0.5, and 0 for other kernels.
+        Largest share of the metaballs that may be subtractive, 0 to 0.9; default 0.5.
     points
         Samples of the surface that the refinement sees; default 120 a metaball.
     tolerance
@@ -151,7 +147,7 @@ def fit_shape(
     if not file:
         arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
     given = _options.given(
-        spheres=spheres, bytes=bytes, kernel=kernel, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
+        spheres=spheres, bytes=bytes, subtract=subtract, points=points, tolerance=tolerance, optimizer=optimizer,
         population=population, generations=generations, base_only=base_only, unit=unit, seed=seed,
         details=_options.name_of(details), micro=_options.name_of(micro), mm_per_px=mm_per_px, micro_height=micro_height, device=device,
         time_limit=time_limit, strict=strict, wrap=wrap, all_parts=all_parts,
@@ -164,13 +160,10 @@ def fit_shape(
         raise ValueError("bytes: are those of a bare body; pass base_only=True and leave out micro")
     if micro is None and (mm_per_px is not None or micro_height is not None):
         raise ValueError("micro: is missing; mm_per_px and micro_height are of its layers")
-    if kernel not in (None, "gaussian") and subtract:
-        raise ValueError("subtract: only Gaussian metaballs may be subtractive; leave it out, or kernel")
     json, figures = _estimation.fit_shape(
         file or "mesh",
         None if arrays is None else arrays.vertices,
         None if arrays is None else arrays.faces,
-        _arrays.choice(kernel or "gaussian", "kernel", _KERNELS),
         _most_spheres(spheres, bytes),
         0 if bytes is None else _arrays.integer(bytes, "bytes", 100, 1000000),
         0.5 if subtract is None else _arrays.number(subtract, "subtract", 0.0, 0.9),

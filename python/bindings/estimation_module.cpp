@@ -7,10 +7,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -201,17 +199,15 @@ Fitted fit_shape(TriangleMesh mesh, const ShapeArguments& arguments, TimeLimit& 
 // `spheres` 0: as many as follow from the bytes.
 std::pair<std::string, std::string> fit_shape_in_job(
     const std::string& name, const std::optional<Rows<double>>& vertices,
-    const std::optional<Rows<std::uint32_t>>& faces, const std::string& kernel, int spheres, int bytes,
-    double subtract, std::int64_t points, double tolerance, const std::string& optimizer, int population,
-    int generations, bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
+    const std::optional<Rows<std::uint32_t>>& faces, int spheres, int bytes, double subtract,
+    std::int64_t points, double tolerance, const std::string& optimizer, int population, int generations,
+    bool base_only, const std::string& details, const std::string& micro, double mm_per_px,
     double micro_height, const std::string& device, double time_limit, const std::string& unit,
     const std::string& checkpoint, const std::string& report, bool strict, bool wrap, bool all_parts,
     const Options& options, std::uint64_t seed, int threads, nb::object progress) {
   const DetailArguments layers{base_only, generations, details, micro, mm_per_px, micro_height, device};
   ShapeArguments arguments{name, vertices ? "" : name, {},     layers,  time_limit,
                            unit, checkpoint,           report, options, {strict, wrap, all_parts}};
-  arguments.fit.kernel = *std::find_if(std::begin(kKernels), std::end(kKernels),
-                                       [&](Kernel k) { return kernel_word(k) == kernel; });
   arguments.fit.spheres = spheres > 0 ? spheres : spheres_for_bytes(bytes);
   arguments.fit.bytes = bytes;
   arguments.fit.length_unit = unit;
@@ -289,13 +285,13 @@ NB_MODULE(_estimation, module) {
   declare_packing(module);
   declare_texture_fit(module);
   module.def("fit_shape", &fit_shape_in_job, nb::arg("name"), nb::arg("vertices").noconvert().none(),
-             nb::arg("faces").noconvert().none(), nb::arg("kernel"), nb::arg("spheres"), nb::arg("bytes"),
-             nb::arg("subtract"), nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"),
-             nb::arg("population"), nb::arg("generations"), nb::arg("base_only"), nb::arg("details"),
-             nb::arg("micro"), nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"),
-             nb::arg("time_limit"), nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"),
-             nb::arg("strict"), nb::arg("wrap"), nb::arg("all_parts"), nb::arg("options"), nb::arg("seed"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("faces").noconvert().none(), nb::arg("spheres"), nb::arg("bytes"), nb::arg("subtract"),
+             nb::arg("points"), nb::arg("tolerance"), nb::arg("optimizer"), nb::arg("population"),
+             nb::arg("generations"), nb::arg("base_only"), nb::arg("details"), nb::arg("micro"),
+             nb::arg("mm_per_px"), nb::arg("micro_height"), nb::arg("device"), nb::arg("time_limit"),
+             nb::arg("unit"), nb::arg("checkpoint"), nb::arg("report"), nb::arg("strict"), nb::arg("wrap"),
+             nb::arg("all_parts"), nb::arg("options"), nb::arg("seed"), nb::arg("threads"),
+             nb::arg("progress").none());
   module.def("repair_mesh", &repair_in_job, nb::arg("name"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("wrap"), nb::arg("all_parts"), nb::arg("unit"),
              nb::arg("progress").none());

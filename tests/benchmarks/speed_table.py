@@ -94,11 +94,10 @@ class Benchmark:
 
     def gabor(self):
         turns = [Run(self.tools / "gabor_noise_benchmark").rows() for _ in range(self.turns)]
-        table = Table("Gabor noise, one band, 32 impulses, M/s", "bandwidth", "Lagae 2009")
+        table = Table("Gabor noise, one band, 32 impulses, M/s", "bandwidth", "no peer")
         for i, row in enumerate(turns[0]):
-            for kind, rate in (("texture", "texture_mpixel_per_s"), ("surface", "surface_mpoint_per_s")):
-                table.row(f"{kind}, {row['bandwidth']}", [turn[i][rate] for turn in turns],
-                          [turn[i]["peer_" + kind] for turn in turns])
+            for kind in ("texture", "surface"):
+                table.row(f"{kind}, {row['bandwidth']}", [turn[i][kind] for turn in turns], None)
 
     def terrain(self, targets):
         like_it = self.folder / "like_it.json"
