@@ -25,8 +25,8 @@
 namespace {
 
 using namespace astrolith;
-using testing::BumpHeights;
-using testing::rough_sphere;
+using astrolith::testing::BumpHeights;
+using astrolith::testing::rough_sphere;
 
 struct Sampling {
   std::int64_t points = 0,
