@@ -43,7 +43,7 @@ SUITES = {
     "tasks": "apps", "apps": "apps", "python": "python",
 }  # fmt: skip
 PROGRAMS = ["apps_tests", "program_tests", "check_tiles", "classify", "compare", "describe", "fit_gabor", "fit_shape",
-            "gravity", "synth", "asteroid_experiment", "standard_set_experiment"]  # fmt: skip
+            "gravity", "synth"]  # fmt: skip
 
 
 @dataclass(frozen=True)

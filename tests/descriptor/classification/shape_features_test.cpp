@@ -46,6 +46,7 @@ TEST_P(EveryKind, IsNearerToItselfThanToAnother) {
   EXPECT_LT(4 * itself, another);
   EXPECT_LT(2 * feature_distance(GetParam(), a, of_points), another);
   EXPECT_EQ(feature_distance(GetParam(), a, a), 0);
+  EXPECT_EQ(shape_features({s.points, {}, s.normals}, options()), of_points);
 }
 
 TEST_P(EveryKind, RefusesNumbersOutOfRange) {

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <string>
 
-#include "geometry/points/point_normals.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"

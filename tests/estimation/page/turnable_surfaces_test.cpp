@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "estimation/page/page_text_internal.h"
+#include "estimation/page/page_internal.h"
 
 namespace astrolith {
 namespace {

@@ -36,11 +36,9 @@ TEST(PowerSpectrum, MeanPowerIsTheVariance) {
 TEST(PowerSpectrum, AMeanOverTilesIsReportedAndStops) {
   const GreyImage image = white_noise(160, 96, 3);
   int reports = 0;
-  exemplar_periodogram(image, 32, Borders::kTaper, [&](double, std::string_view) { return ++reports > 0; });
+  exemplar_periodogram(image, 32, [&](double, std::string_view) { return ++reports > 0; });
   EXPECT_EQ(reports, 9 * 5);
-  EXPECT_THROW(
-      exemplar_periodogram(image, 32, Borders::kTaper, [](double, std::string_view) { return false; }),
-      WorkError);
+  EXPECT_THROW(exemplar_periodogram(image, 32, [](double, std::string_view) { return false; }), WorkError);
 }
 
 TEST(PowerSpectrum, IsSymmetric) {

@@ -79,20 +79,5 @@ TEST(TaperedPeriodogram, OnAFinerGridIsTheSame) {
   }
 }
 
-// On cuts of a larger texture the estimate is nearer to the truth than that from the periodic component.
-TEST(TaperedPeriodogram, ServesCutsBetterThanThePeriodicComponent) {
-  double taper = 0.0, periodic = 0.0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const testing::CutTexture cut = testing::cut_realisation(testing::ring_power, seed);
-    const auto distance = [&](Borders borders) {
-      return optimal_transport_distance(
-          estimate_spectrum(exemplar_periodogram(cut.image, 1024, borders)).spectrum, cut.truth);
-    };
-    taper += distance(Borders::kTaper);
-    periodic += distance(Borders::kPeriodicComponent);
-  }
-  EXPECT_LT(taper, 0.9 * periodic);
-}
-
 }  // namespace
 }  // namespace astrolith

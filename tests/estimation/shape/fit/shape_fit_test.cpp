@@ -30,14 +30,9 @@ ShapeFitOptions quick(int spheres) {
   return options;
 }
 
-// Bodies of each kernel, fitted with the kernel that they are made of.
-class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
-
-TEST_P(ShapeFitKernels, OneSphereBecomesOneMetaballOfItsRadius) {
+TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
   const TargetBody target = prepare_target(testing::icosphere(4, 2.0, {5, 6, 7}), "sphere");
-  ShapeFitOptions options = quick(1);
-  options.kernel = GetParam();
-  const ShapeFitResult fit = fit_shape(target, options);
+  const ShapeFitResult fit = fit_shape(target, quick(1));
   ASSERT_EQ(fit.body.spheres.size(), 1u);
   EXPECT_NEAR(fit.body.spheres[0].radius, 2.0, 0.01);
   EXPECT_NEAR(norm(fit.body.spheres[0].center - Vec3d{5, 6, 7}), 0.0, 0.01);
@@ -45,31 +40,19 @@ TEST_P(ShapeFitKernels, OneSphereBecomesOneMetaballOfItsRadius) {
   EXPECT_LT(fit.check.distance.mean, 2e-3);
 }
 
-TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballsLong) {
+TEST(ShapeFit, RecoversABodyOfThreeMetaballs) {
   MetaballBody truth;
-  truth.kernel = GetParam();
-  if (truth.kernel == Kernel::kGaussian) {
-    truth.blend_exponent = 2.5;
-  } else {
-    truth.a = truth.b = 1.5;
-  }
+  truth.blend_exponent = 2.5;
   truth.spheres = {{{-0.9, 0, 0}, 0.9}, {{0.5, 0.2, 0}, 1.0}, {{1.3, 0.5, 0.3}, 0.6}};
   const TargetBody target = prepare_target(mesh_of(truth, 64), "three");
-  ShapeFitOptions options = quick(16);
-  options.kernel = GetParam();
-  const ShapeFitResult fit = fit_shape(target, options);
-  EXPECT_EQ(fit.body.kernel, GetParam());
+  const ShapeFitResult fit = fit_shape(target, quick(16));
   EXPECT_LT(fit.check.distance.mean, 5e-4);
   EXPECT_LT(fit.check.distance.p99, 3e-3);
-  EXPECT_NEAR(fit.check.volume_ratio, 1.0, GetParam() == Kernel::kGaussian ? 2e-3 : 4e-3);
+  EXPECT_NEAR(fit.check.volume_ratio, 1.0, 2e-3);
   EXPECT_TRUE(fit.check.topology.closed && fit.check.topology.manifold);
   EXPECT_EQ(fit.check.topology.components, 1);
-  // Compact kernels leave bumps where their supports end, and the similarity sees bumps in the normals. The
-  // Gaussian has none.
-  EXPECT_GT(fit.similarity, (GetParam() == Kernel::kGaussian ? 0.95 : 0.75) * fit.similarity_floor);
+  EXPECT_GT(fit.similarity, 0.95 * fit.similarity_floor);
 }
-
-INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels));
 
 // Bodies with several components, and a body with a hole.
 struct ComponentsCase {

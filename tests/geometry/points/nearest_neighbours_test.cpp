@@ -1,13 +1,11 @@
-#include "geometry/points/point_normals.h"
+#include "geometry/points/nearest_neighbours.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
-#include "geometry/points/nearest_neighbours.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "tests/support/meshes.h"
@@ -42,27 +40,6 @@ TEST(NearestNeighbours, RefusesMoreThanThereAre) {
   EXPECT_THROW(nearest_neighbours(points, 0), InputError);
   const std::vector<Vec3d> wrong{{0, 0, 0}, {std::nan(""), 0, 0}};
   EXPECT_THROW(nearest_neighbours(wrong, 1), InputError);
-}
-
-TEST(PointNormals, OfASphereAreItsRadii) {
-  const Vec3d center{1e4, 0, -1e4};
-  const SurfaceSamples s = sample_poisson_disk(testing::icosphere(5, 1.0, center), 2000, 1);
-  const std::vector<Vec3d> normals = point_normals(s.points, s.normals, 8);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    EXPECT_NEAR(norm(normals[i]), 1, 1e-12);
-    EXPECT_GT(dot(normals[i], normalized(s.points[i] - center)), std::cos(4 * std::numbers::pi / 180));
-  }
-}
-
-TEST(PointNormals, FollowTheHint) {
-  const std::vector<Vec3d> square{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-  const std::vector<Vec3d> up(4, Vec3d{0.1, 0, 2}), down(4, Vec3d{0, 0, -1});
-  for (const Vec3d& n : point_normals(square, up, 3)) EXPECT_NEAR(n.z, 1, 1e-12);
-  for (const Vec3d& n : point_normals(square, down, 3)) EXPECT_NEAR(n.z, -1, 1e-12);
-  const std::vector<Vec3d> one_place(5, Vec3d{1, 2, 3}), hints(5, Vec3d{0, 0, 1});
-  for (const Vec3d& n : point_normals(one_place, hints, 3)) EXPECT_NEAR(norm(n), 1, 1e-12);
-  EXPECT_THROW(point_normals(square, {}, 3), InputError);
-  EXPECT_THROW(point_normals(square, up, 4), InputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The record that every optimiser keeps while it runs.
+// The optimisers, and the record that each keeps while it runs.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,6 +8,12 @@
 #include "estimation/optimize/optimizer.h"
 
 namespace astrolith {
+
+// They minimise as optimizer.h says: by a particle swarm with constriction, and by an algorithm of NLopt.
+OptimizeResult particle_swarm(const BatchObjective& objective, const Bounds& bounds,
+                              const OptimizeOptions& options, const Progress& progress);
+OptimizeResult nlopt_search(const BatchObjective& objective, const Bounds& bounds,
+                            const OptimizeOptions& options, const Progress& progress);
 
 class BestSoFar {
  public:
@@ -22,21 +28,13 @@ class BestSoFar {
     result_.value = value;
   }
 
-  // Is called after each generation. Returns false and sets the termination when the run is to end.
+  // Is called after each generation. Returns false when the run is to end.
   bool generation_done() {
     result_.history.push_back(result_.value);
     const double done =
         static_cast<double>(result_.evaluations) / static_cast<double>(options_.max_evaluations);
-    if (result_.value <= options_.target) return end(OptimizeTermination::target);
-    if (!report(progress_, std::fmin(done, 1.0), fmt::format("best {:.6g}", result_.value))) {
-      return end(OptimizeTermination::stopped);
-    }
-    return result_.evaluations < options_.max_evaluations || end(OptimizeTermination::evaluations);
-  }
-
-  bool end(OptimizeTermination why) {
-    result_.termination = why;
-    return false;
+    result_.stopped = !report(progress_, std::fmin(done, 1.0), fmt::format("best {:.6g}", result_.value));
+    return !result_.stopped && result_.evaluations < options_.max_evaluations;
   }
   const OptimizeResult& result() const { return result_; }
 
