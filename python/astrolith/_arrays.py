@@ -1,14 +1,59 @@
-"""Checks of the arrays that users pass in: a wrong one is a ValueError of one line that names the argument."""
+"""Checks of what users pass in: a wrong argument is an error of one line that names it.
+
+A wrong value is a ValueError. A text or the name of a file that is none is a TypeError.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Optional
+import errno
+import os
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
+PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+
 # The largest coordinate, as mesh files and recipes have it.
 _LARGEST = 1e18
+
+
+class MissingFileError(ValueError, FileNotFoundError):
+    """A file that is to be read does not exist."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.errno = errno.ENOENT
+
+
+def is_file_name(value: Any) -> bool:
+    """Whether the argument names a file: a text, bytes or a path."""
+    return isinstance(value, (str, bytes, os.PathLike))
+
+
+def file_name(value: Any, name: str) -> str:
+    """The name of a file, whose bytes that are no UTF-8 are surrogates, as Python has them."""
+    if not is_file_name(value):
+        raise TypeError(f"{name}: must be the name of a file, and is {type(value).__name__}")
+    file = os.fsdecode(value)
+    try:
+        encoded = os.fsencode(file)
+    except UnicodeEncodeError:
+        encoded = b"\0"
+    if b"\0" in encoded:
+        raise ValueError(f"{name}: {file!r} holds a character that no file's name has")
+    return file
+
+
+def text(value: Any, name: str) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: must be a text, and is {type(value).__name__}")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{name}: holds half of a surrogate pair, which is no character") from None
+    return value
 
 
 def _array(value: Any, name: str) -> npt.NDArray[Any]:
@@ -19,9 +64,7 @@ def _array(value: Any, name: str) -> npt.NDArray[Any]:
             array = np.asarray(value)
         except (TypeError, ValueError) as error:
             raise ValueError(f"{name}: is no array of numbers ({type(value).__name__}); pass a NumPy array") from error
-    if not array.flags.c_contiguous:
-        raise ValueError(f"{name}: is not C-contiguous; pass numpy.ascontiguousarray({name})")
-    return array
+    return array.astype(array.dtype.newbyteorder("="), order="C", copy=False)
 
 
 def _require_rows(array: npt.NDArray[Any], name: str, columns: int, empty: bool) -> None:

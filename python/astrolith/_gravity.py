@@ -101,7 +101,7 @@ class Gravity:
 
 
 def _is_recipe(body: Any) -> bool:
-    return isinstance(body, Mapping) or (isinstance(body, (str, os.PathLike)) and os.fspath(body).endswith((".json", ".astro")))
+    return isinstance(body, Mapping) or (_arrays.is_file_name(body) and os.fsdecode(body).endswith((".json", ".astro")))
 
 
 def _site_lengths(sites: int, size: Optional[float], distance: Optional[float], at_facets: bool) -> tuple[float, float]:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _estimation, _options
+from astrolith._arrays import PathLike
 from astrolith._mesh import MeshLike, arrays_of, unit_of
 from astrolith._options import Progress
-from astrolith._recipe import PathLike
 
 
 @dataclasses.dataclass(eq=False)
@@ -99,9 +98,9 @@ def pack_spheres(
     >>> packing.centers.shape, packing.length_unit, 0.5 < packing.filling_rate < 1
     ((8, 3), 'm', True)
     """
-    file = os.fspath(mesh) if isinstance(mesh, (str, os.PathLike)) else ""
+    file = _arrays.file_name(mesh, "mesh") if _arrays.is_file_name(mesh) else ""
     arrays = None if file else arrays_of(mesh if faces is None else (mesh, faces), "mesh")
-    table = "" if output is None else os.fspath(output)
+    table = "" if output is None else _arrays.file_name(output, "output")
     if table and not table.endswith(".csv"):
         raise ValueError(f"output: {table} must end in .csv")
     length_unit = unit_of(mesh, unit, ("km", "m"), "mesh")

@@ -67,7 +67,7 @@ def render(
     """
     arrays = arrays_of(mesh, "mesh")
     directions = [_arrays.vector(view, "views") for view in views]
-    words = [cameras] if isinstance(cameras, str) else [str(camera) for camera in cameras]
+    words = [_arrays.text(camera, "cameras") for camera in ([cameras] if isinstance(cameras, str) else cameras)]
     sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)
     towards_sun = _arrays.vector(towards_sun, sun_name)
     if reflectance not in _LUNAR_SHARES:
@@ -86,7 +86,7 @@ def render(
         towards_sun,
         sun_body is not None,
         _LUNAR_SHARES[reflectance],
-        float(ambient),
+        _arrays.number(ambient, "ambient", 0.0, 10.0),
         bool(transparent),
         _arrays.integer(width, "width", 16, 16384),
         _arrays.integer(height, "height", 16, 16384),

@@ -1,6 +1,7 @@
 #include "python/bindings/gravity_bindings.h"
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -8,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -63,13 +65,14 @@ GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
 }
 
 std::tuple<NumpyArray<double>, std::vector<std::string>, std::string> gravity(
-    const std::string& name, const std::optional<Rows<double>>& vertices,
+    const std::filesystem::path& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& unit, const std::string& json,
     int resolution, const std::string& at, const std::optional<Rows<double>>& points, double density,
     double period, const std::array<double, 3>& axis, double tolerance, bool exact, int sample, int degree,
     double radius, int sites, double site_size, double site_distance, std::uint64_t seed, int threads,
     nb::object progress) {
-  GravityArguments arguments{name, unit, {}, json, resolution, at, {}, {}, {sites, site_size, site_distance}};
+  GravityArguments arguments{
+      name.string(), unit, {}, json, resolution, at, {}, {}, {sites, site_size, site_distance}};
   if (vertices && faces) arguments.mesh = mesh_of(*vertices, *faces, {});
   if (points) arguments.points = points_of(*points);
   arguments.options = {density,   period, normalized(Vec3d{axis[0], axis[1], axis[2]}),

@@ -44,6 +44,13 @@ def test_examples_of_docstrings(module):
     assert doctest.testmod(module, optionflags=doctest.ELLIPSIS).failed == 0
 
 
+def test_modules_are_loaded_when_they_are_named():
+    code = "import astrolith, sys; print('astrolith.bridges' in sys.modules, astrolith.bridges.Bodies.__name__, "\
+        "astrolith.estimation.ShapeFit.__name__)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == "False Bodies ShapeFit\n"
+
+
 def test_import_is_quick_and_loads_nothing_of_the_fits():
     code = "import astrolith, sys; print([m for m in sys.modules if 'estimation' in m])"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any, Callable, Iterable, Iterator, Mapping, Optional, Sequence, Union, overload
 
 import numpy as np
@@ -58,7 +57,7 @@ class Bodies:
         points: int = 0,
         threads: int = 1,
     ) -> None:
-        if isinstance(recipes, (str, os.PathLike, Mapping)):
+        if _arrays.is_file_name(recipes) or isinstance(recipes, Mapping):
             raise ValueError("recipes: must be a list of recipes; put the one into a list")
         if not isinstance(seeds, Iterable):
             raise ValueError(f"seeds: must be whole numbers, such as range(100), and is {seeds!r}")
