@@ -14,36 +14,15 @@
 
 #include "descriptor/surface/height_bands.h"
 #include "descriptor/surface/regions.h"
+#include "descriptor/surface/surface_quantity.h"
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
 
-enum class SurfaceQuantity {
-  roughness,  // log of the rms residual over a local quadric, divided by the radius
-  skewness,   // of the residual: boulders > 0, craters < 0
-  kurtosis,   // of the residual, 0 for Gaussian heights
-  normals,    // degrees, rms angle between the surface's normals and the quadric's
-  bend,  // degrees, rms angle between the mesh's own facets within .5 edges: shows facets that are too large
-  slope  // degrees between the normal and the vertical of gravity and rotation
-};
-
-// What other code asks of a quantity.
-struct SurfaceQuantityTraits {
-  const char* name;     // as in JSON
-  const char* heading;  // of a plot
-  bool has_mean;        // the middle of its values is their mean, not their median
-  bool counts_in_distance;
-  // What is said of a surface whose middle is lower or higher; null where realism_words.cpp has words of its
-  // own.
-  const char *lower, *higher;
-};
-const SurfaceQuantityTraits& traits_of(SurfaceQuantity quantity);
-inline const char* name_of(SurfaceQuantity quantity) { return traits_of(quantity).name; }
-
 struct LocalStatistic {
   SurfaceQuantity quantity;
-  double radius = 0.0;         // edges; 0 for bends and slopes
+  double radius = 0.0;         // edges; 0 for what has none
   std::vector<double> values;  // (#places)
 };
 
@@ -71,7 +50,7 @@ struct SurfaceStatistics {
   double edge = 0.0;         // mean edge of the evened surface, the mesh's unit
   double body_radius = 0.0;  // edges; of the sphere of equal area
   std::vector<Vec3d> places;
-  std::vector<LocalStatistic> local;  // roughness, skewness, kurtosis, normals of each radius; bend; slope
+  std::vector<LocalStatistic> local;  // of each radius those that have one; then the others
   std::vector<RoughnessAtLag> lags;
   HeightBands heights;
   Regions regions;             // of the places, with the covariance of roughness within the first radius
