@@ -12,7 +12,6 @@
 #include "apps/surface_options.h"
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
-#include "geometry/io/stated_unit.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "tasks/synthesis/describe_file.h"

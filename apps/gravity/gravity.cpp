@@ -11,11 +11,11 @@
 #include "apps/picture_options.h"
 #include "apps/program.h"
 #include "apps/shape_repair.h"
-#include "geometry/io/points_io.h"
+#include "geometry/io/mesh_io.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "tasks/gravity/body_gravity.h"
+#include "tasks/gravity/compute_gravity.h"
 
 namespace astrolith {
 namespace {
@@ -132,7 +132,7 @@ void print(const nlohmann::ordered_json& result) {
   print_result(result.dump(2, ' ', false, replace) + "\n");
 }
 
-BodyGravityOptions options_of(const Program& program, const Arguments& a, const GravityBody& body) {
+GravityOptions options_of(const Program& program, const Arguments& a, const GravityBody& body) {
   return {a.density,    a.period,
           axis_of(a),   a.tolerance,
           a.exact,      a.sample,
@@ -154,7 +154,7 @@ void run(Program& program, const Arguments& a) {
   nlohmann::ordered_json repair;
   const GravityBody body = read_gravity_body(program, a.shape, {a.unit}, a.resolution, a.repair, repair);
   const GravityPlaces places = places_of(a, body.mesh);
-  const BodyGravity made = body_gravity(body, places, options_of(program, a, body),
+  const ComputedGravity made = compute_gravity(body, places, options_of(program, a, body),
                                         [&](const std::string& stage) { return program.progress(stage); });
   nlohmann::ordered_json result{{"shape", a.shape}};
   result.update(made.figures);

@@ -52,11 +52,11 @@ void declare_options(Program& program, Options& options) {
   program.app.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
       .required();
   program.app
-      .add_option("-o,--output", options.output,
-                  "the mesh: .ply (binary, streamed; .ply.zst is compressed), .obj, .stl, .glb, .icq or .tab "
-                  "(PDS plates), in the "
-                  "recipe's length unit; with --texture .png or .tif; needed unless --predict or "
-                  "--write-recipe is given")
+      .add_option(
+          "-o,--output", options.output,
+          "the mesh: " + written_mesh_words() +
+              ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict or "
+              "--write-recipe is given")
       .placeholder("FILE");
   declare_mesh_options(program, options.mesh);
   program.app

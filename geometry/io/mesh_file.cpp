@@ -3,7 +3,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 #include "numerics/files/input_file.h"
 #include "numerics/files/zstd_stream.h"
 

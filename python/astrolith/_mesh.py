@@ -177,8 +177,22 @@ def _plain(array: Any) -> Any:
     return array.view(np.ndarray) if isinstance(array, np.ndarray) else array
 
 
+def mesh_formats() -> list[Record]:
+    """The formats of meshes.
+
+    Each has its `name` and its `extension`, whether it is `read` and `written`, and what is written: the `unit` of
+    length, `colors` of vertices, other `values` of vertices such as labels, and `texture_coordinates`.
+
+    Examples
+    --------
+    >>> [row.extension for row in mesh_formats() if row.values]
+    ['.ply']
+    """
+    return [Record(row) for row in _synthesis.mesh_formats()]
+
+
 def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
-    """Read a mesh: obj, ply, stl, off, PDS plate .tab, ICQ or bmf.
+    """Read a mesh of one of :func:`mesh_formats`.
 
     Parameters
     ----------
@@ -204,11 +218,11 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
 
 
 def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
-    """Write .ply (binary, float32; .ply.zst compressed), .obj, .stl (binary), .glb, .icq or .tab, whole or not at all.
+    """Write a mesh in one of :func:`mesh_formats`, whole or not at all; .zst behind .ply compresses it.
 
-    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply,
-    colours into .ply and .glb. The unit that the mesh, or the file that it names, states is written into .ply, .obj and
-    .stl. Warns where the format states no unit and lengths are not in kilometres.
+    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels, elevations, colours, and the unit that the mesh or the
+    file that it names states, are written where the format has them. Warns where it states no unit and lengths are not
+    in kilometres.
 
     Parameters
     ----------
@@ -228,12 +242,13 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
         The disk is full, or float32 cannot hold the coordinates.
     """
     file = _arrays.file_name(file, "file")
-    if uv and not file.endswith(".glb"):
-        raise ValueError(f"{file}: only a .glb gets texture coordinates; leave out uv")
+    kind = Record(_synthesis.written_mesh_format(file))
+    if uv and not kind.texture_coordinates:
+        raise ValueError(f"{file}: a {kind.extension} gets no texture coordinates; leave out uv")
     arrays = arrays_of(mesh, "mesh")
     made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces, length_unit=stated_unit(mesh))
     labels = elevations = None
-    if made.labels is not None and made.elevations is not None and file.endswith((".ply", ".ply.zst")):
+    if made.labels is not None and made.elevations is not None and kind["values"]:
         if arrays.normals is None:
             raise ValueError("mesh.normals: are missing; labels are written with normals only")
         labels = _arrays.column(made.labels, "mesh.labels", np.int32, len(arrays.vertices))
@@ -256,5 +271,5 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
         [_arrays.text(line, "mesh.legend") for line in made.legend] if labels is not None else [],
         bool(uv),
     )
-    if unit != "km" and unit in METRES and not _synthesis.tells_length_unit(file):
-        _warn(f'{file}: a {os.path.splitext(file)[1]} states no unit; where it is read, pass unit="{unit}"')
+    if unit != "km" and unit in METRES and not kind.unit:
+        _warn(f'{file}: a {kind.extension} states no unit; where it is read, pass unit="{unit}"')

@@ -9,7 +9,7 @@ from astrolith._mesh import Mesh
 from astrolith._options import Progress
 from astrolith._recipe import RecipeLike, Record, records
 
-_FORMATS = (".ply", ".obj", ".stl", ".glb", ".icq", ".tab")
+_FORMATS = tuple(row["extension"] for row in _synthesis.mesh_formats() if row["written"])
 
 
 def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[int]]) -> tuple[Any, Any]:
@@ -162,7 +162,7 @@ def predict(
     recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even
         As `mesh` has them.
     format
-        The extension of the file: ".ply", ".obj", ".stl", ".glb", ".icq" or ".tab".
+        The extension of the file: one that is written, of :func:`mesh_formats`.
     threads
         Threads that make the mesh; 0: all.
 

@@ -1,5 +1,3 @@
-#include "python/bindings/field_bindings.h"
-
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -18,6 +16,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
+#include "python/bindings/synthesis_bindings.h"
 #include "tasks/synthesis/body_mesh.h"
 
 namespace astrolith::python {

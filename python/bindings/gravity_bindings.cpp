@@ -1,5 +1,3 @@
-#include "python/bindings/gravity_bindings.h"
-
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -19,7 +17,8 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
-#include "tasks/gravity/body_gravity.h"
+#include "python/bindings/synthesis_bindings.h"
+#include "tasks/gravity/compute_gravity.h"
 #include "tasks/gravity/landing_sites.h"
 
 namespace astrolith::python {
@@ -32,7 +31,7 @@ struct GravityArguments {
   int resolution = 128;  // of the recipe's mesh
   std::string at;        // "facets" or "vertices"; `points` come first
   std::optional<std::vector<Vec3d>> points;
-  BodyGravityOptions options;
+  GravityOptions options;
   SiteSearch sites;  // a count of 0: none
 };
 
@@ -52,7 +51,8 @@ GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
   const GravityBody body = arguments.mesh ? body_of_mesh(*arguments.mesh, arguments.unit, arguments.name)
                                           : body_of_recipe(loaded_recipe(arguments.json, arguments.name),
                                                            arguments.resolution, arguments.name, stage);
-  const BodyGravity made = body_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
+  const ComputedGravity made =
+      compute_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
   nlohmann::ordered_json figures = made.figures;
   for (const GravityColumn& column : made.columns) {
     if (arguments.sites.count == 0 || column.name != "slope_deg") continue;

@@ -1,5 +1,3 @@
-#include "python/bindings/mesh_bindings.h"
-
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -17,7 +15,6 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
-#include "geometry/io/stated_unit.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
@@ -25,6 +22,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
+#include "python/bindings/synthesis_bindings.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
 #include "tasks/prediction/mesh_prediction.h"
@@ -349,6 +347,27 @@ void write(const std::filesystem::path& file, const Rows<double>& vertices, cons
   });
 }
 
+Fields fields_of(const MeshFormat& format) {
+  Fields row;
+  row["name"] = format.name;
+  row["extension"] = std::string(format.extensions[0]);
+  row["read"] = format.reader != nullptr;
+  row["written"] = format.writer != nullptr;
+  row["unit"] = format.tells_unit;
+  row["colors"] = format.has_colors;
+  row["values"] = format.has_values;
+  row["texture_coordinates"] = format.has_texture_coordinates;
+  return row;
+}
+
+std::vector<Fields> formats() {
+  std::vector<Fields> rows;
+  for (const MeshFormat& format : mesh_formats()) rows.push_back(fields_of(format));
+  return rows;
+}
+
+Fields written_format(const std::filesystem::path& file) { return fields_of(written_mesh_format(file)); }
+
 double closed_volume(const Rows<double>& vertices, const Rows<std::uint32_t>& faces) {
   const TriangleMesh mesh = mesh_of(vertices, faces, {});
   const MeshTopology topology = analyze_topology(mesh);
@@ -372,9 +391,8 @@ void bind_meshes(nb::module_& module) {
   module.def(
       "stated_length_unit", [](const std::filesystem::path& file) { return stated_length_unit(file); },
       nb::arg("file"));
-  module.def(
-      "tells_length_unit", [](const std::filesystem::path& file) { return tells_length_unit(file); },
-      nb::arg("file"));
+  module.def("mesh_formats", &formats);
+  module.def("written_mesh_format", &written_format, nb::arg("file"));
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
              nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),

@@ -19,12 +19,9 @@
 #include <vector>
 
 #include "python/bindings/arrays.h"
-#include "python/bindings/field_bindings.h"
-#include "python/bindings/gravity_bindings.h"
-#include "python/bindings/height_map_bindings.h"
 #include "python/bindings/job.h"
-#include "python/bindings/mesh_bindings.h"
 #include "python/bindings/recipe_text.h"
+#include "python/bindings/synthesis_bindings.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/known_population.h"
 #include "synthesis/finish/lay_on_base.h"

@@ -116,7 +116,7 @@ def test_texture_coordinates_have_the_bytes_of_synth(ball, program, tmp_path):
     astrolith.write_mesh(mesh, tmp_path / "package.glb", uv=True)
     assert (tmp_path / "package.glb").read_bytes() == (tmp_path / "synth.glb").read_bytes()
     assert b"TEXCOORD_0" in (tmp_path / "synth.glb").read_bytes()
-    with pytest.raises(ValueError, match="only a .glb"):
+    with pytest.raises(ValueError, match="a .ply gets no texture"):
         astrolith.write_mesh(mesh, tmp_path / "package.ply", uv=True)
 
 

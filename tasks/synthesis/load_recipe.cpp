@@ -64,7 +64,7 @@ void require_no_input_of_fits(const std::filesystem::path& file) {
   const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
     return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   };
-  if (has_mesh_extension(file) || extension == ".glb") {
+  if (has_mesh_extension(file)) {
     throw InputError(file.string() + ": is a mesh and no recipe; fit_shape makes a recipe of it");
   }
   if (is_one_of({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {

@@ -10,9 +10,9 @@ from typing import Any, Iterator, Optional
 import numpy as np
 
 from astrolith._arrays import MissingFileError, PathLike, file_name
-from astrolith._mesh import read_mesh
+from astrolith._mesh import mesh_formats, read_mesh
 
-_MESHES = (".ply", ".ply.zst", ".obj", ".stl", ".tab", ".icq")
+_MESHES = {row.extension for row in mesh_formats() if row.read and row.written} | {".ply.zst"}
 
 
 class FinishedSet:
