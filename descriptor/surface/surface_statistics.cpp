@@ -23,6 +23,7 @@ constexpr std::int64_t kFewestPlaces = 100, kMostPlaces = 20000;
 constexpr std::size_t kFewestNeighbours = 12;  // to fit six coefficients to
 constexpr double kLargestRadius = 0.6;         // of the body's; larger discs are no piece of a surface
 constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr std::array<double, 4> kRadii{3, 6, 12, 24};              // edges
 constexpr std::array<double, 8> kLags{1, 1.5, 2, 3, 4, 6, 8, 12};  // edges
 
 [[noreturn]] void refuse_option(const std::string& words) {
@@ -39,10 +40,6 @@ void check_range(const char* name, std::int64_t value, std::int64_t least, std::
 void check_statistics_options(const SurfaceStatisticsOptions& options) {
   if (options.points != 0) check_range("points", options.points, kFewestPoints, kMostPoints);
   check_range("places", options.places, kFewestPlaces, kMostPlaces);
-  if (options.radii.empty() || !(options.radii.front() >= 2.5) || !(options.radii.back() <= 1e4) ||
-      !std::is_sorted(options.radii.begin(), options.radii.end())) {
-    refuse_option("radii: must ascend from 2.5 edges or more");
-  }
   if (!(options.density > 0.0) || !(options.rotation_hours >= 0.0)) {
     refuse_option("density or rotation period: must be above 0");
   }
@@ -152,16 +149,14 @@ class PlaceMeasurement {
 };
 
 // The radii that suit the body; a remark names the others.
-std::vector<double> suitable_radii(const SurfaceStatisticsOptions& options, double body_radius,
-                                   std::vector<std::string>& remarks) {
+std::vector<double> suitable_radii(double body_radius, std::vector<std::string>& remarks) {
   std::vector<double> radii;
-  for (const double radius : options.radii) {
+  for (const double radius : kRadii) {
     if (radius <= kLargestRadius * body_radius) radii.push_back(radius);
   }
   if (radii.empty()) refuse_option("every radius is above .6 of the body's; give more points");
-  if (radii.size() < options.radii.size()) {
-    remarks.push_back(std::to_string(options.radii.size() - radii.size()) + " of " +
-                      std::to_string(options.radii.size()) +
+  if (radii.size() < kRadii.size()) {
+    remarks.push_back(std::to_string(kRadii.size() - radii.size()) + " of " + std::to_string(kRadii.size()) +
                       " radii are left out, since their discs are as large as the body");
   }
   return radii;
@@ -216,7 +211,6 @@ std::vector<double> slopes_at(const TriangleMesh& mesh, std::span<const Vec3d> p
 
 void add_slopes(const TriangleMesh& mesh, std::span<const Vec3d> normals,
                 const SurfaceStatisticsOptions& options, SurfaceStatistics& result) {
-  if (!options.slopes) return;
   if (!analyze_topology(mesh).closed) {
     result.remarks.emplace_back("no slopes: the mesh is open, and gravity needs a closed one");
     return;
@@ -269,7 +263,7 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
   const EvenedSurface even = even_surface(mesh, result.points, options.seed, progress);
   result.edge = even.edge;
   result.body_radius = std::sqrt(even.area / (4.0 * std::numbers::pi)) / even.edge;
-  const std::vector<double> radii = suitable_radii(options, result.body_radius, result.remarks);
+  const std::vector<double> radii = suitable_radii(result.body_radius, result.remarks);
   const double lag_radius = radius_of_lags(radii, result.body_radius);
   std::vector<PlaceValues> places =
       measured_places(even, radii, lag_radius, std::min(options.places, result.points), progress);

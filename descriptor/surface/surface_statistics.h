@@ -34,14 +34,12 @@ struct RoughnessAtLag {
 };
 
 struct SurfaceStatisticsOptions {
-  // The points that the surface is evened to; they decide the edge, in which all radii count. 0: the mesh's
-  // own resolution, own_points(). 500 to 60,000 else.
+  // The points that the surface is evened to; they decide the edge, in which the radii count: 3, 6, 12, 24.
+  // 0: the mesh's own resolution, own_points(). 500 to 60,000 else.
   std::int64_t points = 0;
-  std::int64_t places = 3000;               // of the points, at random; 100 to 20,000
-  std::vector<double> radii{3, 6, 12, 24};  // edges, ascending, each >= 2.5
-  double rotation_hours = 0.0;              // about +z, for slopes; 0 = at rest
-  double density = 2000.0;                  // kg / m^3, of a body that turns
-  bool slopes = true;
+  std::int64_t places = 3000;   // of the points, at random; 100 to 20,000
+  double rotation_hours = 0.0;  // about +z, for slopes; 0 = at rest
+  double density = 2000.0;      // kg / m^3, of a body that turns
   std::uint64_t seed = 1;
 };
 
