@@ -47,7 +47,7 @@ def train_classifier(
     """
     kind = _arrays.choice(features, "features", _CLASS_FEATURES)
     _estimation.train_classifier(
-        [_arrays.file_name(folder, "folders") for folder in folders],
+        [_arrays.file_name(folder, "folders") for folder in _arrays.items(folders, "folders")],
         _arrays.file_name(output, "output"),
         kind,
         (64 if kind == "d2" else 5) if bins is None else _arrays.integer(bins, "bins", 2, 1024),

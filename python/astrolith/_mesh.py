@@ -213,7 +213,7 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
     FileNotFoundError
         There is no such file. It is a ValueError, too.
     """
-    read = _synthesis.read_mesh(_arrays.file_name(file, "file"), bool(points))
+    read = _synthesis.read_mesh(_arrays.file_name(file, "file"), _arrays.flag(points, "points"))
     return Mesh(read["vertices"], read["faces"], read.get("normals"), length_unit=stated_unit(file))
 
 
@@ -243,6 +243,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     """
     file = _arrays.file_name(file, "file")
     kind = Record(_synthesis.written_mesh_format(file))
+    uv = _arrays.flag(uv, "uv")
     if uv and not kind.texture_coordinates:
         raise ValueError(f"{file}: a {kind.extension} gets no texture coordinates; leave out uv")
     arrays = arrays_of(mesh, "mesh")
@@ -269,7 +270,7 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
         _arrays.text(made.comment, "mesh.comment"),
         origin,
         [_arrays.text(line, "mesh.legend") for line in made.legend] if labels is not None else [],
-        bool(uv),
+        uv,
     )
     if unit != "km" and unit in METRES and not kind.unit:
         _warn(f'{file}: a {kind.extension} states no unit; where it is read, pass unit="{unit}"')

@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Literal, Mapping, Union
 
 from astrolith import _arrays, _synthesis
-from astrolith._arrays import PathLike
+from astrolith._arrays import PathLike as PathLike
 
 # Methods of dictionaries that give way to a field of the same name. `items` does not: json and pickle call it.
 _GIVE_WAY = {name for name in vars(dict) if not name.startswith("_")} - {"items", "copy"}

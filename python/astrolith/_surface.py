@@ -145,7 +145,7 @@ def realism(
             _arrays.integer(places, "places", 100, 20000),
             _arrays.number(period, "period", 0.0, 1e18),
             _arrays.positive(density, "density", 1e18),
-            bool(floor),
+            _arrays.flag(floor, "floor"),
             unit,
             _options.seed(seed),
             _options.threads(threads),

@@ -138,7 +138,7 @@ def fit_texture(
         The image is wrong, too small or constant, or an argument is out of range.
     """
     colors = _arrays.choice(channels or "luminance", "channels", ("luminance", "pca")) == "pca"
-    file = os.fspath(image) if isinstance(image, (str, os.PathLike)) else ""
+    file = os.fsdecode(image) if isinstance(image, (str, os.PathLike)) else ""
     planes = None
     if not isinstance(image, (str, os.PathLike)):
         planes = _planes(image)

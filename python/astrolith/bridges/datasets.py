@@ -60,7 +60,7 @@ class Bodies:
         if _arrays.is_file_name(recipes) or isinstance(recipes, Mapping):
             raise ValueError("recipes: must be a list of recipes; put the one into a list")
         if not isinstance(seeds, Iterable):
-            raise ValueError(f"seeds: must be whole numbers, such as range(100), and is {seeds!r}")
+            raise ValueError(f"seeds: must be whole numbers, such as range(100), and is {_arrays.shown(seeds)}")
         self._recipes = list(recipes)
         self._seeds = [_options.seed(seed) for seed in seeds]
         self._resolution = _arrays.integer(resolution, "resolution", 4, 8192)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays
+from astrolith._arrays import PathLike
 from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of
 from astrolith._units import METRES
 from astrolith.bridges._optional import required
