@@ -12,15 +12,15 @@ cmake --preset fuzz -B $build -DASTROLITH_CUDA=OFF -DCMAKE_CXX_FLAGS="-fprofile-
 # source_of READER: the sources that its fuzzer is about
 source_of() {
   case $1 in
-    stl_ascii | stl_binary) echo geometry/io/read_stl.cpp ;;
+    stl_ascii | stl_binary) echo geometry/io/stl.cpp ;;
     mesh) echo geometry/io/mesh_{file,format,io}.cpp geometry/io/ply_{header,values}.cpp geometry/io/text_scanner.cpp ;;
-    points) echo geometry/io/points_io.cpp ;;
+    points) echo geometry/io/read_points.cpp ;;
     recipe) ls recipe/*_fields.cpp recipe/recipe_reader.cpp recipe/recipe_validation.cpp recipe/json_*.cpp ;;
     png) echo synthesis/picture/png_reader.cpp ;;
     classifier) echo descriptor/classification/classifier_reader.cpp ;;
     photo_header) echo estimation/gabor/image/image_header.cpp ;;
     checkpoint) echo tasks/estimation/fit_checkpoint.cpp ;;
-    *) echo "geometry/io/read_$1.cpp" ;;
+    *) ls geometry/io/{,read_}"$1.cpp" 2>/dev/null ;;
   esac
 }
 readers=("$@")

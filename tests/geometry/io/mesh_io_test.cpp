@@ -87,8 +87,8 @@ TEST(MeshIo, WhatCannotBeWrittenLeavesNothing) {
   const ScratchFolder folder;
   const TriangleMesh mesh = icosphere(1, 1);
   EXPECT_THROW(write_mesh(mesh, folder / "a.xyz", {}), InputError);
-  EXPECT_THROW(check_mesh_extension("a.off"), InputError);
-  EXPECT_NO_THROW(check_mesh_extension("A.GLB"));
+  EXPECT_THROW(written_mesh_format("a.off"), InputError);
+  EXPECT_NO_THROW(written_mesh_format("A.GLB"));
   EXPECT_THROW(write_mesh(mesh, folder.path() / "none" / "a.ply", {}), InputError);
   EXPECT_THROW(write_mesh({}, folder / "a.ply", {}), WorkError);
   TriangleMesh broken = mesh;

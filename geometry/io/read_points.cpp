@@ -1,10 +1,8 @@
-#include "geometry/io/points_io.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {

@@ -1,7 +1,6 @@
 // Wavefront OBJ. The shape of a body needs the lines "v" and "f" only; all others are ignored. PDS plate
 // models in the style "v x y z", "f a b c" can be read as OBJ too.
-#include "geometry/io/mesh_file_internal.h"
-#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {
@@ -19,6 +18,21 @@ std::uint32_t corner_index(const TextScanner& scan, std::string_view corner, std
               "vertices are numbered from 1, or from -1 backwards");
   }
   return static_cast<std::uint32_t>(zero_based);
+}
+
+std::string line_of(std::string keyword, const Vec3d& v) {
+  append_words(keyword, v.x, v.y, v.z);
+  return keyword + "\n";
+}
+
+std::string line_of(const Triangle& triangle, bool with_normals) {
+  std::string line = "f";
+  for (const std::uint32_t index : triangle) {
+    const std::string number = std::to_string(std::uint64_t{index} + 1);
+    line += " " + number;
+    if (with_normals) line += "//" + number;
+  }
+  return line + "\n";
 }
 
 }  // namespace
@@ -45,6 +59,18 @@ TriangleMesh read_obj(const MeshFile& file) {
     }
   }
   return mesh;
+}
+
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  for (const std::string& text : info_lines(info)) buffer.append("# " + text + "\n");
+  buffer.append("# axes: z up; import into Blender with forward axis Y, up axis Z\n");
+  for (const Vec3d& v : mesh.vertices) buffer.append(line_of("v", v));
+  for (const Vec3d& n : mesh.normals) buffer.append(line_of("vn", n));
+  for (const Triangle& t : mesh.triangles) buffer.append(line_of(t, !mesh.normals.empty()));
+  buffer.flush();
+  out.commit();
 }
 
 }  // namespace astrolith

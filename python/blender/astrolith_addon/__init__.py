@@ -1,7 +1,8 @@
 """Blender add-on: Add > Mesh > Asteroid makes a body of an Astrolith recipe.
 
-Install this file in Edit > Preferences > Add-ons. It takes the Python package ``astrolith`` where Blender can import
-it, and the program ``synth`` otherwise; the add-on's preferences say where either is. Works with Blender 3.4 and newer.
+A zip archive of this folder is an add-on for Blender 3.4 and newer, and an extension for Blender 4.2 and newer. It takes
+the Python package ``astrolith`` where Blender can import it, and the program ``synth`` otherwise; the add-on's
+preferences say where either is.
 """
 
 import json
@@ -35,7 +36,7 @@ class RecipeError(Exception):
 
 
 class AsteroidPreferences(bpy.types.AddonPreferences):
-    bl_idname = __name__
+    bl_idname = __package__
 
     package: StringProperty(name="Folder of the package", subtype="DIR_PATH",
                             description="Holds the folder 'astrolith', such as venv/lib/python3.11/site-packages")
@@ -48,7 +49,7 @@ class AsteroidPreferences(bpy.types.AddonPreferences):
 
 
 def preferences():
-    return bpy.context.preferences.addons[__name__].preferences
+    return bpy.context.preferences.addons[__package__].preferences
 
 
 def package():
@@ -72,6 +73,8 @@ def body_by_package(astrolith, file, resolution, seed, labels):
     except (ValueError, RuntimeError) as error:
         raise RecipeError(str(error)) from None
     body = {"vertices": mesh.vertices, "faces": mesh.faces, "normals": mesh.normals}
+    if mesh.colors is not None:
+        body["colors"] = mesh.colors
     if labels:
         body.update(label=mesh.labels, elevation=mesh.elevations)
     return body
@@ -88,7 +91,7 @@ def run_synth(arguments):
 
 def read_ply(file):
     """The columns of a PLY that synth wrote: little-endian, the faces triangles."""
-    types = {"float": "<f4", "int": "<i4"}
+    types = {"float": "<f4", "int": "<i4", "uchar": "u1"}
     with open(file, "rb") as stream:
         columns, counts = [], {}
         while (line := stream.readline().split()) != [b"end_header"]:
@@ -101,6 +104,8 @@ def read_ply(file):
     body = {name: vertices[name] for name in ("label", "elevation") if name in vertices.dtype.names}
     body["vertices"] = np.column_stack([vertices[axis] for axis in "xyz"])
     body["normals"] = np.column_stack([vertices["n" + axis] for axis in "xyz"])
+    if "red" in vertices.dtype.names:
+        body["colors"] = np.column_stack([vertices[name] for name in ("red", "green", "blue")])
     return {**body, "faces": faces["corners"]}
 
 
@@ -153,19 +158,31 @@ def mesh_data(name, body, scale):
     data.validate()
     if len(data.vertices) == len(vertices):
         data.normals_split_custom_set_from_vertices(body["normals"])
-    if "elevation" in body:
-        add_attributes(data, body, scale)
+    add_attributes(data, body, scale)
     return data
 
 
-def add_attributes(data, body, scale):
-    heights = body["elevation"].astype(np.float32)
-    data.attributes.new("astrolith_layer", "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(body["label"]))
-    data.attributes.new("astrolith_elevation", "FLOAT", "POINT").data.foreach_set("value", heights * np.float32(scale))
-    # Heights as brightness, two standard deviations from dark to bright.
+def linear_colors(body):
+    """The colours of the vertices in linear light: those that layers paint, else heights as brightness, else None."""
+    if "colors" in body:
+        srgb = body["colors"] / 255.0
+        return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    if "elevation" not in body:
+        return None
+    heights = body["elevation"].astype(np.float32)  # two standard deviations from dark to bright
     brightness = 0.18 + 0.12 * np.clip((heights - heights.mean()) / (2 * heights.std() + 1e-30), -1, 1)
-    colors = np.column_stack([brightness, brightness * 0.96, brightness * 0.9, np.ones_like(brightness)])
-    data.color_attributes.new("astrolith_color", "FLOAT_COLOR", "POINT").data.foreach_set("color", colors.astype(np.float32).ravel())
+    return np.column_stack([brightness, brightness * 0.96, brightness * 0.9])
+
+
+def add_attributes(data, body, scale):
+    if "elevation" in body:
+        heights = body["elevation"].astype(np.float32) * np.float32(scale)
+        data.attributes.new("astrolith_layer", "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(body["label"]))
+        data.attributes.new("astrolith_elevation", "FLOAT", "POINT").data.foreach_set("value", heights)
+    colors = linear_colors(body)
+    if colors is not None:
+        opaque = np.column_stack([colors, np.ones(len(colors))]).astype(np.float32)
+        data.color_attributes.new("astrolith_color", "FLOAT_COLOR", "POINT").data.foreach_set("color", opaque.ravel())
 
 
 def material_of(name, image, texture_length, with_colors):
@@ -218,7 +235,7 @@ def make_asteroid(file, resolution, seed, longest_side):
     painted = [layer for layer in recipe.get("layers") or [] if layer.get("type") == "gabor" and layer.get("color")]
     image = texture_of(astrolith, file, seed) if painted else None
     length = TEXTURE_SIDE * painted[0].get("pixel_size", 1.0) * scale if painted else 1.0
-    data.materials.append(material_of(name, image, length, "elevation" in body))
+    data.materials.append(material_of(name, image, length, len(data.color_attributes) > 0))
     made = bpy.data.objects.new(name, data)
     made["astrolith_recipe"] = file
     made["astrolith_seed"] = recipe.get("seed", 1) if seed is None else seed

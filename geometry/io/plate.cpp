@@ -1,8 +1,7 @@
 // Plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", numbered from
 // 1. The first line may state both counts, and rows may lack their numbers. (Models with rows "v x y z" and
 // "f a b c" are read as OBJ.)
-#include "geometry/io/mesh_file_internal.h"
-#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {
@@ -68,6 +67,28 @@ TriangleMesh read_plate(const MeshFile& file) {
     for (std::uint32_t& corner : t) corner = vertex_index(scan, num_vertices);
   }
   return mesh;
+}
+
+void write_plate(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo&) {
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  const auto row = [&](const auto&... values) {
+    std::string line;
+    append_words(line, values...);
+    buffer.append(line + "\n");
+  };
+  buffer.append(std::to_string(mesh.vertices.size()) + "\n");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vec3d& p = mesh.vertices[i];
+    row(i + 1, p.x, p.y, p.z);
+  }
+  buffer.append(std::to_string(mesh.triangles.size()) + "\n");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    row(i + 1, std::uint64_t{a} + 1, std::uint64_t{b} + 1, std::uint64_t{c} + 1);
+  }
+  buffer.flush();
+  out.commit();
 }
 
 }  // namespace astrolith

@@ -1,13 +1,17 @@
 // glTF 2.0 in its binary container (Khronos, sections 3 and 4.4): one chunk of JSON and one chunk of numbers.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <span>
+#include <unordered_map>
 
-#include "geometry/io/longitude_latitude_internal.h"
-#include "geometry/io/mesh_writers_internal.h"
+#include "geometry/io/format_internal.h"
 #include "numerics/length_unit.h"
+#include "numerics/portable_angles.h"
 #include "numerics/srgb.h"
 
 namespace astrolith {
@@ -24,6 +28,54 @@ Json vector_json(const Vec3f& v) { return Json::array({v.x, v.y, v.z}); }
 std::pair<Vec3f, Vec3f> float_bounds(const TriangleMesh& mesh) {
   const Box box = mesh.bounds();
   return {to_float(box.min), to_float(box.max)};
+}
+
+// A mesh whose vertices have texture coordinates. A triangle that crosses the 180th meridian would run
+// backwards over the whole map. Its western vertices are therefore there twice: the second has u + 1, and
+// maps repeat in u.
+struct LongitudeLatitude {
+  std::vector<std::uint32_t> doubled;  // (d) the vertices that are there twice, in the order of their seconds
+  std::vector<std::array<float, 2>>
+      texcoords;                    // (#V + d) u = 1/2 + longitude / 360 deg, v = 1/2 - latitude / 180 deg
+  std::vector<Triangle> triangles;  // (#F) index #V + k is the second of doubled[k]
+};
+
+std::array<float, 2> texcoord_of(const Vec3d& place) {
+  const double longitude = portable::atan2(place.y, place.x);
+  const double latitude = portable::atan2(place.z, std::sqrt(place.x * place.x + place.y * place.y));
+  return {static_cast<float>(0.5 + longitude / (2.0 * std::numbers::pi)),
+          static_cast<float>(0.5 - latitude / std::numbers::pi)};
+}
+
+// Longitudes run east from +x about z, latitudes from the xy plane towards +z, both seen from the origin of
+// the frame, which lies at -`origin` in the mesh's coordinates. The triangles at the two poles are distorted,
+// as in every such map.
+LongitudeLatitude longitude_latitude(const TriangleMesh& mesh, const Vec3d& origin) {
+  LongitudeLatitude result;
+  result.texcoords.reserve(mesh.vertices.size());
+  for (const Vec3d& v : mesh.vertices) result.texcoords.push_back(texcoord_of(v + origin));
+  std::unordered_map<std::uint32_t, std::uint32_t> second;
+  const auto second_of = [&](std::uint32_t vertex) {
+    const auto [found, is_new] =
+        second.try_emplace(vertex, static_cast<std::uint32_t>(result.texcoords.size()));
+    if (is_new) {
+      result.doubled.push_back(vertex);
+      result.texcoords.push_back({result.texcoords[vertex][0] + 1.0f, result.texcoords[vertex][1]});
+    }
+    return found->second;
+  };
+  result.triangles = mesh.triangles;
+  for (Triangle& triangle : result.triangles) {
+    const auto u = [&](int corner) {
+      return result.texcoords[triangle[static_cast<std::size_t>(corner)]][0];
+    };
+    const auto [west, east] = std::minmax({u(0), u(1), u(2)});
+    if (east - west <= 0.5f) continue;
+    for (std::uint32_t& vertex : triangle) {
+      if (result.texcoords[vertex][0] < 0.5f) vertex = second_of(vertex);
+    }
+  }
+  return result;
 }
 
 class GlbDocument {

@@ -12,7 +12,7 @@
 
 namespace astrolith {
 
-struct BodyGravityOptions {
+struct GravityOptions {
   double density = 0.0;           // kg / m^3, above 0
   double period = 0.0;            // of rotation, hours; 0: the body is at rest
   Vec3d axis{0, 0, 1};            // of rotation, a unit vector
@@ -27,7 +27,7 @@ struct BodyGravityOptions {
 
 // The check takes an assertion in the move constructor of nlohmann's JSON for an exception.
 // NOLINTNEXTLINE(bugprone-exception-escape)
-struct BodyGravity {
+struct ComputedGravity {
   std::vector<GravityColumn> columns;
   // Unit, density and period, the body's mass and moments, its harmonics, and the ranges of all columns.
   nlohmann::ordered_json figures;
@@ -35,7 +35,7 @@ struct BodyGravity {
 
 // The stages are "tree", "gravity", "check", "parts" and "harmonics". Throws InputError for a body without
 // area, and WorkError when progress asks to stop.
-BodyGravity body_gravity(const GravityBody& body, const GravityPlaces& places,
-                         const BodyGravityOptions& options, const StageProgress& progress);
+ComputedGravity compute_gravity(const GravityBody& body, const GravityPlaces& places,
+                                const GravityOptions& options, const StageProgress& progress);
 
 }  // namespace astrolith
