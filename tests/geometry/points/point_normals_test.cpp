@@ -1,7 +1,5 @@
 #include "geometry/points/point_normals.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
