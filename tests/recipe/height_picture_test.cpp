@@ -1,7 +1,5 @@
 #include "recipe/compact/height_picture.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,7 +1,5 @@
 #include "geometry/points/nearest_neighbours.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>

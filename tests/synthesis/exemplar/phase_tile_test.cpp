@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/phase_tile.h"
 
-#include <gtest/gtest.h>
-
 #include <complex>
 #include <numbers>
 #include <numeric>

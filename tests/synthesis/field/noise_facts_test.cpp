@@ -1,7 +1,5 @@
 #include "synthesis/field/noise_facts.h"
 
-#include <gtest/gtest.h>
-
 #include <type_traits>
 
 namespace astrolith {

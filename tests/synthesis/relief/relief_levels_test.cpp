@@ -1,7 +1,5 @@
 #include "synthesis/relief/relief_levels.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "synthesis/field/field_tables.h"

@@ -1,7 +1,5 @@
 #include "synthesis/relief/relief_likeness.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <set>
 

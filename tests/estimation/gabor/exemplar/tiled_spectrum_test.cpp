@@ -1,7 +1,5 @@
 #include "estimation/gabor/exemplar/tiled_spectrum.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "estimation/gabor/spectrum/spectrum_distance.h"
