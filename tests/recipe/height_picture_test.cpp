@@ -193,6 +193,24 @@ TEST(HeightPicture, RandomBytesEnd) {
   }
 }
 
+// A ball in the middle of holes, larger than what one stream holds.
+TEST(HeightPicture, LargePicturesAreHeldInBands) {
+  const HeightPicture ball = make_picture(2048, 520, [](int x, int y) {
+    const int squared = (x - 400) * (x - 400) + (y - 260) * (y - 260);
+    return squared < 10000 ? 5000 + squared / 8 + noise(10, x, y, 9) : 0;
+  });
+  expect_equal_after_coding(ball);
+  const std::string bytes = bytes_of(ball);
+  EXPECT_THROW(picture_of(bytes, ball.pixels() - 1), DamagedStream);
+  EXPECT_THROW(picture_of(bytes.substr(0, bytes.size() / 2)), DamagedStream);
+  CounterRandom random(7);
+  for (int i = 0; i < 10; ++i) {
+    std::string changed = bytes;
+    changed[random.below(bytes.size())] ^= static_cast<char>(1 + random.below(255));
+    expect_an_end(changed);
+  }
+}
+
 // 4096 x 4096 pixels whose mask no byte follows.
 TEST(HeightPicture, AFewBytesHoldAFewPixels) {
   RangeEncoder encoder;
