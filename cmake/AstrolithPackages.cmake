@@ -72,9 +72,6 @@ if(ASTROLITH_TESTS)
   find_package(PNG REQUIRED)  # reads what was written
   include(GoogleTest)
 endif()
-if(ASTROLITH_BENCHMARKS)
-  find_package(benchmark REQUIRED)
-endif()
 
 # Real data used by tests where present: the folder beside the checkout, and the two Debian packages that
 # scripts/fetch_data.sh unpacks.

@@ -11,7 +11,7 @@ import _estimation  # noqa: E402
 
 # pack_spheres() stands for the first two; fit_texture() takes the third as an argument of another type.
 LEFT_OUT = {"packing-only", "density", "spectrum"}
-lines = ["from collections.abc import Sequence", "from typing import Optional, TypedDict", "", "from astrolith._recipe import PathLike"]
+lines = ["from collections.abc import Sequence", "from typing import Optional, TypedDict", "", "from astrolith._arrays import PathLike"]
 for job, name in (("fit_shape", "FitShapeOptions"), ("fit_gabor", "FitTextureOptions")):
     lines += ["", "", f"class {name}(TypedDict, total=False):"]
     lines += [f"    {option.replace('-', '_')}: Optional[{kind}]" for option, kind, *_ in _estimation.options_of(job) if option not in LEFT_OUT]

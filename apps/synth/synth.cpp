@@ -53,11 +53,11 @@ void declare_options(Program& program, Options& options) {
       .required()
       .reads(recipe_and_images);
   program.app
-      .add_option("-o,--output", options.output,
-                  "the mesh: .ply (binary, streamed; .ply.zst is compressed), .obj, .stl, .glb, .icq or .tab "
-                  "(PDS plates), in the "
-                  "recipe's length unit; with --texture .png or .tif; needed unless --predict or "
-                  "--write-recipe is given")
+      .add_option(
+          "-o,--output", options.output,
+          "the mesh: " + written_mesh_words() +
+              ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict or "
+              "--write-recipe is given")
       .placeholder("FILE")
       .writes([&options](const auto& words) {
         return options.texture.size.empty() ? std::vector<fs::path>{words.front()}

@@ -18,7 +18,6 @@
 #include "apps/synth/synth_tile.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
-#include "geometry/io/stated_unit.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"

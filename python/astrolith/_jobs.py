@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import os
 import re
 import warnings
 from collections.abc import Iterable, Mapping
@@ -11,6 +10,7 @@ from typing import Any, Optional, Union
 
 import numpy.typing as npt
 
+from astrolith import _arrays
 from astrolith._mesh import MeshLike, arrays_of, unit_of
 from astrolith._recipe import Record, records
 
@@ -35,8 +35,8 @@ def words(job: str, options: Descriptions, given: Mapping[str, Any]) -> GivenOpt
 def _texts(value: Any, name: str) -> list[str]:
     if value is True:
         return ["true"]
-    if isinstance(value, (str, bytes, os.PathLike)):
-        return [os.fsdecode(value)]
+    if _arrays.is_file_name(value):
+        return [_arrays.file_name(value, name)]
     if isinstance(value, Mapping):
         raise TypeError(f"{name}: must be a number, a text or a sequence of them, and is {value!r}")
     if isinstance(value, Iterable):
@@ -51,7 +51,7 @@ def _texts(value: Any, name: str) -> list[str]:
 
 def given_mesh(mesh: Union[MeshLike, npt.ArrayLike], faces: Optional[npt.ArrayLike], unit: Optional[str]) -> Optional[tuple[Any, Any, str]]:
     """The arrays of a mesh in memory with its unit; None for the name of a file."""
-    if isinstance(mesh, (str, os.PathLike)):
+    if _arrays.is_file_name(mesh):
         return None
     arrays = arrays_of(mesh if faces is None else (mesh, faces), "mesh")
     return arrays.vertices, arrays.faces, unit_of(mesh, unit, ("km", "m"), "mesh")

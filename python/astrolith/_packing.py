@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from astrolith import _estimation, _jobs, _options
+from astrolith import _arrays, _estimation, _jobs, _options
+from astrolith._arrays import PathLike
 from astrolith._mesh import MeshLike
 from astrolith._options import Progress
-from astrolith._recipe import PathLike
 
 
 @dataclasses.dataclass(eq=False)
@@ -103,7 +102,7 @@ def pack_spheres(
     options = {"spheres": spheres, "density": density, "unit": unit, "output": output, "strict": strict, "wrap": wrap, "all_parts": all_parts, "packing_only": True}  # fmt: skip
     arguments = _jobs.words("pack_spheres", _estimation.options_of("fit_shape"), options)
     if given is None:
-        arguments.append(("mesh", [os.fspath(mesh)]))  # type: ignore[arg-type]
+        arguments.append(("mesh", [_arrays.file_name(mesh, "mesh")]))
     _, figures, rows, masses, stopped = _estimation.fit_shape(given, arguments, _options.threads(threads), progress)
     weights = np.array(masses) if density is not None else None
     centers, radii = np.ascontiguousarray(rows[:, :3]), np.ascontiguousarray(rows[:, 3])

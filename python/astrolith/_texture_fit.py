@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import TYPE_CHECKING, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from astrolith import _estimation, _jobs, _options
+from astrolith import _arrays, _estimation, _jobs, _options
 from astrolith._options import Progress
-from astrolith._recipe import PathLike, Recipe, Record, records
+from astrolith._arrays import PathLike
+from astrolith._recipe import Recipe, Record, records
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -103,8 +103,8 @@ def fit_texture(
     """
     arguments = _jobs.words("fit_texture", _OPTIONS, options)
     planes = None
-    if isinstance(image, (str, bytes, os.PathLike)):
-        arguments.append(("image", [os.fsdecode(image)]))
+    if _arrays.is_file_name(image):
+        arguments.append(("image", [_arrays.file_name(image, "image")]))
     else:
         planes = _planes(image)
         if options.get("channels") == "pca":
@@ -113,7 +113,7 @@ def fit_texture(
         elif len(planes) == 3:
             planes = _luma(planes)
     if not isinstance(spectrum, bool):
-        arguments.append(("spectrum", [os.fsdecode(spectrum)]))
+        arguments.append(("spectrum", [_arrays.file_name(spectrum, "spectrum")]))
     json, figures, power = _estimation.fit_gabor(planes, spectrum is not False, arguments, _options.threads(threads), progress)
     recipe = Recipe(records(json)) if json else Recipe.read(options["output"])  # type: ignore[arg-type]
     return TextureFit(recipe, _jobs.figures_of(figures), power)

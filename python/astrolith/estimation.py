@@ -7,12 +7,11 @@ together with it does so under the GPL. ``astrolith.synthesis`` alone is free of
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import TYPE_CHECKING, Optional, Union
 
 import numpy.typing as npt
 
-from astrolith import _estimation, _jobs, _options
+from astrolith import _arrays, _estimation, _jobs, _options
 from astrolith._classes import classify, train_classifier
 from astrolith._mesh import Mesh, MeshLike, arrays_of, stated_unit
 from astrolith._options import Progress
@@ -86,7 +85,7 @@ def fit_shape(
     arguments = _jobs.words("fit_shape", _OPTIONS, options)
     given = _jobs.given_mesh(mesh, faces, options.get("unit"))
     if given is None:
-        arguments.append(("mesh", [os.fspath(mesh)]))  # type: ignore[arg-type]
+        arguments.append(("mesh", [_arrays.file_name(mesh, "mesh")]))
     json, figures, *_ = _estimation.fit_shape(given, arguments, _options.threads(threads), progress)
     return ShapeFit(Recipe(records(json)), _jobs.figures_of(figures))
 

@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "numerics/errors.h"
+#include "numerics/files/input_file.h"
 #include "numerics/printable_text.h"
 
 namespace nb = nanobind;
@@ -83,6 +84,9 @@ std::optional<std::pair<double, std::string>> JobState::news() {
 
 void run(const std::shared_ptr<JobState>& state, nb::object callback, int threads, std::function<void()> work,
          bool must_end) {
+  if (!callback.is_none() && !PyCallable_Check(callback.ptr())) {
+    throw nb::type_error("progress: must be a function of a share and a text, or None");
+  }
   forget_ended_work();
   std::thread worker([state, threads, work = std::move(work)]() mutable {
     std::exception_ptr error;
@@ -141,6 +145,9 @@ void declare_common(nb::module_& module) {
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);
+    } catch (const MissingFileError& e) {
+      const nb::object type = nb::module_::import_("astrolith._arrays").attr("MissingFileError");
+      PyErr_SetString(type.ptr(), printable(e.what()).c_str());
     } catch (const InputError& e) {
       PyErr_SetString(PyExc_ValueError, printable(python_words(e.what())).c_str());
     } catch (const WorkError& e) {

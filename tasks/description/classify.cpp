@@ -53,7 +53,7 @@ OptionTable& add_train(Job& job, Arguments& a) {
   a.bins = train.add_option("--bins", a.features.bins, "histogram bins for each axis; 64 for d2 unless given")
                .check(in_range(2, 1024));
   a.points =
-      train.add_option("--points", a.features.points, "samples of each mesh that the histogram is made of")
+      train.add_option("--points", a.features.points, "samples of each mesh that the histogram is made of; points without triangles are all taken")
           .check(in_range(16, 100000));
   a.eigenvalues =
       train.add_option("--eigenvalues", a.features.eigenvalues, "number of eigenvalues of shapedna")
@@ -147,6 +147,8 @@ void train(Job& job, Arguments& a) {
   job.summary["features"] = to_json(features);
   job.summary["shapes"] = data.rows.size();
   job.summary["class_names"] = data.classes;
+  job.summary["retrieval"] = to_json(retrieve(
+      data.rows, data.labels, [&](auto f, auto g) { return feature_distance(features.kind, f, g); }));
   if (a.folds > 0) {
     const VoteRows votes = cross_validate(data, a.training, a.folds, job.seed, job.progress("validate"));
     const Evaluation evaluation = evaluate(votes, data.labels, static_cast<int>(data.classes.size()));

@@ -7,7 +7,6 @@
 
 #include "cuda/pair_count.h"
 #include "geometry/io/mesh_io.h"
-#include "geometry/io/stated_unit.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
 #include "tasks/description/shape_options.h"

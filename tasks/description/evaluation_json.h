@@ -1,4 +1,4 @@
-// The results of classifiers and descriptors as JSON, for summaries and experiments.
+// The results of classifiers and descriptors as JSON, for summaries.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -49,8 +49,8 @@ inline nlohmann::ordered_json to_json(const Evaluation& evaluation, const std::v
 inline nlohmann::ordered_json to_json(const Retrieval& retrieval) {
   return {{"mean_average_precision", retrieval.mean_average_precision},
           {"nearest_accuracy", retrieval.nearest_accuracy},
-          {"class_average_precision", retrieval.average_precisions},
-          {"precision_at_recall", retrieval.curve}};
+          {"precision_at_recall", retrieval.curve},
+          {"recall_levels", recall_levels()}};
 }
 
 }  // namespace astrolith

@@ -92,14 +92,6 @@ void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
 }
 
 void add_pursuit_options(OptionTable& app, PhotoFitArguments& o) {
-  app.add_option("--spectrum-estimate", o.target,
-                 "what the lobes are fitted to: smoothed (a smooth spectrum that explains the periodogram, "
-                 "nearest to the true one) or periodogram (raw, of the periodic component, as in Galerne et "
-                 "al. 2012)")
-      .check(one_of({"smoothed", "periodogram"}));
-  app.add_option("--solver", o.solver,
-                 "solver of the basis pursuit; both end with the same certified optimum")
-      .check(one_of({"working-set", "fista"}));
   app.add_option("--penalty", o.photo.fit.penalty_ratio,
                  "sparsity penalty over the largest useful one; smaller finds more lobes")
       .check(in_range(1e-4, 0.99));
@@ -171,8 +163,6 @@ PhotoFitOptions photo_options(const Job& job, const PhotoFitArguments& o) {
   PhotoFitOptions photo = o.photo;
   photo.colors = o.channels == "pca";
   photo.trend = o.detrend_by == "division" ? TrendModel::kMultiplied : TrendModel::kAdded;
-  photo.fit.target = o.target == "periodogram" ? SpectrumTarget::kPeriodogram : SpectrumTarget::kSmoothed;
-  photo.fit.solver = o.solver == "fista" ? PursuitSolver::kFista : PursuitSolver::kWorkingSet;
   photo.seed = job.seed;
   return photo;
 }
@@ -180,7 +170,7 @@ PhotoFitOptions photo_options(const Job& job, const PhotoFitArguments& o) {
 // Options that are about lobes say nothing of the models without any.
 void check_model(const Job& job, const PhotoFitArguments& o) {
   if (o.model != "phase" && o.model != "exemplar") return;
-  for (const char* name : {"--lobes", "--penalty", "--gap", "--solver", "--spectrum-estimate"}) {
+  for (const char* name : {"--lobes", "--penalty", "--gap"}) {
     if (job.options.option(name).count() > 0) {
       throw InputError(
           fmt::format("{}: is about lobes, which --model {} has none of; leave it out", name, o.model));

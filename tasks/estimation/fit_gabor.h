@@ -20,8 +20,6 @@ struct PhotoFitArguments {
   std::string image_sha256;                         // before it was read
   std::string output, report_folder, spectrum_file;  // empty: none
   std::string model = "gabor";
-  std::string target = "smoothed";
-  std::string solver = "working-set";
   std::string unit = "m";
   std::string channels = "luminance";
   std::string detrend_by = "subtraction";

@@ -1,8 +1,5 @@
 #include "tasks/estimation/fit_shape.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "estimation/shape/report/fit_report.h"
 #include "numerics/errors.h"
 #include "tasks/job/density_question.h"
@@ -11,11 +8,6 @@
 
 namespace astrolith {
 namespace {
-
-Kernel kernel_named(const std::string& word) {
-  return *std::find_if(std::begin(kKernels), std::end(kKernels),
-                       [&](Kernel kernel) { return kernel_word(kernel) == word; });
-}
 
 // The input, the output and the fit of the metaballs.
 void declare_base_options(OptionTable& app, FitArguments& arguments) {
@@ -44,19 +36,16 @@ void declare_base_options(OptionTable& app, FitArguments& arguments) {
          "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
       .check(in_range(100, 1000000))
       .default_text("");
-  app.add_option("--kernel", arguments.kernel, "kernel of the metaballs")
-      .check(one_of({"gaussian", "metaball", "soft_object", "wyvill", "cauchy"}));
-  app.add_option("--subtract", arguments.fit.subtract,
-                 "largest share of the metaballs that may be subtractive; only Gaussian metaballs may be. 0: "
-                 "none, for "
-                 "mascons or other programs")
+  app.add_option(
+         "--subtract", arguments.fit.subtract,
+         "largest share of the metaballs that may be subtractive; 0: none, for mascons or other programs")
       .check(in_range(0.0, 0.9));
   app.add_option("--points", arguments.fit.points,
                  "samples of the surface that the refinement sees; 0 = 120 a metaball")
       .check(in_range(std::int64_t{0}, std::int64_t{10000000}));
   app.add_option("--optimizer", arguments.optimizer,
                  "optimizer of the base's global parameters and of the details")
-      .check(one_of({"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}));
+      .check(one_of({"pso", "crs2", "isres", "esch", "sbplx"}));
   app.add_option("--population", arguments.fit.population, "population of the optimizer")
       .check(in_range(1, 10000));
 }
@@ -101,8 +90,8 @@ void declare_packing_options(OptionTable& app, FitArguments& arguments) {
       "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
       "a table, and stop");
   for (const char* option :
-       {"--kernel", "--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only",
-        "--details", "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
+       {"--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only", "--details",
+        "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
     packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,
@@ -134,11 +123,6 @@ void declare_fit_options(Job& job, FitArguments& arguments) {
 
 void settle_fit_options(const Job& job, FitArguments& arguments) {
   arguments.fit.seed = job.seed;
-  arguments.fit.kernel = kernel_named(arguments.kernel);
-  if (arguments.fit.kernel != Kernel::kGaussian && job.options.option("--subtract").count() > 0 &&
-      arguments.fit.subtract > 0.0) {
-    throw InputError("--subtract: only Gaussian metaballs may be subtractive; leave it out, or --kernel");
-  }
   if (!arguments.in_memory) arguments.unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
   arguments.fit.length_unit = arguments.unit;
   if (arguments.fit.bytes > 0 && !arguments.details.base_only) {

@@ -4,11 +4,11 @@
 #include <string>
 #include <tuple>
 
-#include "geometry/io/points_io.h"
+#include "geometry/io/mesh_io.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
-#include "tasks/gravity/body_gravity.h"
+#include "tasks/gravity/compute_gravity.h"
 #include "tasks/gravity/gravity_input.h"
 #include "tasks/gravity/gravity_outputs.h"
 #include "tasks/gravity/gravity_parts.h"
@@ -140,7 +140,7 @@ void print(Job& job, const nlohmann::ordered_json& result) {
   job.print_result(result.dump(2, ' ', false, replace) + "\n");
 }
 
-BodyGravityOptions options_of(const Job& job, const Arguments& a, const GravityBody& body) {
+GravityOptions options_of(const Job& job, const Arguments& a, const GravityBody& body) {
   return {a.density,  a.period,
           axis_of(a), a.tolerance,
           a.exact,    a.sample,
@@ -162,7 +162,7 @@ void run(Job& job, const Arguments& a) {
   nlohmann::ordered_json repair;
   const GravityBody body = read_gravity_body(job, a.shape, {a.unit}, a.resolution, a.repair, repair);
   const GravityPlaces places = places_of(a, body.mesh);
-  const BodyGravity made = body_gravity(body, places, options_of(job, a, body),
+  const ComputedGravity made = compute_gravity(body, places, options_of(job, a, body),
                                         [&](const std::string& stage) { return job.progress(stage); });
   nlohmann::ordered_json result{{"shape", a.shape}};
   result.update(made.figures);

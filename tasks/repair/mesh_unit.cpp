@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "geometry/io/stated_unit.h"
+#include "geometry/io/mesh_io.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

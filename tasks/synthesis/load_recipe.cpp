@@ -23,11 +23,7 @@ namespace {
 constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{1} << 28;
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file, const std::string& place) {
-  try {
-    require_plain_file(file);
-  } catch (const InputError& e) {
-    throw InputError(place + ": " + e.what());
-  }
+  require_plain_file(file, place + ": ");
   const std::uintmax_t size = std::filesystem::file_size(file);
   if (size > kMostImageBytes) {
     throw InputError(place + ": " + file.string() + " is larger than 256 MB; scale the image down");
@@ -68,7 +64,7 @@ void require_no_input_of_fits(const std::filesystem::path& file) {
   const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
     return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   };
-  if (has_mesh_extension(file) || extension == ".glb") {
+  if (has_mesh_extension(file)) {
     throw InputError(file.string() + ": is a mesh and no recipe; fit_shape makes a recipe of it");
   }
   if (is_one_of({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {

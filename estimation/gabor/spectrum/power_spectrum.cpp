@@ -8,7 +8,6 @@
 
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/gabor/spectrum/periodic_component.h"
 #include "estimation/gabor/spectrum/tapered_periodogram.h"
 #include "numerics/errors.h"
 
@@ -28,10 +27,9 @@ std::vector<int> segment_starts(int extent, int segment) {
 // The variance of the mean of the periodograms of segments along one axis, over that of one periodogram.
 // Segments that overlap share pixels, so their periodograms have the correlation |sum w w'|^2 / (sum w^2)^2,
 // where w' are the weights w of the other segment (Welch 1967).
-double scatter_along(const std::vector<int>& starts, int segment, Borders borders) {
+double scatter_along(const std::vector<int>& starts, int segment) {
   const auto n = static_cast<std::size_t>(segment);
-  const std::vector<double> weight =
-      borders == Borders::kTaper ? border_fading(segment) : std::vector<double>(n, 1.0);
+  const std::vector<double> weight = border_fading(segment);
   double energy = 0.0;
   for (const double w : weight) energy += w * w;
   double sum = 0.0;
@@ -44,11 +42,6 @@ double scatter_along(const std::vector<int>& starts, int segment, Borders border
     }
   }
   return sum / static_cast<double>(starts.size() * starts.size());
-}
-
-TaperedPower power_of(const GreyImage& image, Borders borders) {
-  if (borders == Borders::kTaper) return tapered_power(image, image.width, image.height);
-  return {power_spectrum(decompose_periodic(image).periodic), {}, 0.0};
 }
 
 }  // namespace
@@ -81,7 +74,7 @@ PowerSpectrum power_spectrum(const GreyImage& image) {
   return spectrum;
 }
 
-PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Borders borders,
+PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side,
                                    const Progress& progress) {
   const int segment_width = std::min(image.width, largest_side);
   const int segment_height = std::min(image.height, largest_side);
@@ -93,16 +86,16 @@ PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Bor
       if (!report(progress, 0.0, "spectrum of the photo")) {
         throw WorkError("stopped before the spectrum was known; nothing is written");
       }
-      sum.add(power_of(image.part(x, y, segment_width, segment_height), borders));
+      sum.add(tapered_power(image.part(x, y, segment_width, segment_height), segment_width, segment_height));
     }
   }
   const std::size_t segments = xs.size() * ys.size();
   sum.divide(static_cast<double>(segments));
-  PowerSpectrum mean = borders == Borders::kTaper ? least_leaky(sum) : std::move(sum.values);
+  PowerSpectrum mean = least_leaky(sum);
   if (segments == 1) return mean;
   // Segments that overlap share pixels, so the number of independent looks is that of segments side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());
-  mean.scatter = scatter_along(xs, segment_width, borders) * scatter_along(ys, segment_height, borders);
+  mean.scatter = scatter_along(xs, segment_width) * scatter_along(ys, segment_height);
   return mean;
 }
 

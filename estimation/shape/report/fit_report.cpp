@@ -8,8 +8,7 @@
 
 #include "estimation/page/report_page.h"
 #include "estimation/shape/report/captioned_picture.h"
-#include "estimation/shape/report/convergence_plot.h"
-#include "estimation/shape/report/error_histogram.h"
+#include "estimation/shape/report/fit_plots.h"
 #include "estimation/shape/report/realism_figures.h"
 #include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"

@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/plane_exemplar.h"
 
-#include <gtest/gtest.h>
-
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/synthesis/exemplars.h"

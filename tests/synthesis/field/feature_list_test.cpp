@@ -1,7 +1,5 @@
 #include "synthesis/field/feature_list.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,5 @@
 #include "synthesis/field/layer_noise.h"
 
-#include <gtest/gtest.h>
-
 #include <type_traits>
 
 namespace astrolith {

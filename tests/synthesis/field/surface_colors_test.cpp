@@ -1,7 +1,5 @@
 #include "synthesis/field/surface_colors.h"
 
-#include <gtest/gtest.h>
-
 #include "numerics/parallel_for.h"
 #include "synthesis/exemplar/exemplar_colors.h"
 #include "synthesis/field/field_at_point.h"
