@@ -15,34 +15,13 @@ class HelpFormatter : public CLI::Formatter {
     return name;
   }
   std::string make_option_opts(const CLI::Option* option) const override {
-    if (option->get_type_size() == 0) return "";  // a flag
-    std::string text = " " + argument(*option);
-    if (!option->get_default_str().empty() && option->get_default_str() != "[]")
-      text += " (default " + option->get_default_str() + ")";
-    if (option->get_required()) text += " (required)";
-    return text;
+    return option->get_option_text().empty() ? "" : " " + option->get_option_text();
   }
   std::string make_option_desc(const CLI::Option* option) const override {
     const std::size_t first_column =
         2 + (make_option_name(option, option->get_positional()) + make_option_opts(option)).size();
     const std::string description = CLI::Formatter::make_option_desc(option);
     return first_column + 1 == get_column_width() ? " " + description : description;
-  }
-
- private:
-  // The words for an option's value, made from CLI11's "TYPE:VALIDATOR". The validator's words may begin with
-  // the type again.
-  static std::string argument(const CLI::Option& option) {
-    if (!option.get_option_text().empty()) return option.get_option_text();
-    const std::string full = option.get_type_name();
-    const std::string type = full.substr(0, full.find(':'));
-    const bool number = type == "INT" || type == "UINT" || type == "FLOAT";
-    const std::string name = number ? "N" : type == "TEXT" ? "FILE" : type;
-    if (full.find(':') == std::string::npos) return name;
-    const std::string words = full.substr(full.find(':') + 1);
-    if (words.front() == '{') return words;  // a choice
-    if (words.find(" in ") != std::string::npos) return name + words.substr(words.find(" in "));
-    return name + (words == "POSITIVE" ? " > 0" : words == "NONNEGATIVE" ? " >= 0" : "");
   }
 };
 

@@ -17,12 +17,11 @@
 
 #include "apps/help_formatter.h"
 #include "apps/option_names.h"
-#include "apps/output_names.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/printable_text.h"
-#include "numerics/version/code_version.h"
+#include "tasks/job/output_names.h"
 
 namespace astrolith {
 namespace {
@@ -67,140 +66,99 @@ void write_summary(const std::string& file_name, const nlohmann::ordered_json& s
   write_file(file_name, summary.dump(2, ' ', false, replace) + "\n");
 }
 
-// Name of an option whose number is NaN or infinite, which CLI11's ranges let through; empty when there is
-// none.
-std::string option_not_finite(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
-    for (const std::string& text : option->results()) {
-      if (!std::isfinite(std::strtod(text.c_str(), nullptr))) return option->get_lnames().front();
-    }
+// The table's long options without their dashes, and those of its commands.
+std::vector<std::string> long_names(const OptionTable& options) {
+  std::vector<std::string> names{"help", "version"};
+  for (const auto& row : options.rows()) {
+    if (!row->positional()) names.push_back(row->name());
   }
-  return "";
-}
-
-// The program's long options without their dashes, and those of the command that was given.
-std::vector<std::string> long_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
-  }
-  for (const CLI::App* command : app.get_subcommands()) {
-    for (const std::string& name : long_names(*command)) names.push_back(name);
+  for (const OptionTable::Command& command : options.commands()) {
+    for (const std::string& name : long_names(*command.options)) names.push_back(name);
   }
   return names;
 }
 
 // The complaint about the first option that does not exist, with the one that was probably meant; empty where
 // all exist. CLI11 names neither, and complains first of what is missing because of the wrong name.
-std::string unknown_option(const CLI::App& app) {
-  for (const std::string& word : app.remaining(true)) {
+std::string unknown_option(const CLI::App& parser, const OptionTable& options) {
+  for (const std::string& word : parser.remaining(true)) {
     const std::size_t dashes = word.find_first_not_of('-');
     if (!word.starts_with('-') || dashes == std::string::npos) continue;
-    const std::string nearest = nearest_name(word.substr(dashes, word.find('=') - dashes), long_names(app));
+    const std::string nearest =
+        nearest_name(word.substr(dashes, word.find('=') - dashes), long_names(options));
     return word + ": there is no such option" +
            (nearest.empty() ? std::string() : "; did you mean --" + nearest + "?");
   }
   return "";
 }
 
-// The options that name a file to write, and those, beside the positional ones, that name a file to read.
-const std::vector<std::string> kOutputs{"output",     "summary",      "out",          "spectrum",
-                                        "preview",    "preview-maps", "feature-list", "write-recipe",
-                                        "height-map", "manifest"};
-const std::vector<std::string> kInputs{"base", "target", "points"};
-
-// Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".
-// The result names the program's option of that name instead, if there is one.
-std::string naming_options(const std::string& message, const CLI::App& app) {
-  const std::size_t end = std::min(message.find(':'), message.size());
-  std::string name = message.substr(0, end);
-  std::replace(name.begin(), name.end(), '_', '-');
-  for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_positional() && option->check_lname(name)) return "--" + name + message.substr(end);
-  }
-  return message;
-}
-
-bool is_named(const CLI::Option& option, const std::vector<std::string>& names) {
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return option.check_lname(name); });
-}
-
-// All options that were given to the program and to its command.
-std::vector<const CLI::Option*> given(const CLI::App& app) {
-  std::vector<const CLI::Option*> options;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() > 0) options.push_back(option);
-  }
-  for (const CLI::App* subcommand : app.get_subcommands()) {
-    for (const CLI::Option* option : given(*subcommand)) options.push_back(option);
-  }
-  return options;
-}
-
-// Throws InputError for an output without a name.
-void require_names(const CLI::App& app) {
-  for (const CLI::Option* option : given(app)) {
-    if (is_named(*option, kOutputs) && option->results().front().empty())
-      throw InputError(option->get_lnames().front() + ": is given without a name; give one, or leave it out");
-  }
-}
-
-// Throws InputError when an output is an input, or another output.
-void require_distinct_files(const CLI::App& app) {
-  const std::vector<const CLI::Option*> options = given(app);
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    if (!is_named(*options[i], kOutputs)) continue;
-    const std::string output = options[i]->results().front();
-    for (std::size_t j = 0; j < options.size(); ++j) {
-      const bool reads = options[j]->get_positional() || is_named(*options[j], kInputs);
-      for (const std::string& other : options[j]->results()) {
-        if (reads) require_other_file(output, other);
-        if (j > i && is_named(*options[j], kOutputs)) require_two_files(output, other);
-      }
+// Hands a row of the table to CLI11, which cuts the command line into words.
+void declare(OptionRow& row, CLI::App& parser) {
+  CLI::Option* option = nullptr;
+  if (row.is_flag()) {
+    option = parser.add_flag_callback(
+        row.names, [&row] { OptionTable::set(row, {"true"}); }, row.meaning);
+  } else {
+    const auto store = [&row](const CLI::results_t& words) { return OptionTable::set(row, words), true; };
+    option = parser.add_option(row.names, store, row.meaning);
+    option->type_size(row.words_per_value());
+    if (row.count > 0) {
+      option->expected(row.count);
+    } else if (row.takes_several()) {
+      option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(!row.repeated);
     }
+    option->option_text(row.value_words());
   }
+  option->required(row.required);
+}
+
+void declare(OptionTable& options, CLI::App& parser) {
+  for (const auto& row : options.rows()) declare(*row, parser);
+  for (const OptionTable::Command& command : options.commands()) {
+    CLI::App* const sub = parser.add_subcommand(command.name, command.meaning)->fallthrough();
+    sub->callback([&command] { command.options->set_given(); });
+    declare(*command.options, *sub);
+  }
+  if (options.needs_command()) parser.require_subcommand(1);
 }
 
 }  // namespace
 
-void print_result(const std::string& text) {
+void Program::print_result(const std::string& text) {
   if (std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return;
   throw WorkError(errno == EPIPE ? "stdout: nobody reads it any more"
                                  : "stdout: writing failed; is the disk full?");
 }
 
 Program::Program(std::string name, std::string description)
-    : parser_(std::make_unique<CLI::App>(std::move(description), name)),
-      app(*parser_),
-      name_(std::move(name)) {
-  parser_->formatter(std::make_shared<HelpFormatter>());
-  parser_->option_defaults()->always_capture_default();
-  parser_->set_version_flag("--version", tool());
-  app.add_option("--seed", seed,
-                 "seed of everything random; same input, options and seed give the same bytes")
-      .check(in_range(std::int64_t{0}, (std::int64_t{1} << 53) - 1));
-  app.add_option("--threads", threads, "threads to use; 0 = all").check(in_range(0, 1024));
-  app.add_flag("--quiet", quiet, "no progress and no messages, errors only");
-  app.add_option("--summary", summary_file, "write the figures of the run to this JSON file")
-      .placeholder("FILE");
+    : Job(std::move(name)), description_(std::move(description)) {
+  options.add_option("--threads", threads, "threads to use; 0 = all")
+      .check(in_range(0, 1024))
+      .without_effect();
+  options.add_flag("--quiet", quiet, "no progress and no messages, errors only").without_effect();
+  options.add_option("--summary", summary_file, "write the figures of the run to this JSON file").writes();
 }
 
 Program::~Program() = default;
 
 int Program::run(int argc, char** argv, const std::function<void()>& work) {
+  CLI::App parser(description_, name_);
+  parser.formatter(std::make_shared<HelpFormatter>());
+  parser.set_version_flag("--version", tool());
+  declare(options, parser);
+  const auto refuse = [&](const std::string& why) {
+    print_line(fmt::format("{}: {}; see {} --help", name_, why, name_));
+    return 2;
+  };
   try {
-    parser_->parse(argc, argv);
+    parser.parse(argc, argv);
+    options.check_combination();
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return parser_->exit(e);  // --help, --version
-    const std::string unknown = unknown_option(*parser_);
-    print_line(fmt::format("{}: {}; see {} --help", name_, unknown.empty() ? e.what() : unknown, name_));
-    return 2;
-  }
-  if (const std::string wrong = option_not_finite(*parser_); !wrong.empty()) {
-    print_line(fmt::format("{}: --{}: must be a finite number; see {} --help", name_, wrong, name_));
-    return 2;
+    if (e.get_exit_code() == 0) return parser.exit(e);  // --help, --version
+    const std::string unknown = unknown_option(parser, options);
+    return refuse(unknown.empty() ? e.what() : unknown);
+  } catch (const InputError& e) {
+    return refuse(e.what());
   }
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
@@ -213,7 +171,7 @@ int Program::run(int argc, char** argv, const std::function<void()>& work) {
     if (part_failed_) return 1;
     return interrupted() ? 3 : 0;
   } catch (const InputError& e) {
-    print_line(fmt::format("{}: {}", name_, naming_options(e.what(), *parser_)));
+    print_line(fmt::format("{}: {}", name_, naming_options(e.what())));
     return 2;
   } catch (const std::bad_alloc&) {
     print_line(fmt::format("{}: out of memory; try a smaller resolution or fewer samples", name_));
@@ -231,8 +189,7 @@ double Program::seconds() const {
 }
 
 void Program::timed(const std::function<void()>& work) {
-  require_names(*parser_);
-  require_distinct_files(*parser_);
+  options.check_files();
   // A summary that cannot be written should not be found out after an hour's work.
   if (!summary_file.empty()) {
     require_extension(summary_file, {".json"});
@@ -275,7 +232,7 @@ Progress Program::progress(std::string stage) const {
 
 bool Program::interrupted() { return g_interrupts.load() > 0; }
 
-const char* Program::stopped_by() { return g_signal.load() == SIGTERM ? "SIGTERM" : "Ctrl-C"; }
+const char* Program::stopped_by() const { return g_signal.load() == SIGTERM ? "SIGTERM" : "Ctrl-C"; }
 
 void Program::say(const std::string& line) const {
   if (!quiet) print_line(line);
@@ -286,21 +243,14 @@ void Program::report_failure(const std::string& line) {
   print_line(fmt::format("{}: {}", name_, line));
 }
 
-std::string Program::tool() const { return name_ + " " + kCodeVersion.text(); }
-
-std::vector<std::pair<std::string, std::string>> Program::given_options() const {
-  static const std::vector<std::string> kNoEffect{"output",  "threads",     "quiet",      "summary",
-                                                  "report",  "spectrum",    "checkpoint", "help",
-                                                  "version", "write-recipe"};
-  std::vector<std::pair<std::string, std::string>> given;
-  for (const CLI::Option* option : parser_->get_options()) {
-    if (option->count() == 0 || option->get_positional()) continue;
-    std::string key = option->get_lnames().empty() ? option->get_name() : option->get_lnames().front();
-    if (std::find(kNoEffect.begin(), kNoEffect.end(), key) != kNoEffect.end()) continue;
-    given.emplace_back(std::move(key), CLI::detail::join(option->results(), " "));
-  }
-  std::sort(given.begin(), given.end());
-  return given;
+// Libraries name a parameter at the beginning of a message, such as "patch: no surface crosses this cube".
+std::string Program::naming_options(const std::string& message) const {
+  const std::size_t end = std::min(message.find(':'), message.size());
+  std::string name = message.substr(0, end);
+  std::replace(name.begin(), name.end(), '_', '-');
+  const OptionRow* const row = options.find(name);
+  if (name.empty() || row == nullptr || row->positional() || row->name() != name) return message;
+  return "--" + name + message.substr(end);
 }
 
 }  // namespace astrolith

@@ -4,36 +4,25 @@
 //
 //   int main(int argc, char** argv) {
 //     Program program("synth", "Turns a recipe into a mesh.");
-//     program.app.add_option("recipe", options.recipe, "the recipe").required();
+//     program.options.add_option("recipe", recipe, "the recipe").required().reads();
 //     return program.run(argc, argv, [&] { ...; program.summary["triangles"] = n; });
 //   }
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "apps/command_line.h"
-#include "numerics/progress.h"
+#include "tasks/job/job.h"
 
 namespace astrolith {
 
-// Writes what a program was asked for to stdout, at once. Throws WorkError where it cannot be written, as
-// where nobody reads it any more.
-void print_result(const std::string& text);
-
-class Program {
-  // Declared first, since `app` refers to it.
-  std::unique_ptr<CLI::App> parser_;
-
+class Program : public Job {
  public:
   Program(std::string name, std::string description);
-  ~Program();
+  ~Program() override;
 
   // Parses, limits threads, runs work, writes the summary; returns the exit status. Exceptions of work become
   // one line on stderr: InputError gives 2, everything else 1, and so does a reported failure. Work that ends
@@ -44,30 +33,22 @@ class Program {
 
   // Draws a bar labelled with the stage while stderr is a terminal and --quiet is not given; asks the work to
   // stop once Ctrl-C has been pressed. A second Ctrl-C ends the program at once.
-  Progress progress(std::string stage) const;
+  Progress progress(std::string stage) const override;
   // True once Ctrl-C has been pressed.
   static bool interrupted();
-  // What pressed it: "Ctrl-C", or "SIGTERM" where that signal came first, which counts as Ctrl-C.
-  static const char* stopped_by();
+  bool stopped() const override { return interrupted(); }
+  // "Ctrl-C", or "SIGTERM" where that signal came first, which counts as Ctrl-C.
+  const char* stopped_by() const override;
 
   // Prints one line to stderr, unless --quiet was given.
-  void say(const std::string& line) const;
-
-  // Prints the line like say(), but once the work is done. Work that fails prints no notes, and a quiet
-  // program has none.
-  void note(const std::string& line) {
+  void say(const std::string& line) const override;
+  void note(const std::string& line) override {
     if (!quiet) notes_.push_back(line);
   }
-
-  // Reports a part of the work that failed while the rest goes on. Prints one line to stderr, also with
-  // --quiet; the exit status will be 1.
-  void report_failure(const std::string& line);
-
-  // "fit_shape 0.2.0 (1a2b3c4)", for provenance.
-  std::string tool() const;
-  // The options that were given on the command line, sorted by name, for provenance; output names, threads,
-  // quiet and summary left out, since they do not change the result.
-  std::vector<std::pair<std::string, std::string>> given_options() const;
+  // Writes to stdout.
+  void print_result(const std::string& text) override;
+  // Prints one line to stderr, also with --quiet; the exit status will be 1.
+  void report_failure(const std::string& line) override;
 
   // Writes the summary so far into a file, with the seconds and an interruption; run() does it in the end.
   void save_summary(const std::string& file);
@@ -77,10 +58,8 @@ class Program {
   // Seconds that all threads of the program have spent so far, from its start.
   static double processor_seconds();
 
-  CommandLine app;
-  nlohmann::ordered_json summary;
+  OptionTable& app = options;
 
-  std::uint64_t seed = 1;
   int threads = 0;  // 0 = all
   bool quiet = false;
   std::string summary_file;
@@ -90,8 +69,10 @@ class Program {
 
  private:
   void timed(const std::function<void()>& work);
+  // The library's text of an error, which names options by their words, with the program's names of options.
+  std::string naming_options(const std::string& message) const;
 
-  std::string name_;
+  std::string description_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<std::string> notes_;
   bool part_failed_ = false;

@@ -52,7 +52,7 @@ if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE)
 endif()
 if(ASTROLITH_CUDA AND NOT ASTROLITH_SANITIZE AND CMAKE_CUDA_COMPILER)
   if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-    # One architecture keeps the build short: mesh_field.cu alone takes 20 to 50 seconds for each. Programs for other machines
+    # One architecture keeps the build short: gpu_mesher.cu alone takes 20 to 50 seconds for each. Programs for other machines
     # are built with -DCMAKE_CUDA_ARCHITECTURES="75-real;80-real;90", as the preset synth-only does.
     astrolith_cuda_architectures(CMAKE_CUDA_ARCHITECTURES)
   endif()
@@ -71,9 +71,6 @@ if(ASTROLITH_TESTS)
   find_package(GTest REQUIRED)
   find_package(PNG REQUIRED)  # reads what was written
   include(GoogleTest)
-endif()
-if(ASTROLITH_BENCHMARKS)
-  find_package(benchmark REQUIRED)
 endif()
 
 # Real data used by tests where present: the folder beside the checkout, and the two Debian packages that

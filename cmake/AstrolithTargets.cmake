@@ -67,13 +67,10 @@ function(astrolith_library name)
   set_property(GLOBAL APPEND PROPERTY ASTROLITH_LIBRARIES ${target})
 endfunction()
 
-# astrolith_room(NAME SOURCES a.cpp ...)  adds a folder's sources to library NAME or to test NAME_tests
+# astrolith_room(NAME SOURCES a.cpp ...)  adds a folder's sources to library NAME
 function(astrolith_room name)
   cmake_parse_arguments(ARG "" "" "SOURCES" ${ARGN})
-  if(TARGET astrolith_${name})
-    set(name astrolith_${name})
-  endif()
-  target_sources(${name} PRIVATE ${ARG_SOURCES})
+  target_sources(astrolith_${name} PRIVATE ${ARG_SOURCES})
 endfunction()
 
 # astrolith_program(NAME [SOURCES x.cpp ...] LINK link ...)  builds NAME.cpp of this folder, with further sources
@@ -94,12 +91,17 @@ else()
   set(astrolith_test_options $<$<CONFIG:Release>:-O1>)
 endif()
 
-# astrolith_test(NAME [ROOMS] [OPTIMISED] SOURCES x_test.cpp ... LINK link ...)  one executable of GoogleTest cases
+# astrolith_test(NAME [OPTIMISED] [FOLDERS folder ...] [SOURCES x_test.cpp ...] LINK link ...)  one executable of GoogleTest
+# cases. FOLDERS stands for all sources in each of these folders.
 # OPTIMISED is for tests that run an algorithm of a header at length: their code keeps the flags of the preset, too.
 # Six processes run the cases in turn, since a start takes longer than most cases. The environment's GTEST_FILTER chooses
-# among the cases. A case whose name ends in Long takes seconds; scripts/test.sh leaves it out (scripts/check_plan.toml).
+# among the cases. A case whose name ends in Long takes seconds; scripts/test.sh leaves it out.
 function(astrolith_test name)
-  cmake_parse_arguments(ARG "ROOMS;OPTIMISED" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMISED" "" "FOLDERS;SOURCES;LINK" ${ARGN})
+  foreach(folder IN LISTS ARG_FOLDERS)
+    file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+    list(APPEND ARG_SOURCES ${sources})
+  endforeach()
   add_executable(${name}_tests ${ARG_SOURCES})
   target_link_libraries(${name}_tests PRIVATE ${ARG_LINK} astrolith_test_data astrolith_warnings GTest::gtest_main)
   if(ARG_OPTIMISED)

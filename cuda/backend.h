@@ -1,7 +1,7 @@
 // The interface through which the algorithms of this folder use a GPU: arrays in its memory, launches of many
 // threads in groups, and a running sum. An algorithm is a template over a Backend. DeviceBackend
-// (device_backend.h) runs it on the GPU. HostBackend (host_backend.h) runs it on the CPU, where ordinary
-// tests compare its results with those of the CPU's own algorithm.
+// (device_backend.h) runs it on the GPU. HostBackend (tests/cuda/host_backend.h) runs it on the CPU, where
+// ordinary tests compare its results with those of the CPU's own algorithm.
 //
 //   template <class Backend>
 //   void double_all(Backend& backend, std::vector<float>& values) {

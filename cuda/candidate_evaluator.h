@@ -7,20 +7,22 @@
 #include <memory>
 
 #include "cuda/backend_lists.h"
-#include "cuda/field_on_backend.h"
-#include "cuda/pair_tiles.h"
+#include "cuda/pair_groups.h"
 #include "synthesis/body/body_at_point.h"
+#include "synthesis/noise/fractal_noise.h"
 
 namespace astrolith {
 
 // Lines along which points move to the surface: t <- t + F(start + t direction), from t = 0, within +-reach.
 struct ProbeLines {
-  std::vector<Vec3f> start, direction;   // (lines)
-  std::vector<std::uint32_t> block;      // (lines): number of the block of each line in `metaballs`
-  BlockListStore metaballs;              // metaballs that reach the lines of each block
-  MetaballParameters<float> parameters;  // parameters of all metaballs
-  float reach = 0.0f;                    // length units
-  int steps = 0;                         // number of steps of each point
+  std::vector<Vec3f> start, direction;  // (lines)
+  std::vector<std::uint32_t> block;     // (lines): number of the block of each line
+  // The metaballs that reach the lines of each block, one block after another.
+  std::vector<MetaballSphere<float>> metaballs;
+  std::vector<std::uint32_t> first_metaball{0};  // (blocks + 1)
+  MetaballParameters<float> parameters;          // parameters of all metaballs
+  float reach = 0.0f;                            // length units
+  int steps = 0;                                 // number of steps of each point
 };
 
 // The layers of the candidates as tables. The layers of a candidate add their heights.
@@ -55,7 +57,7 @@ struct ProbeLine {
   BodyTables body;             // a plain body of one leaf
   const FractalNoise* noises;  // layers of all candidates
   const ListRange* of_candidate;
-  BlockListArrays blocks;
+  LeafLists metaballs;  // one list for each block
   const Vec3f *start, *direction;
   const std::uint32_t* block;
   std::size_t lines;
@@ -66,12 +68,12 @@ struct ProbeLine {
   ASTROLITH_HD void operator()(std::size_t i) const {
     const ListRange own = of_candidate[i / lines];
     const std::size_t line = i % lines;
-    const LeafLists metaballs = blocks.block(block[line]).metaballs;
+    const LeafLists of_block{metaballs.spheres, metaballs.first + block[line]};
     const Vec3f from = start[line], along = direction[line];
     float t = 0.0f;
     for (int step = 0; step < steps; ++step) {
       const Vec3f p{from.x + t * along.x, from.y + t * along.y, from.z + t * along.z};
-      float f = body_at(body, arrays, metaballs, p).distance;
+      float f = body_at(body, arrays, of_block, p).distance;
       for (std::uint32_t k = own.first; k < own.first + own.count; ++k) f += height_at(noises[k], arrays, p);
       t = std::clamp(t + f, -reach, reach);
     }
@@ -93,7 +95,8 @@ class CandidateEvaluatorOn : public CandidateEvaluator {
     const auto arrays = backend_.upload(std::span(view.bytes, view.size));
     const auto noises = backend_.upload(std::span<const FractalNoise>(candidates.noises));
     const auto of_candidate = backend_.upload(std::span<const ListRange>(candidates.of_candidate));
-    const BlocksOnBackend<Backend> blocks(backend_, lines.metaballs);
+    const auto metaballs = backend_.upload(std::span<const MetaballSphere<float>>(lines.metaballs));
+    const auto first_metaball = backend_.upload(std::span<const std::uint32_t>(lines.first_metaball));
     const auto start = backend_.upload(std::span<const Vec3f>(lines.start));
     const auto direction = backend_.upload(std::span<const Vec3f>(lines.direction));
     const auto block = backend_.upload(std::span<const std::uint32_t>(lines.block));
@@ -104,7 +107,7 @@ class CandidateEvaluatorOn : public CandidateEvaluator {
                               body,
                               noises.data(),
                               of_candidate.data(),
-                              blocks.view(),
+                              {metaballs.data(), first_metaball.data()},
                               start.data(),
                               direction.data(),
                               block.data(),

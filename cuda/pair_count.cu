@@ -1,7 +1,7 @@
 #include "cuda/pair_count.h"
 
 #include "cuda/device_backend.h"
-#include "cuda/pair_tiles.h"
+#include "cuda/pair_groups.h"
 
 namespace astrolith {
 

@@ -77,7 +77,7 @@ class Notebook:
         return {"peak_bytes": usage.ru_maxrss * 1024} | figures | {
             "wall_seconds": seconds, "cpu_seconds": usage.ru_utime + usage.ru_stime, "status": process.returncode, "words": words}
 
-    def once(self, output, program, *arguments):
+    def once(self, output, program, *arguments, check=True):
         """run(), unless a former execution of the same command left its output: an expensive result is kept."""
         record = Path(f"{output}.record.json")
         command = [program, *map(str, arguments)]
@@ -85,7 +85,7 @@ class Notebook:
             kept = json.loads(record.read_text())
             if kept["command"] == command:
                 return kept["figures"]
-        figures = self.run(program, *arguments)
+        figures = self.run(program, *arguments, check=check)
         record.write_text(json.dumps({"command": command, "figures": figures}))
         return figures
 
@@ -122,7 +122,7 @@ def picture(path, width=900):
 
 
 def find_program(name):
-    """A program, an experiment or a benchmark of the build."""
+    """A program or a benchmark of the build."""
     for folder in (BIN, BUILD / "tests/benchmarks"):
         if (folder / name).exists():
             return folder / name
@@ -147,13 +147,6 @@ def package():
     except ImportError:
         raise NotAtHand("the Python package is not at hand (-DASTROLITH_PYTHON=ON builds it)") from None
     return astrolith
-
-
-def run_benchmark(name, report, pattern, *arguments):
-    """Runs the Google benchmarks whose names match; report: the JSON to write."""
-    subprocess.run([find_program(name), f"--benchmark_filter={pattern}", f"--benchmark_out={report}",
-                    "--benchmark_out_format=json", *map(str, arguments)],
-                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def run_peer(script, *arguments, peers=False):

@@ -14,6 +14,12 @@
 
 namespace astrolith {
 
+// Limits of a recipe's numbers, which keep absurd files out. No number exceeds kMaxNumber in magnitude, and
+// "> 0" means at least kMinPositive. Numbers at the ends of their ranges can still combine to more than a
+// float holds.
+inline constexpr double kMaxNumber = 1e12;
+inline constexpr double kMinPositive = 1e-12;
+
 // The largest logarithm of a kernel: e^80 times a million spheres is still a float.
 inline constexpr double kMaxKernelExponent = 80.0;
 // The largest logarithm of a kernel over the iso-value in a body with subtractive metaballs.

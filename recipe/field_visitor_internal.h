@@ -19,10 +19,32 @@
 #include <utility>
 #include <vector>
 
-#include "recipe/number_limits_internal.h"
+#include "recipe/body.h"
 #include "recipe/place_internal.h"
 
 namespace astrolith {
+
+// Limits of a number in a list of fields.
+struct NumberLimits {
+  double low, high;
+  std::string_view words;  // the limits in a message, where {0} is `low` and {1} is `high`
+  bool low_is_allowed = true;
+};
+struct IntegerLimits {
+  int low, high;
+};
+
+constexpr NumberLimits range(double low, double high) { return {low, high, "from {0:g} to {1:g}"}; }
+constexpr IntegerLimits range(int low, int high) { return {low, high}; }
+constexpr NumberLimits above_one(double high) { return {1.0, high, "above {0:g} and at most {1:g}", false}; }
+inline constexpr NumberLimits kAnyNumber = range(-kMaxNumber, kMaxNumber);
+inline constexpr NumberLimits kNotNegative = range(0.0, kMaxNumber);
+inline constexpr NumberLimits kPositive = {kMinPositive, kMaxNumber, "above 0 (from {0:g} to {1:g})"};
+inline constexpr NumberLimits kShare = range(0.0, 1.0);
+
+// Both functions throw InputError at `place` for a value outside the limits. NaN lies outside.
+void expect(double value, const NumberLimits& limits, const Place& place);
+void expect(int value, const IntegerLimits& limits, const Place& place);
 
 // A number in a row such as [x, y, z, radius].
 template <class T, class Limits>
@@ -96,6 +118,14 @@ class FieldVisitor {
     std::string text(reading() ? std::string_view() : word_of(value));
     required(name, text);
     choose(name, value, values, word_of, text);
+  }
+  // A field of older recipes. A reader takes the one word that changes nothing, and fails with `message` on
+  // any other; other visitors do not see the field.
+  void retired(std::string_view name, std::string_view harmless, std::string_view message) {
+    if (!reading()) return;
+    std::string word(harmless);
+    field(name, word);
+    if (word != harmless) place_->field(name).fail(quote_text(word) + " " + std::string(message));
   }
   // Makes the current value an array of numbers, written on one line.
   template <class... T, class... Limits>

@@ -1,6 +1,6 @@
-// The lists of fields of a recipe's structs. Each list stands beside the rules for its struct, in one file a
-// part of the recipe: body_fields.cpp, noise_layer_fields.cpp, landform_fields.cpp, layer_use_fields.cpp and
-// recipe_fields.cpp.
+// The lists of fields of a recipe's structs, but for kinds of layers, whose lists are declared beside their
+// structs. Each list stands beside the rules for its struct, in one file a part of the recipe:
+// body_fields.cpp, noise_layer_fields.cpp, landform_fields.cpp, layer_use_fields.cpp and recipe_fields.cpp.
 #pragma once
 
 #include "recipe/field_visitor_internal.h"
@@ -25,23 +25,13 @@ void visit_fields(FieldVisitor& v, Warp& warp);
 void visit_octaves(FieldVisitor& v, double frequency, int& octaves, double& gain, double& lacunarity);
 
 void visit_fields(FieldVisitor& v, Layer& layer);
-void visit_fields(FieldVisitor& v, FractalLayer& layer);
-void visit_fields(FieldVisitor& v, GaborLayer& layer);
 void visit_fields(FieldVisitor& v, LayerColor& color);
-void visit_fields(FieldVisitor& v, ExemplarLayer& layer);
-void visit_fields(FieldVisitor& v, ReliefLayer& layer);
-void visit_fields(FieldVisitor& v, SpotLayer& layer);
 void visit_fields(FieldVisitor& v, SpotPart& part);
-void visit_fields(FieldVisitor& v, SparseLayer& layer);
-void visit_fields(FieldVisitor& v, RandomPhaseLayer& layer);
-void visit_fields(FieldVisitor& v, PhasorLayer& layer);
-void visit_fields(FieldVisitor& v, CraterLayer& layer);
 void visit_fields(FieldVisitor& v, CraterProfile& profile);
 void visit_fields(FieldVisitor& v, Crater& crater);
 void visit_fields(FieldVisitor& v, WeibullSizes& sizes);
 void visit_fields(FieldVisitor& v, Clusters& clusters);
 void visit_fields(FieldVisitor& v, CraterPopulation& population);
-void visit_fields(FieldVisitor& v, BoulderLayer& layer);
 void visit_fields(FieldVisitor& v, Boulder& boulder);
 void visit_fields(FieldVisitor& v, BoulderPopulation& population);
 void visit_fields(FieldVisitor& v, LocalGravity& gravity);

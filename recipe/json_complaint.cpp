@@ -1,4 +1,4 @@
-#include "recipe/json_complaint_internal.h"
+#include "recipe/json_document_internal.h"
 
 #include <fmt/format.h>
 

@@ -12,7 +12,6 @@
 
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
-#include "recipe/json_complaint_internal.h"
 #include "recipe/json_document_internal.h"
 #include "recipe/place_internal.h"
 

@@ -27,4 +27,8 @@ nlohmann::json parse_json(std::string_view text, const std::string& name);
 // The text as a JSON string: in quotes, on one line, and with U+FFFD for bytes that are not UTF-8.
 std::string json_string(std::string_view text);
 
+// What is wrong with JSON text in plain words, and what to do about it. `problem` is the JSON library's
+// message about `text`, and `position` is the character, counted from 1, at which the library stopped.
+std::string explain_json_problem(std::string_view problem, std::string_view text, std::size_t position);
+
 }  // namespace astrolith

@@ -4,6 +4,8 @@
 // are in the recipe's `length_unit`. Include recipe/recipe.h, which includes this file.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -132,6 +134,13 @@ struct CraterLayer {
   std::vector<Crater> craters;
   std::optional<CraterPopulation> population;
 
+  StatedHeight stated_height() const { return {craters.empty() ? "population" : "craters", 0.0}; }
+  // The size of the smallest crater that the layer lists, length units.
+  double least_listed() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Crater& crater : craters) least = std::min(least, crater.diameter);
+    return least;
+  }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     if (complex_from) *complex_from *= ratio;
@@ -144,6 +153,7 @@ struct CraterLayer {
     if (population) population->drawn.rescale(ratio);
   }
 };
+void visit_fields(FieldVisitor& v, CraterLayer& layer);
 
 // An ellipsoid on the surface that all other layers make. Without a tilt, its axis c is upright: it lies
 // along the normal of the bare surface or, in a layer with gravity, along the local vertical.
@@ -184,6 +194,13 @@ struct BoulderLayer {
   std::optional<BoulderPopulation> population;
   std::optional<LocalGravity> gravity;  // absent: boulders stand along the normal
 
+  StatedHeight stated_height() const { return {boulders.empty() ? "population" : "boulders", 0.0}; }
+  // The size of the smallest boulder that the layer lists, length units.
+  double least_listed() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Boulder& boulder : boulders) least = std::min(least, boulder.axes.x);
+    return least;
+  }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     for (Boulder& boulder : boulders) {
@@ -193,5 +210,6 @@ struct BoulderLayer {
     if (population) population->drawn.rescale(ratio);
   }
 };
+void visit_fields(FieldVisitor& v, BoulderLayer& layer);
 
 }  // namespace astrolith

@@ -103,6 +103,23 @@ void check_layer_uses(const Recipe& recipe, const Place& place) {
   for (std::size_t i = 0; i < recipe.layers.size(); ++i) check_layer_use(recipe, i, layers.element(i));
 }
 
+std::string_view height_field(const Layer& layer) {
+  const StatedHeight field = std::visit(
+      [](const auto& l) -> StatedHeight {
+        if constexpr (requires { l.stated_height(); }) {
+          return l.stated_height();
+        } else if constexpr (requires { l.amplitude; }) {
+          return {"amplitude", l.amplitude};
+        } else {
+          return {"height_rms", l.height_rms};
+        }
+      },
+      layer);
+  const LayerUse* use = use_of(layer);
+  const bool is_blend = use != nullptr && use->combination.kind == Combine::kBlend;
+  return is_blend && use->combination.width > std::fabs(field.height) ? "combine.width" : field.name;
+}
+
 int find_layer(std::span<const Layer> layers, const std::string& name) {
   for (int i = static_cast<int>(layers.size()) - 1; i >= 0; --i) {
     if (has_name(layers[static_cast<std::size_t>(i)], name)) return i;

@@ -174,7 +174,9 @@ void visit_fields(FieldVisitor& v, GaborLayer& layer) {
   v.field("pixel_size", layer.pixel_size, kPositive);
   v.field("height_rms", layer.height_rms, kNotNegative);
   v.field("impulses_per_kernel", layer.impulses_per_kernel, range(1, 1024));
-  v.word("evaluation", layer.evaluation, kGaborEvaluations, evaluation_word);
+  v.retired("evaluation", "impulses",
+            "is gone; leave it out, which evaluates the impulses of all lobes, or fit the photo again with "
+            "fit_gabor --model phase");
   v.field("exemplar_mean", layer.exemplar_mean, kAnyNumber);
   v.field("exemplar_rms", layer.exemplar_rms, kNotNegative);
   v.field("color", layer.color);

@@ -97,14 +97,7 @@ inline constexpr bool is_worley(Noise noise) { return noise != Noise::kSimplex &
 //   D_o = sum_{k <= o} (gain lacunarity)^k grad noise_k, the slope so far over amplitude * frequency.
 // n is a height in length units along the outward normal.
 struct FractalLayer {
-  static constexpr LayerTraits kTraits{.is_noise = true,
-                                       .on_surface = false,
-                                       .on_layers = false,
-                                       .has_image = false,
-                                       .has_color = false,
-                                       .paints_bodies = false,
-                                       .in_plane = false,
-                                       .varies = true};
+  static constexpr LayerTraits kTraits = kNoiseInSpace;
 
   std::string name;
   LayerSeed seed;
@@ -121,6 +114,7 @@ struct FractalLayer {
   double gradient_modulation = 0.0;  // >= 0: octaves fade where the sum is steep; 0 for Worley noise
   std::optional<Warp> warp;          // displaces the coordinates before scale and bias
 
+  VariedFields varied() { return {amplitude, frequency}; }
   // Multiplies all lengths by the ratio.
   void rescale(double ratio) {
     amplitude *= ratio;
@@ -132,6 +126,7 @@ struct FractalLayer {
     }
   }
 };
+void visit_fields(FieldVisitor& v, FractalLayer& layer);
 
 // One symmetric pair of Gaussians in the power spectrum of a texture.
 struct GaborLobe {
@@ -152,29 +147,12 @@ struct LayerColor {
   Vec3d mean;  // added everywhere; the first of an exemplar's layers holds the mean colour
 };
 
-// How the lobes of a Gabor layer become heights on a surface:
-//   impulses  sparse convolution for every lobe, whose spectrum is exact to 1 %
-//   tiles     wide lobes as a random-phase tile, tiled and blended, and narrow lobes as impulses: faster, and
-//             less exact. synthesis/exemplar/phase_tile.h tells which lobes are wide.
-// A texture on a plane is made of impulses either way.
-enum class GaborEvaluation { kImpulses, kTiles };
-inline constexpr GaborEvaluation kGaborEvaluations[] = {GaborEvaluation::kImpulses, GaborEvaluation::kTiles};
-constexpr std::string_view evaluation_word(GaborEvaluation evaluation) {
-  return evaluation == GaborEvaluation::kImpulses ? "impulses" : "tiles";
-}
-
 // Bandwidth-quantised Gabor noise (thesis eq. 5.7 to 5.11) fitted to an exemplar.
 // Height of the layer = height_rms * (noise of the lobes, scaled to unit variance), along the outward normal.
 struct GaborLayer {
   static constexpr std::string_view kType = "gabor";
-  static constexpr LayerTraits kTraits{.is_noise = true,
-                                       .on_surface = true,
-                                       .on_layers = false,
-                                       .has_image = false,
-                                       .has_color = true,
-                                       .paints_bodies = false,
-                                       .in_plane = true,
-                                       .varies = false};
+  static constexpr LayerTraits kTraits{
+      .is_noise = true, .on_surface = true, .on_layers = false, .in_plane = true};
 
   std::string name;
   LayerSeed seed;
@@ -182,9 +160,8 @@ struct GaborLayer {
   double pixel_size = 1.0;       // length units per exemplar pixel, > 0
   double height_rms = 0.0;       // length units, >= 0; a photo does not show it, so the user states it
   int impulses_per_kernel = 32;  // mean number of impulses under one kernel, for each bandwidth, 1 .. 1024
-  GaborEvaluation evaluation = GaborEvaluation::kImpulses;
-  double exemplar_mean = 0.0;  // mean grey value, full scale = 1
-  double exemplar_rms = 0.0;   // standard deviation of grey values after the fit's preprocessing, >= 0
+  double exemplar_mean = 0.0;    // mean grey value, full scale = 1
+  double exemplar_rms = 0.0;     // standard deviation of grey values after the fit's preprocessing, >= 0
   std::optional<LayerColor> color;
   std::vector<GaborLobe> lobes;  // at least one
 
@@ -195,6 +172,7 @@ struct GaborLayer {
     height_rms *= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, GaborLayer& layer);
 
 // How an exemplar goes on beyond its border: as a copy of itself, which needs a periodic image, or mirrored.
 enum class ExemplarBorder { kRepeat, kMirror };
@@ -225,14 +203,8 @@ constexpr std::string_view rotation_word(ExemplarRotation rotation) {
 // paints nothing.
 struct ExemplarLayer : NamedImage {
   static constexpr std::string_view kType = "exemplar";
-  static constexpr LayerTraits kTraits{.is_noise = true,
-                                       .on_surface = true,
-                                       .on_layers = true,
-                                       .has_image = true,
-                                       .has_color = true,
-                                       .paints_bodies = true,
-                                       .in_plane = true,
-                                       .varies = false};
+  static constexpr LayerTraits kTraits{
+      .is_noise = true, .on_surface = true, .on_layers = true, .in_plane = true};
 
   std::string name;
   LayerSeed seed;
@@ -262,6 +234,7 @@ struct ExemplarLayer : NamedImage {
     height_range *= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, ExemplarLayer& layer);
 
 // An ellipsoid of a spot (thesis eq. 5.3). It adds
 //   weight K(diag(axes)^-1 R^-1 (q - center)),   R the turns about x, then y, then z.
@@ -334,6 +307,7 @@ struct SpotLayer {
     cell_size *= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, SpotLayer& layer);
 
 // How far a spot reaches from its impulse, in units of q.
 inline double spot_extent(const SpotLayer& layer, const SpotPart& part) {
@@ -371,6 +345,7 @@ struct SparseLayer {
     cell_size *= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, SparseLayer& layer);
 
 // Local random phase noise (Gilet et al. 2014; thesis eq. 2.25): each cell of a lattice holds a sum of plane
 // waves with phases of its own, and windows fade the sums of neighbouring cells into each other. Frequencies
@@ -403,6 +378,7 @@ struct RandomPhaseLayer {
     frequency_max /= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, RandomPhaseLayer& layer);
 
 // The height that a phasor layer draws over a turn of the phase, between -1 and 1.
 enum class PhasorProfile { kSine, kTriangle, kSawtooth, kSquare };
@@ -437,6 +413,7 @@ struct PhasorLayer {
     frequency /= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, PhasorLayer& layer);
 inline constexpr double kMaxPhasorTurns = 1024.0;
 
 }  // namespace astrolith

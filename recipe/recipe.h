@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -16,7 +17,6 @@
 #include "recipe/body.h"
 #include "recipe/family.h"
 #include "recipe/landforms.h"
-#include "recipe/limits.h"
 #include "recipe/noise_layers.h"
 #include "recipe/relief_layer.h"
 
@@ -69,7 +69,7 @@ inline const Population* population_of(const Layer& layer) {
 inline NamedImage* image_of(Layer& layer) {
   return std::visit(
       []<class Kind>(Kind& l) -> NamedImage* {
-        if constexpr (Kind::kTraits.has_image) {
+        if constexpr (std::is_base_of_v<NamedImage, Kind>) {
           return &l;
         } else {
           return nullptr;
@@ -82,8 +82,8 @@ inline const NamedImage* image_of(const Layer& layer) { return image_of(const_ca
 // Whether the layer has a colour.
 inline bool has_color(const Layer& layer) {
   return std::visit(
-      []<class Kind>(const Kind& l) {
-        if constexpr (Kind::kTraits.has_color) {
+      [](const auto& l) {
+        if constexpr (requires { l.color; }) {
           return static_cast<bool>(l.color);
         } else {
           return false;
@@ -95,8 +95,8 @@ inline bool has_color(const Layer& layer) {
 // Whether the layer paints the surface of a body.
 inline bool paints(const Layer& layer) {
   return std::visit(
-      []<class Kind>(const Kind& l) {
-        if constexpr (Kind::kTraits.paints_bodies) {
+      [](const auto& l) {
+        if constexpr (requires { l.paints(); }) {
           return l.paints();
         } else {
           return false;
@@ -108,8 +108,8 @@ inline bool paints(const Layer& layer) {
 // Whether the layer may change a surface. A layer of colour alone does not.
 inline bool has_height(const Layer& layer) {
   return std::visit(
-      []<class Kind>(const Kind& l) {
-        if constexpr (Kind::kTraits.has_color) {
+      [](const auto& l) {
+        if constexpr (requires { l.has_height(); }) {
           return l.has_height();
         } else {
           return true;
@@ -134,6 +134,11 @@ inline LayerMask* mask_of(Layer& layer) {
   return drawn != nullptr && drawn->mask ? &*drawn->mask : nullptr;
 }
 inline const LayerMask* mask_of(const Layer& layer) { return mask_of(const_cast<Layer&>(layer)); }
+
+// The name of the field that decides how high a layer is, for messages: "amplitude", "height_rms" or
+// "height_range"; "combine.width" where a blend's joint is wider than the layer is high; or the list of
+// landforms, "craters", "boulders" or "population".
+std::string_view height_field(const Layer& layer);
 
 // The place of the last layer of this name in the list, or -1.
 int find_layer(std::span<const Layer> layers, const std::string& name);

@@ -30,14 +30,8 @@ constexpr std::string_view arrangement_word(ReliefArrangement a) {
 inline constexpr int kMostFinerLevels = 6;
 struct ReliefLayer : NamedImage {
   static constexpr std::string_view kType = "relief";
-  static constexpr LayerTraits kTraits{.is_noise = true,
-                                       .on_surface = true,
-                                       .on_layers = false,
-                                       .has_image = true,
-                                       .has_color = false,
-                                       .paints_bodies = false,
-                                       .in_plane = false,
-                                       .varies = false};
+  static constexpr LayerTraits kTraits{
+      .is_noise = true, .on_surface = true, .on_layers = false, .in_plane = false};
 
   std::string name;
   LayerSeed seed;
@@ -83,5 +77,6 @@ struct ReliefLayer : NamedImage {
     high *= ratio;
   }
 };
+void visit_fields(FieldVisitor& v, ReliefLayer& layer);
 
 }  // namespace astrolith

@@ -49,9 +49,11 @@ estimation/shape/fit       -> numerics recipe geometry descriptor synthesis esti
 estimation/shape/details   -> numerics recipe geometry descriptor synthesis cuda estimation/optimize estimation/gabor estimation/shape/target estimation/shape/model estimation/shape/fit
 estimation/shape/relief    -> numerics recipe geometry synthesis
 estimation/shape/report    -> numerics geometry descriptor/surface synthesis/picture estimation/plot estimation/page estimation/shape/target estimation/shape/fit
-tasks/repair               -> numerics geometry
-tasks/gravity              -> numerics recipe geometry gravity synthesis
-tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda
+tasks/job                  -> numerics
+tasks/repair               -> numerics geometry tasks/job
+tasks/gravity              -> numerics recipe geometry gravity synthesis tasks/job tasks/repair tasks/synthesis
+tasks/synthesis            -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair
+tasks/description          -> numerics recipe geometry gravity descriptor synthesis cuda tasks/job tasks/repair tasks/synthesis
 tasks/prediction           -> numerics recipe geometry gravity synthesis tasks/synthesis
 tasks/estimation           -> numerics recipe geometry descriptor synthesis cuda estimation tasks
 apps                       -> numerics recipe geometry gravity descriptor synthesis cuda estimation tasks apps

@@ -3,7 +3,7 @@
 #   fuzz.sh SECONDS [READER ...]    SECONDS for each reader; all readers by default
 #   FUZZ_CORPUS=DIR                 keeps what it found worth keeping there for the next run (default build/fuzz/corpus)
 # A file that crashes a reader, or takes more than 2 s or more memory than its fuzzer in tests/fuzz states, ends the run. It lies
-# in build/fuzz then. scripts/fuzz_coverage.sh prints what share of the readers the corpus reaches.
+# in build/fuzz then.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

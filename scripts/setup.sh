@@ -6,7 +6,7 @@ packages=(
   build-essential cmake ninja-build pkg-config python3
   libtbb-dev libeigen3-dev nlohmann-json3-dev libvalijson-dev libssl-dev libfmt-dev libcli11-dev
   libembree-dev libopenmesh-dev libtinygltf-dev libnanoflann-dev libpng-dev libspng-dev libtiff-dev libzip-dev libzstd-dev
-  libgtest-dev libbenchmark-dev
+  libgtest-dev
 )
 fitting=(libceres-dev libnlopt-dev libnlopt-cxx-dev libopencv-dev libfftw3-dev libcairo2-dev libspectra-dev libcgal-dev libjs-three)
 # --synth leaves out the packages of the fits. --format and --lint add what checks the sources, --sanitizers the compiler of

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/density_question.h"
-#include "apps/output_names.h"
 #include "apps/program.h"
 #include "apps/synth/synth_finish.h"
 #include "apps/synth/synth_members.h"
@@ -19,6 +17,8 @@
 #include "numerics/files/sha256.h"
 #include "numerics/memory_use.h"
 #include "synthesis/finish/lay_on_base.h"
+#include "tasks/job/density_question.h"
+#include "tasks/job/output_names.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/variation_reference.h"
 
@@ -45,20 +45,26 @@ struct Options {
 
 void declare_options(Program& program, Options& options) {
   program.app.add_option("recipe", options.recipe, "the recipe, a JSON file or a compact one (.astro)")
-      .required();
+      .required()
+      .reads(recipe_and_images);
   program.app
-      .add_option("-o,--output", options.body.output,
-                  "the mesh: .ply (binary, streamed; .ply.zst is compressed), .obj, .stl, .glb, .icq or .tab "
-                  "(PDS plates), in the "
-                  "recipe's length unit; with --texture .png or .tif; needed unless --predict or "
-                  "--write-recipe is given")
-      .placeholder("FILE");
+      .add_option(
+          "-o,--output", options.body.output,
+          "the mesh: " + written_mesh_words() +
+              ", in the recipe's length unit; with --texture .png or .tif; needed unless --predict or "
+              "--write-recipe is given")
+      .placeholder("FILE")
+      .writes([&options](const auto& words) {
+        return options.texture.size.empty() ? std::vector<fs::path>{words.front()}
+                                            : texture_files(options.texture, words.front());
+      });
   declare_mesh_options(program, options.body.mesh);
   program.app
       .add_option("--base", options.base,
                   "lay the recipe's layers on the body of this recipe, after the layers it has; a relief "
                   "takes the place of that body's own")
-      .placeholder("BODY.json");
+      .placeholder("BODY.json")
+      .reads(recipe_and_images);
   program.app
       .add_option("--base-lengths", options.base_lengths,
                   "what keeps its size on the --base: units, the lengths themselves, where m and km convert "
@@ -95,13 +101,15 @@ void declare_options(Program& program, Options& options) {
                   "with --vary: the mesh that the body is to be like, such as the one that the recipe was "
                   "fitted to")
       .needs(vary)
-      .placeholder("MESH");
+      .placeholder("MESH")
+      .reads();
   program.app.add_option("--count", options.count, "is written --members A:B").placeholder("N");
   program.app
       .add_option("--write-recipe", options.body.recipe,
                   "also write the recipe that is made, with the layers of --base, the variation and the seed "
                   "in it, as JSON or compact (.astro); without -o nothing else")
-      .placeholder("FILE.json");
+      .placeholder("FILE.json")
+      .writes(recipe_and_relief);
   declare_texture_options(program, options.texture);
   declare_members_options(program, options.members);
   for (const char* of_mesh :
@@ -124,13 +132,7 @@ void declare_options(Program& program, Options& options) {
 void make_texture(Program& program, const Options& options, const Recipe& recipe) {
   require_extension(options.body.output, {".png", ".tif", ".tiff"});
   const std::vector<fs::path> files = texture_files(options.texture, options.body.output);
-  for (const fs::path& file : files) {
-    require_writable(file);
-    for (const Layer& layer : recipe.layers) {
-      const NamedImage* named = image_of(layer);
-      if (named != nullptr && named->pixels) require_other_file(file, named->pixels->file);
-    }
-  }
+  for (const fs::path& file : files) require_writable(file);
   write_texture(program, options.texture, recipe, options.recipe, options.body.output);
   summarize_output(program, files.front());
 }

@@ -2,13 +2,13 @@
 
 #include <cmath>
 
-#include "apps/output_names.h"
 #include "geometry/surface/height_map.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
 #include "numerics/vec3_json.h"
-#include "synthesis/picture/geotiff.h"
+#include "synthesis/picture/image_file.h"
+#include "tasks/job/output_names.h"
 
 namespace astrolith {
 namespace {
@@ -39,6 +39,12 @@ Json frame_json(const HeightMap& map, const Region& region, const Recipe& recipe
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> height_map_files(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files(names.begin(), names.end());
+  for (const std::string& name : names) files.push_back(frame_file(name));
+  return files;
+}
 
 void check_height_map(const std::filesystem::path& file, const Region& region, const Recipe& recipe,
                       int resolution) {

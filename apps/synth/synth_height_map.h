@@ -10,6 +10,9 @@
 
 namespace astrolith {
 
+// The height maps of these names, and their frames.
+std::vector<std::filesystem::path> height_map_files(const std::vector<std::string>& names);
+
 // Throws InputError when the region is no patch, the recipe has no length unit or a file cannot be written.
 void check_height_map(const std::filesystem::path& file, const Region& region, const Recipe& recipe,
                       int resolution);

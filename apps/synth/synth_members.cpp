@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
@@ -19,6 +18,7 @@
 #include "numerics/version/code_version.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/family_member.h"
+#include "tasks/job/words.h"
 #include "tasks/synthesis/load_recipe.h"
 #include "tasks/synthesis/manifest.h"
 #include "tasks/synthesis/mesh_region.h"
@@ -117,7 +117,7 @@ std::string hash_of_family(const Program& program, const Recipe& recipe) {
   Recipe undescribed = recipe;
   undescribed.description.clear();
   std::string text = recipe_to_json(undescribed);
-  for (const auto& [name, value] : program.given_options()) {
+  for (const auto& [name, value] : program.options.given()) {
     if (std::find(kNoEffect.begin(), kNoEffect.end(), name) != kNoEffect.end()) continue;
     text += name + "=" + value + "\n";
   }
@@ -289,13 +289,15 @@ void declare_members_options(Program& program, MembersRequest& request) {
   program.app.add_option("--out", request.folder, "with --members: short for -o DIR/{member}.ply")
       .needs(members)
       .excludes(program.app.option("--output"))
-      .placeholder("DIR");
+      .placeholder("DIR")
+      .writes([](const auto& words) { return std::vector{fs::path(words.front()) / "{member}.ply"}; });
   program.app
       .add_option("--manifest", request.manifest,
                   "with --members: a file that gets a line of JSON for each finished member. Members that it "
                   "has, and whose files are whole, are not made again")
       .needs(members)
-      .placeholder("FILE.jsonl");
+      .placeholder("FILE.jsonl")
+      .writes();
 }
 
 void check_members(const MembersRequest& request, BodyRequest body) {

@@ -7,19 +7,18 @@
 #include <optional>
 #include <utility>
 
-#include "apps/counted.h"
-#include "apps/output_names.h"
 #include "apps/synth/synth_height_map.h"
 #include "apps/synth/synth_output.h"
 #include "apps/synth/synth_reports.h"
-#include "geometry/io/stated_unit.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/files/sha256.h"
 #include "numerics/length_unit.h"
 #include "numerics/memory_use.h"
 #include "numerics/vec3_json.h"
-#include "synthesis/field/landform_list.h"
+#include "synthesis/field/feature_list.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
 #include "tasks/synthesis/body_mesh.h"
 #include "tasks/synthesis/erode_body.h"
 
@@ -205,7 +204,7 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
   if (!request.height_map.empty())
     write_height_map(program, request.height_map, result.collected(), region, recipe, resolution);
   if (!request.landforms.empty())
-    write_landform_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
+    write_feature_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   if (has_colors(recipe)) {
     program.summary["vertex_colors"] = holds_colors(output);
@@ -266,7 +265,8 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .add_option(
           "--height-map", request.height_map,
           "also the patch as a GeoTIFF of metres over its mean plane, and its frame beside it as JSON")
-      .placeholder("FILE.tif");
+      .placeholder("FILE.tif")
+      .writes(height_map_files);
   program.app.add_flag("--points", request.points,
                        "only the mesh's vertices with their outward unit normals, as an oriented point cloud "
                        "(.ply without faces)");
@@ -292,7 +292,8 @@ void declare_mesh_options(Program& program, MeshRequest& request) {
       .add_option("--feature-list", request.landforms,
                   "also a list of the craters and boulders, those of the recipe and those drawn: places, "
                   "sizes, ages and angles (degrees), in the recipe's unit")
-      .placeholder("FILE.csv|FILE.json");
+      .placeholder("FILE.csv|FILE.json")
+      .writes();
 }
 
 namespace {

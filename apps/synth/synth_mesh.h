@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/device_option.h"
 #include "apps/program.h"
 #include "apps/synth/synth_gravity.h"
 #include "apps/synth/synth_preview.h"
 #include "apps/synth/synth_size.h"
 #include "recipe/recipe.h"
+#include "tasks/synthesis/device_option.h"
 
 namespace astrolith {
 

@@ -5,17 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "apps/output_names.h"
-#include "apps/pixel_size.h"
 #include "apps/synth/npz_file.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "numerics/parallel_for.h"
 #include "numerics/srgb.h"
+#include "synthesis/field/feature_list.h"
 #include "synthesis/field/field_mesh.h"
-#include "synthesis/field/landform_instances.h"
 #include "synthesis/field/surface_labels.h"
 #include "synthesis/picture/picture_maps.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/pixel_size.h"
 
 namespace astrolith {
 namespace {
@@ -80,7 +80,7 @@ SeenPixels seen_in_rows(const PictureMaps& maps, int first, int end) {
 
 LayerMaps label_pixels(const PictureMaps& maps, const MapsSource& source, const Progress& progress) {
   const SurfaceLabels labels(source.recipe, source.field, source.region.cube());
-  const LandformInstances landforms(source.field, source.recipe, source.region.cube(), source.cell);
+  const FeatureFinder landforms(source.field, source.recipe, source.region.cube(), source.cell);
   const Vec3d origin = source.region.center;
   LayerMaps made{std::vector<std::int32_t>(maps.depth.size(), kNothing),
                  std::vector<std::int32_t>(maps.depth.size(), kNothing)};
@@ -116,14 +116,16 @@ void declare_preview_options(Program& program, PreviewRequest& request) {
       .add_option("--preview", request.file,
                   "also a picture of the mesh under sunlight, with shadows: from +x, +y, +z and obliquely, a "
                   "patch from above its ground and obliquely")
-      .placeholder("FILE.png");
+      .placeholder("FILE.png")
+      .writes();
   request.look.add_to(program.app);
   program.app.option("--picture-size").placeholder("WxH (default 1280x960, 640x480 of --members)");
   program.app
       .add_option("--preview-maps", request.maps,
                   "also what each pixel of the picture shows, for numpy.load: depth, normal, layer, and "
                   "instance, the row of the --feature-list; with the cameras")
-      .placeholder("FILE.npz");
+      .placeholder("FILE.npz")
+      .writes();
   program.app.add_option("--maps-size", request.maps_size, "pixels of the maps")
       .placeholder("WxH (default that of the picture)")
       .default_text("");

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/picture_options.h"
 #include "apps/program.h"
 #include "geometry/triangle_mesh.h"
 #include "recipe/recipe.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/picture/preview.h"
 #include "tasks/synthesis/mesh_region.h"
+#include "tasks/synthesis/picture_options.h"
 
 namespace astrolith {
 

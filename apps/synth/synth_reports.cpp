@@ -24,7 +24,7 @@ std::string in_words(const LayerLeftOut& left, const Recipe& recipe) {
 }
 
 // Whether copies of an image lie on the body, of which a whole body gets some 64 along its side.
-bool tiles_an_image(const LayerLeftOut& left, const Recipe& recipe) {
+bool repeats_an_image(const LayerLeftOut& left, const Recipe& recipe) {
   if (left.layer < 0) return false;
   const Layer& layer = recipe.layers[static_cast<std::size_t>(left.layer)];
   return std::holds_alternative<ExemplarLayer>(layer) || std::holds_alternative<ReliefLayer>(layer);
@@ -36,7 +36,8 @@ std::string reason_of(const LayerLeftOut& left, const Recipe& recipe, const Impl
     return is_patch ? "smaller than 8 spacings of float coordinates"
                     : "more than the 2e5 landforms that a whole body gets";
   }
-  if (!is_patch && tiles_an_image(left, recipe)) return "made of images of less than about 1/64 of the body";
+  if (!is_patch && repeats_an_image(left, recipe))
+    return "made of images of less than about 1/64 of the body";
   if (!is_patch) return "finer than float coordinates of a body of this size resolve";
   return field.has_local_form() ? "finer than the coordinates of this patch resolve"
                                 : "finer than coordinates of a body made by operations resolve";

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/memory_use.h"
 #include "synthesis/mesh/sample_grid.h"
+#include "tasks/job/words.h"
 
 namespace astrolith {
 namespace {

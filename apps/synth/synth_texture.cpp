@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "apps/counted.h"
-#include "apps/pixel_size.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 #include "synthesis/picture/image_file.h"
 #include "synthesis/picture/surface_maps.h"
+#include "tasks/job/pixel_size.h"
+#include "tasks/job/words.h"
 #include "tasks/synthesis/plane_texture.h"
 
 namespace astrolith {
@@ -138,7 +138,7 @@ std::vector<fs::path> texture_files(const TextureRequest& request, const fs::pat
 }
 
 void declare_texture_options(Program& program, TextureRequest& request) {
-  CommandLine& app = program.app;
+  OptionTable& app = program.app;
   app.add_option("--texture", request.size,
                  "a plane of WxH pixels instead of a mesh: the colours of the recipe's layers where they "
                  "have some (0 to 1 in a .tif of 32-bit floats, full scale in a .png; see fit_gabor "

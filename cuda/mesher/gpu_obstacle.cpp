@@ -1,4 +1,4 @@
-#include "cuda/mesher/gpu_obstacle.h"
+#include "cuda/mesher/gpu_mesher.h"
 
 #include "synthesis/field/field_at_point.h"
 
@@ -19,7 +19,7 @@ struct ImpulseCells {
   void operator()(const Noise& noise) const {
     constexpr NoiseLists kLists = Noise::kTraits.lists;
     if constexpr (kLists == NoiseLists::kGabor) {
-      of_gabor += cells_of(gabor_impulses(noise), field.arrays, block_side + 2.0 * field.height_bound);
+      of_gabor += cells_of(noise, field.arrays, block_side + 2.0 * field.height_bound);
     } else if constexpr (kLists == NoiseLists::kSpots) {
       of_spots += cells_of(noise, field.arrays, block_side);
     } else {

@@ -49,7 +49,7 @@ std::vector<fs::path> meshes_in(const fs::path& folder) {
   std::vector<fs::path> meshes = entries_of(folder);
   std::error_code unused;
   std::erase_if(meshes,
-                [&](const fs::path& p) { return fs::is_directory(p, unused) || !has_mesh_extension(p); });
+                [&](const fs::path& p) { return fs::is_directory(p, unused) || !has_readable_extension(p); });
   return meshes;
 }
 
@@ -57,7 +57,7 @@ std::vector<fs::path> others_in(const fs::path& folder) {
   std::vector<fs::path> others = entries_of(folder);
   std::error_code unused;
   std::erase_if(others,
-                [&](const fs::path& p) { return fs::is_directory(p, unused) || has_mesh_extension(p); });
+                [&](const fs::path& p) { return fs::is_directory(p, unused) || has_readable_extension(p); });
   return others;
 }
 

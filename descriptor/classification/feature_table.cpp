@@ -57,7 +57,7 @@ FeatureTable features_of_files(std::span<const std::filesystem::path> files, con
     const Progress within = [&](double, std::string_view) { return go_on(files[i], 0); };
     if (!within(0, "")) return;
     try {
-      const TriangleMesh mesh = read_mesh(files[i]);
+      const TriangleMesh mesh = read_mesh_or_points(files[i]);
       table.rows[i] = shape_features(mesh, options, within);
       remarks[i] = open_remark(files[i], mesh);
     } catch (const std::runtime_error& e) {  // InputError, WorkError

@@ -34,24 +34,17 @@ Answer ask(std::size_t query, const FeatureRows& rows, std::span<const int> labe
 
 }  // namespace
 
-Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, int classes,
-                   const FeatureDistance& distance) {
+Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, const FeatureDistance& distance) {
   std::vector<Answer> answers(rows.size());
   parallel_for(0, static_cast<std::int64_t>(rows.size()), [&](std::int64_t i) {
     answers[static_cast<std::size_t>(i)] = ask(static_cast<std::size_t>(i), rows, labels, distance);
   });
   Retrieval result;
-  result.average_precisions.assign(static_cast<std::size_t>(classes), 0.0);
-  std::vector<double> asked(static_cast<std::size_t>(classes), 0.0);
   double all = 0;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const Answer& answer = answers[i];
+  for (const Answer& answer : answers) {
     if (!answer.asked) continue;
-    const auto label = static_cast<std::size_t>(labels[i]);
     all += 1;
-    asked[label] += 1;
     result.mean_average_precision += answer.ranking.average_precision;
-    result.average_precisions[label] += answer.ranking.average_precision;
     result.nearest_accuracy += answer.nearest_right ? 1 : 0;
     for (std::size_t k = 0; k < kRecallLevels; ++k) result.curve[k] += answer.ranking.curve[k];
   }
@@ -59,7 +52,6 @@ Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, int cla
   result.mean_average_precision /= all;
   result.nearest_accuracy /= all;
   for (double& precision : result.curve) precision /= all;
-  for (std::size_t c = 0; c < asked.size(); ++c) result.average_precisions[c] /= std::max(asked[c], 1.0);
   return result;
 }
 

@@ -12,17 +12,15 @@
 namespace astrolith {
 
 struct Retrieval {
-  double mean_average_precision = 0;       // over the shapes that have others of their class
-  double nearest_accuracy = 0;             // share of these shapes whose nearest other is of their class
-  PrecisionCurve curve{};                  // mean over these shapes
-  std::vector<double> average_precisions;  // (#classes) means over each class's shapes
+  double mean_average_precision = 0;  // over the shapes that have others of their class
+  double nearest_accuracy = 0;        // share of these shapes whose nearest other is of their class
+  PrecisionCurve curve{};             // mean over these shapes
 };
 
 using FeatureDistance = std::function<double(std::span<const float>, std::span<const float>)>;
 
-// Every shape ranks all others by their distance to it. labels (#rows) are in 0 .. classes - 1. Takes time
-// O(#rows^2 #features).
-Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, int classes,
-                   const FeatureDistance& distance);
+// Every shape ranks all others by their distance to it. labels (#rows) name the classes. Takes time O(#rows^2
+// #features).
+Retrieval retrieve(const FeatureRows& rows, std::span<const int> labels, const FeatureDistance& distance);
 
 }  // namespace astrolith

@@ -99,6 +99,7 @@ std::size_t feature_count(const FeatureOptions& options) {
 std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options,
                                   const Progress& progress) {
   check(options);
+  if (mesh.triangles.empty()) return point_features(mesh.vertices, mesh.normals, options);
   switch (options.kind) {
     case FeatureKind::wahl:
     case FeatureKind::ahd:

@@ -40,11 +40,11 @@ void check(const FeatureOptions& options);
 // The length of the vectors.
 std::size_t feature_count(const FeatureOptions& options);
 
-// The feature vector of a mesh. For a histogram it holds the frequencies times the number of bins. The mean
-// feature is then 1, which matters because OpenCV's forest takes values that differ by less than 2.4e-7 as
-// equal. For shapedna it holds the eigenvalues over 4 pi i, to which the i-th eigenvalue of every surface
-// tends (Weyl's law). Throws InputError for shapes that the descriptor refuses, and WorkError when progress
-// asks to stop.
+// The feature vector of a mesh, or of its vertices and normals where it has no triangles. For a histogram it
+// holds the frequencies times the number of bins. The mean feature is then 1, which matters because OpenCV's
+// forest takes values that differ by less than 2.4e-7 as equal. For shapedna it holds the eigenvalues over 4
+// pi i, to which the i-th eigenvalue of every surface tends (Weyl's law). Throws InputError for shapes that
+// the descriptor refuses, and WorkError when progress asks to stop.
 std::vector<float> shape_features(const TriangleMesh& mesh, const FeatureOptions& options,
                                   const Progress& progress = {});
 

@@ -58,7 +58,7 @@ constexpr double kFlatTolerance = 0.05;
 
 std::function<double(const RegionLabels&)> distance_of(const LocalStatistic& a, const LocalStatistic& b,
                                                        const Regions& regions_a, const Regions& regions_b) {
-  if (a.quantity != SurfaceQuantity::bend) {
+  if (!traits_of(a.quantity).only_flat) {
     return KolmogorovSmirnov({a.values, regions_a.of_place}, {b.values, regions_b.of_place});
   }
   std::vector<double> sorted = a.values;

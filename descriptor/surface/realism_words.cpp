@@ -9,28 +9,6 @@
 namespace astrolith {
 namespace {
 
-enum class Side { less, alike, more };
-
-// Where the middle of b lies beside that of a, if it is off by more than a quarter of a's spread.
-Side side_of(const StatisticComparison& c) {
-  const double off = c.middle_b - c.middle_a;
-  if (std::fabs(off) <= 0.25 * c.spread_a) return Side::alike;
-  return off < 0.0 ? Side::less : Side::more;
-}
-
-// A mean skewness beyond this shows boulders or craters.
-constexpr double kClearSkewness = 0.05;
-
-std::string skewness_words(const StatisticComparison& c) {
-  const double a = c.middle_a, b = c.middle_b;
-  if (b < a && a > kClearSkewness) return b < a / 3.0 ? "no boulders" : "too few boulders";
-  if (b > a && a < -kClearSkewness) return b > a / 3.0 ? "no craters" : "too few craters";
-  if (b > a && b > kClearSkewness) return "too many boulders";
-  if (b < a && b < -kClearSkewness) return "too many craters";
-  return c.spread_b < c.spread_a ? "boulders and craters stand out too little"
-                                 : "boulders and craters stand out too much";
-}
-
 // The waves that a radius shows are about one to two radii long. Radii in which the surfaces differ alike are
 // said together.
 struct Band {
@@ -47,42 +25,19 @@ void add_band(const std::string& words, double radius, std::vector<Band>& bands)
   bands.push_back({words, radius, 2.0 * radius});
 }
 
-std::optional<std::string> roughness_words(const StatisticComparison& c) {
-  switch (side_of(c)) {
-    case Side::less:
-      return "too smooth";
-    case Side::more:
-      return "too rough";
-    default:
-      return c.spread_b < c.spread_a ? "too much alike from place to place"
-                                     : "too unlike from place to place";
-  }
-}
-
-std::optional<std::string> radius_words(const StatisticComparison& c) {
-  if (c.quantity == SurfaceQuantity::roughness) return roughness_words(c);
-  const SurfaceQuantityTraits& traits = traits_of(c.quantity);
-  const char* words = c.middle_b < c.middle_a ? traits.lower : traits.higher;
-  return words != nullptr ? std::optional<std::string>(words) : std::nullopt;
-}
-
 std::string length_range(const Band& band, const RealismVerdict& verdict, const LengthWords& lengths) {
   return fmt::format("{} between {} and {} {}", band.words, length_in_words(band.from, verdict, lengths),
                      length_in_words(band.to, verdict, lengths), lengths.unit);
 }
 
-// Slopes between facets follow from roughness, and need no words of their own where that differs.
-bool said_by_roughness(const StatisticComparison& c, const RealismVerdict& verdict) {
-  return c.quantity == SurfaceQuantity::normals &&
+// Whether another statistic of the same radius differs, and shows this difference.
+bool shown_by_another(const StatisticComparison& c, const RealismVerdict& verdict) {
+  const std::optional<SurfaceQuantity> shown_by = traits_of(c.quantity).follows;
+  return !c.correlation && shown_by &&
          std::any_of(verdict.statistics.begin(), verdict.statistics.end(), [&](const auto& other) {
-           return other.quantity == SurfaceQuantity::roughness && !other.correlation &&
-                  other.radius == c.radius && other.differs();
+           return other.quantity == *shown_by && !other.correlation && other.radius == c.radius &&
+                  other.differs();
          });
-}
-
-std::string slope_words(const StatisticComparison& c) {
-  return fmt::format("{}: median slope {:.3g} instead of {:.3g} degrees",
-                     c.middle_b < c.middle_a ? "too flat" : "too steep", c.middle_b, c.middle_a);
 }
 
 std::string correlation_words(const StatisticComparison& c) {
@@ -112,17 +67,14 @@ std::vector<std::string> realism_words(const RealismVerdict& verdict, const Leng
   std::vector<Band> bands;
   std::vector<std::string> others;
   for (const StatisticComparison& c : verdict.statistics) {
-    if (!c.differs() || said_by_roughness(c, verdict)) continue;
+    if (!c.differs() || shown_by_another(c, verdict)) continue;
+    const SurfaceQuantityTraits& traits = traits_of(c.quantity);
     if (c.correlation) {
       add_once(correlation_words(c), others);
-    } else if (c.quantity == SurfaceQuantity::skewness) {
-      add_once(skewness_words(c), others);
-    } else if (c.quantity == SurfaceQuantity::bend) {
-      add_once("flat facets of a coarser mesh", others);
-    } else if (c.quantity == SurfaceQuantity::slope) {
-      add_once(slope_words(c), others);
-    } else if (const std::optional<std::string> words = radius_words(c)) {
-      add_band(*words, c.radius, bands);
+    } else if (traits.by_scale) {
+      add_band(traits.words(c), c.radius, bands);
+    } else {
+      add_once(traits.words(c), others);
     }
   }
   std::vector<std::string> all;

@@ -6,14 +6,12 @@
 #include <utility>
 
 #include "descriptor/surface/evened_surface.h"
-#include "descriptor/surface/local_quadric.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/points/point_tree_internal.h"
 #include "gravity/vertical_directions.h"
 #include "numerics/errors.h"
 #include "numerics/portable_angles.h"
-#include "numerics/portable_double.h"
 #include "numerics/reported_loop.h"
 #include "numerics/tangent_frame.h"
 
@@ -24,13 +22,9 @@ constexpr std::int64_t kFewestTriangles = 1000, kFewestPoints = 500, kMostPoints
 constexpr std::int64_t kFewestPlaces = 100, kMostPlaces = 20000;
 constexpr std::size_t kFewestNeighbours = 12;  // to fit six coefficients to
 constexpr double kLargestRadius = 0.6;         // of the body's; larger discs are no piece of a surface
-// Residuals below this share of the radius are rounding, and have no shape.
-constexpr double kNegligible = 1e-9;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr std::array<double, 4> kRadii{3, 6, 12, 24};              // edges
 constexpr std::array<double, 8> kLags{1, 1.5, 2, 3, 4, 6, 8, 12};  // edges
-
-constexpr std::array kLocalQuantities{SurfaceQuantity::roughness, SurfaceQuantity::skewness,
-                                      SurfaceQuantity::kurtosis, SurfaceQuantity::normals};
 
 [[noreturn]] void refuse_option(const std::string& words) {
   throw InputError("surface statistics: " + words);
@@ -46,10 +40,6 @@ void check_range(const char* name, std::int64_t value, std::int64_t least, std::
 void check_statistics_options(const SurfaceStatisticsOptions& options) {
   if (options.points != 0) check_range("points", options.points, kFewestPoints, kMostPoints);
   check_range("places", options.places, kFewestPlaces, kMostPlaces);
-  if (options.radii.empty() || !(options.radii.front() >= 2.5) || !(options.radii.back() <= 1e4) ||
-      !std::is_sorted(options.radii.begin(), options.radii.end())) {
-    refuse_option("radii: must ascend from 2.5 edges or more");
-  }
   if (!(options.density > 0.0) || !(options.rotation_hours >= 0.0)) {
     refuse_option("density or rotation period: must be above 0");
   }
@@ -62,16 +52,9 @@ void check_triangles(const TriangleMesh& mesh) {
                 std::to_string(kFewestTriangles));
 }
 
-// The surface around a place, as the tables of one radius need it. Lengths are in units of the radius.
-struct Disc {
-  std::vector<Vec3d> heights;  // in the frame of the mean normal
-  std::vector<Vec3d> normals;  // in that frame
-  std::vector<double> residuals;
-};
-
 struct PlaceValues {
   bool defined = false;
-  std::vector<double> values;  // kLocalQuantities of each radius
+  std::vector<double> values;  // of each radius, in the order of the quantities
   // Sums of squared differences of height to the place, in squared edges, and numbers of points.
   std::array<double, kLags.size()> squares{}, counts{};
 };
@@ -113,7 +96,7 @@ class PlaceMeasurement {
     return around;
   }
 
-  Disc disc_of(std::size_t place, double length, const Neighbours& around) const {
+  SurfaceDisc disc_of(std::size_t place, double length, const Neighbours& around) const {
     Vec3d sum{};
     for (const auto& [j, squared] : around) {
       if (squared <= length * length) sum += even_.normals[j];
@@ -123,7 +106,7 @@ class PlaceMeasurement {
     const auto turned = [&](const Vec3d& v) {
       return Vec3d{dot(v, along.first), dot(v, along.second), dot(v, up)};
     };
-    Disc disc;
+    SurfaceDisc disc;
     for (const auto& [j, squared] : around) {
       if (squared > length * length) continue;
       disc.heights.push_back(turned(even_.points[j] - even_.points[place]) * (1.0 / length));
@@ -133,28 +116,23 @@ class PlaceMeasurement {
   }
 
   bool measure(std::size_t place, double radius, const Neighbours& around, PlaceValues& result) const {
-    Disc disc = disc_of(place, radius * even_.edge, around);
+    SurfaceDisc disc = disc_of(place, radius * even_.edge, around);
     if (disc.heights.size() < kFewestNeighbours) return false;
     const std::optional<LocalQuadric> quadric = fit_quadric(disc.heights);
     if (!quadric) return false;
-    double turns = 0.0;  // squared chords between normals
-    for (std::size_t k = 0; k < disc.heights.size(); ++k) {
-      const Vec3d& p = disc.heights[k];
-      disc.residuals.push_back(p.z - quadric->height(p.x, p.y));
-      turns += squared_norm(disc.normals[k] - quadric->normal(p.x, p.y));
+    disc.quadric = *quadric;
+    for (const Vec3d& p : disc.heights) disc.residuals.push_back(p.z - quadric->height(p.x, p.y));
+    disc.moments = residual_moments(disc.residuals, kNegligibleResidual);
+    for (const SurfaceQuantityTraits& quantity : surface_quantities()) {
+      if (quantity.of_disc != nullptr) result.values.push_back(quantity.of_disc(disc));
     }
-    const ResidualMoments moments = residual_moments(disc.residuals, kNegligible);
-    result.values.insert(
-        result.values.end(),
-        {portable::log(std::max(moments.rms, kNegligible)), moments.skewness, moments.kurtosis,
-         kDegrees * std::sqrt(turns / static_cast<double>(disc.heights.size()))});
-    if (radius == lag_radius_) add_lags(disc, radius, *quadric, result);
+    if (radius == lag_radius_) add_lags(disc, radius, result);
     return true;
   }
 
   // Differences between the place, which is the origin, and the points of its disc.
-  static void add_lags(const Disc& disc, double radius, const LocalQuadric& quadric, PlaceValues& result) {
-    const double own = -quadric.height(0.0, 0.0);
+  static void add_lags(const SurfaceDisc& disc, double radius, PlaceValues& result) {
+    const double own = -disc.quadric.height(0.0, 0.0);
     for (std::size_t k = 0; k < disc.heights.size(); ++k) {
       const std::size_t bin = lag_bin(squared_norm(disc.heights[k]) * radius * radius);
       if (bin == kLags.size()) continue;
@@ -171,16 +149,14 @@ class PlaceMeasurement {
 };
 
 // The radii that suit the body; a remark names the others.
-std::vector<double> suitable_radii(const SurfaceStatisticsOptions& options, double body_radius,
-                                   std::vector<std::string>& remarks) {
+std::vector<double> suitable_radii(double body_radius, std::vector<std::string>& remarks) {
   std::vector<double> radii;
-  for (const double radius : options.radii) {
+  for (const double radius : kRadii) {
     if (radius <= kLargestRadius * body_radius) radii.push_back(radius);
   }
   if (radii.empty()) refuse_option("every radius is above .6 of the body's; give more points");
-  if (radii.size() < options.radii.size()) {
-    remarks.push_back(std::to_string(options.radii.size() - radii.size()) + " of " +
-                      std::to_string(options.radii.size()) +
+  if (radii.size() < kRadii.size()) {
+    remarks.push_back(std::to_string(kRadii.size() - radii.size()) + " of " + std::to_string(kRadii.size()) +
                       " radii are left out, since their discs are as large as the body");
   }
   return radii;
@@ -211,12 +187,11 @@ std::vector<RoughnessAtLag> roughness_at_lags(const std::vector<PlaceValues>& pl
 
 std::vector<LocalStatistic> columns(const std::vector<PlaceValues>& places, std::span<const double> radii) {
   std::vector<LocalStatistic> statistics;
-  for (std::size_t r = 0; r < radii.size(); ++r) {
-    for (std::size_t q = 0; q < kLocalQuantities.size(); ++q) {
-      LocalStatistic statistic{kLocalQuantities[q], radii[r], {}};
-      for (const PlaceValues& place : places) {
-        statistic.values.push_back(place.values[r * kLocalQuantities.size() + q]);
-      }
+  for (const double radius : radii) {
+    for (std::size_t q = 0; q < surface_quantities().size(); ++q) {
+      if (surface_quantities()[q].of_disc == nullptr) continue;
+      LocalStatistic statistic{static_cast<SurfaceQuantity>(q), radius, {}};
+      for (const PlaceValues& place : places) statistic.values.push_back(place.values[statistics.size()]);
       statistics.push_back(std::move(statistic));
     }
   }
@@ -236,7 +211,6 @@ std::vector<double> slopes_at(const TriangleMesh& mesh, std::span<const Vec3d> p
 
 void add_slopes(const TriangleMesh& mesh, std::span<const Vec3d> normals,
                 const SurfaceStatisticsOptions& options, SurfaceStatistics& result) {
-  if (!options.slopes) return;
   if (!analyze_topology(mesh).closed) {
     result.remarks.emplace_back("no slopes: the mesh is open, and gravity needs a closed one");
     return;
@@ -255,18 +229,6 @@ std::vector<PlaceValues> measured_places(const EvenedSurface& even, std::span<co
 }
 
 }  // namespace
-
-const SurfaceQuantityTraits& traits_of(SurfaceQuantity quantity) {
-  // A slope follows the body's shape, which one draw does not share with another.
-  static constexpr SurfaceQuantityTraits kTraits[] = {
-      {"roughness", "log roughness", false, true, nullptr, nullptr},
-      {"skewness", "skewness", true, true, nullptr, nullptr},
-      {"kurtosis", "kurtosis", false, true, "too few single peaks or pits", "too many single peaks or pits"},
-      {"normals", "spread of normals", false, true, "slopes too gentle", "slopes too steep"},
-      {"bend", "bend between facets, degrees", false, true, nullptr, nullptr},
-      {"slope", "slope, degrees", false, false, nullptr, nullptr}};
-  return kTraits[static_cast<std::size_t>(quantity)];
-}
 
 const LocalStatistic* SurfaceStatistics::find(SurfaceQuantity quantity, double radius) const {
   for (const LocalStatistic& statistic : local) {
@@ -301,7 +263,7 @@ SurfaceStatistics surface_statistics(const TriangleMesh& mesh, const SurfaceStat
   const EvenedSurface even = even_surface(mesh, result.points, options.seed, progress);
   result.edge = even.edge;
   result.body_radius = std::sqrt(even.area / (4.0 * std::numbers::pi)) / even.edge;
-  const std::vector<double> radii = suitable_radii(options, result.body_radius, result.remarks);
+  const std::vector<double> radii = suitable_radii(result.body_radius, result.remarks);
   const double lag_radius = radius_of_lags(radii, result.body_radius);
   std::vector<PlaceValues> places =
       measured_places(even, radii, lag_radius, std::min(options.places, result.points), progress);

@@ -14,36 +14,15 @@
 
 #include "descriptor/surface/height_bands.h"
 #include "descriptor/surface/regions.h"
+#include "descriptor/surface/surface_quantity.h"
 #include "geometry/triangle_mesh.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
 
-enum class SurfaceQuantity {
-  roughness,  // log of the rms residual over a local quadric, divided by the radius
-  skewness,   // of the residual: boulders > 0, craters < 0
-  kurtosis,   // of the residual, 0 for Gaussian heights
-  normals,    // degrees, rms angle between the surface's normals and the quadric's
-  bend,  // degrees, rms angle between the mesh's own facets within .5 edges: shows facets that are too large
-  slope  // degrees between the normal and the vertical of gravity and rotation
-};
-
-// What other code asks of a quantity.
-struct SurfaceQuantityTraits {
-  const char* name;     // as in JSON
-  const char* heading;  // of a plot
-  bool has_mean;        // the middle of its values is their mean, not their median
-  bool counts_in_distance;
-  // What is said of a surface whose middle is lower or higher; null where realism_words.cpp has words of its
-  // own.
-  const char *lower, *higher;
-};
-const SurfaceQuantityTraits& traits_of(SurfaceQuantity quantity);
-inline const char* name_of(SurfaceQuantity quantity) { return traits_of(quantity).name; }
-
 struct LocalStatistic {
   SurfaceQuantity quantity;
-  double radius = 0.0;         // edges; 0 for bends and slopes
+  double radius = 0.0;         // edges; 0 for what has none
   std::vector<double> values;  // (#places)
 };
 
@@ -55,14 +34,12 @@ struct RoughnessAtLag {
 };
 
 struct SurfaceStatisticsOptions {
-  // The points that the surface is evened to; they decide the edge, in which all radii count. 0: the mesh's
-  // own resolution, own_points(). 500 to 60,000 else.
+  // The points that the surface is evened to; they decide the edge, in which the radii count: 3, 6, 12, 24.
+  // 0: the mesh's own resolution, own_points(). 500 to 60,000 else.
   std::int64_t points = 0;
-  std::int64_t places = 3000;               // of the points, at random; 100 to 20,000
-  std::vector<double> radii{3, 6, 12, 24};  // edges, ascending, each >= 2.5
-  double rotation_hours = 0.0;              // about +z, for slopes; 0 = at rest
-  double density = 2000.0;                  // kg / m^3, of a body that turns
-  bool slopes = true;
+  std::int64_t places = 3000;   // of the points, at random; 100 to 20,000
+  double rotation_hours = 0.0;  // about +z, for slopes; 0 = at rest
+  double density = 2000.0;      // kg / m^3, of a body that turns
   std::uint64_t seed = 1;
 };
 
@@ -71,7 +48,7 @@ struct SurfaceStatistics {
   double edge = 0.0;         // mean edge of the evened surface, the mesh's unit
   double body_radius = 0.0;  // edges; of the sphere of equal area
   std::vector<Vec3d> places;
-  std::vector<LocalStatistic> local;  // roughness, skewness, kurtosis, normals of each radius; bend; slope
+  std::vector<LocalStatistic> local;  // of each radius those that have one; then the others
   std::vector<RoughnessAtLag> lags;
   HeightBands heights;
   Regions regions;             // of the places, with the covariance of roughness within the first radius

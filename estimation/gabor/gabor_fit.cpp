@@ -61,8 +61,7 @@ std::vector<SpectralLobe> pursue(GaborFit& fit, const GaborFitOptions& options, 
   problem.penalty = options.penalty_ratio * largest_penalty(dictionary, problem.target);
   BasisPursuitOptions pursuit;
   pursuit.relative_gap = options.relative_gap;
-  fit.pursuit = options.solver == PursuitSolver::kFista ? solve_fista(problem, pursuit, progress)
-                                                        : solve_working_set(problem, pursuit, progress);
+  fit.pursuit = solve_working_set(problem, pursuit, progress);
   std::vector<SpectralLobe> lobes = lobes_of(dictionary, fit.pursuit.x);
   for (SpectralLobe& lobe : lobes) lobe.height *= unit;
   fit.pursuit.x = {};
@@ -119,9 +118,7 @@ std::vector<GaborLobe> to_layer_lobes(const std::vector<SpectralLobe>& lobes, Ga
 GaborFit fit_gabor_lobes(const GreyImage& exemplar, const std::string& name, const GaborFitOptions& options,
                          const Progress& progress) {
   require_texture(exemplar, name);
-  const Borders borders =
-      options.target == SpectrumTarget::kSmoothed ? Borders::kTaper : Borders::kPeriodicComponent;
-  PowerSpectrum periodogram = exemplar_periodogram(exemplar, options.largest_side, borders, progress);
+  PowerSpectrum periodogram = exemplar_periodogram(exemplar, options.largest_side, progress);
   if (!(periodogram.variance() > kLeastTexture * variance_of(exemplar.values))) {
     throw InputError(name + ": holds light from one side or a slope and no texture; use another image");
   }
@@ -139,9 +136,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   if (!(fit.exemplar_rms > kSmallestContrast))
     throw InputError(name +
                      ": has next to no contrast (full scale = 1); rescale it or give an image with texture");
-  fit.estimate = options.target == SpectrumTarget::kSmoothed
-                     ? estimate_spectrum(fit.periodogram, progress)
-                     : SpectrumEstimate{fit.periodogram, {}, 0.0, {}, 0.0};
+  fit.estimate = estimate_spectrum(fit.periodogram, progress);
   bool stopped = false;
   const auto heeded = [&](double fraction, std::string_view words) {
     const bool goes_on = report(progress, fraction, words);
@@ -153,7 +148,7 @@ GaborFit fit_gabor_spectrum(PowerSpectrum periodogram, const std::string& name,
   fit.pursuit_lobes = static_cast<int>(lobes.size());
   const std::vector<double> weight = row_weights(fit.estimate);
   lobes = select_lobes(std::move(lobes), fit.estimate.spectrum, weight, options.max_lobes);
-  if (options.target == SpectrumTarget::kSmoothed) lobes = refined(lobes, weight, heeded, fit);
+  lobes = refined(lobes, weight, heeded, fit);
   if (lobes.empty()) {
     throw WorkError(name + (stopped ? ": stopped before a lobe was found; nothing is written"
                                     : ": no lobe was found; try a smaller penalty"));

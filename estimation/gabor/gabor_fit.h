@@ -14,23 +14,11 @@
 
 namespace astrolith {
 
-enum class SpectrumTarget {
-  // The smooth estimate, weighted so that errors count as optimal-transport distance.
-  kSmoothed,
-  // The raw periodogram of the periodic component with equal weights, as in Galerne et al. 2012. The lobes
-  // then
-  // fit the exemplar's speckle too.
-  kPeriodogram,
-};
-enum class PursuitSolver { kWorkingSet, kFista };
-
 struct GaborFitOptions {
-  SpectrumTarget target = SpectrumTarget::kSmoothed;
-  PursuitSolver solver = PursuitSolver::kWorkingSet;
   int max_lobes = 80;           // >= 1
   double penalty_ratio = 0.03;  // penalty over the largest useful one, (0, 1)
   double relative_gap = 1e-4;   // certified at the end of the pursuit
-  int largest_side = 1024;      // larger exemplars are averaged over tiles of this side
+  int largest_side = 1024;      // larger exemplars are averaged over segments of this side
 };
 
 struct GaborFit {

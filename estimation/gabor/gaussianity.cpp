@@ -19,13 +19,13 @@
 namespace astrolith {
 namespace {
 
-constexpr int kLargestTile = 512;
+constexpr int kLargestPiece = 512;
 constexpr int kBlocks = 8;
 
-// Large photos have fewer surrogates, since the work is that of so many tiles at most. 19 are the least that
+// Large photos have fewer surrogates, since the work is that of so many pieces at most. 19 are the least that
 // reach p = 0.05.
 constexpr int kMostSurrogates = 99, kFewestSurrogates = 19;
-constexpr int kSurrogateTiles = 16 * kMostSurrogates;
+constexpr int kSurrogatePieces = 16 * kMostSurrogates;
 
 constexpr std::array<int, 3> kLags{1, 4, 16};
 
@@ -52,26 +52,26 @@ struct Measures {
   }
 };
 
-// Equal tiles of at most 512 x 512 pixels side by side over the whole image. A few columns and rows, fewer
-// than there are tiles along them, are left out where the sides are no multiples.
-struct Tiling {
+// Equal pieces of at most 512 x 512 pixels side by side over the whole image. A few columns and rows, fewer
+// than there are pieces along them, are left out where the sides are no multiples.
+struct Pieces {
   int columns, rows, width, height;
 
-  explicit Tiling(const GreyImage& image)
-      : columns((image.width - 1) / kLargestTile + 1),
-        rows((image.height - 1) / kLargestTile + 1),
+  explicit Pieces(const GreyImage& image)
+      : columns((image.width - 1) / kLargestPiece + 1),
+        rows((image.height - 1) / kLargestPiece + 1),
         width(image.width / columns),
         height(image.height / rows) {}
   int count() const { return columns * rows; }
 };
 
-GreyImage tile_of(const GreyImage& image, const Tiling& tiling, int t) {
+GreyImage piece_of(const GreyImage& image, const Pieces& pieces, int t) {
   const auto start = [](int extent, int i, int n) {
     return static_cast<int>(static_cast<std::int64_t>(extent) * i / n);
   };
-  const int x0 = start(image.width, t % tiling.columns, tiling.columns);
-  const int y0 = start(image.height, t / tiling.columns, tiling.rows);
-  return image.part(x0, y0, tiling.width, tiling.height);
+  const int x0 = start(image.width, t % pieces.columns, pieces.columns);
+  const int y0 = start(image.height, t / pieces.columns, pieces.rows);
+  return image.part(x0, y0, pieces.width, pieces.height);
 }
 
 double block_variance(const GreyImage& image, int bx, int by) {
@@ -87,22 +87,22 @@ double block_variance(const GreyImage& image, int bx, int by) {
   return std::max(0.0, square / n - sum / n * (sum / n));
 }
 
-// Power sums over the pixels of all tiles, each tile about its own mean. Tiles are added in their order.
+// Power sums over the pixels of all pieces, each piece about its own mean. Pieces are added in their order.
 class MeasureSums {
  public:
-  void add(const GreyImage& tile) {
-    add_values(tile.values);
+  void add(const GreyImage& piece) {
+    add_values(piece.values);
     for (int by = 0; by < kBlocks; ++by) {
       for (int bx = 0; bx < kBlocks; ++bx) {
-        const double variance = block_variance(tile, bx, by);
+        const double variance = block_variance(piece, bx, by);
         blocks_ += 1.0;
         block_sum_ += variance;
         block_square_ += variance * variance;
       }
     }
     for (std::size_t k = 0; k < kLags.size(); ++k) {
-      add_steps(tile, kLags[k], 0, steps_[2 * k]);
-      add_steps(tile, 0, kLags[k], steps_[2 * k + 1]);
+      add_steps(piece, kLags[k], 0, steps_[2 * k]);
+      add_steps(piece, 0, kLags[k], steps_[2 * k + 1]);
     }
   }
 
@@ -141,8 +141,8 @@ class MeasureSums {
     pixels_ += static_cast<double>(values.size());
   }
 
-  // The differences over (dx, dy) pixels. Their mean is 0, because the tile is periodic.
-  static void add_steps(const GreyImage& tile, int dx, int dy, Steps& sums) {
+  // The differences over (dx, dy) pixels. Their mean is 0, because the piece is periodic.
+  static void add_steps(const GreyImage& piece, int dx, int dy, Steps& sums) {
     const auto add = [&](const double* from, const double* to, int n) {
       double row_second = 0.0, row_fourth = 0.0;
       for (int x = 0; x < n; ++x) {
@@ -153,12 +153,12 @@ class MeasureSums {
       sums.second += row_second;
       sums.fourth += row_fourth;
     };
-    const auto width = static_cast<std::size_t>(tile.width);
-    for (int y = 0; y < tile.height; ++y) {
-      const double* row = &tile.values[static_cast<std::size_t>(y) * width];
-      const double* other = &tile.values[static_cast<std::size_t>((y + dy) % tile.height) * width];
-      add(row, other + dx, tile.width - dx);
-      add(row + tile.width - dx, other, dx);
+    const auto width = static_cast<std::size_t>(piece.width);
+    for (int y = 0; y < piece.height; ++y) {
+      const double* row = &piece.values[static_cast<std::size_t>(y) * width];
+      const double* other = &piece.values[static_cast<std::size_t>((y + dy) % piece.height) * width];
+      add(row, other + dx, piece.width - dx);
+      add(row + piece.width - dx, other, dx);
     }
   }
 
@@ -167,21 +167,21 @@ class MeasureSums {
   std::array<Steps, 2 * kLags.size()> steps_{};
 };
 
-// The moduli of the transforms of all tiles, and textures with these moduli and random phases.
+// The moduli of the transforms of all pieces, and textures with these moduli and random phases.
 //
-// In a Gaussian texture the tiles are alike and nearly independent, so at each frequency the moduli of the
-// tiles may be exchanged. A surrogate turns them by a random number of tiles, a different one at each
-// frequency. A change from tile to tile thus shows in the photo and not in its surrogates.
+// In a Gaussian texture the pieces are alike and nearly independent, so at each frequency the moduli of the
+// pieces may be exchanged. A surrogate turns them by a random number of pieces, a different one at each
+// frequency. A change from piece to piece thus shows in the photo and not in its surrogates.
 class Surrogates {
  public:
-  Surrogates(const Tiling& tiling, std::uint64_t seed)
-      : tiles_(static_cast<std::size_t>(tiling.count())),
+  Surrogates(const Pieces& pieces, std::uint64_t seed)
+      : pieces_(static_cast<std::size_t>(pieces.count())),
         seed_(seed),
-        fourier_(tiling.width, tiling.height) {}
+        fourier_(pieces.width, pieces.height) {}
 
-  void add_tile(const GreyImage& tile) {
+  void add_piece(const GreyImage& piece) {
     std::vector<std::complex<double>> half(fourier_.half_size());
-    fourier_.forward(tile.values, half);
+    fourier_.forward(piece.values, half);
     for (const std::complex<double>& c : half) moduli_.push_back(std::abs(c));
   }
 
@@ -190,26 +190,26 @@ class Surrogates {
     CounterRandom random(seed_, index);
     const std::vector<std::size_t> turns = turns_of(index);
     MeasureSums sums;
-    for (std::size_t t = 0; t < tiles_; ++t) sums.add(tile(t, turns, random));
+    for (std::size_t t = 0; t < pieces_; ++t) sums.add(piece(t, turns, random));
     return sums.measures();
   }
 
  private:
-  // By how many tiles the moduli of each frequency are turned. A lone tile keeps its own.
+  // By how many pieces the moduli of each frequency are turned. A lone piece keeps its own.
   std::vector<std::size_t> turns_of(std::uint64_t index) const {
     std::vector<std::size_t> turns(fourier_.half_size(), 0);
     constexpr std::uint64_t kTurns = 0x7475726eu;  // a stream apart from that of the phases
     CounterRandom random(seed_ ^ kTurns, index);
-    if (tiles_ > 1) {
-      for (std::size_t& turn : turns) turn = random.below(tiles_);
+    if (pieces_ > 1) {
+      for (std::size_t& turn : turns) turn = random.below(pieces_);
     }
     return turns;
   }
 
-  // Noise with the moduli of the tiles and independent uniform phases. The transform of a real image is
+  // Noise with the moduli of the pieces and independent uniform phases. The transform of a real image is
   // symmetric: in the columns that hold both a frequency and its opposite, one is the conjugate of the other,
   // and a frequency that is its own opposite is real.
-  GreyImage tile(std::size_t t, const std::vector<std::size_t>& turns, CounterRandom& random) const {
+  GreyImage piece(std::size_t t, const std::vector<std::size_t>& turns, CounterRandom& random) const {
     GreyImage noise{fourier_.width(), fourier_.height(), std::vector<double>(fourier_.grid_size())};
     std::vector<std::complex<double>> half(fourier_.half_size());
     const auto columns = static_cast<std::size_t>(fourier_.half_width());
@@ -219,7 +219,7 @@ class Surrogates {
       for (std::size_t x = 0; x < columns; ++x) {
         const std::size_t i = y * columns + x;
         const bool self_opposite = x == 0 || 2 * x == static_cast<std::size_t>(fourier_.width());
-        const double modulus = moduli_[(t + turns[i]) % tiles_ * half.size() + i];
+        const double modulus = moduli_[(t + turns[i]) % pieces_ * half.size() + i];
         const double turn = random.uniform();
         if (self_opposite && opposite < y) {
           half[i] = std::conj(half[opposite * columns + x]);
@@ -235,10 +235,10 @@ class Surrogates {
     return noise;
   }
 
-  std::size_t tiles_;
+  std::size_t pieces_;
   std::uint64_t seed_;
   FourierTransform fourier_;
-  std::vector<double> moduli_;  // tile by tile
+  std::vector<double> moduli_;  // piece by piece
 };
 
 // How unusual each sample is among all samples: its largest standardised measure.
@@ -313,21 +313,21 @@ std::string sentence_for(const Gaussianity& g) {
 
 }  // namespace
 
-// False alarms at p <= 0.05 over 200 Gaussian textures, measured by gaussianity_benchmark: 3.5 to 7 % of
-// whole periods, 5.5 to 6.5 % of squares cut out of white noise, and 18 % of 64 x 64 squares cut out of a
-// smooth texture. In the last case the border is a large part of the square, and the periodic component
-// changes it.
+// False alarms at p <= 0.05 over 200 Gaussian textures, measured by gaussianity_benchmark of release
+// 0.2.0: 3.5 to 7 % of whole periods, 5.5 to 6.5 % of squares cut out of white noise, and 18 % of 64 x 64
+// squares cut out of a smooth texture. In the last case the border is a large part of the square, and the
+// periodic component changes it.
 Gaussianity test_gaussianity(const GreyImage& image, std::uint64_t seed, const Progress& progress) {
-  const Tiling tiling(image);
-  Surrogates noise(tiling, seed);
+  const Pieces pieces(image);
+  Surrogates noise(pieces, seed);
   MeasureSums photo;
-  for (int t = 0; t < tiling.count(); ++t) {
+  for (int t = 0; t < pieces.count(); ++t) {
     if (!report(progress, 0.0, kComparing)) throw WorkError("gaussianity: stopped");
-    const GreyImage tile = decompose_periodic(tile_of(image, tiling, t)).periodic;
-    photo.add(tile);
-    noise.add_tile(tile);
+    const GreyImage piece = decompose_periodic(piece_of(image, pieces, t)).periodic;
+    photo.add(piece);
+    noise.add_piece(piece);
   }
-  const int surrogates = std::clamp(kSurrogateTiles / tiling.count(), kFewestSurrogates, kMostSurrogates);
+  const int surrogates = std::clamp(kSurrogatePieces / pieces.count(), kFewestSurrogates, kMostSurrogates);
   std::vector<Measures> samples(static_cast<std::size_t>(surrogates) + 1);
   samples[0] = photo.measures();
   reported_parallel_for({1, surrogates + 1, surrogates + 1}, progress, kComparing, [&](std::int64_t i) {

@@ -21,12 +21,12 @@ struct Gaussianity {
   // Edges, which only the phases hold: the excess kurtosis of differences over 1, 4 and 16 pixels along rows
   // and columns, averaged. It is 0 for a Gaussian texture with any spectrum.
   double edge_kurtosis = 0.0;
-  // Spread of the variance among blocks, 8 x 8 in each tile, divided by this spread in random-phase noise
+  // Spread of the variance among blocks, 8 x 8 in each piece, divided by this spread in random-phase noise
   // with the spectrum of the image. It is 1 for a Gaussian texture, and larger where structure is local.
   double variance_spread = 1.0;
   // The chance that a Gaussian texture is at least as unusual in any of these measures: the rank of the photo
   // among itself and 99 random-phase textures of its own spectrum. The smallest value is 0.01. A photo of
-  // more than 16 tiles has fewer of these textures, at least 19. The test is exact for textures that repeat,
+  // more than 16 pieces has fewer of these textures, at least 19. The test is exact for textures that repeat,
   // since their phases are exchangeable (Theiler et al. 1992).
   double p_value = 1.0;
   Likeness likeness = Likeness::kGaussian;
@@ -35,8 +35,8 @@ struct Gaussianity {
   bool plausible() const { return likeness != Likeness::kOutside; }
 };
 
-// Tests the whole image: it is cut into equal tiles of at most 512 x 512 pixels, and the periodic components
-// of all tiles are measured together. The image has sides >= 32 and is not constant. A likeness is kGaussian
+// Tests the whole image: it is cut into equal pieces of at most 512 x 512 pixels, and the periodic components
+// of all pieces are measured together. The image has sides >= 32 and is not constant. A likeness is kGaussian
 // where p is above 0.05. It is kClose, or else kRoughly, where |skewness| is up to 0.5 (1), |excess kurtosis|
 // up to 1 (2), edge_kurtosis up to 1.5 (3) and variance_spread up to 2 (4). An image beyond the limits of
 // kRoughly is kOutside for any p. Throws WorkError when progress asks to stop.

@@ -28,7 +28,7 @@ struct FittedChannel {
 
   // The variance that the lobes have, which is that of the periodogram.
   double variance() const { return fit.exemplar_rms * fit.exemplar_rms; }
-  // The variance of the exemplar's pixels. It is larger than the above where tiles lose wide features.
+  // The variance of the exemplar's pixels. It is larger than the above where segments lose wide features.
   double pixel_variance() const;
 };
 
@@ -47,7 +47,7 @@ struct PhotoFit {
   double band_overlap() const;       // LobeQuality::band_overlap of all channels together
   bool weak() const;                 // the fit of at least one channel is weak
   // The share of the photo's variance that the periodograms hold. Photos above largest_side lose features
-  // that are wider than a tile.
+  // that are wider than a segment.
   double variance_in_spectrum() const;
   // The judgement of the least plausible channel, with the smallest p-value of all channels. This p-value is
   // multiplied by the number of channels, since the least of several is small more often (Bonferroni). None

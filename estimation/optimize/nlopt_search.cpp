@@ -6,8 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "estimation/optimize/best_so_far_internal.h"
-#include "estimation/optimize/nlopt_search_internal.h"
+#include "estimation/optimize/searches_internal.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 
@@ -18,6 +17,9 @@ struct DestroyNlopt {
   void operator()(nlopt_opt optimizer) const { nlopt_destroy(optimizer); }
 };
 using Handle = std::unique_ptr<nlopt_opt_s, DestroyNlopt>;
+
+// sbplx and crs2 stop once all variables change by less than this share of the box.
+constexpr double kTolerance = 1e-9;
 
 nlopt_algorithm nlopt_name(OptimizerAlgorithm algorithm) {
   switch (algorithm) {
@@ -69,7 +71,7 @@ class NloptRun {
     require(nlopt_set_upper_bounds(optimizer, bounds_.upper.data()), "upper bounds");
     std::vector<double> tolerance;
     for (std::size_t d = 0; d < dimensions; ++d) {
-      tolerance.push_back(options_.x_tolerance * (bounds_.upper[d] - bounds_.lower[d]));
+      tolerance.push_back(kTolerance * (bounds_.upper[d] - bounds_.lower[d]));
     }
     require(nlopt_set_xtol_abs(optimizer, tolerance.data()), "tolerance");
     unsigned population = static_cast<unsigned>(options_.population);
@@ -100,7 +102,7 @@ class NloptRun {
     best_.record(x, value);
     const std::int64_t generation = options_.population > 0 ? options_.population : 20;
     const bool whole = best_.result().evaluations % generation == 0 ||
-                       best_.result().evaluations >= options_.max_evaluations || value <= options_.target;
+                       best_.result().evaluations >= options_.max_evaluations;
     if (whole && !best_.generation_done()) {
       ended_ = true;
       nlopt_force_stop(handle_.get());
@@ -116,7 +118,6 @@ class NloptRun {
       throw WorkError(std::string("NLopt failed: ") + nlopt_result_to_string(status));
     }
     best_.generation_done();
-    best_.end(OptimizeTermination::converged);
   }
 
   const BatchObjective& objective_;

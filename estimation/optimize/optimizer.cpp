@@ -4,16 +4,14 @@
 #include <array>
 #include <cmath>
 
-#include "estimation/optimize/cma_es_internal.h"
-#include "estimation/optimize/nlopt_search_internal.h"
-#include "estimation/optimize/particle_swarm_internal.h"
+#include "estimation/optimize/searches_internal.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
 
-constexpr std::array<const char*, 6> kNames = {"pso", "crs2", "isres", "esch", "sbplx", "cmaes"};
+constexpr std::array<const char*, 5> kNames = {"pso", "crs2", "isres", "esch", "sbplx"};
 
 void check(const Bounds& bounds, const OptimizeOptions& options) {
   const std::size_t n = bounds.lower.size();
@@ -30,7 +28,6 @@ void check(const Bounds& bounds, const OptimizeOptions& options) {
   if (options.population < 0 || options.population > 1'000'000) {
     throw InputError("optimizer: the population must lie between 0 (automatic) and 1000000");
   }
-  if (!(options.x_tolerance >= 0)) throw InputError("optimizer: the tolerance must not be negative");
   if (!options.start.empty() && options.start.size() != n) {
     throw InputError("optimizer: the start has " + std::to_string(options.start.size()) + " values for " +
                      std::to_string(n) + " variables");
@@ -50,28 +47,18 @@ OptimizeOptions inside(OptimizeOptions options, const Bounds& bounds) {
 OptimizerAlgorithm optimizer_from_name(const std::string& name) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) {
-    throw InputError("optimizer '" + name + "' is unknown; choose pso, crs2, isres, esch, sbplx or cmaes");
+    throw InputError("optimizer '" + name + "' is unknown; choose pso, crs2, isres, esch or sbplx");
   }
   return static_cast<OptimizerAlgorithm>(found - kNames.begin());
-}
-
-std::string optimizer_name(OptimizerAlgorithm algorithm) {
-  return kNames[static_cast<std::size_t>(algorithm)];
 }
 
 OptimizeResult minimize(const BatchObjective& objective, const Bounds& bounds, const OptimizeOptions& given,
                         const Progress& progress) {
   check(bounds, given);
   OptimizeOptions options = inside(given, bounds);
-  switch (options.algorithm) {
-    case OptimizerAlgorithm::pso:
-      if (options.population == 0) options.population = 20;
-      return particle_swarm(objective, bounds, options, progress);
-    case OptimizerAlgorithm::cmaes:
-      return cma_es(objective, bounds, options, progress);
-    default:
-      return nlopt_search(objective, bounds, options, progress);
-  }
+  if (options.algorithm != OptimizerAlgorithm::pso) return nlopt_search(objective, bounds, options, progress);
+  if (options.population == 0) options.population = 20;
+  return particle_swarm(objective, bounds, options, progress);
 }
 
 OptimizeResult minimize(const Objective& objective, const Bounds& bounds, const OptimizeOptions& options,

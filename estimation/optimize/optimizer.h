@@ -1,5 +1,5 @@
 // Minimises a function of a few dozen numbers inside a box, without derivatives. One interface serves
-// particle swarm, CMA-ES and four algorithms of NLopt.
+// particle swarm and four algorithms of NLopt.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,11 @@ enum class OptimizerAlgorithm {
   crs2,   // controlled random search with local mutation (Kaelo and Ali 2006; NLopt GN_CRS2_LM)
   isres,  // stochastic-ranking evolution strategy (Runarsson and Yao 2005; NLopt GN_ISRES)
   esch,   // evolutionary algorithm (da Silva Santos 2010; NLopt GN_ESCH)
-  sbplx,  // subspace simplex, local, from the start (Rowan 1990; NLopt LN_SBPLX)
-  cmaes   // covariance matrix adaptation with restarts (Hansen 2016; Auger and Hansen 2005)
+  sbplx   // subspace simplex, local, from the start (Rowan 1990; NLopt LN_SBPLX)
 };
 
 // The algorithm of a name such as "pso". Throws InputError, which lists the names, for an unknown name.
 OptimizerAlgorithm optimizer_from_name(const std::string& name);
-std::string optimizer_name(OptimizerAlgorithm algorithm);
 
 // lower[i] <= x[i] <= upper[i], all finite; equal bounds fix a variable.
 struct Bounds {
@@ -33,38 +31,30 @@ struct Bounds {
 
 struct OptimizeOptions {
   OptimizerAlgorithm algorithm = OptimizerAlgorithm::pso;
-  // The number of particles of pso, of samples per generation of cmaes, or the population of crs2, isres and
-  // esch. cmaes takes at least 4 and doubles the number at each restart. crs2 takes at least one more than
-  // there are variables. 0 stands for 20 for pso, 4 + 3 ln n for cmaes and n variables, and NLopt's choice
-  // for the others.
+  // The number of particles of pso, or the population of crs2, isres and esch. crs2 takes at least one more
+  // than there are variables. 0 stands for 20 for pso, and for NLopt's choice for the others.
   int population = 0;
   // The largest number of calls of the objective. pso rounds it up to whole generations.
   std::int64_t max_evaluations = 2000;
-  // The run stops once value <= target.
-  double target = -std::numeric_limits<double>::infinity();
-  // sbplx and crs2 stop once all x[i] change by less than x_tolerance * (upper[i] - lower[i]).
-  double x_tolerance = 1e-9;
   std::uint64_t seed = 1;
   // The start: one particle of pso, the first point of the others, clipped to the box. If it is empty, pso
-  // and cmaes start at random and the others at the centre of the box.
+  // starts at random and the others at the centre of the box.
   std::vector<double> start;
 };
-
-enum class OptimizeTermination { evaluations, target, converged, stopped };
 
 struct OptimizeResult {
   std::vector<double> x;                                   // inside the bounds
   double value = std::numeric_limits<double>::infinity();  // at x; infinite if no value was finite
   std::int64_t evaluations = 0;
   std::vector<double> history;  // best value after each generation (each population of calls for NLopt)
-  OptimizeTermination termination = OptimizeTermination::evaluations;
+  bool stopped = false;         // progress asked for the end
 };
 
-// Values that are not finite count as +infinity. pso and cmaes call the objective from many threads at once.
+// Values that are not finite count as +infinity. pso calls the objective from many threads at once.
 using Objective = std::function<double(std::span<const double> x)>;
 
-// The values at many points at once, for objectives that compute them faster together. pso and cmaes ask for
-// all points of a generation, the others for one point at a time.
+// The values at many points at once, for objectives that compute them faster together. pso asks for all
+// points of a generation, the others for one point at a time.
 using BatchObjective = std::function<std::vector<double>(std::span<const std::vector<double>> points)>;
 
 // Minimises the objective. The result is a function of objective, bounds and options alone: the thread count

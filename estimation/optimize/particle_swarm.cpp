@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/optimize/best_so_far_internal.h"
-#include "estimation/optimize/particle_swarm_internal.h"
+#include "estimation/optimize/searches_internal.h"
 #include "numerics/hash_random.h"
 
 namespace astrolith {

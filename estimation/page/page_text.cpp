@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "estimation/page/page_text_internal.h"
+#include "estimation/page/page_internal.h"
 
 namespace astrolith {
 

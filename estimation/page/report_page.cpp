@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "estimation/page/page_text_internal.h"
+#include "estimation/page/page_internal.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
 

@@ -6,8 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "estimation/page/page_scripts_internal.h"
-#include "estimation/page/page_text_internal.h"
+#include "estimation/page/page_internal.h"
 #include "synthesis/picture/colormap.h"
 
 namespace astrolith {

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 
 namespace astrolith {
 

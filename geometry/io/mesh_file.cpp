@@ -1,12 +1,10 @@
-#include <sys/stat.h>
-
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <memory>
+#include <fstream>
 
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
+#include "numerics/files/input_file.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace astrolith {
@@ -34,21 +32,13 @@ void unpack(MeshFile& file) {
 
 MeshFile load_mesh_file(const std::filesystem::path& path) {
   MeshFile file{path, {}};
-  struct FileCloser {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    file.fail("", std::string("cannot be read (") + std::strerror(errno) + ")", "check the name");
-  }
-  if (S_ISDIR(status.st_mode)) file.fail("", "is a folder", "give the name of a mesh file");
-  if (!S_ISREG(status.st_mode)) file.fail("", "is not a plain file", "copy the mesh into a file first");
-  const std::unique_ptr<std::FILE, FileCloser> in(std::fopen(path.c_str(), "rb"));
+  require_plain_file(path);
+  std::ifstream in(path, std::ios::binary);
   if (!in) file.fail("", std::string("cannot be read (") + std::strerror(errno) + ")", "check its rights");
-  file.bytes.resize(static_cast<std::size_t>(status.st_size));
-  file.bytes.resize(std::fread(file.bytes.data(), 1, file.bytes.size(), in.get()));
-  if (std::ferror(in.get()) != 0) file.fail("", "reading failed", "copy it to another disk");
-  if (file.bytes.empty()) file.fail("", "is empty", "give a mesh file");
+  file.bytes.resize(std::filesystem::file_size(path));
+  in.read(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
+  if (in.bad()) file.fail("", "reading failed", "copy it to another disk");
+  file.bytes.resize(static_cast<std::size_t>(in.gcount()));
   if (is_zstd(file.bytes)) unpack(file);
   return file;
 }

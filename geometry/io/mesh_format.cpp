@@ -1,14 +1,13 @@
-#include "geometry/io/mesh_format_internal.h"
+#include "geometry/io/mesh_format.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "geometry/io/mesh_io.h"
-#include "geometry/io/mesh_writers_internal.h"
-#include "geometry/io/stated_unit.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 #include "numerics/errors.h"
 
@@ -99,26 +98,56 @@ bool is_off(const MeshFile& file) {
 }
 bool never(const MeshFile&) { return false; }  // known by its name alone
 
-struct MeshFormat {
-  const char* name;
-  std::array<std::string_view, 4> extensions;  // that may stand for it, its own first
-  MeshReader reader;                           // null: meshes are only written so
-  MeshWriter writer;                           // null: meshes are only read so
-  bool (*has)(const MeshFile&);                // whether the content tells the format
-  bool tells_unit;                             // whether what is written states its unit, or has a fixed one
-};
-
 // In the order in which contents are looked at; of the formats of an extension the likeliest comes first.
 constexpr MeshFormat kFormats[] = {
-    {"PLY", {".ply"}, read_ply, write_ply, is_ply, true},
-    {"binary STL", {".stl"}, read_stl_binary, write_stl, is_binary_stl, true},
-    {"ascii STL", {".stl"}, read_stl_ascii, nullptr, is_ascii_stl, false},
-    {"PDS plate model", {".tab", ".plt", ".txt"}, read_plate, write_plate, is_plate, false},
-    {"Gaskell ICQ", {".icq", ".tab", ".plt", ".txt"}, read_icq, write_icq, is_icq, false},
-    {"Wavefront OBJ", {".obj", ".tab", ".plt", ".txt"}, read_obj, write_obj, is_obj, true},
-    {"OFF", {".off"}, read_off, nullptr, is_off, false},
-    {"BMF", {".bmf"}, read_bmf, nullptr, never, false},
-    {"glTF", {".glb"}, nullptr, write_glb, never, true},
+    {.name = "PLY",
+     .extensions = {".ply"},
+     .has = is_ply,
+     .reader = read_ply,
+     .writer = write_ply,
+     .words = "binary, streamed; .ply.zst is compressed",
+     .tells_unit = true,
+     .has_colors = true,
+     .has_values = true,
+     .streamed = true,
+     .file_bytes = 25.0},
+    {.name = "binary STL",
+     .extensions = {".stl"},
+     .has = is_binary_stl,
+     .reader = read_stl_binary,
+     .writer = write_stl,
+     .tells_unit = true,
+     .file_bytes = 50.0},
+    {.name = "ascii STL", .extensions = {".stl"}, .has = is_ascii_stl, .reader = read_stl_ascii},
+    {.name = "PDS plate model",
+     .extensions = {".tab", ".plt", ".txt"},
+     .has = is_plate,
+     .reader = read_plate,
+     .writer = write_plate,
+     .words = "PDS plates"},
+    {.name = "Gaskell ICQ",
+     .extensions = {".icq", ".tab", ".plt", ".txt"},
+     .has = is_icq,
+     .reader = read_icq,
+     .writer = write_icq,
+     .counts = icq_counts},
+    {.name = "Wavefront OBJ",
+     .extensions = {".obj", ".tab", ".plt", ".txt"},
+     .has = is_obj,
+     .reader = read_obj,
+     .writer = write_obj,
+     .tells_unit = true},
+    {.name = "OFF", .extensions = {".off"}, .has = is_off, .reader = read_off},
+    {.name = "BMF", .extensions = {".bmf"}, .has = never, .reader = read_bmf},
+    {.name = "glTF",
+     .extensions = {".glb"},
+     .has = never,
+     .writer = write_glb,
+     .tells_unit = true,
+     .has_colors = true,
+     .has_texture_coordinates = true,
+     .file_bytes = 24.0,
+     .kept_bytes = 24.0},
 };
 
 bool may_end_in(const MeshFormat& format, const std::string& extension) {
@@ -126,19 +155,23 @@ bool may_end_in(const MeshFormat& format, const std::string& extension) {
          std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end();
 }
 
-// The extensions of formats with a member, such as ".ply .stl .tab".
+// The extensions of formats with a member, each with its words, such as ".ply, .stl or .tab".
 template <class Member>
-std::string extensions_with(Member MeshFormat::*member) {
-  std::string words;
+std::string extensions_with(Member MeshFormat::*member, bool with_words) {
+  std::vector<std::string> all;
   for (const MeshFormat& format : kFormats) {
-    const std::string extension(format.extensions[0]);
-    if (format.*member == nullptr || words.find(extension) != std::string::npos) continue;
-    words += (words.empty() ? "" : " ") + extension;
+    const std::string extension(format.extensions[0]), words = format.words;
+    const bool known =
+        std::any_of(all.begin(), all.end(), [&](const auto& e) { return e.starts_with(extension); });
+    if (!(format.*member) || known) continue;
+    all.push_back(extension + (with_words && !words.empty() ? " (" + words + ")" : ""));
   }
-  return words;
+  std::string list = all.front();
+  for (std::size_t k = 1; k < all.size(); ++k) list += (k + 1 < all.size() ? ", " : " or ") + all[k];
+  return list;
 }
 
-std::string remedy() { return "give a mesh (" + extensions_with(&MeshFormat::reader) + ")"; }
+std::string remedy() { return "give a mesh (" + extensions_with(&MeshFormat::reader, false) + ")"; }
 
 [[noreturn]] void fail_unknown(const MeshFile& file) {
   for (const Signature& other : kOtherFiles) {
@@ -154,17 +187,9 @@ bool is_other_file(const MeshFile& file) {
                      [&](const Signature& other) { return file.bytes.starts_with(other.start); });
 }
 
-// The format in which meshes are written for an extension; null where none is.
-const MeshFormat* written_format(const std::string& extension) {
-  for (const MeshFormat& format : kFormats) {
-    if (format.writer != nullptr && format.extensions[0] == extension) return &format;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
-MeshReader reader_for(const MeshFile& file) {
+TriangleMesh read_content(const MeshFile& file) {
   const std::string extension = mesh_extension(file.path);
   const auto named = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const MeshFormat& f) {
     return f.reader != nullptr && may_end_in(f, extension);
@@ -174,35 +199,54 @@ MeshReader reader_for(const MeshFile& file) {
   const bool is_named = named != std::end(kFormats);
   if (seen == std::end(kFormats)) {
     if (!is_named || is_other_file(file)) fail_unknown(file);
-    return named->reader;
+    return named->reader(file);
   }
   if (is_named && !may_end_in(*seen, extension)) {
     file.fail("byte 0", "the name ends in " + extension + " but the content looks like " + seen->name,
               "rename it to " + std::string(seen->extensions[0]));
   }
-  return seen->reader;
+  return seen->reader(file);
 }
 
-MeshWriter writer_for(const std::filesystem::path& file) {
+std::span<const MeshFormat> mesh_formats() { return kFormats; }
+
+const MeshFormat& written_mesh_format(const std::filesystem::path& file) {
   const std::string extension = mesh_extension(file);
-  if (file.extension() == ".zst" && extension != ".ply") {
-    throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
+  const bool packed = file.extension() == ".zst";
+  for (const MeshFormat& format : kFormats) {
+    if (format.writer == nullptr || format.extensions[0] != extension) continue;
+    if (!packed || format.streamed) return format;
   }
-  if (const MeshFormat* format = written_format(extension)) return format->writer;
-  throw InputError(file.string() + ": meshes are written as " + extensions_with(&MeshFormat::writer) +
+  if (packed) throw InputError(file.string() + ": meshes are compressed as .ply.zst only; choose that name");
+  throw InputError(file.string() + ": meshes are written as " + extensions_with(&MeshFormat::writer, false) +
                    "; choose one of these");
 }
 
-bool tells_length_unit(const std::filesystem::path& file) {
-  const MeshFormat* format = written_format(mesh_extension(file));
-  return format != nullptr && format->tells_unit;
+void require_mesh_format(const std::filesystem::path& file, bool MeshFormat::*asked) {
+  if (written_mesh_format(file).*asked) return;
+  throw InputError(file.string() + ": is no " + extensions_with(asked, false) +
+                   " file; name it with that extension");
 }
 
+std::string written_mesh_words() { return extensions_with(&MeshFormat::writer, true); }
+
 bool has_mesh_extension(const std::filesystem::path& file) {
+  const std::string extension = mesh_extension(file);
+  return extension != ".txt" && std::any_of(std::begin(kFormats), std::end(kFormats),
+                                            [&](const MeshFormat& f) { return may_end_in(f, extension); });
+}
+
+bool has_readable_extension(const std::filesystem::path& file) {
   const std::string extension = mesh_extension(file);
   return extension != ".txt" &&
          std::any_of(std::begin(kFormats), std::end(kFormats),
                      [&](const MeshFormat& f) { return f.reader != nullptr && may_end_in(f, extension); });
+}
+
+std::string mesh_extension(const std::filesystem::path& file) {
+  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
 }
 
 }  // namespace astrolith

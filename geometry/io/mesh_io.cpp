@@ -1,32 +1,16 @@
 #include "geometry/io/mesh_io.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
-#include "geometry/io/mesh_file_internal.h"
-#include "geometry/io/mesh_format_internal.h"
-#include "geometry/io/mesh_writers_internal.h"
+#include "geometry/io/format_internal.h"
 
 namespace astrolith {
 namespace {
 
 // Squares of coordinates must stay finite in float32, which renderers and distance trees compute in.
 constexpr double kLargestCoordinate = 1e18;
-
-// The coordinates as the shortest decimals that read back as the same doubles.
-std::string point_text(const Vec3d& p) {
-  std::string text;
-  for (const double coordinate : {p.x, p.y, p.z}) {
-    char digits[32];
-    char* const end = std::to_chars(digits, digits + sizeof digits, coordinate).ptr;
-    if (!text.empty()) text += ' ';
-    text.append(digits, end);
-  }
-  return text;
-}
 
 bool usable(const Vec3d& p) {
   const auto small = [](double c) { return std::fabs(c) <= kLargestCoordinate; };
@@ -83,13 +67,9 @@ void require_writable(const TriangleMesh& mesh, const std::filesystem::path& fil
 
 }  // namespace
 
-MeshCounts counts_in_file(const MeshCounts& mesh, const std::filesystem::path& file) {
-  return mesh_extension(file) == ".icq" ? icq_counts(mesh.triangles) : mesh;
-}
-
 TriangleMesh read_mesh(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = reader_for(content)(content);
+  TriangleMesh mesh = read_content(content);
   if (mesh.triangles.empty()) content.fail("", "holds no faces", "give a mesh of triangles or polygons");
   require_valid(content, mesh);
   return mesh;
@@ -97,7 +77,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
 
 TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   const MeshFile content = load_mesh_file(file);
-  TriangleMesh mesh = reader_for(content)(content);
+  TriangleMesh mesh = read_content(content);
   if (mesh.triangles.empty() && mesh.normals.empty()) {
     content.fail("", "holds neither faces nor points with unit normals",
                  "give a mesh, or a .ply with x y z nx ny nz");
@@ -106,21 +86,11 @@ TriangleMesh read_mesh_or_points(const std::filesystem::path& file) {
   return mesh;
 }
 
-std::string mesh_extension(const std::filesystem::path& file) {
-  std::string extension = (file.extension() == ".zst" ? file.stem() : file).extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
-}
-
-bool is_ply_name(const std::filesystem::path& file) { return mesh_extension(file) == ".ply"; }
-
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
-  const MeshWriter write = writer_for(file);
+  const MeshFormat& format = written_mesh_format(file);
   require_writable(mesh, file);
-  write(mesh, file, info);
+  format.writer(mesh, file, info);
 }
-
-void check_mesh_extension(const std::filesystem::path& file) { writer_for(file); }
 
 std::vector<std::string> info_lines(const MeshFileInfo& info) {
   std::vector<std::string> lines;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/triangle_mesh.h"
 
 namespace astrolith {
@@ -55,25 +56,15 @@ struct MeshFileInfo {
 // cannot hold.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
 
-// What a file of this name has of a mesh of so many vertices and triangles that write_mesh writes: the same,
-// but in an .icq. An .icq that is read again has these.
-struct MeshCounts {
-  std::int64_t vertices = 0, triangles = 0;
-};
-MeshCounts counts_in_file(const MeshCounts& mesh, const std::filesystem::path& file);
+// The unit in the comment "length unit: km" that write_mesh() writes in front of a .ply, .obj or .stl, .zst
+// or not. Any word of up to 8 letters is one. Empty where the file states none or cannot be read. Looks at
+// the first 4,096 bytes of the content only.
+std::string stated_length_unit(const std::filesystem::path& file);
 
-// The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for "Bennu.PLY"
-// and for "bennu.ply.zst".
-std::string mesh_extension(const std::filesystem::path& file);
-
-// Whether the extension alone tells that read_mesh reads the file. False for .txt, which may be anything.
-bool has_mesh_extension(const std::filesystem::path& file);
-
-// Whether a mesh of this name is written as PLY: .ply, or .ply.zst, which is compressed by Zstandard.
-bool is_ply_name(const std::filesystem::path& file);
-
-// Throws the InputError that write_mesh would throw for the extension. Programs that compute long before they
-// write call it first.
-void check_mesh_extension(const std::filesystem::path& file);
+// Reads one point a line: x, y and z, separated by commas or blanks; what follows them is ignored. Empty
+// lines, lines that begin with # and one line of column names at the start are skipped. Throws InputError
+// ("FILE: line 7: what is wrong; what to do") for a file without points and for numbers that are missing or
+// not finite. The size of the file bounds the memory used.
+std::vector<Vec3d> read_points(const std::filesystem::path& file);
 
 }  // namespace astrolith

@@ -1,12 +1,14 @@
-// The header of a PLY file (Turk 1994): its elements, their counts, and the properties in each row.
+// The header of a PLY file (Turk 1994): its elements, their counts, and the properties in each row; and the
+// layout of the files that Astrolith writes.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {
@@ -39,5 +41,18 @@ struct PlyHeader {
 
 // Reads the header and leaves `scan` at the end of the line "end_header".
 PlyHeader read_ply_header(TextScanner& scan);
+
+inline constexpr std::size_t kPlyTriangleBytes = 13;
+
+// The header of a PLY file that is written. It has the same length for all counts: a comment fills up what
+// the digits leave.
+struct PlyVertexParts {
+  bool normals = false, colors = false, labels = false;
+};
+std::string ply_header(const MeshFileInfo& info, std::uint64_t num_vertices, std::uint64_t num_triangles,
+                       const PlyVertexParts& parts);
+
+// A triangle as one uchar, 3, and three little-endian uint32.
+std::array<char, kPlyTriangleBytes> ply_triangle(const Triangle& triangle);
 
 }  // namespace astrolith

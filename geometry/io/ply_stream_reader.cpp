@@ -6,9 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "geometry/io/format_internal.h"
 #include "geometry/io/ply_header_internal.h"
-#include "geometry/io/ply_layout_internal.h"
-#include "geometry/io/polygon_fan_internal.h"
 #include "numerics/files/input_file.h"
 
 namespace astrolith {

@@ -6,10 +6,9 @@
 #include <cstring>
 #include <vector>
 
-#include "geometry/io/mesh_writers_internal.h"
-#include "geometry/io/ply_layout_internal.h"
+#include "geometry/io/format_internal.h"
+#include "geometry/io/ply_header_internal.h"
 #include "geometry/io/ply_values.h"
-#include "geometry/io/polygon_fan_internal.h"
 
 namespace astrolith {
 

@@ -1,7 +1,7 @@
 #include "geometry/io/ply_values.h"
 
-#include "geometry/io/mesh_writers_internal.h"
-#include "geometry/io/ply_layout_internal.h"
+#include "geometry/io/format_internal.h"
+#include "geometry/io/ply_header_internal.h"
 
 namespace astrolith {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "geometry/io/byte_reader_internal.h"
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/orient_faces.h"
 #include "geometry/weld.h"
 

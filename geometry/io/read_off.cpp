@@ -1,7 +1,6 @@
 // OFF (Geomview): the numbers of vertices, faces and edges, then one line for each vertex and face. Normals,
 // colours and texture coordinates behind these numbers are ignored.
-#include "geometry/io/mesh_file_internal.h"
-#include "geometry/io/polygon_fan_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {

@@ -5,10 +5,9 @@
 #include <iterator>
 
 #include "geometry/io/byte_reader_internal.h"
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 #include "geometry/io/ply_header_internal.h"
 #include "geometry/io/ply_values.h"
-#include "geometry/io/polygon_fan_internal.h"
 #include "geometry/io/text_scanner_internal.h"
 
 namespace astrolith {
@@ -215,7 +214,7 @@ std::string names_of_values(const PlyHeader& header) {
 
 VertexValues read_ply_values(const std::filesystem::path& file, const std::string& name) {
   const MeshFile content = load_mesh_file(file);
-  if (!is_ply_name(file)) content.fail("", "has no properties of vertices", "give a .ply");
+  if (mesh_extension(file) != ".ply") content.fail("", "has no properties of vertices", "give a .ply");
   TextScanner scan(content);
   const PlyHeader header = read_ply_header(scan);
   VertexValues wanted{name, {}};

@@ -1,10 +1,9 @@
-#include "geometry/io/stated_unit.h"
-
 #include <algorithm>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 
+#include "geometry/io/mesh_io.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace astrolith {

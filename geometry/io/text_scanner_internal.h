@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 
 namespace astrolith {
 

@@ -16,8 +16,8 @@ GPL; it is loaded when one of its names is first used.
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
-
 
 from astrolith.synthesis import (
     Description,
@@ -36,6 +36,7 @@ from astrolith.synthesis import (
     gravity,
     height_map,
     mesh,
+    mesh_formats,
     predict,
     read_mesh,
     realism,
@@ -81,6 +82,7 @@ __all__ = [
     "gravity",
     "height_map",
     "mesh",
+    "mesh_formats",
     "pack_spheres",
     "predict",
     "read_mesh",
@@ -107,11 +109,11 @@ _ESTIMATION = (
 
 
 def __getattr__(name: str) -> Any:
-    """Load the fits when one of their names is first used."""
+    """Load the fits and the bridges when one of their names is first used."""
+    if name in ("bridges", "estimation"):
+        return importlib.import_module(f"astrolith.{name}")
     if name in _ESTIMATION:
-        import astrolith.estimation
-
-        return getattr(astrolith.estimation, name)
+        return getattr(importlib.import_module("astrolith.estimation"), name)
     raise AttributeError(f"module 'astrolith' has no attribute {name!r}")
 
 

@@ -1,14 +1,68 @@
-"""Checks of the arrays that users pass in: a wrong one is a ValueError of one line that names the argument."""
+"""Checks of what users pass in: a wrong argument is an error of one line that names it.
+
+A wrong value is a ValueError. A text or the name of a file that is none is a TypeError.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Optional
+import errno
+import operator
+import os
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
+PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+
 # The largest coordinate, as mesh files and recipes have it.
 _LARGEST = 1e18
+
+
+class MissingFileError(ValueError, FileNotFoundError):
+    """A file that is to be read does not exist."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.errno = errno.ENOENT
+
+
+def is_file_name(value: Any) -> bool:
+    """Whether the argument names a file: a text, bytes or a path."""
+    return isinstance(value, (str, bytes, os.PathLike))
+
+
+def file_name(value: Any, name: str) -> str:
+    """The name of a file, whose bytes that are no UTF-8 are surrogates, as Python has them."""
+    if not is_file_name(value):
+        raise TypeError(f"{name}: must be the name of a file, and is {type(value).__name__}")
+    file = os.fsdecode(value)
+    if not file:
+        raise ValueError(f"{name}: is empty; give the name of a file")
+    try:
+        encoded = os.fsencode(file)
+    except UnicodeEncodeError:
+        encoded = b"\0"
+    if b"\0" in encoded:
+        raise ValueError(f"{name}: {file!r} holds a character that no file's name has")
+    return file
+
+
+def shown(value: Any) -> str:
+    """The value in a message: on one line, and not longer than a line."""
+    words = " ".join(repr(value).split())
+    return words if len(words) <= 100 else words[:97] + "..."
+
+
+def text(value: Any, name: str) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: must be a text, and is {type(value).__name__}")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{name}: holds half of a surrogate pair, which is no character") from None
+    return value
 
 
 def _array(value: Any, name: str) -> npt.NDArray[Any]:
@@ -19,9 +73,7 @@ def _array(value: Any, name: str) -> npt.NDArray[Any]:
             array = np.asarray(value)
         except (TypeError, ValueError) as error:
             raise ValueError(f"{name}: is no array of numbers ({type(value).__name__}); pass a NumPy array") from error
-    if not array.flags.c_contiguous:
-        raise ValueError(f"{name}: is not C-contiguous; pass numpy.ascontiguousarray({name})")
-    return array
+    return array.astype(array.dtype.newbyteorder("="), order="C", copy=False)
 
 
 def _require_rows(array: npt.NDArray[Any], name: str, columns: int, empty: bool) -> None:
@@ -87,21 +139,21 @@ def vector(value: Any, name: str, length: int = 3) -> tuple[float, ...]:
     try:
         numbers = tuple(float(x) for x in value)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: must be {length} numbers, and is {value!r}") from error
+        raise ValueError(f"{name}: must be {length} numbers, and is {shown(value)}") from error
     if len(numbers) != length or not all(np.isfinite(numbers)):
-        raise ValueError(f"{name}: must be {length} finite numbers, and is {value!r}")
+        raise ValueError(f"{name}: must be {length} finite numbers, and is {shown(value)}")
     return numbers
 
 
 def integer(value: Any, name: str, least: int, most: int) -> int:
     """A whole number in [least, most]."""
     try:
-        number = value.__index__()
-    except AttributeError:
-        raise ValueError(f"{name}: must be a whole number from {least} to {most}, and is {value!r}") from None
+        number = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name}: must be a whole number from {least} to {most}, and is {shown(value)}") from None
     if not least <= number <= most:
         raise ValueError(f"{name}: must be from {least} to {most}, and is {number}")
-    return int(number)
+    return number
 
 
 def number(value: Any, name: str, least: float, most: float) -> float:
@@ -109,7 +161,7 @@ def number(value: Any, name: str, least: float, most: float) -> float:
     try:
         result = float(value)
     except (TypeError, ValueError):
-        raise ValueError(f"{name}: must be a number from {least:g} to {most:g}, and is {value!r}") from None
+        raise ValueError(f"{name}: must be a number from {least:g} to {most:g}, and is {shown(value)}") from None
     if not least <= result <= most:
         raise ValueError(f"{name}: must be from {least:g} to {most:g}, and is {result:g}")
     return result
@@ -123,8 +175,24 @@ def positive(value: Any, name: str, most: float) -> float:
     return result
 
 
+def flag(value: Any, name: str) -> bool:
+    """Whether the value is true."""
+    try:
+        return bool(value)
+    except ValueError:
+        raise ValueError(f"{name}: must be True or False, and is {shown(value)}") from None
+
+
+def items(value: Any, name: str) -> list[Any]:
+    """The members of a list, or of what can be made one."""
+    try:
+        return list(value)
+    except TypeError:
+        raise TypeError(f"{name}: must be a list, and is {type(value).__name__}") from None
+
+
 def choice(value: Any, name: str, words: tuple[str, ...]) -> str:
     """One of the words."""
-    if value not in words:
-        raise ValueError(f"{name}: must be one of {', '.join(words)}, and is {value!r}")
+    if not isinstance(value, str) or value not in words:
+        raise ValueError(f"{name}: must be one of {', '.join(words)}, and is {shown(value)}")
     return str(value)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from typing import Optional, Sequence
 
 from astrolith import _arrays, _estimation, _options
+from astrolith._arrays import PathLike
 from astrolith._mesh import MeshLike, arrays_of
 from astrolith._options import Progress
-from astrolith._recipe import PathLike
 
 _CLASS_FEATURES = ("ahd", "wahl", "d2", "shapedna")
 
@@ -48,8 +47,8 @@ def train_classifier(
     """
     kind = _arrays.choice(features, "features", _CLASS_FEATURES)
     _estimation.train_classifier(
-        [os.fspath(folder) for folder in folders],
-        os.fspath(output),
+        [_arrays.file_name(folder, "folders") for folder in _arrays.items(folders, "folders")],
+        _arrays.file_name(output, "output"),
         kind,
         (64 if kind == "d2" else 5) if bins is None else _arrays.integer(bins, "bins", 2, 1024),
         _arrays.integer(points, "points", 16, 100000),
@@ -72,5 +71,5 @@ def classify(model: PathLike, mesh: MeshLike, *, threads: int = 0, progress: Pro
         The file is no classifier, or the mesh has no area.
     """
     arrays = arrays_of(mesh, "mesh")
-    classes, votes = _estimation.classify(os.fspath(model), arrays.vertices, arrays.faces, _options.threads(threads), progress)
+    classes, votes = _estimation.classify(_arrays.file_name(model, "model"), arrays.vertices, arrays.faces, _options.threads(threads), progress)
     return dict(zip(classes, votes))

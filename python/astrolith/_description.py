@@ -141,7 +141,7 @@ def compare(
             _arrays.integer(bins, "bins", 2, 10),
             _arrays.integer(points, "points", 2, 2**24),
             _arrays.integer(samples, "samples", 100, 10**7),
-            bool(floor),
+            _arrays.flag(floor, "floor"),
             _options.seed(seed),
             _options.threads(threads),
             progress,

@@ -101,7 +101,7 @@ class Gravity:
 
 
 def _is_recipe(body: Any) -> bool:
-    return isinstance(body, Mapping) or (isinstance(body, (str, os.PathLike)) and os.fspath(body).endswith((".json", ".astro")))
+    return isinstance(body, Mapping) or (_arrays.is_file_name(body) and os.fsdecode(body).endswith((".json", ".astro")))
 
 
 def _site_lengths(sites: int, size: Optional[float], distance: Optional[float], at_facets: bool) -> tuple[float, float]:
@@ -205,6 +205,7 @@ def gravity(
     towards = _arrays.vector(axis, "axis")
     if not any(towards):
         raise ValueError("axis: 0 0 0 is no direction; give another")
+    _arrays.choice(at, "at", ("facets", "vertices"))
     side, apart = _site_lengths(sites, site_size, site_distance, at == "facets" and points is None)
     name, json, arrays, length_unit = "body", "", None, ""
     if _is_recipe(body):
@@ -221,13 +222,13 @@ def gravity(
         length_unit,
         json,
         _arrays.integer(resolution, "resolution", 8, 4096),
-        _arrays.choice(at, "at", ("facets", "vertices")),
+        at,
         None if points is None else _arrays.rows(points, "points"),
         _arrays.positive(density, "density", 1e18),
         0.0 if period is None else _arrays.positive(period, "period", 1e18),
         towards,
         _arrays.number(tolerance, "tolerance", 1e-12, 0.1),
-        bool(exact),
+        _arrays.flag(exact, "exact"),
         _arrays.integer(sample, "sample", 0, 100000),
         _arrays.integer(degree, "degree", 0, 50),
         _arrays.number(radius, "radius", 0.0, 1e18),

@@ -78,6 +78,7 @@ def height_map(
     ValueError
         There is no surface in the patch, the recipe is in pixels, or an argument is wrong.
     """
+    resolution = _arrays.integer(resolution, "resolution", 4, 8192)
     made = mesh(
         recipe, patch=patch, aligned=aligned, resolution=resolution, seed=seed, threads=threads, progress=progress
     )

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays, _synthesis
-from astrolith._recipe import PathLike, Record
+from astrolith._arrays import PathLike
+from astrolith._recipe import Record
 from astrolith._units import METRES, name_of
 
 MeshLike = Any
@@ -60,6 +61,26 @@ class Mesh:
         unit = f", {self.length_unit}" if self.length_unit else ""
         return f"<astrolith.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces{unit}>"
 
+    @property
+    def area(self) -> float:
+        """The area of the surface in square units."""
+        return _synthesis.surface_area(*self._checked())
+
+    @property
+    def volume(self) -> float:
+        """The volume inside in cubic units, negative where the faces are turned inside out.
+
+        Raises
+        ------
+        ValueError
+            The mesh is open, as a patch is, or its faces are wound both ways.
+        """
+        return _synthesis.volume(*self._checked())
+
+    def _checked(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
+        arrays = arrays_of((self.vertices, self.faces), "mesh")
+        return arrays.vertices, arrays.faces
+
 
 @dataclasses.dataclass
 class Arrays:
@@ -73,9 +94,10 @@ class Arrays:
 
 def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
     """Checks a mesh. With `points`, vertices with normals and without faces will do."""
-    if isinstance(mesh, (str, os.PathLike)):
-        read = _synthesis.read_mesh(os.fspath(mesh), points, None)
-        return Arrays(os.fspath(mesh), read["vertices"], read["faces"], read.get("normals"))
+    if _arrays.is_file_name(mesh):
+        file = _arrays.file_name(mesh, name)
+        read = _synthesis.read_mesh(file, points)
+        return Arrays(file, read["vertices"], read["faces"], read.get("normals"))
     normals: Any = None
     if isinstance(mesh, tuple) and len(mesh) == 2:
         vertices, faces = mesh
@@ -99,8 +121,8 @@ def arrays_of(mesh: MeshLike, name: str, *, points: bool = False) -> Arrays:
 
 def stated_unit(mesh: MeshLike) -> str:
     """The unit that a Mesh, a trimesh.Trimesh or a file states; "" where it states none."""
-    if isinstance(mesh, (str, os.PathLike)):
-        return _synthesis.stated_length_unit(os.fspath(mesh))
+    if _arrays.is_file_name(mesh):
+        return _synthesis.stated_length_unit(os.fsdecode(mesh))
     return mesh.length_unit if isinstance(mesh, Mesh) else name_of(getattr(mesh, "units", None))
 
 
@@ -119,7 +141,7 @@ def unit_of(mesh: MeshLike, unit: Optional[str], units: tuple[str, ...], name: s
     mesh's argument; messages name a file instead.
     """
     stated = stated_unit(mesh)
-    named = os.fspath(mesh) if isinstance(mesh, (str, os.PathLike)) else name
+    named = os.fsdecode(mesh) if _arrays.is_file_name(mesh) else name
     if unit is not None:
         _arrays.choice(unit, "unit", units or tuple(METRES))
         if stated not in ("", unit):
@@ -155,8 +177,22 @@ def _plain(array: Any) -> Any:
     return array.view(np.ndarray) if isinstance(array, np.ndarray) else array
 
 
+def mesh_formats() -> list[Record]:
+    """The formats of meshes.
+
+    Each has its `name` and its `extension`, whether it is `read` and `written`, and what is written: the `unit` of
+    length, `colors` of vertices, other `values` of vertices such as labels, and `texture_coordinates`.
+
+    Examples
+    --------
+    >>> [row.extension for row in mesh_formats() if row.values]
+    ['.ply']
+    """
+    return [Record(row) for row in _synthesis.mesh_formats()]
+
+
 def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
-    """Read a mesh: obj, ply, stl, off, PDS plate .tab, ICQ or bmf.
+    """Read a mesh of one of :func:`mesh_formats`.
 
     Parameters
     ----------
@@ -173,18 +209,20 @@ def read_mesh(file: PathLike, *, points: bool = False) -> Mesh:
     Raises
     ------
     ValueError
-        The file is missing, damaged or of another kind. The message names the place in the file.
+        The file is damaged or of another kind. The message names the place in the file.
+    FileNotFoundError
+        There is no such file. It is a ValueError, too.
     """
-    read = _synthesis.read_mesh(os.fspath(file), points, None)
+    read = _synthesis.read_mesh(_arrays.file_name(file, "file"), _arrays.flag(points, "points"))
     return Mesh(read["vertices"], read["faces"], read.get("normals"), length_unit=stated_unit(file))
 
 
 def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
-    """Write .ply (binary, float32; .ply.zst compressed), .obj, .stl (binary), .glb, .icq or .tab, whole or not at all.
+    """Write a mesh in one of :func:`mesh_formats`, whole or not at all; .zst behind .ply compresses it.
 
-    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels and elevations are written into .ply,
-    colours into .ply and .glb. The unit that the mesh, or the file that it names, states is written into .ply, .obj and
-    .stl. Warns where the format states no unit and lengths are not in kilometres.
+    A mesh of :func:`mesh` gives the bytes of ``synth -o``. Labels, elevations, colours, and the unit that the mesh or the
+    file that it names states, are written where the format has them. Warns where it states no unit and lengths are not
+    in kilometres.
 
     Parameters
     ----------
@@ -203,34 +241,36 @@ def write_mesh(mesh: MeshLike, file: PathLike, uv: bool = False) -> None:
     RuntimeError
         The disk is full, or float32 cannot hold the coordinates.
     """
-    if uv and not os.fspath(file).endswith(".glb"):
-        raise ValueError(f"{os.fspath(file)}: only a .glb gets texture coordinates; leave out uv")
+    file = _arrays.file_name(file, "file")
+    kind = Record(_synthesis.written_mesh_format(file))
+    uv = _arrays.flag(uv, "uv")
+    if uv and not kind.texture_coordinates:
+        raise ValueError(f"{file}: a {kind.extension} gets no texture coordinates; leave out uv")
     arrays = arrays_of(mesh, "mesh")
     made = mesh if isinstance(mesh, Mesh) else Mesh(arrays.vertices, arrays.faces, length_unit=stated_unit(mesh))
     labels = elevations = None
-    if made.labels is not None and made.elevations is not None and os.fspath(file).endswith((".ply", ".ply.zst")):
+    if made.labels is not None and made.elevations is not None and kind["values"]:
         if arrays.normals is None:
             raise ValueError("mesh.normals: are missing; labels are written with normals only")
         labels = _arrays.column(made.labels, "mesh.labels", np.int32, len(arrays.vertices))
         elevations = _arrays.column(made.elevations, "mesh.elevations", np.float32, len(arrays.vertices))
     colors = None if made.colors is None else _arrays.colors(made.colors, "mesh.colors", len(arrays.vertices))
     origin = None if made.origin is None else _arrays.vector(made.origin, "mesh.origin")
+    unit = _arrays.text(made.length_unit, "mesh.length_unit")
     _synthesis.write_mesh(
-        os.fspath(file),
+        file,
         arrays.vertices,
         arrays.faces,
         arrays.normals,
         labels,
         elevations,
         colors,
-        made.length_unit,
-        made.frame,
-        made.comment,
+        unit,
+        _arrays.text(made.frame, "mesh.frame"),
+        _arrays.text(made.comment, "mesh.comment"),
         origin,
-        made.legend if labels is not None else [],
+        [_arrays.text(line, "mesh.legend") for line in made.legend] if labels is not None else [],
         uv,
     )
-    unit = made.length_unit
-    if unit != "km" and unit in METRES and not _synthesis.tells_length_unit(os.fspath(file)):
-        extension = os.path.splitext(os.fspath(file))[1]
-        _warn(f'{os.fspath(file)}: a {extension} states no unit; where it is read, pass unit="{unit}"')
+    if unit != "km" and unit in METRES and not kind.unit:
+        _warn(f'{file}: a {kind.extension} states no unit; where it is read, pass unit="{unit}"')

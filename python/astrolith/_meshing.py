@@ -9,7 +9,7 @@ from astrolith._mesh import Mesh
 from astrolith._options import Progress
 from astrolith._recipe import RecipeLike, Record, records
 
-_FORMATS = (".ply", ".obj", ".stl", ".glb", ".icq", ".tab")
+_FORMATS = tuple(row["extension"] for row in _synthesis.mesh_formats() if row["written"])
 
 
 def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[int]]) -> tuple[Any, Any]:
@@ -25,7 +25,7 @@ def _region(patch: Optional[Sequence[float]], tile: Union[None, str, Sequence[in
     try:
         number, count = (int(part) for part in parts)
     except (TypeError, ValueError):
-        raise ValueError(f"tile: {tile!r} is no tile; give (I, N) with I from 1 to N, such as (3, 16)") from None
+        raise ValueError(f"tile: {_arrays.shown(tile)} is no tile; give (I, N) with I from 1 to N, such as (3, 16)") from None
     return None, (_arrays.integer(number, "tile", 1, 2**31 - 1), _arrays.integer(count, "tile", 1, 2**31 - 1))
 
 
@@ -47,6 +47,7 @@ def _mesh_arguments(
     cells = 256 if resolution is None else _arrays.integer(resolution, "resolution", 4, 8192)
     count = 0.0 if triangles is None else _arrays.number(triangles, "triangles", 100.0, 1e10)
     cube, slab = _region(patch, tile)
+    aligned, labels = _arrays.flag(aligned, "aligned"), _arrays.flag(labels, "labels")
     if aligned and cube is None:
         raise ValueError("aligned: is of a patch; give patch as well")
     json, name = _options.seeded(recipe, seed)
@@ -54,10 +55,10 @@ def _mesh_arguments(
     if fields.get("erosion") is not None and (cube is not None or slab is not None or labels):
         culprit = "labels" if labels else "patch" if cube is not None else "tile"
         raise ValueError(f"{name}: erosion: is of the whole mesh; leave out {culprit}, or take erosion out of the recipe")
-    if min_component and (cube is not None or slab is not None):
-        raise ValueError("min_component: the size of a piece that is cut is not known; leave out tile and patch")
     share = _arrays.number(min_component, "min_component", 0.0, 1.0)
-    return json, name, cells, count, cube, bool(aligned), slab, share, bool(labels), bool(even)
+    if share > 0.0 and (cube is not None or slab is not None):
+        raise ValueError("min_component: the size of a piece that is cut is not known; leave out tile and patch")
+    return json, name, cells, count, cube, aligned, slab, share, labels, _arrays.flag(even, "even")
 
 
 def mesh(
@@ -162,7 +163,7 @@ def predict(
     recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even
         As `mesh` has them.
     format
-        The extension of the file: ".ply", ".obj", ".stl", ".glb", ".icq" or ".tab".
+        The extension of the file: one that is written, of :func:`mesh_formats`.
     threads
         Threads that make the mesh; 0: all.
 
@@ -177,7 +178,6 @@ def predict(
     ValueError
         The recipe or an argument is wrong, or there is no surface in the region.
     """
-    if format not in _FORMATS:
-        raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
+    _arrays.choice(format, "format", _FORMATS)
     arguments = _mesh_arguments(recipe, resolution, triangles, patch, aligned, tile, seed, min_component, labels, even)
     return Record(_synthesis.predict(*arguments, format, _options.threads(threads)))

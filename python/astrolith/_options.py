@@ -45,4 +45,4 @@ def given(**arguments: Any) -> list[tuple[str, str]]:
 
 def name_of(file: Optional[PathLike]) -> Optional[str]:
     """The name of a file; None where there is none."""
-    return None if file is None else os.fspath(file)
+    return None if file is None else os.fsdecode(file)

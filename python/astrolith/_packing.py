@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from astrolith import _arrays, _estimation, _options
-from astrolith._mesh import MeshLike, arrays_of, unit_of
+from astrolith import _arrays, _estimation, _jobs, _options
+from astrolith._arrays import PathLike
+from astrolith._mesh import MeshLike
 from astrolith._options import Progress
-from astrolith._recipe import PathLike
 
 
 @dataclasses.dataclass(eq=False)
@@ -99,26 +98,13 @@ def pack_spheres(
     >>> packing.centers.shape, packing.length_unit, 0.5 < packing.filling_rate < 1
     ((8, 3), 'm', True)
     """
-    file = os.fspath(mesh) if isinstance(mesh, (str, os.PathLike)) else ""
-    arrays = None if file else arrays_of(mesh if faces is None else (mesh, faces), "mesh")
-    table = "" if output is None else os.fspath(output)
-    if table and not table.endswith(".csv"):
-        raise ValueError(f"output: {table} must end in .csv")
-    length_unit = unit_of(mesh, unit, ("km", "m"), "mesh")
-    rows, masses, filling_rate, stopped = _estimation.pack_spheres(
-        file or "mesh",
-        None if arrays is None else arrays.vertices,
-        None if arrays is None else arrays.faces,
-        _arrays.integer(spheres, "spheres", 1, 10000),
-        0.0 if density is None else _arrays.positive(density, "density", 1e18),
-        length_unit,
-        bool(strict),
-        bool(wrap),
-        bool(all_parts),
-        table,
-        _options.threads(threads),
-        progress,
-    )
+    given = _jobs.given_mesh(mesh, faces, unit)
+    options = {"spheres": spheres, "density": density, "unit": unit, "output": output, "strict": strict, "wrap": wrap, "all_parts": all_parts, "packing_only": True}  # fmt: skip
+    arguments = _jobs.words("pack_spheres", _estimation.options_of("fit_shape"), options)
+    if given is None:
+        arguments.append(("mesh", [_arrays.file_name(mesh, "mesh")]))
+    _, figures, rows, masses, stopped = _estimation.fit_shape(given, arguments, _options.threads(threads), progress)
     weights = np.array(masses) if density is not None else None
     centers, radii = np.ascontiguousarray(rows[:, :3]), np.ascontiguousarray(rows[:, 3])
-    return Packing(centers, radii, weights, filling_rate, length_unit, stopped)
+    packing = _jobs.figures_of(figures)
+    return Packing(centers, radii, weights, packing.filling_rate, packing.length_unit, stopped)

@@ -36,9 +36,9 @@ def render(
     Parameters
     ----------
     views
-        Directions from the body to the viewer, one tile each.
+        Directions from the body to the viewer, one panel each.
     cameras
-        Cameras in the words of ``synth --camera``, such as ``"lat 20 lon 45 fov 30 radii 4"``, one tile each.
+        Cameras in the words of ``synth --camera``, such as ``"lat 20 lon 45 fov 30 radii 4"``, one panel each.
         Without views and cameras: +x, +y, +z and obliquely, a patch from above.
     sun
         The direction towards the sun in the axes of each view: right, up, to the viewer.
@@ -66,12 +66,11 @@ def render(
         The mesh or an argument is wrong.
     """
     arrays = arrays_of(mesh, "mesh")
-    directions = [_arrays.vector(view, "views") for view in views]
-    words = [cameras] if isinstance(cameras, str) else [str(camera) for camera in cameras]
+    directions = [_arrays.vector(view, "views") for view in _arrays.items(views, "views")]
+    words = [_arrays.text(camera, "cameras") for camera in ([cameras] if isinstance(cameras, str) else _arrays.items(cameras, "cameras"))]
     sun_name, towards_sun = ("sun", sun) if sun_body is None else ("sun_body", sun_body)
     towards_sun = _arrays.vector(towards_sun, sun_name)
-    if reflectance not in _LUNAR_SHARES:
-        raise ValueError(f"reflectance: {reflectance!r} is unknown; choose from {', '.join(_LUNAR_SHARES)}")
+    _arrays.choice(reflectance, "reflectance", tuple(_LUNAR_SHARES))
     for name, direction in [("views", d) for d in directions] + [(sun_name, towards_sun)]:
         if not any(direction):
             raise ValueError(f"{name}: 0 0 0 is no direction; give another")
@@ -86,8 +85,8 @@ def render(
         towards_sun,
         sun_body is not None,
         _LUNAR_SHARES[reflectance],
-        float(ambient),
-        bool(transparent),
+        _arrays.number(ambient, "ambient", 0.0, 10.0),
+        _arrays.flag(transparent, "transparent"),
         _arrays.integer(width, "width", 16, 16384),
         _arrays.integer(height, "height", 16, 16384),
         _options.seed(seed),

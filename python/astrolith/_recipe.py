@@ -4,18 +4,29 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Literal, Mapping, Union
+from typing import TYPE_CHECKING, Any, Literal, Mapping, Union
 
-from astrolith import _synthesis
+from astrolith import _arrays, _synthesis
+from astrolith._arrays import PathLike as PathLike
 
-PathLike = Union[str, "os.PathLike[str]"]
+# Methods of dictionaries that give way to a field of the same name. `items` does not: json and pickle call it.
+_GIVE_WAY = {name for name in vars(dict) if not name.startswith("_")} - {"items", "copy"}
 
 
 class Record(dict[str, Any]):
     """A JSON object whose members are items and attributes alike.
 
-    An attribute that the object does not have cannot be set: a misspelt name is an AttributeError. Items can be added.
+    A field wins over a method of dictionaries: `figures.values` is the field where there is one. An attribute that the
+    object does not have cannot be set: a misspelt name is an AttributeError. Items can be added.
     """
+
+    if TYPE_CHECKING:
+        values: Any
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in _GIVE_WAY and name in self:
+            return self[name]
+        return super().__getattribute__(name)
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -54,7 +65,7 @@ class Recipe(Record):
     """
 
     def __init__(self, *fields: Any, **more: Any) -> None:
-        if fields and isinstance(fields[0], (str, os.PathLike)):
+        if fields and _arrays.is_file_name(fields[0]):
             raise ValueError("recipe: a file is read by Recipe.read(file), a text by Recipe.from_json(text)")
         super().__init__(*fields, **more)
 
@@ -74,12 +85,12 @@ class Recipe(Record):
         ValueError
             The text breaks a rule of recipes; the message is the programs' own.
         """
-        return cls(records(_synthesis.check_recipe(text, name)))
+        return cls(records(_synthesis.check_recipe(_arrays.text(text, "text"), _arrays.text(name, "name"))))
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any], name: str = "recipe") -> "Recipe":
         """Take a dictionary. Fields that are absent get their defaults. Raises ValueError as :meth:`from_json`."""
-        return cls.from_json(_dumped(fields, name), name)
+        return cls.from_json(_dumped(fields, _arrays.text(name, "name")), name)
 
     @classmethod
     def read(cls, file: PathLike) -> "Recipe":
@@ -88,9 +99,10 @@ class Recipe(Record):
         The image of a layer lies relative to the file; its path becomes one relative to the current folder, where every
         function looks for it.
         """
-        recipe = cls(records(_synthesis.read_recipe(os.fspath(file))))
+        file = _arrays.file_name(file, "file")
+        recipe = cls(records(_synthesis.read_recipe(file)))
         for layer in recipe._layers_with_images():
-            layer["image"] = os.path.relpath(os.path.join(os.path.dirname(os.fspath(file)), layer["image"]))
+            layer["image"] = os.path.relpath(os.path.join(os.path.dirname(file), layer["image"]))
         return recipe
 
     def _layers_with_images(self) -> list[Any]:
@@ -102,7 +114,7 @@ class Recipe(Record):
 
     def to_json(self, name: str = "recipe") -> str:
         """Return the text that the programs write, with every field. Raises ValueError as :meth:`from_json`."""
-        return _synthesis.check_recipe(_dumped(self, name), name)
+        return _synthesis.check_recipe(_dumped(self, _arrays.text(name, "name")), name)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain dictionaries and lists, with every field. Raises ValueError as :meth:`from_json`."""
@@ -121,10 +133,11 @@ class Recipe(Record):
         RuntimeError
             The disk is full.
         """
+        file = _arrays.file_name(file, "file")
         written = Recipe.from_json(self.to_json()) if self._layers_with_images() else self
         for layer in written._layers_with_images():
-            layer["image"] = os.path.relpath(layer["image"], os.path.dirname(os.fspath(file)) or os.curdir)
-        _synthesis.write_recipe(_dumped(written, "recipe"), "recipe", os.fspath(file))
+            layer["image"] = os.path.relpath(layer["image"], os.path.dirname(file) or os.curdir)
+        _synthesis.write_recipe(_dumped(written, "recipe"), "recipe", file)
 
     def copy(self) -> "Recipe":
         """Return a copy that shares nothing with this recipe."""
@@ -142,7 +155,8 @@ class Recipe(Record):
         """
         details_name, base_name = "recipe", "base"
         details, body = _dumped(self, details_name), json_of(base, base_name)[0]
-        return Recipe(records(_synthesis.lay_on_base(details, details_name, body, base_name, lengths)))
+        word = _arrays.choice(lengths, "lengths", ("units", "body", "edges"))
+        return Recipe(records(_synthesis.lay_on_base(details, details_name, body, base_name, word)))
 
     def like(self, seed: int) -> "Recipe":
         """Return another body of the kind, as ``synth --like --seed``: measured heights drawn for other places.
@@ -181,10 +195,12 @@ class Recipe(Record):
         ValueError
             The body is not known, the recipe has no body or no physical unit, or no size is left.
         """
-        return Recipe(records(_synthesis.finish_recipe(_dumped(self, "recipe"), "recipe", body, to, start)))
+        least = _arrays.positive(to, "to", 1e18)
+        most = None if start is None else _arrays.positive(start, "start", 1e18)
+        return Recipe(records(_synthesis.finish_recipe(_dumped(self, "recipe"), "recipe", _arrays.text(body, "body"), least, most)))
 
 
-RecipeLike = Union[Recipe, Mapping[str, Any], str, "os.PathLike[str]"]
+RecipeLike = Union[Recipe, Mapping[str, Any], PathLike]
 
 
 def _dumped(fields: Mapping[str, Any], name: str) -> str:
@@ -205,7 +221,7 @@ def json_of(recipe: RecipeLike, name: str = "recipe") -> tuple[str, str]:
     """The JSON text of a recipe, a dictionary or a file, and what messages call it."""
     if isinstance(recipe, Mapping):
         return _dumped(recipe, name), name
-    if isinstance(recipe, (str, os.PathLike)):
-        file = os.fspath(recipe)
-        return Recipe.read(file).to_json(file), file
+    if _arrays.is_file_name(recipe):
+        file = _arrays.file_name(recipe, name)
+        return _synthesis.check_recipe(_dumped(Recipe.read(file), file), file), file
     raise ValueError(f"{name}: must be a Recipe, a dictionary or a file, and is {type(recipe).__name__}")

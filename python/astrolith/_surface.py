@@ -24,9 +24,8 @@ class SurfaceDescription:
     places
         float64 points on the surface, (n, 3).
     values
-        What was measured at the places, float64 (n,) each: "roughness_3" is the logarithm of the rms residual within 3
-        mean edges over the radius; then "skewness_3", "kurtosis_3", "normals_3" (degrees), the same of 6, 12 and 24
-        edges, "bend" and "slope" (degrees).
+        What was measured at the places, float64 (n,) each, by its name in ``docs/descriptor.md``: "roughness_3" within
+        3 mean edges, then those of 6, 12 and 24 edges, and "bend" and "slope", which have no radius.
     regions
         The region of each place, uint8 below 40.
     remarks
@@ -87,8 +86,8 @@ def describe_surface(
         arrays.faces,
         _points(points),
         _arrays.integer(places, "places", 100, 20000),
-        float(period),
-        float(density),
+        _arrays.number(period, "period", 0.0, 1e18),
+        _arrays.positive(density, "density", 1e18),
         _options.seed(seed),
         _options.threads(threads),
         progress,
@@ -144,9 +143,9 @@ def realism(
             of_b.faces,
             _points(points),
             _arrays.integer(places, "places", 100, 20000),
-            float(period),
-            float(density),
-            bool(floor),
+            _arrays.number(period, "period", 0.0, 1e18),
+            _arrays.positive(density, "density", 1e18),
+            _arrays.flag(floor, "floor"),
             unit,
             _options.seed(seed),
             _options.threads(threads),

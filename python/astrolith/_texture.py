@@ -75,7 +75,7 @@ def texture(
         _arrays.integer(width, "width", 1, 16384),
         _arrays.integer(height, "height", 1, 16384),
         word,
-        bool(tileable),
+        _arrays.flag(tileable, "tileable"),
         _options.threads(threads),
         progress,
     )

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-import os
-from typing import Optional, Union
+from typing import TYPE_CHECKING, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from astrolith import _arrays, _estimation, _options
+from astrolith import _arrays, _estimation, _jobs, _options
 from astrolith._options import Progress
-from astrolith._recipe import PathLike, Recipe, Record, records
+from astrolith._arrays import PathLike
+from astrolith._recipe import Recipe, Record, records
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from astrolith._fit_options import FitTextureOptions
+
+_OPTIONS = _estimation.options_of("fit_gabor")
 
 
 @dataclasses.dataclass(eq=False)
@@ -65,26 +72,10 @@ def _luma(planes: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 def fit_texture(
     image: Union[PathLike, npt.ArrayLike],
     *,
-    model: Optional[str] = None,
-    output: Optional[PathLike] = None,
-    channels: Optional[str] = None,
-    detrend: Optional[int] = None,
-    detrend_by: Optional[str] = None,
-    lobes: Optional[int] = None,
-    mm_per_px: Optional[float] = None,
-    unit: Optional[str] = None,
-    height_rms: Optional[float] = None,
-    evaluation: Optional[str] = None,
-    spectrum_estimate: Optional[str] = None,
-    solver: Optional[str] = None,
-    penalty: Optional[float] = None,
-    gap: Optional[float] = None,
-    max_memory: Optional[float] = None,
-    spectrum: bool = False,
-    report: Optional[PathLike] = None,
-    seed: Optional[int] = None,
+    spectrum: Union[bool, PathLike] = False,
     threads: int = 0,
     progress: Progress = None,
+    **options: Unpack[FitTextureOptions],
 ) -> TextureFit:
     """Fit layers of noise to a photo of rock or to a height map, as the program ``fit_gabor`` does.
 
@@ -93,40 +84,13 @@ def fit_texture(
     image
         The name of a PNG, JPEG or TIFF file, or (height, width) or (height, width, 3) uint8, uint16 (full scale
         becomes 1) or floats, at least 32 x 32. The recipe of a file has the bytes that the program writes.
-    model
-        "gabor" (default: noise with the photo's spectrum in lobes), "phase" (an image of noise with the whole spectrum),
-        "exemplar" (the photo itself, tiled and blended) or "auto" (the simplest of those whose textures are nearest to
-        squares of the photo that the model has not seen). figures.model says which one it became, figures.choice the
-        scores of all.
-    output
-        Write the recipe to this file. Models other than "gabor" need it, since their layer names an image,
-        which becomes RECIPE_exemplar.png beside it.
-    channels
-        "luminance" (default; one layer) or "pca" (a layer for each principal axis of the colours; an exemplar keeps
-        the colours of its image).
-    detrend, detrend_by
-        Degree of a polynomial that is taken out first (0 to 6; default 0), by "subtraction" (default) or "division".
-    lobes
-        At most this many lobes in a layer, 1 to 1000; default 80.
-    mm_per_px, unit
-        Size of a pixel on the ground in millimetres, and the recipe's unit then: "m" (default) or "km".
-    height_rms
-        Standard deviation of the height in the recipe's unit; default: the image's own contrast.
-    evaluation
-        How a Gabor layer's lobes become heights on a surface: "impulses" (default; exact) or "tiles" (wide lobes as
-        random-phase tiles, many times faster). ``figures.channels[].tiles_distance`` says what tiles cost.
-    spectrum_estimate
-        "smoothed" (default) or "periodogram".
-    solver
-        "working-set" (default) or "fista".
-    penalty, gap
-        Sparsity penalty over the largest useful one (default 0.03), and the certified gap (default 1e-4).
-    max_memory
-        Refuse fits that are predicted to need more gigabytes; default: three quarters of the machine's.
     spectrum
-        Whether the result shall have the power spectrum that ``fit_gabor --spectrum`` writes.
-    report
-        A folder for a page, index.html, and pictures of photo and texture and of their spectra.
+        Whether the result shall have the power spectrum that ``fit_gabor --spectrum`` writes; or its file.
+    threads
+        To use; 0: all.
+    progress
+        Called with the share done of a stage and a few words. Returning False ends the fit with its best so far.
+    {options}
 
     Returns
     -------
@@ -137,56 +101,22 @@ def fit_texture(
     ValueError
         The image is wrong, too small or constant, or an argument is out of range.
     """
-    colors = _arrays.choice(channels or "luminance", "channels", ("luminance", "pca")) == "pca"
-    file = os.fspath(image) if isinstance(image, (str, os.PathLike)) else ""
+    arguments = _jobs.words("fit_texture", _OPTIONS, options)
     planes = None
-    if not isinstance(image, (str, os.PathLike)):
-        planes = _planes(image)
-        if colors and len(planes) == 1:
-            raise ValueError("channels: a grey image has no colours; leave it out")
-        if not colors and len(planes) == 3:
-            planes = _luma(planes)
-    kind = _arrays.choice(model or "gabor", "model", ("gabor", "phase", "exemplar", "auto"))
-    about_lobes = {"lobes": lobes, "penalty": penalty, "gap": gap, "solver": solver, "evaluation": evaluation, "spectrum_estimate": spectrum_estimate}  # fmt: skip
-    for name, value in about_lobes.items():
-        if kind in ("phase", "exemplar") and value is not None:
-            raise ValueError(f'{name}: is about lobes, which model "{kind}" has none of; leave it out')
-    if kind != "gabor" and output is None:
-        raise ValueError("output: is missing; a layer with an image names a file beside its recipe")
-    if max_memory is None:
-        most_bytes = 0.75 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if _arrays.is_file_name(image):
+        arguments.append(("image", [_arrays.file_name(image, "image")]))
     else:
-        most_bytes = 1e9 * _arrays.number(max_memory, "max_memory", 1e-9, 1e9)
-    given = _options.given(
-        model=model, max_memory=max_memory, channels=channels, detrend=detrend, detrend_by=detrend_by, lobes=lobes, mm_per_px=mm_per_px, unit=unit,
-        height_rms=height_rms, evaluation=evaluation, spectrum_estimate=spectrum_estimate, solver=solver, penalty=penalty,
-        gap=gap, seed=seed,
-    )  # fmt: skip
-    json, figures, power = _estimation.fit_texture(
-        file or "image",
-        planes,
-        kind,
-        _options.name_of(output) or "",
-        _options.name_of(report) or "",
-        most_bytes,
-        bool(spectrum),
-        colors,
-        0 if detrend is None else _arrays.integer(detrend, "detrend", 0, 6),
-        _arrays.choice(detrend_by or "subtraction", "detrend_by", ("subtraction", "division")) == "division",
-        80 if lobes is None else _arrays.integer(lobes, "lobes", 1, 1000),
-        0.0 if mm_per_px is None else _arrays.number(mm_per_px, "mm_per_px", 1e-12, 1e12),
-        _arrays.choice(unit or "m", "unit", ("m", "km")),
-        -1.0 if height_rms is None else _arrays.number(height_rms, "height_rms", 0.0, 1e12),
-        _arrays.choice(evaluation or "impulses", "evaluation", ("impulses", "tiles")) == "tiles",
-        _arrays.choice(spectrum_estimate or "smoothed", "spectrum_estimate", ("smoothed", "periodogram")) != "smoothed",
-        _arrays.choice(solver or "working-set", "solver", ("working-set", "fista")) == "fista",
-        0.03 if penalty is None else _arrays.number(penalty, "penalty", 1e-4, 0.99),
-        1e-4 if gap is None else _arrays.number(gap, "gap", 1e-8, 0.5),
-        given,
-        1 if seed is None else _options.seed(seed),
-        _options.threads(threads),
-        progress,
-    )
-    if not json and output is not None:
-        return TextureFit(Recipe.read(output), records(figures), power)
-    return TextureFit(Recipe(records(json)), records(figures), power)
+        planes = _planes(image)
+        if options.get("channels") == "pca":
+            if len(planes) == 1:
+                raise ValueError("channels: a grey image has no colours; leave it out")
+        elif len(planes) == 3:
+            planes = _luma(planes)
+    if not isinstance(spectrum, bool):
+        arguments.append(("spectrum", [_arrays.file_name(spectrum, "spectrum")]))
+    json, figures, power = _estimation.fit_gabor(planes, spectrum is not False, arguments, _options.threads(threads), progress)
+    recipe = Recipe(records(json)) if json else Recipe.read(options["output"])  # type: ignore[arg-type]
+    return TextureFit(recipe, _jobs.figures_of(figures), power)
+
+
+_jobs.document(fit_texture, [row for row in _OPTIONS if row[0] != "spectrum"])

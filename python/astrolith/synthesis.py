@@ -10,7 +10,7 @@ from astrolith._description import Description, compare, describe
 from astrolith._field import Field
 from astrolith._gravity import Gravity, gravity
 from astrolith._height_map import HeightMap, height_map
-from astrolith._mesh import Mesh, read_mesh, write_mesh
+from astrolith._mesh import Mesh, mesh_formats, read_mesh, write_mesh
 from astrolith._meshing import mesh, predict
 from astrolith._picture import render
 from astrolith._recipe import Recipe
@@ -34,6 +34,7 @@ __all__ = [
     "gravity",
     "height_map",
     "mesh",
+    "mesh_formats",
     "predict",
     "read_mesh",
     "realism",

@@ -1,5 +1,4 @@
-#include "python/bindings/field_bindings.h"
-
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -7,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -16,6 +16,7 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
+#include "python/bindings/synthesis_bindings.h"
 #include "tasks/synthesis/body_mesh.h"
 
 namespace astrolith::python {
@@ -26,7 +27,7 @@ constexpr std::int64_t kChunk = 1024;
 
 class Field {
  public:
-  Field(const std::string& json, const std::string& name)
+  Field(const std::string& json, const std::filesystem::path& name)
       : recipe_(loaded_recipe(json, name)), field_(field_of_region(recipe_, name, Region{})) {}
 
   const ImplicitField& operator*() const { return field_; }
@@ -108,7 +109,7 @@ std::vector<std::tuple<int, double, double>> left_out(const Field& field) {
 
 void bind_field(nb::module_& module) {
   nb::class_<Field>(module, "Field")
-      .def(nb::init<const std::string&, const std::string&>(), nb::arg("json"), nb::arg("name"),
+      .def(nb::init<const std::string&, const std::filesystem::path&>(), nb::arg("json"), nb::arg("name"),
            nb::call_guard<nb::gil_scoped_release>())
       .def("value", &values, nb::arg("points").noconvert(), nb::arg("threads"), nb::arg("progress").none())
       .def("gradient", &gradients, nb::arg("points").noconvert(), nb::arg("threads"),

@@ -1,6 +1,5 @@
-#include "python/bindings/gravity_bindings.h"
-
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -8,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -17,7 +17,8 @@
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
-#include "tasks/gravity/body_gravity.h"
+#include "python/bindings/synthesis_bindings.h"
+#include "tasks/gravity/compute_gravity.h"
 #include "tasks/gravity/landing_sites.h"
 
 namespace astrolith::python {
@@ -30,7 +31,7 @@ struct GravityArguments {
   int resolution = 128;  // of the recipe's mesh
   std::string at;        // "facets" or "vertices"; `points` come first
   std::optional<std::vector<Vec3d>> points;
-  BodyGravityOptions options;
+  GravityOptions options;
   SiteSearch sites;  // a count of 0: none
 };
 
@@ -50,7 +51,8 @@ GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
   const GravityBody body = arguments.mesh ? body_of_mesh(*arguments.mesh, arguments.unit, arguments.name)
                                           : body_of_recipe(loaded_recipe(arguments.json, arguments.name),
                                                            arguments.resolution, arguments.name, stage);
-  const BodyGravity made = body_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
+  const ComputedGravity made =
+      compute_gravity(body, places_of(arguments, body.mesh), arguments.options, stage);
   nlohmann::ordered_json figures = made.figures;
   for (const GravityColumn& column : made.columns) {
     if (arguments.sites.count == 0 || column.name != "slope_deg") continue;
@@ -63,13 +65,14 @@ GravityTable gravity_table(const GravityArguments& arguments, JobState& state) {
 }
 
 std::tuple<NumpyArray<double>, std::vector<std::string>, std::string> gravity(
-    const std::string& name, const std::optional<Rows<double>>& vertices,
+    const std::filesystem::path& name, const std::optional<Rows<double>>& vertices,
     const std::optional<Rows<std::uint32_t>>& faces, const std::string& unit, const std::string& json,
     int resolution, const std::string& at, const std::optional<Rows<double>>& points, double density,
     double period, const std::array<double, 3>& axis, double tolerance, bool exact, int sample, int degree,
     double radius, int sites, double site_size, double site_distance, std::uint64_t seed, int threads,
     nb::object progress) {
-  GravityArguments arguments{name, unit, {}, json, resolution, at, {}, {}, {sites, site_size, site_distance}};
+  GravityArguments arguments{
+      name.string(), unit, {}, json, resolution, at, {}, {}, {sites, site_size, site_distance}};
   if (vertices && faces) arguments.mesh = mesh_of(*vertices, *faces, {});
   if (points) arguments.points = points_of(*points);
   arguments.options = {density,   period, normalized(Vec3d{axis[0], axis[1], axis[2]}),

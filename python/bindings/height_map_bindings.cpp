@@ -1,5 +1,3 @@
-#include "python/bindings/height_map_bindings.h"
-
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -14,6 +12,7 @@
 #include "numerics/length_unit.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
+#include "python/bindings/synthesis_bindings.h"
 
 namespace astrolith::python {
 namespace {

@@ -2,10 +2,13 @@
 
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <chrono>
 #include <list>
+#include <regex>
 
 #include "numerics/errors.h"
+#include "numerics/files/input_file.h"
 #include "numerics/printable_text.h"
 
 namespace nb = nanobind;
@@ -81,6 +84,9 @@ std::optional<std::pair<double, std::string>> JobState::news() {
 
 void run(const std::shared_ptr<JobState>& state, nb::object callback, int threads, std::function<void()> work,
          bool must_end) {
+  if (!callback.is_none() && !PyCallable_Check(callback.ptr())) {
+    throw nb::type_error("progress: must be a function of a share and a text, or None");
+  }
   forget_ended_work();
   std::thread worker([state, threads, work = std::move(work)]() mutable {
     std::exception_ptr error;
@@ -124,14 +130,28 @@ void join_background_work() {
   background().jobs.clear();
 }
 
+std::string python_words(std::string message) {
+  static const std::regex option("--([a-z][a-z0-9-]*)");
+  std::string words;
+  for (std::smatch found; std::regex_search(message, found, option); message = found.suffix()) {
+    std::string name = found[1];
+    std::replace(name.begin(), name.end(), '-', '_');
+    words += found.prefix().str() + name;
+  }
+  return words + message;
+}
+
 void declare_common(nb::module_& module) {
   nb::register_exception_translator([](const std::exception_ptr& error, void*) {
     try {
       std::rethrow_exception(error);
+    } catch (const MissingFileError& e) {
+      const nb::object type = nb::module_::import_("astrolith._arrays").attr("MissingFileError");
+      PyErr_SetString(type.ptr(), printable(e.what()).c_str());
     } catch (const InputError& e) {
-      PyErr_SetString(PyExc_ValueError, printable(e.what()).c_str());
+      PyErr_SetString(PyExc_ValueError, printable(python_words(e.what())).c_str());
     } catch (const WorkError& e) {
-      PyErr_SetString(PyExc_RuntimeError, printable(e.what()).c_str());
+      PyErr_SetString(PyExc_RuntimeError, printable(python_words(e.what())).c_str());
     }
   });
   module.def("join_background_work", &join_background_work,

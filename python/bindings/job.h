@@ -69,6 +69,9 @@ auto run_job(nanobind::object callback, int threads, Work work, bool must_end = 
   return std::move(**result);
 }
 
+// The message with the options that it names as Python names them: "max_memory" for "--max-memory".
+std::string python_words(std::string message);
+
 // Declares what all modules of the package have: exceptions, and the wait at the interpreter's end.
 void declare_common(nanobind::module_& module);
 

@@ -1,6 +1,5 @@
-#include "python/bindings/mesh_bindings.h"
-
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -16,11 +15,14 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_stream_writer.h"
-#include "geometry/io/stated_unit.h"
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
 #include "numerics/version/code_version.h"
 #include "python/bindings/arrays.h"
 #include "python/bindings/job.h"
 #include "python/bindings/recipe_text.h"
+#include "python/bindings/synthesis_bindings.h"
 #include "synthesis/field/surface_colors.h"
 #include "synthesis/field/surface_labels.h"
 #include "tasks/prediction/mesh_prediction.h"
@@ -64,7 +66,8 @@ class ArraySink : public MeshSink {
 };
 
 struct MeshArguments {
-  std::string json, name;
+  std::string json;
+  std::filesystem::path name;
   int resolution = 0;      // used where `triangles` is 0
   double triangles = 0.0;  // 0: as the resolution gives
   std::optional<std::array<double, 4>> patch;
@@ -124,9 +127,8 @@ std::vector<VertexColor> colors_of(const ArraySink& arrays, const SurfaceColors&
 
 MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
   const Recipe recipe = loaded_recipe(arguments.json, arguments.name);
-  const std::filesystem::path file = arguments.name;
   Region region = arguments.region();
-  const ImplicitField field = field_of_region(recipe, file, region);
+  const ImplicitField field = field_of_region(recipe, arguments.name, region);
   align_to_ground(field, region);
   std::optional<SurfaceLabels> labels;
   VertexLabeller labeller;
@@ -139,8 +141,8 @@ MadeMesh make_mesh(const MeshArguments& arguments, JobState& state) {
                         ? MeshEstimator(field, recipe, region).resolution_for(arguments.triangles)
                         : arguments.resolution;
   const auto stage = [&](const std::string& name) { return state.progress(name); };
-  made.report = make_body_mesh({recipe, field, file, region, made.resolution, arguments.min_component,
-                                MeshingDevice::kCpu, false, arguments.even},
+  made.report = make_body_mesh({recipe, field, arguments.name, region, made.resolution,
+                                arguments.min_component, MeshingDevice::kCpu, false, arguments.even},
                                made.arrays, stage);
   if (recipe.erosion) made.erosion = erode_arrays(*recipe.erosion, made.arrays, state.progress("erosion"));
   if (has_colors(recipe)) {
@@ -232,7 +234,7 @@ nb::dict figures(const MadeMesh& made) {
   return figures;
 }
 
-Fields mesh(const std::string& json, const std::string& name, int resolution, double triangles,
+Fields mesh(const std::string& json, const std::filesystem::path& name, int resolution, double triangles,
             std::optional<std::array<double, 4>> patch, bool aligned, std::optional<std::array<int, 2>> tile,
             double min_component, bool labels, bool even, int threads, nb::object progress) {
   const MeshArguments arguments{json,    name, resolution,    triangles, patch,
@@ -255,7 +257,7 @@ Fields mesh(const std::string& json, const std::string& name, int resolution, do
   return result;
 }
 
-Fields predict(const std::string& json, const std::string& name, int resolution, double triangles,
+Fields predict(const std::string& json, const std::filesystem::path& name, int resolution, double triangles,
                std::optional<std::array<double, 4>> patch, bool aligned,
                std::optional<std::array<int, 2>> tile, double min_component, bool labels, bool even,
                const std::string& format, int threads) {
@@ -273,10 +275,9 @@ Fields predict(const std::string& json, const std::string& name, int resolution,
   return figures;
 }
 
-Fields read(const std::string& file, bool points_allowed, nb::object progress) {
-  TriangleMesh mesh = run_job(std::move(progress), 0, [=](JobState&) {
-    return points_allowed ? read_mesh_or_points(file) : read_mesh(file);
-  });
+Fields read(const std::filesystem::path& file, bool points_allowed) {
+  TriangleMesh mesh = run_job(
+      nb::none(), 0, [=](JobState&) { return points_allowed ? read_mesh_or_points(file) : read_mesh(file); });
   const std::size_t n = mesh.vertices.size(), m = mesh.triangles.size();
   const bool with_normals = !mesh.normals.empty();
   Fields result;
@@ -309,7 +310,7 @@ void write_labelled(const TriangleMesh& mesh, const std::vector<VertexLabel>& la
   writer.finish();
 }
 
-void write(const std::string& file, const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
+void write(const std::filesystem::path& file, const Rows<double>& vertices, const Rows<std::uint32_t>& faces,
            const std::optional<Rows<double>>& normals, const std::optional<Labels>& labels,
            const std::optional<Elevations>& elevations, const std::optional<Colors>& colors,
            const std::string& length_unit, const std::string& frame, const std::string& comment,
@@ -338,6 +339,36 @@ void write(const std::string& file, const Rows<double>& vertices, const Rows<std
   });
 }
 
+Fields fields_of(const MeshFormat& format) {
+  Fields row;
+  row["name"] = format.name;
+  row["extension"] = std::string(format.extensions[0]);
+  row["read"] = format.reader != nullptr;
+  row["written"] = format.writer != nullptr;
+  row["unit"] = format.tells_unit;
+  row["colors"] = format.has_colors;
+  row["values"] = format.has_values;
+  row["texture_coordinates"] = format.has_texture_coordinates;
+  return row;
+}
+
+std::vector<Fields> formats() {
+  std::vector<Fields> rows;
+  for (const MeshFormat& format : mesh_formats()) rows.push_back(fields_of(format));
+  return rows;
+}
+
+Fields written_format(const std::filesystem::path& file) { return fields_of(written_mesh_format(file)); }
+
+double closed_volume(const Rows<double>& vertices, const Rows<std::uint32_t>& faces) {
+  const TriangleMesh mesh = mesh_of(vertices, faces, {});
+  const MeshTopology topology = analyze_topology(mesh);
+  if (!topology.closed || !topology.oriented) {
+    throw InputError("mesh: is open or wound both ways, so has no inside; astrolith.repair_mesh closes it");
+  }
+  return volume(mesh);
+}
+
 }  // namespace
 
 void bind_meshes(nb::module_& module) {
@@ -348,17 +379,24 @@ void bind_meshes(nb::module_& module) {
              nb::arg("triangles"), nb::arg("patch").none(), nb::arg("aligned"), nb::arg("tile").none(),
              nb::arg("min_component"), nb::arg("labels"), nb::arg("even"), nb::arg("format"),
              nb::arg("threads"));
-  module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"), nb::arg("progress").none());
+  module.def("read_mesh", &read, nb::arg("file"), nb::arg("points_allowed"));
   module.def(
-      "stated_length_unit", [](const std::string& file) { return stated_length_unit(file); },
+      "stated_length_unit", [](const std::filesystem::path& file) { return stated_length_unit(file); },
       nb::arg("file"));
-  module.def(
-      "tells_length_unit", [](const std::string& file) { return tells_length_unit(file); }, nb::arg("file"));
+  module.def("mesh_formats", &formats);
+  module.def("written_mesh_format", &written_format, nb::arg("file"));
   module.def("write_mesh", &write, nb::arg("file"), nb::arg("vertices").noconvert(),
              nb::arg("faces").noconvert(), nb::arg("normals").noconvert().none(),
              nb::arg("labels").noconvert().none(), nb::arg("elevations").noconvert().none(),
              nb::arg("colors").noconvert().none(), nb::arg("length_unit"), nb::arg("frame"),
              nb::arg("comment"), nb::arg("origin").none(), nb::arg("notes"), nb::arg("uv"));
+  module.def(
+      "surface_area",
+      [](const Rows<double>& vertices, const Rows<std::uint32_t>& faces) {
+        return surface_area(mesh_of(vertices, faces, {}));
+      },
+      nb::arg("vertices").noconvert(), nb::arg("faces").noconvert());
+  module.def("volume", &closed_volume, nb::arg("vertices").noconvert(), nb::arg("faces").noconvert());
   module.def("version", [] { return kCodeVersion.text(); });
 }
 

@@ -2,6 +2,7 @@
 // links no library of the fits.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -10,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -17,12 +19,9 @@
 #include <vector>
 
 #include "python/bindings/arrays.h"
-#include "python/bindings/field_bindings.h"
-#include "python/bindings/gravity_bindings.h"
-#include "python/bindings/height_map_bindings.h"
 #include "python/bindings/job.h"
-#include "python/bindings/mesh_bindings.h"
 #include "python/bindings/recipe_text.h"
+#include "python/bindings/synthesis_bindings.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/finish/known_population.h"
 #include "synthesis/finish/lay_on_base.h"
@@ -36,31 +35,32 @@
 namespace astrolith::python {
 namespace {
 
+namespace fs = std::filesystem;
 using OptionalRows = std::optional<Rows<double>>;
 
 void bind_recipes(nb::module_& module) {
   const auto unlocked = nb::call_guard<nb::gil_scoped_release>();
   module.def(
       "check_recipe",
-      [](const std::string& json, const std::string& name) {
-        return recipe_to_json(parse_recipe(json, name));
+      [](const std::string& json, const fs::path& name) {
+        return recipe_to_json(parse_recipe(json, name.string()));
       },
       nb::arg("json"), nb::arg("name"), unlocked);
   module.def(
-      "read_recipe", [](const std::string& file) { return recipe_to_json(read_recipe(file)); },
-      nb::arg("file"), unlocked);
+      "read_recipe", [](const fs::path& file) { return recipe_to_json(read_recipe(file)); }, nb::arg("file"),
+      unlocked);
   module.def(
       "write_recipe",
-      [](const std::string& json, const std::string& name, const std::string& file) {
+      [](const std::string& json, const std::string& name, const fs::path& file) {
         write_recipe(parse_recipe(json, name), file);
       },
       nb::arg("json"), nb::arg("name"), nb::arg("file"), unlocked);
   module.def(
       "lay_on_base",
       [](const std::string& details, const std::string& details_name, const std::string& base,
-         const std::string& base_name, const std::string& lengths) {
+         const fs::path& base_name, const std::string& lengths) {
         return recipe_to_json(lay_on_base(parse_recipe(details, details_name), details_name,
-                                          parse_recipe(base, base_name), base_name,
+                                          parse_recipe(base, base_name.string()), base_name.string(),
                                           base_lengths_of(lengths)));
       },
       nb::arg("details"), nb::arg("details_name"), nb::arg("base"), nb::arg("base_name"), nb::arg("lengths"),
@@ -84,18 +84,18 @@ DescriptionOptions description_options(const std::string& features, int bins, st
   return options;
 }
 
-nb::typed<nb::dict, nb::str, nb::any> describe(const std::string& name, const Rows<double>& vertices,
+nb::typed<nb::dict, nb::str, nb::any> describe(const fs::path& name, const Rows<double>& vertices,
                                                const Rows<std::uint32_t>& faces, const OptionalRows& normals,
                                                const std::string& features, int bins, std::int64_t points,
                                                std::uint64_t seed, int threads, nb::object progress) {
   const DescriptionOptions options = description_options(features, bins, points, seed);
-  const ShapeDescription shape =
-      run_job(std::move(progress), threads,
-              [name, options, mesh = mesh_of(vertices, faces, normals)](JobState& state) {
-                const Progress p = state.progress("describe");
-                return mesh.triangles.empty() ? describe_file(name, mesh.vertices, mesh.normals, options, p)
-                                              : describe_file(name, mesh, options, p);
-              });
+  const ShapeDescription shape = run_job(
+      std::move(progress), threads,
+      [name, options, mesh = mesh_of(vertices, faces, normals)](JobState& state) {
+        const Progress p = state.progress("describe");
+        return mesh.triangles.empty() ? describe_file(name.string(), mesh.vertices, mesh.normals, options, p)
+                                      : describe_file(name.string(), mesh, options, p);
+      });
   std::vector<double> frequencies = shape.histogram.frequencies();
   const std::size_t count = frequencies.size();
   nb::typed<nb::dict, nb::str, nb::any> result;
@@ -121,14 +121,14 @@ SurfaceStatisticsOptions surface_options(std::int64_t points, std::int64_t place
   return options;
 }
 
-nb::typed<nb::dict, nb::str, nb::any> surface(const std::string& name, const Rows<double>& vertices,
+nb::typed<nb::dict, nb::str, nb::any> surface(const fs::path& name, const Rows<double>& vertices,
                                               const Rows<std::uint32_t>& faces, std::int64_t points,
                                               std::int64_t places, double period, double density,
                                               std::uint64_t seed, int threads, nb::object progress) {
   const SurfaceStatisticsOptions options = surface_options(points, places, period, density, seed);
   SurfaceStatistics made = run_job(
       std::move(progress), threads, [name, options, mesh = mesh_of(vertices, faces, {})](JobState& state) {
-        return describe_surface({name, mesh}, options, state.progress("surface"));
+        return describe_surface({name.string(), mesh}, options, state.progress("surface"));
       });
   nb::typed<nb::dict, nb::str, nb::any> result;
   result["figures"] = surface_json(made).dump();
@@ -145,8 +145,8 @@ nb::typed<nb::dict, nb::str, nb::any> surface(const std::string& name, const Row
   return result;
 }
 
-std::string realism(const std::string& a_name, const Rows<double>& a_vertices,
-                    const Rows<std::uint32_t>& a_faces, const std::string& b_name,
+std::string realism(const fs::path& a_name, const Rows<double>& a_vertices,
+                    const Rows<std::uint32_t>& a_faces, const fs::path& b_name,
                     const Rows<double>& b_vertices, const Rows<std::uint32_t>& b_faces, std::int64_t points,
                     std::int64_t places, double period, double density, bool floor, const std::string& unit,
                     std::uint64_t seed, int threads, nb::object progress) {
@@ -154,14 +154,14 @@ std::string realism(const std::string& a_name, const Rows<double>& a_vertices,
   return run_job(
       std::move(progress), threads,
       [=, a = mesh_of(a_vertices, a_faces, {}), b = mesh_of(b_vertices, b_faces, {})](JobState& state) {
-        return judge_surfaces({a_name, a}, {b_name, b}, options, floor, unit,
+        return judge_surfaces({a_name.string(), a}, {b_name.string(), b}, options, floor, unit,
                               [&](const std::string& stage) { return state.progress(stage); })
             .figures.dump();
       });
 }
 
-std::string compare(const std::string& a_name, const Rows<double>& a_vertices,
-                    const Rows<std::uint32_t>& a_faces, const std::string& b_name,
+std::string compare(const fs::path& a_name, const Rows<double>& a_vertices,
+                    const Rows<std::uint32_t>& a_faces, const fs::path& b_name,
                     const Rows<double>& b_vertices, const Rows<std::uint32_t>& b_faces,
                     const std::string& features, int bins, std::int64_t points, std::int64_t samples,
                     bool floor, std::uint64_t seed, int threads, nb::object progress) {
@@ -169,7 +169,7 @@ std::string compare(const std::string& a_name, const Rows<double>& a_vertices,
   return run_job(
       std::move(progress), threads,
       [=, a = mesh_of(a_vertices, a_faces, {}), b = mesh_of(b_vertices, b_faces, {})](JobState& state) {
-        return compare_meshes({a_name, a}, {b_name, b}, options, samples, floor,
+        return compare_meshes({a_name.string(), a}, {b_name.string(), b}, options, samples, floor,
                               [&](const std::string& stage) { return state.progress(stage); })
             .figures.dump();
       });
@@ -179,7 +179,7 @@ struct VariedRecipe {
   std::string json, figures;
 };
 
-VariedRecipe vary(const std::string& json, const std::string& name, double delta, std::uint64_t seed,
+VariedRecipe vary(const std::string& json, const fs::path& name, double delta, std::uint64_t seed,
                   const std::optional<TriangleMesh>& target, const Progress& progress) {
   const Recipe recipe = loaded_recipe(json, name);
   const TriangleMesh like = target ? *target : mesh_for_comparison(recipe);
@@ -188,9 +188,8 @@ VariedRecipe vary(const std::string& json, const std::string& name, double delta
   return {recipe_to_json(variation.recipe), figures_of(variation).dump()};
 }
 
-std::pair<std::string, std::string> vary_in_job(const std::string& json, const std::string& name,
-                                                double delta, std::uint64_t seed,
-                                                const OptionalRows& vertices,
+std::pair<std::string, std::string> vary_in_job(const std::string& json, const fs::path& name, double delta,
+                                                std::uint64_t seed, const OptionalRows& vertices,
                                                 const std::optional<Rows<std::uint32_t>>& faces, int threads,
                                                 nb::object progress) {
   std::optional<TriangleMesh> target;
@@ -236,11 +235,11 @@ NumpyArray<std::uint8_t> render(const Rows<double>& vertices, const Rows<std::ui
       {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), transparent ? 4u : 3u});
 }
 
-std::tuple<NumpyArray<float>, double, bool> texture(const std::string& json, const std::string& name,
-                                                    int width, int height, const std::string& content,
-                                                    bool tileable, int threads, nb::object progress) {
+std::tuple<NumpyArray<float>, double, bool> texture(const std::string& json, const fs::path& name, int width,
+                                                    int height, const std::string& content, bool tileable,
+                                                    int threads, nb::object progress) {
   PlaneTexture drawn = run_job(std::move(progress), threads, [=](JobState& state) {
-    return draw_texture(loaded_recipe(json, name), name, {width, height, content, tileable},
+    return draw_texture(loaded_recipe(json, name), name.string(), {width, height, content, tileable},
                         state.progress("texture"));
   });
   const auto rows = static_cast<std::size_t>(height), columns = static_cast<std::size_t>(width);

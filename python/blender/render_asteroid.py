@@ -7,8 +7,11 @@
 import argparse
 import json
 import math
+import os
 import pathlib
+import shutil
 import sys
+import tempfile
 
 import bpy
 
@@ -48,7 +51,9 @@ def light_and_camera(center):
 
 def main():
     options = arguments()
-    bpy.ops.preferences.addon_install(filepath=str(pathlib.Path(__file__).with_name(NAME + ".py")))
+    with tempfile.TemporaryDirectory() as folder:
+        archive = shutil.make_archive(os.path.join(folder, NAME), "zip", pathlib.Path(__file__).parent, NAME)
+        bpy.ops.preferences.addon_install(filepath=archive)
     bpy.ops.preferences.addon_enable(module=NAME)
     chosen = bpy.context.preferences.addons[NAME].preferences
     chosen.package, chosen.synth = options.package, options.synth
@@ -71,11 +76,13 @@ def main():
     scene.render.filepath = str(options.picture.resolve())
     bpy.ops.render.render(write_still=True)
     mesh = made.data
+    colors = [0.0] * (4 * len(mesh.vertices))
+    mesh.color_attributes["astrolith_color"].data.foreach_get("color", colors)
     surface = mesh.materials[0].node_tree.nodes["Principled BSDF"]
     print("ASTEROID " + json.dumps({
         "vertices": len(mesh.vertices), "triangles": len(mesh.polygons), "smooth": all(p.use_smooth for p in mesh.polygons),
         "dimensions": list(made.dimensions), "metres": made["metres_per_blender_unit"], "by": made["made_by"],
-        "colors": [a.name for a in mesh.color_attributes], "images": [i.name for i in bpy.data.images if i.packed_file],
+        "colors": colors, "images": [i.name for i in bpy.data.images if i.packed_file],
         "normals": mesh.has_custom_normals, "seed": made["astrolith_seed"],
         "specular": [i.default_value for i in surface.inputs if i.name in ("Specular", "Specular IOR Level")],
     }))  # fmt: skip

@@ -3,7 +3,9 @@
 import os
 import pathlib
 import signal
+import struct
 import subprocess
+import zlib
 
 import astrolith
 import pytest
@@ -15,7 +17,16 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 WORM = {"format_version": 1, "length_unit": "km",
         "body": {"type": "metaballs", "kernel": "gaussian", "a": 2, "b": 2,
                  "spheres": [[1.2 * (k - 4.5), 0, 0, 0.8 + 0.1 * (k % 2)] for k in range(10)]}}  # fmt: skip
-FAST = {"spheres": 12, "population": 4, "generations": 2, "seed": 3}
+FAST = {"spheres": 12, "population": 4, "generations": 2, "noise_seeds": 0, "seed": 3}
+
+
+def png_of(values):
+    """The bytes of a grey PNG."""
+    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    height, width = values.shape
+    rows = b"".join(b"\0" + row.tobytes() for row in values)
+    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
 @pytest.fixture(autouse=True)

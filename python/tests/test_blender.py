@@ -3,6 +3,8 @@
 ASTROLITH_BPY names a Python that has the module bpy, such as Blender 4's, to test with it in place of the program blender.
 """
 
+import ast
+import hashlib
 import json
 import os
 import pathlib
@@ -13,6 +15,7 @@ import sys
 import astrolith
 import numpy as np
 import pytest
+from conftest import png_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ADDON = ROOT / "python" / "blender"
@@ -73,8 +76,35 @@ def test_the_addon_makes_a_body_and_renders_it(blender, tmp_path, by, painted):
     np.testing.assert_allclose(made["dimensions"], extent * 2 / extent.max(), rtol=1e-5)
     assert made["metres"] == pytest.approx(1000 * extent.max() / 2, rel=1e-5)
     assert made["specular"] == [0.0]
-    assert made["colors"] == ["astrolith_color"] and bool(made["images"]) == painted
+    assert bool(made["images"]) == painted
+    colors = np.reshape(made["colors"], (-1, 4))
+    assert (colors[:, 3] == 1).all() and np.ptp(colors[:, 0]) > 0.02
     assert (tmp_path / "body.png").stat().st_size > 2000
+
+
+@pytest.mark.parametrize("by", ["package", "synth"])
+def test_colours_of_vertices_are_kept(blender, tmp_path, by):
+    image = png_of(np.random.default_rng(1).integers(0, 256, (32, 32), dtype=np.uint8))
+    (tmp_path / "rust.png").write_bytes(image)
+    layer = {"type": "exemplar", "image": "rust.png", "image_sha256": hashlib.sha256(image).hexdigest(), "color": True,
+             "height_rms": 0.01, "pixel_size": 0.05}  # fmt: skip
+    (tmp_path / "body.json").write_text(json.dumps({**RECIPE, "layers": [layer]}))
+    options = ["--resolution", 24, "--size", "48x36", "--samples", 1, *source(by)]
+    made = blender("ASTEROID", ADDON / "render_asteroid.py", tmp_path / "body.json", tmp_path / "body.png", *options)
+    srgb = astrolith.mesh(tmp_path / "body.json", resolution=24).colors / 255
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    assert made["by"] == by and not made["images"] and np.ptp(linear) > 0.3
+    np.testing.assert_allclose(np.reshape(made["colors"], (-1, 4)), np.column_stack([linear, np.ones(len(linear))]), atol=1e-6)
+
+
+def test_the_extension_of_blender_states_what_the_addon_states():
+    tomllib = pytest.importorskip("tomllib")
+    manifest = tomllib.loads((ADDON / "astrolith_addon" / "blender_manifest.toml").read_text())
+    module = ast.parse((ADDON / "astrolith_addon" / "__init__.py").read_text())
+    (info,) = (ast.literal_eval(line.value) for line in module.body if isinstance(line, ast.Assign) and line.targets[0].id == "bl_info")
+    assert manifest["version"] == ".".join(map(str, info["version"])) and manifest["name"] == info["name"]
+    assert manifest["tags"] == [info["category"]] and manifest["type"] == "add-on" and manifest["id"].isidentifier()
+    assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
 
 
 def test_the_finished_body_of_the_tutorial_is_rendered(blender, program, tmp_path):
@@ -98,9 +128,10 @@ def test_the_finished_body_of_the_tutorial_is_rendered(blender, program, tmp_pat
 
 def test_wrong_recipes_and_missing_programs_are_said(blender, tmp_path):
     script = tmp_path / "wrong.py"
+    archive = shutil.make_archive(str(tmp_path / "addon"), "zip", ADDON, "astrolith_addon")
     script.write_text(f"""
 import bpy, json
-bpy.ops.preferences.addon_install(filepath={str(ADDON / "astrolith_addon.py")!r})
+bpy.ops.preferences.addon_install(filepath={archive!r})
 bpy.ops.preferences.addon_enable(module="astrolith_addon")
 bpy.context.preferences.addons["astrolith_addon"].preferences.synth = "no_such_program"
 said = []

@@ -13,7 +13,7 @@ from conftest import FAST, WORM
 
 pytest.importorskip("astrolith._estimation")
 
-FAST_OPTIONS = ["--spheres", "12", "--population", "4", "--generations", "2", "--seed", "3"]
+FAST_OPTIONS = ["--spheres", "12", "--population", "4", "--generations", "2", "--noise-seeds", "0", "--seed", "3"]
 
 
 def test_a_fit_of_a_file_has_the_bytes_of_fit_shape(worm, program, tmp_path):
@@ -43,9 +43,9 @@ def test_details_that_are_not_searched_have_the_bytes_of_fit_shape(worm, fit_of_
     words = []
     for name, value in options.items():
         words += [f"--{name.replace('_', '-')}"] + ([] if value is True else [value])
-    fast = {"spheres": 12, "population": 4, "seed": 3}
+    fast = {"spheres": 12, "population": 4, "noise_seeds": 0, "seed": 3}
     program("fit_shape", tmp_path / "worm.ply", "-o", "program.json", "--spheres", "12", "--population", "4",
-            "--seed", "3", "--device", "cpu", *words)  # fmt: skip
+            "--noise-seeds", "0", "--seed", "3", "--device", "cpu", *words)  # fmt: skip
     fit = astrolith.fit_shape(tmp_path / "worm.ply", device="cpu", **fast, **options)
     fit.recipe.write(tmp_path / "package.json")
     assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
@@ -79,10 +79,10 @@ def test_a_fit_in_few_bytes_has_the_bytes_of_fit_shape(worm, program, tmp_path):
 
 
 def test_bytes_are_those_of_a_bare_body(worm, example):
-    for more in ({}, {"base_only": True, "micro": example("rubble_pile")}):
-        with pytest.raises(ValueError, match="^bytes: are those of a bare body; pass base_only=True"):
+    for more, message in (({}, "^bytes: .* add base_only$"), ({"base_only": True, "micro": example("rubble_pile")}, "^bytes excludes micro")):
+        with pytest.raises(ValueError, match=message):
             astrolith.fit_shape(worm, bytes=150, **more)
-    with pytest.raises(ValueError, match="^bytes: must be from 100"):
+    with pytest.raises(ValueError, match="^bytes: must be a number between 100"):
         astrolith.fit_shape(worm, bytes=99, base_only=True)
 
 
@@ -129,12 +129,6 @@ def test_a_texture_of_a_photo_has_the_recipe_of_fit_gabor(example, program, tmp_
     assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
     of_array = astrolith.fit_texture(grey, lobes=6, seed=2)
     assert of_array.recipe.layers[0].lobes == fit.recipe.layers[0].lobes
-    program("fit_gabor", "rock.png", "-o", "program.json", "--lobes", "6", "--seed", "2", "--evaluation", "tiles")
-    fit = astrolith.fit_texture(tmp_path / "rock.png", lobes=6, seed=2, evaluation="tiles")
-    fit.recipe.write(tmp_path / "package.json")
-    assert (tmp_path / "package.json").read_text() == (tmp_path / "program.json").read_text()
-    with pytest.raises(ValueError, match="^evaluation: "):
-        astrolith.fit_texture(grey, evaluation="tile")
 
 
 @pytest.mark.parametrize("channels", ["luminance", "pca"])
@@ -180,7 +174,7 @@ def test_a_photo_beyond_the_memory_is_refused(tmp_path):
     grey = (np.arange(64 * 64).reshape(64, 64) * 37 % 251).astype(np.uint8)
     with pytest.raises(ValueError, match="^image: fitting 64 x 64 pixels needs .* raise max_memory$"):
         astrolith.fit_texture(grey, max_memory=1e-6)
-    with pytest.raises(ValueError, match='^lobes: is about lobes, which model "phase" has none of'):
+    with pytest.raises(ValueError, match="^lobes: is about lobes, which model phase has none of"):
         astrolith.fit_texture(grey, model="phase", lobes=4, output=tmp_path / "rock.json")
     with pytest.raises(ValueError, match="^output: is missing"):
         astrolith.fit_texture(grey, model="auto")
@@ -234,7 +228,7 @@ def test_wrong_images(image):
 def test_wrong_meshes(worm):
     with pytest.raises(ValueError, match="^mesh: .*open"):
         astrolith.fit_shape(worm.vertices, worm.faces[1:], base_only=True, strict=True)
-    with pytest.raises(ValueError, match="^mesh: .*pass wrap=True"):
+    with pytest.raises(ValueError, match="^mesh: .*wrap"):
         astrolith.fit_shape(worm.vertices, worm.faces[: len(worm.faces) // 2], base_only=True)
     with pytest.raises(ValueError, match=r"^mesh\.faces: "):
         astrolith.fit_shape(worm.vertices, worm.faces.astype(np.int64) - 1)

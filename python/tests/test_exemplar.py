@@ -3,21 +3,11 @@
 import hashlib
 import json
 import os
-import struct
-import zlib
 
 import astrolith
 import numpy as np
 import pytest
-
-
-def png_of(values):
-    """The bytes of a grey PNG."""
-    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-    height, width = values.shape
-    rows = b"".join(b"\0" + row.tobytes() for row in values)
-    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+from conftest import png_of
 
 
 @pytest.fixture

@@ -17,6 +17,7 @@ CUBE = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1
 
 def test_a_cube_of_a_metre_has_its_mass_and_its_potential():
     made = astrolith.gravity((CORNERS, CUBE), 1000.0, unit="m", points=[[0.5, 0.5, 0.5], [1000.5, 0.5, 0.5]], exact=True)
+    assert made.figures.values.potential_J_kg.min < 0
     assert made.figures.body.mass_kg == pytest.approx(1000.0) and made.figures.body.area_m2 == pytest.approx(6.0)
     # Waldvogel 1976: the potential at the centre of the unit cube is 3 ln((sqrt 3 + 1) / (sqrt 3 - 1)) - pi / 2.
     at_center = 3 * np.log((3**0.5 + 1) / (3**0.5 - 1)) - np.pi / 2

@@ -51,10 +51,10 @@ def test_a_packing_has_the_unit_of_the_mesh_and_stops_when_asked(peanut):
 
 def test_wrong_packings(peanut, tmp_path):
     for wrong, message in (
-        ({"spheres": 0}, "^spheres: must be from 1"),
-        ({"density": 0.0}, "^density: must be above 0"),
+        ({"spheres": 0}, "^spheres: must be a number between 1"),
+        ({"density": 0.0}, "^density: must be a number above 0"),
         ({"unit": "px"}, "^unit: "),
-        ({"output": tmp_path / "p.json"}, "^output: .* must end in .csv"),
+        ({"output": tmp_path / "p.json"}, "is no .csv file"),
         ({"output": tmp_path / "none" / "p.csv"}, "none"),
     ):
         with pytest.raises(ValueError, match=message):

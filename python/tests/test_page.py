@@ -1,5 +1,6 @@
 """The examples of docs/python.md, run one after another in one folder."""
 
+import itertools
 import pathlib
 import re
 
@@ -36,3 +37,20 @@ def test_examples_of_the_page(tmp_path, monkeypatch, capsys, example):
     said = capsys.readouterr().out
     assert "True" in said and "(2048, 3)" in said and "Itokawa.bds" in said
     assert {"itokawa.json", "itokawa.glb", "site.tif", "Itokawa.tpc"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def table_of(page, heading):
+    """The rows below a heading of a table, as lists of cells."""
+    lines = (PAGE.parent / page).read_text().split("\n")
+    start = next(i for i, line in enumerate(lines) if line.startswith(heading))
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in itertools.takewhile(lambda s: s.startswith("|"), lines[start + 2:])]
+
+
+def test_the_page_has_the_formats_of_meshes():
+    words = {"unit": "unit", "colors": "colours", "values": "values", "texture_coordinates": "texture coordinates"}
+    rows = [
+        [f"{row.name}", f"`{row.extension}`", "yes" if row.read else "", "yes" if row.written else "",
+         ", ".join(word for key, word in words.items() if row[key])]
+        for row in astrolith.mesh_formats()
+    ]  # fmt: skip
+    assert table_of("python.md", "| format | extension |") == rows

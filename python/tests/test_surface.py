@@ -1,10 +1,12 @@
 """Statistics of surfaces: the program's figures, and NumPy in double precision as an independent reference."""
 
 import json
+import re
 
 import astrolith
 import numpy as np
 import pytest
+from conftest import ROOT
 
 REGIONS = 40
 
@@ -73,3 +75,11 @@ def test_what_cannot_be_measured_is_refused():
                     lambda: astrolith.realism(sphere(), sphere(), unit="mile")):  # fmt: skip
         with pytest.raises(ValueError):
             refused()
+
+
+def test_the_document_explains_every_statistic():
+    made = astrolith.describe_surface(sphere(noise=0.01), places=200)
+    names = list(dict.fromkeys(name.split("_")[0] for name in made.values))
+    page = (ROOT / "docs" / "descriptor.md").read_text()
+    explained = re.findall(r"^\| ([a-z ]+) \|", page.split("| statistic | equation |")[1], re.MULTILINE)
+    assert explained[: len(names)] == names

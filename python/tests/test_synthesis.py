@@ -1,6 +1,8 @@
 """Recipes, fields, meshes and textures: analytic truth, and the bytes of the programs."""
 
+import copy
 import json
+import pickle
 import tracemalloc
 
 import astrolith
@@ -67,8 +69,12 @@ def test_a_mesh_of_a_ball_is_closed_and_of_its_size(ball):
     radii = np.linalg.norm(mesh.vertices - [1, 0, 0], axis=1)
     np.testing.assert_allclose(radii, 2.0, atol=5e-3)
     np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-5)
-    a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(float) for k in range(3))
-    assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(4 / 3 * np.pi * 8, rel=0.01)
+    assert mesh.volume == pytest.approx(4 / 3 * np.pi * 8, rel=0.01) and mesh.area == pytest.approx(4 * np.pi * 4, rel=0.01)
+    assert astrolith.Mesh(mesh.vertices, mesh.faces[:, ::-1]).volume == -mesh.volume
+    for open_mesh in (astrolith.Mesh(mesh.vertices, mesh.faces[1:]), astrolith.mesh(ball, resolution=16, patch=(1, 0, 2, 1))):
+        assert 0 < open_mesh.area < mesh.area
+        with pytest.raises(ValueError, match="^mesh: is open"):
+            open_mesh.volume
 
 
 def test_an_even_mesh_states_its_quality(ball):
@@ -110,7 +116,7 @@ def test_texture_coordinates_have_the_bytes_of_synth(ball, program, tmp_path):
     astrolith.write_mesh(mesh, tmp_path / "package.glb", uv=True)
     assert (tmp_path / "package.glb").read_bytes() == (tmp_path / "synth.glb").read_bytes()
     assert b"TEXCOORD_0" in (tmp_path / "synth.glb").read_bytes()
-    with pytest.raises(ValueError, match="only a .glb"):
+    with pytest.raises(ValueError, match="a .ply gets no texture"):
         astrolith.write_mesh(mesh, tmp_path / "package.ply", uv=True)
 
 
@@ -199,6 +205,20 @@ def test_recipes_are_edited_as_attributes_and_checked(ball, tmp_path):
         ball.sed = 5
     with pytest.raises(ValueError, match="NaN|nan|Out of range"):
         astrolith.Recipe.from_dict({**BALL, "seed": float("nan")})
+
+
+def test_fields_win_over_the_methods_of_dictionaries():
+    figures = astrolith._recipe.records('{"values": {"slope": 3.5}, "keys": 2, "get": 1, "items": 4, "n": [{"pop": 5}]}')
+    assert figures.values.slope == 3.5 and figures.keys == 2 and figures.get == 1 and figures.n[0].pop == 5
+    plain = {"values": {"slope": 3.5}, "keys": 2, "get": 1, "items": 4, "n": [{"pop": 5}]}
+    assert figures == plain and plain == figures and dict(figures) == plain and {**figures} == plain
+    assert dict(**figures) == plain and list(figures) == list(plain) and repr(figures) == repr(plain)
+    assert json.loads(json.dumps(figures)) == json.loads(json.dumps(figures, indent=1)) == plain
+    for twin in (pickle.loads(pickle.dumps(figures)), copy.deepcopy(figures), copy.copy(figures)):
+        assert twin == figures and type(twin) is type(figures) and twin.values.slope == 3.5
+    figures.keys = 3
+    assert figures["keys"] == 3
+    assert list(astrolith._recipe.Record(a=1).values()) == [1]
 
 
 def test_a_written_recipe_is_the_text_of_the_recipe(example, tmp_path):

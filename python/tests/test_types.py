@@ -9,7 +9,7 @@ import sys
 
 import astrolith
 import pytest
-from astrolith import _gravity, _packing, _recipe
+from astrolith import _gravity, _mesh, _packing, _recipe
 from astrolith.bridges import datasets
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -39,9 +39,16 @@ def test_mypy_finds_nothing_in_the_examples_of_the_page(tmp_path):
     mypy(tmp_path, "--no-warn-unused-ignores", "page.py")
 
 
-@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity, _packing, datasets])
+@pytest.mark.parametrize("module", [astrolith, _recipe, _gravity, _mesh, _packing, datasets])
 def test_examples_of_docstrings(module):
     assert doctest.testmod(module, optionflags=doctest.ELLIPSIS).failed == 0
+
+
+def test_modules_are_loaded_when_they_are_named():
+    code = "import astrolith, sys; print('astrolith.bridges' in sys.modules, astrolith.bridges.Bodies.__name__, "\
+        "astrolith.estimation.ShapeFit.__name__)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout == "False Bodies ShapeFit\n"
 
 
 def test_import_is_quick_and_loads_nothing_of_the_fits():

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 
 namespace astrolith {
 namespace {
@@ -22,13 +21,27 @@ constexpr std::array<std::uint64_t, kOctave + 1> kPowers = [] {
   return powers;
 }();
 
+// The first i with 2^(-i / 256) <= the greatest mantissa that begins with the 11 bits 1 and k.
+constexpr std::size_t kMantissas = 1024;
+constexpr std::array<std::uint16_t, kMantissas> kFirstPowers = [] {
+  std::array<std::uint16_t, kMantissas> first{};
+  for (std::uint64_t k = 0; k < kMantissas; ++k) {
+    const std::uint64_t greatest = ((kMantissas + k + 1) << 52) - 1;
+    std::uint16_t i = 0;
+    while (kPowers[i] > greatest) ++i;
+    first[k] = i;
+  }
+  return first;
+}();
+
 }  // namespace
 
 int log_of(std::uint64_t value) {
   const int bits = std::bit_width(value);
   const std::uint64_t mantissa = value << (64 - bits) >> 1;
-  const auto below = std::lower_bound(kPowers.begin(), kPowers.end(), mantissa, std::greater<>());
-  return bits * kOctave - static_cast<int>(below - kPowers.begin());
+  std::size_t power = kFirstPowers[(mantissa >> 52) % kMantissas];
+  while (kPowers[power] > mantissa) ++power;
+  return bits * kOctave - static_cast<int>(power);
 }
 
 std::uint64_t logistic_tail(std::int64_t x) {

@@ -1,7 +1,10 @@
 #include "recipe/compact/height_picture.h"
 
 #include <algorithm>
+#include <array>
+#include <string>
 
+#include "numerics/parallel_for.h"
 #include "recipe/compact/height_mask_internal.h"
 #include "recipe/compact/height_values_internal.h"
 
@@ -25,9 +28,7 @@ bool has_heights(const HeightPicture& picture) {
   return std::any_of(picture.values.begin(), picture.values.end(), [](std::uint16_t v) { return v != 0; });
 }
 
-}  // namespace
-
-void encode(const HeightPicture& picture, RangeEncoder& encoder) {
+void encode_one(const HeightPicture& picture, RangeEncoder& encoder) {
   encoder.encode_uniform(static_cast<std::uint64_t>(picture.width), kSides);
   encoder.encode_uniform(static_cast<std::uint64_t>(picture.height), kSides);
   HeightPicture copy = picture;
@@ -40,19 +41,93 @@ void encode(const HeightPicture& picture, RangeEncoder& encoder) {
   code_heights(copy, range, coder);
 }
 
-HeightPicture decode(std::size_t most_pixels, RangeDecoder& decoder) {
-  HeightPicture picture;
-  picture.width = static_cast<int>(decoder.decode_uniform(kSides));
-  picture.height = static_cast<int>(decoder.decode_uniform(kSides));
-  if (picture.pixels() > most_pixels) throw DamagedStream();
+// Reads what follows the sides of a picture.
+void decode_one(HeightPicture& picture, RangeDecoder& decoder) {
   BitCoder coder(decoder);
   code_mask(picture, coder);
-  if (!has_heights(picture)) return picture;
+  if (!has_heights(picture)) return;
   HeightRange range;
   range.low = static_cast<int>(decoder.decode_uniform(kValues));
   range.high = static_cast<int>(decoder.decode_uniform(kValues));
   if (range.low < 1 || range.low > range.high) throw DamagedStream();
   code_heights(picture, range, coder);
+}
+
+int decode_side(RangeDecoder& decoder) { return static_cast<int>(decoder.decode_uniform(kSides)); }
+
+// A large picture is cut into bands of rows, each a stream of its own, so that several threads can code it.
+constexpr std::size_t kMostPixelsOfOne = std::size_t{1} << 20;
+constexpr int kBands = 4;
+
+// The band's rows of a picture, without values.
+HeightPicture band_of(const HeightPicture& picture, int band) {
+  const auto row = [&](int number) { return picture.height * number / kBands; };
+  return {picture.width, row(band + 1) - row(band), {}};
+}
+
+std::array<std::string, kBands> encoded_bands(const HeightPicture& picture) {
+  std::array<HeightPicture, kBands> bands;
+  auto from = picture.values.begin();
+  for (int b = 0; b < kBands; ++b) {
+    HeightPicture& band = bands[static_cast<std::size_t>(b)] = band_of(picture, b);
+    const auto end = from + static_cast<std::ptrdiff_t>(band.pixels());
+    band.values.assign(from, end);
+    from = end;
+  }
+  std::array<std::string, kBands> streams;
+  parallel_for(0, kBands, [&](std::int64_t number) {
+    const auto b = static_cast<std::size_t>(number);
+    RangeEncoder encoder;
+    encode_one(bands[b], encoder);
+    streams[b] = encoder.finish();
+  });
+  return streams;
+}
+
+void decode_bands(const std::array<std::string, kBands>& streams, HeightPicture& picture) {
+  std::array<HeightPicture, kBands> bands;
+  parallel_for(0, kBands, [&](std::int64_t number) {
+    const auto b = static_cast<std::size_t>(number);
+    HeightPicture& band = bands[b] = band_of(picture, static_cast<int>(b));
+    RangeDecoder decoder(streams[b]);
+    if (decode_side(decoder) != band.width || decode_side(decoder) != band.height) throw DamagedStream();
+    decode_one(band, decoder);
+  });
+  for (const HeightPicture& band : bands)
+    picture.values.insert(picture.values.end(), band.values.begin(), band.values.end());
+}
+
+}  // namespace
+
+void encode(const HeightPicture& picture, RangeEncoder& encoder) {
+  if (picture.pixels() <= kMostPixelsOfOne) return encode_one(picture, encoder);
+  // No picture of one stream has rows without columns.
+  encoder.encode_uniform(0, kSides);
+  encoder.encode_uniform(kBands, kSides);
+  encoder.encode_uniform(static_cast<std::uint64_t>(picture.width), kSides);
+  encoder.encode_uniform(static_cast<std::uint64_t>(picture.height), kSides);
+  for (const std::string& stream : encoded_bands(picture)) {
+    encoder.encode_number(stream.size());
+    for (const char byte : stream) encoder.encode_uniform(static_cast<std::uint8_t>(byte), 256);
+  }
+}
+
+HeightPicture decode(std::size_t most_pixels, RangeDecoder& decoder) {
+  HeightPicture picture;
+  picture.width = decode_side(decoder), picture.height = decode_side(decoder);
+  const bool in_bands = picture.width == 0 && picture.height == kBands;
+  if (in_bands) picture.width = decode_side(decoder), picture.height = decode_side(decoder);
+  if (picture.pixels() > most_pixels) throw DamagedStream();
+  if (!in_bands) {
+    decode_one(picture, decoder);
+    return picture;
+  }
+  std::array<std::string, kBands> streams;
+  for (std::string& stream : streams) {
+    for (std::uint64_t left = decoder.decode_number(); left > 0; --left)
+      stream += static_cast<char>(decoder.decode_uniform(256));
+  }
+  decode_bands(streams, picture);
   return picture;
 }
 

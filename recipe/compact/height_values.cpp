@@ -69,8 +69,8 @@ class HeightCoder {
         unit_(unit_of(steps_)),
         last_(steps_ / 2 * unit_),
         heights_(picture.width, picture.height, kHole),
-        predictors_{HeightPredictor(picture.width, 12, 230, unit_),
-                    HeightPredictor(picture.width, 6, 155, unit_)},
+        predictors_{HeightPredictor(picture.width, HeightPredictor::kMostNeighbours, 230, unit_),
+                    HeightPredictor(picture.width, HeightPredictor::kFewNeighbours, 155, unit_)},
         errors_{Errors(picture.width, picture.height, unit_), Errors(picture.width, picture.height, unit_)},
         best_errors_(picture.width, picture.height, unit_),
         search_(steps_, unit_, coder) {}

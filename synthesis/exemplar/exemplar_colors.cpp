@@ -125,4 +125,14 @@ ExemplarColors exemplar_colors(const ExemplarLayer& layer, const std::string& pl
   return colors;
 }
 
+LayerPaint paint_of(const ExemplarLayer& layer, const std::string& place, ArrayStore& textures) {
+  const ExemplarColors colors = exemplar_colors(layer, place);
+  LayerPaint paint;
+  paint.mean = to_float(colors.mean);
+  for (const ColorChannel& channel : colors.channels) {
+    paint.channels.push_back({make_exemplar_texture(channel.layer, place, textures), to_float(channel.axis)});
+  }
+  return paint;
+}
+
 }  // namespace astrolith

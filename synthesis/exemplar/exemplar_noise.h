@@ -42,7 +42,7 @@ ExemplarNoise make_exemplar(const ExemplarLayer& layer, const std::string& place
 ExemplarNoise placed_exemplar(const ExemplarNoise& made, const ExemplarLayer& layer, std::uint64_t seed,
                               int layer_index, const LayerSite& site, bool on_layers, ArrayStore& arrays);
 
-// What a layer is at every site, and the noise with the anchors of one site (synthesis/field/layer_maker.h).
+// What a layer is at every site, and the noise with the anchors of one site (synthesis/field/layer_noise.h).
 inline ExemplarNoise prepare(const ExemplarLayer& layer, const LayerSource& source, ArrayStore& arrays) {
   return make_exemplar(layer, source.place, arrays);
 }

@@ -264,19 +264,6 @@ std::vector<float> height_table(const std::vector<GreyShare>& distribution, doub
   return heights;
 }
 
-// The heights of a Gaussian texture: the deviate, which levels off smoothly between 4.5 and 5 deviations.
-std::vector<float> gaussian_height_table(double height_rms) {
-  constexpr double kStraight = 4.5;
-  std::vector<float> heights;
-  for (int i = -1; i <= kExemplarHeights + 1; ++i) {
-    const double z = (2.0 * i / kExemplarHeights - 1.0) * double{kLargestExemplarDeviation};
-    const double beyond = std::max(std::fabs(z) - kStraight, 0.0);
-    const double level = std::min(std::fabs(z), kStraight) + beyond - beyond * beyond;
-    heights.push_back(static_cast<float>(height_rms * std::copysign(level, z)));
-  }
-  return heights;
-}
-
 ExemplarTexture texture_of(const Plane& plane, const std::vector<float>& heights, ArrayStore& arrays) {
   double largest = 0.0;
   for (const double value : plane.values) largest = std::max(largest, std::fabs(value));
@@ -322,13 +309,6 @@ ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::str
   const std::vector<float> heights =
       height_table(distribution_of(levels, image.values.size()), moments.mean, gain);
   return texture_of(plane, heights, arrays);
-}
-
-ExemplarTexture make_gaussian_texture(int side, std::vector<double> coefficients, double height_rms,
-                                      ArrayStore& arrays) {
-  Plane plane{side, side, false, std::move(coefficients)};
-  scale_to_unit_mean_square(plane);
-  return texture_of(plane, gaussian_height_table(height_rms), arrays);
 }
 
 }  // namespace astrolith

@@ -45,12 +45,6 @@ struct ExemplarTexture {
 ExemplarTexture make_exemplar_texture(const ExemplarLayer& layer, const std::string& place,
                                       ArrayStore& arrays);
 
-// Makes the tables of a periodic Gaussian texture from its spline coefficients, side x side, row-major. They
-// are scaled to mean square 1 first. The height is height_rms times the deviate up to 4.5 deviations, and
-// levels off at 4.75.
-ExemplarTexture make_gaussian_texture(int side, std::vector<double> coefficients, double height_rms,
-                                      ArrayStore& arrays);
-
 // The standard deviation of the heights of a layer, length units. Expects a layer with pixels.
 double exemplar_height_rms(const ExemplarLayer& layer);
 

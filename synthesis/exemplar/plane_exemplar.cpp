@@ -15,7 +15,7 @@
 namespace astrolith {
 namespace {
 
-constexpr int kTileSide = 256;  // pixels
+constexpr int kSquareSide = 256;  // pixels
 
 // The cells of a plane, in pixels, and after how many of them it repeats along x and y; 0: never.
 struct PlaneCells {
@@ -49,7 +49,7 @@ ExemplarLayer in_pixels(const ExemplarLayer& layer) {
   return scaled;
 }
 
-// What the tiles of a texture share.
+// What the squares of a texture share.
 struct ExemplarPlane {
   const ExemplarLayer& layer;
   const ExemplarNoise& made;
@@ -59,20 +59,22 @@ struct ExemplarPlane {
   int width, height;
 };
 
-// Draws the tile whose upper left pixel is (x0, y0), in coordinates relative to that pixel.
-void draw_tile(const ExemplarPlane& plane, int x0, int y0, std::vector<float>& texture) {
+// Draws the square whose upper left pixel is (x0, y0), in coordinates relative to that pixel.
+void draw_square(const ExemplarPlane& plane, int x0, int y0, std::vector<float>& texture) {
   // The plane lies a quarter of a cell above a layer of anchors, so that it cuts through tetrahedra of all
   // kinds.
-  const Box tile{{0, 0, 0}, {double{kTileSide}, double{kTileSide}, 0}};
-  const NoiseFrame frame(tile, {static_cast<double>(x0), static_cast<double>(y0), 0.25 * plane.cells.edge.z});
+  const Box square{{0, 0, 0}, {double{kSquareSide}, double{kSquareSide}, 0}};
+  const NoiseFrame frame(square,
+                         {static_cast<double>(x0), static_cast<double>(y0), 0.25 * plane.cells.edge.z});
   const ExemplarCells cells = exemplar_cells(frame, plane.cells.edge);
   const std::vector<ExemplarAnchor> anchors =
       anchors_on_plane(plane.layer, cells, plane.seed, plane.cells.period);
   ExemplarNoise noise = plane.made;
-  noise.low = to_float(tile.min);
-  noise.high = to_float(tile.max);
+  noise.low = to_float(square.min);
+  noise.high = to_float(square.max);
   noise.lattice = cells.lattice;
-  const int columns = std::min(kTileSide, plane.width - x0), rows = std::min(kTileSide, plane.height - y0);
+  const int columns = std::min(kSquareSide, plane.width - x0),
+            rows = std::min(kSquareSide, plane.height - y0);
   const auto points = static_cast<std::size_t>(columns);
   std::vector<float> x(points), y(points), z(points);
   for (std::size_t i = 0; i < points; ++i) x[i] = static_cast<float>(i) + 0.5f;
@@ -88,6 +90,10 @@ std::array<float, 3> float_parts(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+PlaneExemplarOptions options_of(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+  return {drawing.recipe.seed, layer_number(layer.seed, static_cast<int>(drawing.index)), drawing.tileable};
+}
+
 }  // namespace
 
 std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::string& place, int width,
@@ -101,11 +107,11 @@ std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::st
   const std::uint32_t seed = hash_seed(options.seed, static_cast<std::uint32_t>(options.layer_index));
   const ExemplarPlane plane{scaled, made, view, cells, seed, width, height};
   std::vector<float> texture(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const int tiles_x = (width - 1) / kTileSide + 1, tiles_y = (height - 1) / kTileSide + 1;
-  for (int ty = 0; ty < tiles_y; ++ty) {
-    if (!report(progress, static_cast<double>(ty) / tiles_y, "texture")) return texture;
-    parallel_for(0, tiles_x, [&](std::int64_t tx) {
-      draw_tile(plane, static_cast<int>(tx) * kTileSide, ty * kTileSide, texture);
+  const int squares_x = (width - 1) / kSquareSide + 1, squares_y = (height - 1) / kSquareSide + 1;
+  for (int ty = 0; ty < squares_y; ++ty) {
+    if (!report(progress, static_cast<double>(ty) / squares_y, "texture")) return texture;
+    parallel_for(0, squares_x, [&](std::int64_t tx) {
+      draw_square(plane, static_cast<int>(tx) * kSquareSide, ty * kSquareSide, texture);
     });
   }
   report(progress, 1.0, "texture");
@@ -131,6 +137,20 @@ std::vector<float> synthesize_exemplar_colors(const ExemplarLayer& layer, const 
     for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = math::fma(axis[i % 3], values[i / 3], rgb[i]);
   }
   return rgb;
+}
+
+PlaneTexture heights_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+  PlaneTexture texture;
+  const ExemplarLayer high = with_height(layer, texture);
+  texture.values = synthesize_exemplar(high, drawing.place, drawing.width, drawing.height,
+                                       options_of(layer, drawing), drawing.progress);
+  texture.height_rms = exemplar_height_rms(high);
+  return texture;
+}
+
+PlaneTexture colors_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing) {
+  return {3, synthesize_exemplar_colors(layer, drawing.place, drawing.width, drawing.height,
+                                        options_of(layer, drawing), drawing.progress)};
 }
 
 }  // namespace astrolith

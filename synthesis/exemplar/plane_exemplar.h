@@ -7,6 +7,7 @@
 
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
+#include "synthesis/noise/plane_texture.h"
 
 namespace astrolith {
 
@@ -29,5 +30,8 @@ std::vector<float> synthesize_exemplar(const ExemplarLayer& layer, const std::st
 std::vector<float> synthesize_exemplar_colors(const ExemplarLayer& layer, const std::string& place, int width,
                                               int height, const PlaneExemplarOptions& options,
                                               const Progress& progress = {});
+
+PlaneTexture heights_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing);
+PlaneTexture colors_on_plane(const ExemplarLayer& layer, const PlaneDrawing& drawing);
 
 }  // namespace astrolith

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "synthesis/exemplar/exemplar_colors.h"
 #include "synthesis/field/field_model_internal.h"
-#include "synthesis/field/layer_paint_internal.h"
 
 namespace astrolith {
 

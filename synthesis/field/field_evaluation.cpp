@@ -122,6 +122,16 @@ PointArrays begin_batch(const FieldModel& model, const BatchLists& lists, int n,
   return metaballs_at;
 }
 
+// Joins a boulder with F at n points, in the frame of the patch where it has a kernel there.
+void join_boulder(const FieldModel& model, std::uint32_t number, int n, const PointArrays& at,
+                  const LocalPoints* local, float* value) {
+  const bool in_patch =
+      local != nullptr && number < model.patch_boulders.size() && model.patch_boulders[number];
+  const PointArrays& p = in_patch ? local->local : at;
+  join_boulder(in_patch ? *model.patch_boulders[number] : model.boulders[number].kernel, n, p.x, p.y, p.z,
+               value);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> boulders_around(const FieldModel& model, int n, const PointArrays& at) {
@@ -148,14 +158,7 @@ void evaluate_batch(const FieldModel& model, const BatchLists& lists, int n, con
   if (!model.layers.empty()) {
     add_elevations(model, lists, boulders, at, metaballs_at, local, band, accuracy.layers, b, value);
   }
-  for (const std::uint32_t k : boulders) {
-    if (local != nullptr && k < model.patch_boulders.size() && model.patch_boulders[k]) {
-      const PointArrays& p = local->local;
-      join_boulder(*model.patch_boulders[k], n, p.x, p.y, p.z, value);
-    } else {
-      join_boulder(model.boulders[k].kernel, n, at.x, at.y, at.z, value);
-    }
-  }
+  for (const std::uint32_t k : boulders) join_boulder(model, k, n, at, local, value);
 }
 
 namespace {
@@ -195,7 +198,7 @@ void evaluate_stages(const FieldModel& model, const BatchLists& lists, int n, co
   for (const LayerBoulders& layer : model.placed_boulders) {
     end += layer.boulders.size();
     for (; next != boulders.end() && *next < end; ++next) {
-      join_boulder(model.boulders[*next].kernel, n, at.x, at.y, at.z, value.data());
+      join_boulder(model, *next, n, at, local, value.data());
     }
     show(layer.layer, true);
   }

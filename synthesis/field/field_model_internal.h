@@ -9,7 +9,7 @@
 #include "numerics/box_tree.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
-#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/gabor/gabor_bricks.h"
 
 namespace astrolith {
 
@@ -33,10 +33,10 @@ struct FieldModel {
   FieldView tables{};  // a view of the members above, made by update()
 
   // Search structures of the CPU.
-  ReachingMetaballs metaballs;               // all metaballs of the body
-  std::vector<BoxTree> crater_trees;         // one tree for each list of craters
-  BoxTree boulder_tree;                      // the boxes that boulders reach
-  std::vector<GaborTileCache> gabor_caches;  // one cache for each list of Gabor impulses
+  ReachingMetaballs metaballs;                // all metaballs of the body
+  std::vector<BoxTree> crater_trees;          // one tree for each list of craters
+  BoxTree boulder_tree;                       // the boxes that boulders reach
+  std::vector<GaborBrickCache> gabor_caches;  // one cache for each list of Gabor impulses
 
   // Landforms as they lie on the body, for ImplicitField::craters() and boulders().
   std::vector<LayerCraters> placed_craters;
@@ -46,12 +46,13 @@ struct FieldModel {
   // their impulses. The body's warp is there if any layer is. The bounds of layers hold in both frames.
   std::optional<PatchCube> patch;
   std::vector<LayerNoise> patch_noises;
-  std::vector<std::vector<GaborTileCache>> patch_caches;  // by noise and band
+  std::vector<std::vector<GaborBrickCache>> patch_caches;  // by noise and band
   std::optional<CoordinateWarp> patch_warp;
   // Landforms that are drawn by cells are small, so that their places need the digits of local coordinates.
   // Other landforms of a patch are evaluated in the body's frame.
   std::vector<std::optional<PatchCraters>> patch_craters;    // by the number of the list of craters
   std::vector<std::optional<BoulderKernel>> patch_boulders;  // by the number of the boulder
+  bool has_patch_layers = false;                             // whether one of these is there
 
   std::vector<LayerLeftOut> left_out;
 
@@ -74,6 +75,12 @@ float value_at(const FieldModel& model, const Vec3d& p);
 // The height of the model's layer number `number`, a layer of noise, at a point: as a mask reads it. The
 // model may still lack the layers after it.
 float layer_height_at(const FieldModel& model, std::size_t number, const Vec3d& p);
+
+// F of the body with the first `layers` layers of the model and without boulders, at points in the
+// coordinates of `frame`, for layers that are placed on these. If the body is plain, the points are displaced
+// by its warp. The result is empty if none of the layers changes an elevation. It is valid until the model
+// changes; `model.tables` must be up to date.
+FieldBelow field_below(const FieldModel& model, std::size_t layers, const NoiseFrame& frame);
 
 // The noise of a layer in the frame of the field's patch, if it has one there, else in the body's frame.
 const LayerNoise& noise_of(const FieldModel& model, const FieldLayer& layer);

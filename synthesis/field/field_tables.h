@@ -10,7 +10,6 @@
 #include "numerics/plain_variant.h"
 #include "synthesis/body/body_tables.h"
 #include "synthesis/exemplar/exemplar_noise.h"
-#include "synthesis/exemplar/tiled_gabor_noise.h"
 #include "synthesis/field/layer_join.h"
 #include "synthesis/gabor/gabor_surface_noise.h"
 #include "synthesis/landforms/boulder_field.h"
@@ -28,7 +27,7 @@ namespace astrolith {
 // The table of kinds: every type that a layer of heights can have. A new kind needs an entry here, traits, a
 // height_at, an evaluate_heights and a bound_heights. docs/architecture.md lists what else it needs.
 using LayerNoise = PlainVariant<FractalNoise, SparseNoise, SpotNoise, PhasorNoise, RandomPhaseNoise,
-                                CraterRelief, GaborSurfaceNoise, ExemplarNoise, TiledGaborNoise, ReliefNoise>;
+                                CraterRelief, GaborSurfaceNoise, ExemplarNoise, ReliefNoise>;
 
 // Visits a layer's noise: its traits.
 struct TraitsOfNoise {
@@ -38,21 +37,6 @@ struct TraitsOfNoise {
   }
 };
 inline NoiseTraits traits_of(const LayerNoise& noise) { return noise.visit(TraitsOfNoise{}); }
-
-// Visits a layer's noise: the impulses of Gabor noise; null for kinds with other lists or none.
-struct GaborImpulsesOf {
-  template <class Noise>
-  ASTROLITH_HD const GaborSurfaceNoise* operator()(const Noise& noise) const {
-    if constexpr (Noise::kTraits.lists == NoiseLists::kGabor) {
-      return &gabor_impulses(noise);
-    } else {
-      return nullptr;
-    }
-  }
-};
-ASTROLITH_HD inline const GaborSurfaceNoise* gabor_impulses_of(const LayerNoise& noise) {
-  return noise.visit(GaborImpulsesOf{});
-}
 
 // A layer and how it joins the layers before it. Craters change the elevation by their own rule, so that only
 // the bounds in their `join` are read.

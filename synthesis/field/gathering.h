@@ -68,30 +68,30 @@ ASTROLITH_HD inline FloatBox outer_float_box(const Box& box, const Vec3f& least,
   return out;
 }
 
-// Visits the cells of a band whose impulses may reach a box. Cells come tile by tile, because the CPU keeps
-// impulses in tiles (synthesis/gabor/gabor_tiles.h) and adds kernels in this order.
+// Visits the cells of a band whose impulses may reach a box. Cells come brick by brick, because the CPU keeps
+// impulses in bricks (synthesis/gabor/gabor_bricks.h) and adds kernels in this order.
 template <class Visit>
 ASTROLITH_HD void for_each_gabor_cell(const GaborDraw& band, const FloatBox& box, const Visit& visit) {
-  GaborCellSpan cells[3], tiles[3];
+  GaborCellSpan cells[3], bricks[3];
   for (int a = 0; a < 3; ++a) {
     cells[a] = gabor_cells_around(band, a, box.low[a], box.high[a]);
-    tiles[a] = {gabor_tile_of(cells[a].first), gabor_tile_of(cells[a].last)};
+    bricks[a] = {gabor_brick_of(cells[a].first), gabor_brick_of(cells[a].last)};
   }
-  const auto visit_tile = [&](int tx, int ty, int tz) {
-    const auto of_tile = [&](int a, int tile) {
-      return GaborCellSpan{std::max(cells[a].first, tile * kTileCells),
-                           std::min(cells[a].last, tile * kTileCells + kTileCells - 1)};
+  const auto visit_brick = [&](int tx, int ty, int tz) {
+    const auto of_brick = [&](int a, int brick) {
+      return GaborCellSpan{std::max(cells[a].first, brick * kBrickCells),
+                           std::min(cells[a].last, brick * kBrickCells + kBrickCells - 1)};
     };
-    const GaborCellSpan xs = of_tile(0, tx), ys = of_tile(1, ty), zs = of_tile(2, tz);
+    const GaborCellSpan xs = of_brick(0, tx), ys = of_brick(1, ty), zs = of_brick(2, tz);
     for (int z = zs.first; z <= zs.last; ++z) {
       for (int y = ys.first; y <= ys.last; ++y) {
         for (int x = xs.first; x <= xs.last; ++x) visit(x, y, z);
       }
     }
   };
-  for (int tz = tiles[2].first; tz <= tiles[2].last; ++tz) {
-    for (int ty = tiles[1].first; ty <= tiles[1].last; ++ty) {
-      for (int tx = tiles[0].first; tx <= tiles[0].last; ++tx) visit_tile(tx, ty, tz);
+  for (int tz = bricks[2].first; tz <= bricks[2].last; ++tz) {
+    for (int ty = bricks[1].first; ty <= bricks[1].last; ++ty) {
+      for (int tx = bricks[0].first; tx <= bricks[0].last; ++tx) visit_brick(tx, ty, tz);
     }
   }
 }
@@ -103,7 +103,7 @@ template <class Write>
 ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const LeafLists& metaballs,
                                const Box& box, Write&& write) {
   const ImpulseList from = f.arrays[f.gabor_lists][list];
-  const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[from.layer].noise);
+  const GaborSurfaceNoise& noise = *f.layers[from.layer].noise.get_if<GaborSurfaceNoise>();
   const SurfaceBand& band = f.arrays[noise.bands][from.element];
   const FloatBox at = outer_float_box(projected_block(f, box), noise.low, noise.high);
   const GaborTarget target = gabor_target(band.a, at.center, at.half);
@@ -122,7 +122,7 @@ ASTROLITH_HD void gather_gabor(const FieldView& f, std::uint32_t list, const Lea
 inline double gabor_margin(const FieldView& f) {
   double margin = 0.0;
   for (const ImpulseList& list : f.arrays.span(f.gabor_lists)) {
-    const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[list.layer].noise);
+    const GaborSurfaceNoise& noise = *f.layers[list.layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][list.element];
     margin = std::max(margin, 1.01 * double{band.reach} + 2.0 * double{band.cell});
   }

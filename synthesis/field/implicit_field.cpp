@@ -36,13 +36,6 @@ double FieldBlock::list_bytes() const {
 
 namespace {
 
-// Calls evaluate(first, count) for batches of n points.
-template <typename Evaluate>
-void for_each_batch(std::size_t n, const Evaluate& evaluate) {
-  for (std::size_t begin = 0; begin < n; begin += kBatch)
-    evaluate(begin, std::min<std::size_t>(kBatch, n - begin));
-}
-
 // Points given in coordinates local to an origin, as float coordinates of the body's frame.
 struct BodyPoints {
   std::array<float, kBatch> x, y, z;
@@ -68,81 +61,61 @@ void check_origin(const FieldModel& model, const Vec3d& origin) {
 
 }  // namespace
 
-void FieldBlock::evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                          std::span<float> value, float band) const {
-  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
-    evaluate_batch(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), {&x[i], &y[i], &z[i]}, {band},
-                   &value[i]);
-  });
+// Calls use(first, n, lists, at, local) for the points in batches: n of them from `first` on, in the body's
+// frame and, with an origin, local to it.
+template <class Use>
+void FieldBlock::for_each_batch(const Vec3d* origin, std::size_t count, std::span<const float> x,
+                                std::span<const float> y, std::span<const float> z, const Use& use) const {
+  if (origin != nullptr) check_origin(*model_, *origin);
+  const BatchLists lists{metaballs_.lists(), spots_};
+  for (std::size_t i = 0; i < count; i += kBatch) {
+    const std::size_t n = std::min<std::size_t>(kBatch, count - i);
+    const PointArrays given{&x[i], &y[i], &z[i]};
+    if (origin == nullptr) {
+      use(i, static_cast<int>(n), lists, given, nullptr);
+    } else {
+      const LocalPoints local{*origin, given};
+      const BodyPoints at(local, n);
+      use(i, static_cast<int>(n), lists, at.arrays(), &local);
+    }
+  }
+}
+
+void FieldBlock::evaluate_at(const Vec3d* origin, std::span<const float> x, std::span<const float> y,
+                             std::span<const float> z, std::span<float> value, float band,
+                             bool tetrahedra) const {
+  for_each_batch(
+      origin, value.size(), x, y, z,
+      [&](std::size_t i, int n, const BatchLists& lists, const PointArrays& at, const LocalPoints* local) {
+        evaluate_batch(*model_, lists, n, at, {band, tetrahedra}, &value[i], local);
+      });
 }
 
 void FieldBlock::find_signs(std::span<const float> x, std::span<const float> y, std::span<const float> z,
                             float tolerance, std::span<std::int8_t> sign) const {
-  for_each_batch(sign.size(), [&](std::size_t i, std::size_t n) {
-    find_sure_signs(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), {&x[i], &y[i], &z[i]},
-                    tolerance, &sign[i]);
-  });
-}
-
-void FieldBlock::evaluate_tetrahedra(std::span<const float> x, std::span<const float> y,
-                                     std::span<const float> z, std::span<float> value) const {
-  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
-    evaluate_batch(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), {&x[i], &y[i], &z[i]},
-                   {kExactEverywhere, true}, &value[i]);
-  });
-}
-
-void FieldBlock::evaluate_local(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
-                                std::span<const float> z, std::span<float> value, float band) const {
-  check_origin(*model_, origin);
-  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
-    const LocalPoints local{origin, {&x[i], &y[i], &z[i]}};
-    const BodyPoints at(local, n);
-    evaluate_batch(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), at.arrays(), {band}, &value[i],
-                   &local);
-  });
+  for_each_batch(nullptr, sign.size(), x, y, z,
+                 [&](std::size_t i, int n, const BatchLists& lists, const PointArrays& at,
+                     const LocalPoints*) { find_sure_signs(*model_, lists, n, at, tolerance, &sign[i]); });
 }
 
 void FieldBlock::evaluate_stages(const Vec3d* origin, std::span<const float> x, std::span<const float> y,
                                  std::span<const float> z,
                                  const std::function<void(std::size_t, const FieldStage&)>& visit) const {
-  if (origin != nullptr) check_origin(*model_, *origin);
-  for_each_batch(x.size(), [&](std::size_t i, std::size_t batch) {
-    const int n = static_cast<int>(batch);
-    const PointArrays given{&x[i], &y[i], &z[i]};
-    const BatchLists lists{metaballs_.lists(), spots_};
-    const auto show = [&](const FieldStage& stage) { visit(i, stage); };
-    if (origin == nullptr) return astrolith::evaluate_stages(*model_, lists, n, given, show);
-    const LocalPoints local{*origin, given};
-    const BodyPoints at(local, batch);
-    astrolith::evaluate_stages(*model_, lists, n, at.arrays(), show, &local);
-  });
+  for_each_batch(
+      origin, x.size(), x, y, z,
+      [&](std::size_t i, int n, const BatchLists& lists, const PointArrays& at, const LocalPoints* local) {
+        const auto show = [&](const FieldStage& stage) { visit(i, stage); };
+        astrolith::evaluate_stages(*model_, lists, n, at, show, local);
+      });
 }
 
 void FieldBlock::paint(std::span<const LayerPaint> paints, const Vec3d* origin, std::span<const float> x,
                        std::span<const float> y, std::span<const float> z, std::span<Vec3f> color) const {
-  if (origin != nullptr) check_origin(*model_, *origin);
-  for_each_batch(color.size(), [&](std::size_t i, std::size_t batch) {
-    const int n = static_cast<int>(batch);
-    const PointArrays given{&x[i], &y[i], &z[i]};
-    const BatchLists lists{metaballs_.lists(), spots_};
-    if (origin == nullptr) return paint_batch(*model_, lists, paints, n, given, &color[i]);
-    const LocalPoints local{*origin, given};
-    const BodyPoints at(local, batch);
-    paint_batch(*model_, lists, paints, n, at.arrays(), &color[i], &local);
-  });
-}
-
-void FieldBlock::evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x,
-                                           std::span<const float> y, std::span<const float> z,
-                                           std::span<float> value) const {
-  check_origin(*model_, origin);
-  for_each_batch(value.size(), [&](std::size_t i, std::size_t n) {
-    const LocalPoints local{origin, {&x[i], &y[i], &z[i]}};
-    const BodyPoints at(local, n);
-    evaluate_batch(*model_, {metaballs_.lists(), spots_}, static_cast<int>(n), at.arrays(),
-                   {kExactEverywhere, true}, &value[i], &local);
-  });
+  for_each_batch(
+      origin, color.size(), x, y, z,
+      [&](std::size_t i, int n, const BatchLists& lists, const PointArrays& at, const LocalPoints* local) {
+        paint_batch(*model_, lists, paints, n, at, &color[i], local);
+      });
 }
 
 ImplicitField::ImplicitField(const Recipe& recipe, const std::string& name,
@@ -185,7 +158,7 @@ bool ImplicitField::has_local_form() const { return model_->body.plain(); }
 
 std::span<const LayerLeftOut> ImplicitField::left_out() const { return model_->left_out; }
 
-bool ImplicitField::has_patch_layers() const { return !model_->patch_noises.empty(); }
+bool ImplicitField::has_patch_layers() const { return model_->has_patch_layers; }
 
 double ImplicitField::height_bound() const { return model_->height_bound; }
 
@@ -202,19 +175,19 @@ FieldBlock ImplicitField::gather(const Box& box) const {
 
 std::vector<GaborCacheUse> ImplicitField::gabor_caches() const {
   std::vector<GaborCacheUse> uses;
-  for (const GaborTileCache& cache : model_->gabor_caches) uses.push_back(use_of(cache));
+  for (const GaborBrickCache& cache : model_->gabor_caches) uses.push_back(use_of(cache));
   return uses;
 }
 
-std::vector<double> ImplicitField::gabor_tile_seconds() const {
+std::vector<double> ImplicitField::gabor_brick_seconds() const {
   const FieldView& f = model_->tables;
   const BodyGround ground{model_->body, f.arrays, model_->metaballs.lists()};
   const std::span<const ImpulseList> lists = f.arrays.span(f.gabor_lists);
   std::vector<double> seconds;
   for (std::size_t i = 0; i < lists.size(); ++i) {
-    const GaborSurfaceNoise& noise = *gabor_impulses_of(f.layers[lists[i].layer].noise);
+    const GaborSurfaceNoise& noise = *f.layers[lists[i].layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = f.arrays[noise.bands][lists[i].element];
-    seconds.push_back(GaborTiles(band, ground, model_->gabor_caches[i]).seconds_of_tile());
+    seconds.push_back(GaborBricks(band, ground, model_->gabor_caches[i]).seconds_of_brick());
   }
   return seconds;
 }
@@ -222,5 +195,31 @@ std::vector<double> ImplicitField::gabor_tile_seconds() const {
 std::span<const int> ImplicitField::recipe_layers() const { return model_->recipe_layers; }
 
 const FieldView& ImplicitField::tables() const { return model_->tables; }
+
+void FieldModel::finish() {
+  tables.spot_lists = arrays.add(spot_lists);
+  tables.gabor_lists = arrays.add(gabor_lists);
+  tables.crater_layers = arrays.add(crater_layers);
+  tables.boulders = arrays.add(boulders);
+  update();
+}
+
+void FieldModel::update() {
+  tables.arrays = arrays.view();
+  tables.layers = layers.data();
+  tables.num_layers = static_cast<std::uint32_t>(layers.size());
+  tables.num_kept_heights = num_kept_heights;
+  tables.body = body;
+  tables.height_bound = height_bound;
+  tables.height_reach = static_cast<float>(height_bound * (1.0 + 1e-5));
+  tables.longest_step = static_cast<float>(height_bound);
+  tables.steepest = static_cast<float>(body.lipschitz_bound);
+  tables.reads_projections = std::any_of(layers.begin(), layers.end(), [](const FieldLayer& layer) {
+    const NoiseTraits traits = traits_of(layer.noise);
+    return traits.on_surface && traits.bounded_by_box;
+  });
+  tables.patch_noises = patch_noises.data();
+  if (patch) tables.patch_origin = patch->center;
+}
 
 }  // namespace astrolith

@@ -31,10 +31,10 @@
 
 namespace astrolith {
 
-struct GaborCacheUse;  // synthesis/gabor/gabor_tiles.h
+struct GaborCacheUse;  // synthesis/gabor/gabor_bricks.h
 struct FieldModel;     // synthesis/field/field_model_internal.h
 struct FieldView;      // synthesis/field/field_tables.h
-struct LayerPaint;     // synthesis/field/layer_paint_internal.h
+struct LayerPaint;     // synthesis/exemplar/exemplar_colors.h
 struct LayerCraters;   // synthesis/landforms/crater_relief.h
 struct LayerBoulders;  // synthesis/landforms/boulder_field.h
 
@@ -84,7 +84,9 @@ class FieldBlock {
   // value[i] = F(x[i], y[i], z[i]) for points within the box; four spans of one size. Where the remaining
   // layers cannot bring F into +-band (length units), value[i] lacks them.
   void evaluate(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                std::span<float> value, float band = kExactEverywhere) const;
+                std::span<float> value, float band = kExactEverywhere) const {
+    evaluate_at(nullptr, x, y, z, value, band, false);
+  }
 
   // sign[i] = 1 where evaluate() gives F > 0 at a point for sure, -1 where it gives F < 0, and 0 where
   // neither is proven. This costs a small part of evaluate(). Where the bounds of s are wider than
@@ -95,16 +97,22 @@ class FieldBlock {
   // value[i] = F at the corners of small tetrahedra, four after four. Their differences give the slope of F.
   // Gabor noise is evaluated once for all four corners, to first order about the tetrahedron's centre.
   void evaluate_tetrahedra(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                           std::span<float> value) const;
+                           std::span<float> value) const {
+    evaluate_at(nullptr, x, y, z, value, kExactEverywhere, true);
+  }
 
   // value[i] = F(origin + (x, y, z)). If the field was made for a patch, the origin must be its centre;
   // throws std::invalid_argument otherwise. The points must lie within the box, but for the rounding of its
   // coordinates to float. A body that has_local_form() and fractal layers are evaluated to the digits of x, y
   // and z; other bodies and layers are evaluated to the digits of float coordinates in the body's frame.
   void evaluate_local(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
-                      std::span<const float> z, std::span<float> value, float band) const;
+                      std::span<const float> z, std::span<float> value, float band) const {
+    evaluate_at(&origin, x, y, z, value, band, false);
+  }
   void evaluate_local_tetrahedra(const Vec3d& origin, std::span<const float> x, std::span<const float> y,
-                                 std::span<const float> z, std::span<float> value) const;
+                                 std::span<const float> z, std::span<float> value) const {
+    evaluate_at(&origin, x, y, z, value, kExactEverywhere, true);
+  }
 
   // Calls visit(first, stage) for the stages of F at points first, first + 1, ... within the box: all stages
   // of some points, then all stages of the next points. Layers without heights have no stage. With `origin`,
@@ -128,6 +136,12 @@ class FieldBlock {
   friend class ImplicitField;
   FieldBlock(const FieldModel& model, ReachingMetaballs metaballs, DrawnSpots spots, const Box& box)
       : model_(&model), metaballs_(std::move(metaballs)), spots_(std::move(spots)), box_(box) {}
+
+  template <class Use>
+  void for_each_batch(const Vec3d* origin, std::size_t count, std::span<const float> x,
+                      std::span<const float> y, std::span<const float> z, const Use& use) const;
+  void evaluate_at(const Vec3d* origin, std::span<const float> x, std::span<const float> y,
+                   std::span<const float> z, std::span<float> value, float band, bool tetrahedra) const;
 
   const FieldModel* model_;
   ReachingMetaballs metaballs_;
@@ -182,8 +196,8 @@ class ImplicitField {
 
   // What the cache of each list of Gabor impulses holds; tables().gabor_lists says which bands these are.
   std::vector<GaborCacheUse> gabor_caches() const;
-  // Seconds of one processor to draw a tile of each list, from tiles that its cache holds.
-  std::vector<double> gabor_tile_seconds() const;
+  // Seconds of one processor to draw a brick of each list, from bricks that its cache holds.
+  std::vector<double> gabor_brick_seconds() const;
 
   // The place in the recipe of each layer of the tables, which lack boulders and layers that act on nothing.
   std::span<const int> recipe_layers() const;

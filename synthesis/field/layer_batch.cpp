@@ -141,9 +141,9 @@ struct LayerHeights {
   void evaluate_gabor(const GaborNoise& noise, const PointArrays& p) const {
     BodyGround ground{model.body, arrays(), model.metaballs.lists()};
     if (in_patch) ground.origin = b.origin;
-    const GaborTileCache* caches = in_patch
-                                       ? model.patch_caches[static_cast<std::size_t>(layer.in_patch)].data()
-                                       : model.gabor_caches.data() + layer.first_list;
+    const GaborBrickCache* caches = in_patch
+                                        ? model.patch_caches[static_cast<std::size_t>(layer.in_patch)].data()
+                                        : model.gabor_caches.data() + layer.first_list;
     if (b.tetrahedra) {
       evaluate_tetrahedron_heights(noise, ground, caches, b.n, p.x, p.y, p.z, b.height.data());
     } else {

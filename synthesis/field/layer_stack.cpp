@@ -1,18 +1,61 @@
 // Adds a recipe's layers to the field model that holds its body, in the recipe's order.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
 
 #include "numerics/errors.h"
-#include "recipe/height_field.h"
-#include "synthesis/field/drawing_work.h"
-#include "synthesis/field/landform_layers_internal.h"
-#include "synthesis/field/noise_facts.h"
-#include "synthesis/field/patch_noises_internal.h"
+#include "synthesis/field/layer_stack_internal.h"
 
 namespace astrolith {
+
+StackState::StackState(const Recipe& of_layers, const std::string& recipe_name, FieldModel& of_body)
+    : recipe(of_layers),
+      name(recipe_name),
+      model(of_body),
+      masks(plan_masks(of_layers.layers)),
+      supports(of_body.body.supports) {}
+
+LayerSite StackState::site(const NoiseFrame& frame, std::size_t below) const {
+  model.update();
+  const Vec3d e = supports.extent();
+  return {frame,
+          model.body,
+          model.arrays,
+          model.metaballs.lists(),
+          std::max({e.x, e.y, e.z}),
+          field_below(model, below, frame),
+          model.height_bound,
+          [&of_layers = recipe] { return bare_body(of_layers).bounds; }};
+}
+
+void StackState::update_model() {
+  double bound = 0.0;
+  for (std::size_t i = model.layers.size(); i-- > 0;) {
+    bound += model.layers[i].join.change_bound;
+    model.layers[i].join.remaining_change = static_cast<float>(bound * (1.0 + 1e-5));
+  }
+  model.update();
+}
+
+void StackState::report_left_out(int layer, const NoiseDetail& detail) {
+  if (detail.left_out > 0.0) model.left_out.push_back({layer, detail.left_out, detail.finest});
+}
+
 namespace {
+
+// A point takes about 0.1 ms where the spots of all layers take as many draws.
+constexpr double kMostSpotDraws = 8192.0;
+// A point far from all others takes about 0.1 ms where the Gabor layers take as many draws.
+constexpr double kMostGaborDraws = 65536.0;
+
+void expect_few_draws(const std::string& what, double draws, double most, const std::string& remedy) {
+  if (draws <= most) return;
+  const auto whole_number = [](double v) { return std::to_string(std::llround(v)); };
+  throw InputError(what + ", with those of earlier layers, take " + whole_number(draws) +
+                   " random draws at each point, at most " + whole_number(most) + " are allowed; " + remedy);
+}
 
 class LayerStack {
  public:
@@ -72,36 +115,30 @@ class LayerStack {
     model.layers.push_back({noise, join, first_list});
   }
 
-  // Appends lists of impulses for a layer, after a check that they take not too long. Returns the number of
-  // the first list.
+  // Appends lists of impulses for a layer of spots or Gabor noise, after a check that a point far from all
+  // others does not take too long with the layers so far. Returns the number of the first list.
   std::uint32_t add_lists(const LayerNoise& noise, const LayerMaker& maker) {
     FieldModel& model = stack_.model;
-    std::vector<ImpulseList>* lists = impulse_lists(traits_of(noise).lists);
-    if (lists == nullptr) return 0;
-    const std::size_t number = model.layers.size();
+    const NoiseLists kind = traits_of(noise).lists;
+    const bool spots = kind == NoiseLists::kSpots;
+    if (!spots && kind != NoiseLists::kGabor) return 0;
+    const auto number = static_cast<std::uint32_t>(model.layers.size());
     ArrayStore discarded;
     const NoiseFrame whole(Box{{}, {}});  // a domain without extent leaves out no size of the layer
     const LayerNoise complete = maker(stack_.site(whole, number), discarded);
-    work_.add(complete, discarded.view(), stack_.place());
-    const auto first = static_cast<std::uint32_t>(lists->size());
-    for (std::uint32_t i = 0; i < num_impulse_lists(noise); ++i) {
-      lists->push_back({static_cast<std::uint32_t>(number), i});
+    const double draws = draws_at_a_point(complete, discarded.view());
+    if (spots) {
+      expect_few_draws(stack_.place() + ".density: these spots", spot_draws_ += draws, kMostSpotDraws,
+                       "lower density, layers or size, or use larger cells or fewer parts");
+    } else {
+      expect_few_draws(stack_.place() + ".impulses_per_kernel: these impulses", gabor_draws_ += draws,
+                       kMostGaborDraws, "lower impulses_per_kernel, or use lobes of fewer bandwidths");
     }
+    std::vector<ImpulseList>& lists = spots ? model.spot_lists : model.gabor_lists;
+    const auto first = static_cast<std::uint32_t>(lists.size());
+    for (std::uint32_t i = 0; i < num_impulse_lists(noise); ++i) lists.push_back({number, i});
     model.gabor_caches.resize(model.gabor_lists.size());
     return first;
-  }
-  // The model's lists of a kind, or null for noise without impulses.
-  std::vector<ImpulseList>* impulse_lists(NoiseLists kind) {
-    switch (kind) {
-      case NoiseLists::kSpots:
-        return &stack_.model.spot_lists;
-      case NoiseLists::kGabor:
-        return &stack_.model.gabor_lists;
-      case NoiseLists::kNone:
-      case NoiseLists::kCraters:
-        break;
-    }
-    return nullptr;
   }
 
   // Remembers the layer since which elevations may reach the height limit.
@@ -124,10 +161,10 @@ class LayerStack {
   }
 
   StackState stack_;
-  LayerJoins joins_{stack_};
+  StackJoins joins_{stack_};
   PatchNoises patch_{stack_, joins_};
-  LandformLayers landforms_{stack_};
-  DrawingWork work_;
+  StackLandforms landforms_{stack_};
+  double spot_draws_ = 0.0, gabor_draws_ = 0.0;
   double height_limit_;                // length units
   std::optional<int> first_too_high_;  // set by find_first_too_high()
 };

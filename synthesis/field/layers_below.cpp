@@ -1,5 +1,3 @@
-#include "synthesis/field/layers_below_internal.h"
-
 #include <algorithm>
 #include <array>
 #include <cstddef>

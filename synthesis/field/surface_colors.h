@@ -38,8 +38,9 @@ class SurfaceColors {
   std::vector<VertexColor> colors_of(const Vec3d& origin, const TriangleMesh& mesh) const;
 
  private:
-  void paint_some(const Vec3d& origin, std::span<const MeshVertex> vertices,
-                  std::span<VertexColor> colors) const;
+  // Paints the points origin + local(i).
+  template <class Local>
+  void paint_points(const Vec3d& origin, const Local& local, std::span<VertexColor> colors) const;
 
   const ImplicitField& field_;
   ArrayStore textures_;

@@ -25,25 +25,20 @@ class SurfaceLabels {
   SurfaceLabels(const Recipe& recipe, const ImplicitField& field, const std::optional<PatchCube>& patch = {});
 
   // Writes labels[i] of the point origin + vertices[i].position, which lies on the surface. The origin is the
-  // centre of the patch, if there is one. Elevations are
-  // above the bare body, in length units. Both spans have one size.
-  void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels) const;
-  // Also sets ground[i] to F of the body without its boulders at the point, length units.
+  // centre of the patch, if there is one. Elevations are above the bare body, in length units. Both spans
+  // have one size.
+  // If `ground` is not empty, ground[i] becomes F of the body without its boulders at the point, length
+  // units.
   void label(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
-             std::span<float> ground) const;
+             std::span<float> ground = {}) const;
 
   // One line for each label, such as: label 2: craters "old ones".
   std::vector<std::string> legend() const { return legend_; }
 
  private:
-  // `ground` may be empty.
-  void label_some(const Vec3d& origin, std::span<const MeshVertex> vertices, std::span<VertexLabel> labels,
-                  std::span<float> ground) const;
-
   ImplicitField field_;
   std::vector<std::string> legend_;
   float rounding_ = 0.0f;  // bound of the rounding of F, length units
-  bool in_patch_ = false;  // whether fields are evaluated in the frame of a patch
 };
 
 }  // namespace astrolith

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "numerics/tangent_frame.h"
-#include "synthesis/finish/coarse_slides_internal.h"
+#include "synthesis/finish/ground_slides_internal.h"
 
 namespace astrolith {
 namespace {

@@ -11,7 +11,6 @@
 #include "geometry/mesh_normals.h"
 #include "numerics/errors.h"
 #include "numerics/portable_angles.h"
-#include "synthesis/finish/coarse_slides_internal.h"
 #include "synthesis/finish/ground_slides_internal.h"
 
 namespace astrolith {

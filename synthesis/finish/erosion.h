@@ -11,7 +11,7 @@
 // which may make edges too high once more; slides and restoring take turns until none is.
 //
 // Before that, ground slides far: between clusters of vertices, and clusters of those
-// (coarse_slides_internal.h). The time therefore grows with the number of triangles. Large slopes end below
+// (ground_slides_internal.h). The time therefore grows with the number of triangles. Large slopes end below
 // the talus angle by up to 3 % of its tangent, alike in all directions.
 //
 // The surface stays a graph over the horizontal wherever it was one, and so it cannot run into itself.

@@ -17,18 +17,6 @@ namespace {
 
 constexpr double kAnySize = std::numeric_limits<double>::infinity();
 
-// The size of the smallest landform that a layer lists, length units.
-double least_listed(const CraterLayer& layer) {
-  double least = kAnySize;
-  for (const Crater& crater : layer.craters) least = std::min(least, crater.diameter);
-  return least;
-}
-double least_listed(const BoulderLayer& layer) {
-  double least = kAnySize;
-  for (const Boulder& boulder : layer.boulders) least = std::min(least, boulder.axes.x);
-  return least;
-}
-
 // 373 boulders of 5 m and more lie on 0.393 km^2.
 constexpr KnownLandforms kItokawa[] = {
     {.least = 0.0,
@@ -231,7 +219,7 @@ double finest_size(const Recipe& recipe) {
     if (const Population* drawn = population_of(layer)) landform = std::min(landform, drawn->least_diameter);
     std::visit(
         [&]<class Kind>(const Kind& l) {
-          if constexpr (!Kind::kTraits.is_noise) landform = std::min(landform, least_listed(l));
+          if constexpr (!Kind::kTraits.is_noise) landform = std::min(landform, l.least_listed());
         },
         layer);
   }

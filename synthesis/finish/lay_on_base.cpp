@@ -83,8 +83,7 @@ Recipe lay_on_base(const Recipe& details, const std::string& details_name, const
   if (details.family) {
     throw InputError(
         fmt::format("{}: family: names places and lengths of this recipe alone; take it out, merge both by "
-                    "--write-recipe, "
-                    "and state it there, where these layers begin at layers[{}]",
+                    "--write-recipe, and state it there, where these layers begin at layers[{}]",
                     details_name, base.layers.size()));
   }
   const double ratio = length_ratio(details, details_name, base, base_name, lengths);

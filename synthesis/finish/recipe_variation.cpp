@@ -87,20 +87,17 @@ class Deformation {
   Vec3d stretch_{1, 1, 1};
 };
 
-// Varies amplitude and frequency. Returns the factor by which the heights of the layer have grown.
-double vary(FractalLayer& layer, double strength, CounterRandom random) {
-  const double growth = portable::exp(kAmplitudeChange * strength * random.normal());
-  layer.amplitude = round_to_seven_digits(layer.amplitude * growth);
-  layer.frequency =
-      round_to_seven_digits(layer.frequency * portable::exp(kFrequencyChange * strength * random.normal()));
-  return growth;
-}
-
+// Varies the fields that a layer names. Returns the factor by which the heights of the layer have grown.
 double vary(Layer& layer, double strength, CounterRandom random) {
   return std::visit(
-      [&]<class Kind>(Kind& l) {
-        if constexpr (Kind::kTraits.varies) {
-          return vary(l, strength, random);
+      [&](auto& l) {
+        if constexpr (requires { l.varied(); }) {
+          const VariedFields varied = l.varied();
+          const double growth = portable::exp(kAmplitudeChange * strength * random.normal());
+          varied.height = round_to_seven_digits(varied.height * growth);
+          varied.frequency = round_to_seven_digits(
+              varied.frequency * portable::exp(kFrequencyChange * strength * random.normal()));
+          return growth;
         } else {
           return 1.0;
         }

@@ -9,6 +9,11 @@ std::array<float, 3> channels(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+TextureOptions options_of(const PlaneDrawing& drawing) {
+  if (!drawing.tileable) return {drawing.recipe.seed};
+  return {drawing.recipe.seed, 0, drawing.width, drawing.height};
+}
+
 }  // namespace
 
 std::vector<GaborLayer> colored_layers(const Recipe& recipe) {
@@ -37,6 +42,23 @@ std::vector<float> synthesize_color_texture(const std::vector<GaborLayer>& layer
     for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] += mean[i % 3] + axis[i % 3] * noise[i / 3];
   }
   return rgb;
+}
+
+PlaneTexture heights_on_plane(const GaborLayer& layer, const PlaneDrawing& drawing) {
+  PlaneTexture texture;
+  const GaborLayer high = with_height(layer, texture);
+  texture.height_rms = high.height_rms;
+  texture.values =
+      synthesize_texture(high, drawing.width, drawing.height, options_of(drawing), drawing.progress);
+  return texture;
+}
+
+PlaneTexture colors_on_plane(const GaborLayer&, const PlaneDrawing& drawing) {
+  const std::vector<GaborLayer> layers = colored_layers(drawing.recipe);
+  return {
+      3,
+      synthesize_color_texture(layers, drawing.width, drawing.height, options_of(drawing), drawing.progress),
+      layers.size()};
 }
 
 }  // namespace astrolith

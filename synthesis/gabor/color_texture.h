@@ -1,10 +1,11 @@
-// The colours that the layers of a recipe paint on a plane.
+// Gabor layers of a recipe on a plane, and the colours that they paint there.
 #pragma once
 
 #include <vector>
 
 #include "recipe/recipe.h"
 #include "synthesis/gabor/gabor_texture.h"
+#include "synthesis/noise/plane_texture.h"
 
 namespace astrolith {
 
@@ -22,5 +23,9 @@ std::vector<GaborLayer> colored_layers(const Recipe& recipe);
 std::vector<float> synthesize_color_texture(const std::vector<GaborLayer>& layers, int width, int height,
                                             const TextureOptions& options = {},
                                             const Progress& progress = {});
+
+PlaneTexture heights_on_plane(const GaborLayer& layer, const PlaneDrawing& drawing);
+// The colours of all Gabor layers that have one, since each has only one axis of an image's colours.
+PlaneTexture colors_on_plane(const GaborLayer& layer, const PlaneDrawing& drawing);
 
 }  // namespace astrolith

@@ -20,9 +20,9 @@ void GaborCellCenters::find(std::span<const GaborCell> cells, const SurfaceBand&
 
 namespace {
 
-// The cells of a tile that lie near the surface, as arrays.
+// The cells of a brick that lie near the surface, as arrays.
 struct NearCells {
-  NearCells(const SurfaceBand& band, const GaborCellCenters& centers, const TileCells& cells) {
+  NearCells(const SurfaceBand& band, const GaborCellCenters& centers, const BrickCells& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (is_far_gabor_cell(band, -centers.distance[i])) continue;
       const GaborCell& c = cells[i];
@@ -40,17 +40,17 @@ struct NearCells {
   }
 
   std::size_t count = 0;
-  std::array<int, kTileVolume> x, y, z;
-  std::array<std::uint32_t, kTileVolume> hash;
-  std::array<float, kTileVolume> height, nx, ny, nz;
-  std::array<TangentFrame, kTileVolume> frame;
+  std::array<int, kBrickVolume> x, y, z;
+  std::array<std::uint32_t, kBrickVolume> hash;
+  std::array<float, kBrickVolume> height, nx, ny, nz;
+  std::array<TangentFrame, kBrickVolume> frame;
 };
 
 // The positions of the impulses of one number j in all cells, their heights above the surface, and the bits
 // that choose their lobes and phases.
 struct ImpulsePlaces {
-  std::array<float, kTileVolume> x, y, z, above;
-  std::array<std::uint32_t, kTileVolume> bits;
+  std::array<float, kBrickVolume> x, y, z, above;
+  std::array<std::uint32_t, kBrickVolume> bits;
 };
 
 ASTROLITH_SIMD_CLONES void draw_places(const GaborDraw& draw, std::uint32_t j, std::size_t n,
@@ -79,7 +79,7 @@ ASTROLITH_SIMD_CLONES void draw_places(const GaborDraw& draw, std::uint32_t j, s
 }  // namespace
 
 std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const BodyGround& ground,
-                                     const TileCells& cells) {
+                                     const BrickCells& cells) {
   GaborCellCenters centers;
   centers.find(cells, band, ground);
   const NearCells near(band, centers, cells);

@@ -26,13 +26,13 @@ struct GaborCellCenters : GroundPoints {
   void find(std::span<const GaborCell> cells, const SurfaceBand& band, const BodyGround& ground);
 };
 
-// The cells of a tile.
-inline constexpr std::size_t kTileVolume{kTileCells * kTileCells * kTileCells};
-using TileCells = std::array<GaborCell, kTileVolume>;
+// The cells of a brick.
+inline constexpr std::size_t kBrickVolume{kBrickCells * kBrickCells * kBrickCells};
+using BrickCells = std::array<GaborCell, kBrickVolume>;
 
-// The impulses of the cells of a tile, in the order of the cells. The tangent frame of a cell is that of the
+// The impulses of the cells of a brick, in the order of the cells. The tangent frame of a cell is that of the
 // level set of the body through the centre of the cell. The bits are those of for_each_gabor_impulse().
 std::vector<GaborImpulse> draw_cells(const SurfaceBand& band, const BodyGround& ground,
-                                     const TileCells& cells);
+                                     const BrickCells& cells);
 
 }  // namespace astrolith

@@ -192,10 +192,10 @@ ASTROLITH_HD inline GaborCellSpan gabor_cells_around(const GaborDraw& band, int 
           static_cast<int>(std::floor((static_cast<double>(high) - first + reach) / cell))};
 }
 
-// The number of cells along a side of a tile. Impulses are added in the order of tiles.
-inline constexpr int kTileCells = 4;
-ASTROLITH_HD inline int gabor_tile_of(int cell) {
-  return cell >= 0 ? cell / kTileCells : -((-cell + kTileCells - 1) / kTileCells);
+// The number of cells along a side of a brick. Impulses are added in the order of bricks.
+inline constexpr int kBrickCells = 4;
+ASTROLITH_HD inline int gabor_brick_of(int cell) {
+  return cell >= 0 ? cell / kBrickCells : -((-cell + kBrickCells - 1) / kBrickCells);
 }
 
 }  // namespace astrolith

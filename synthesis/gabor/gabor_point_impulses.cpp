@@ -32,16 +32,16 @@ struct CellsOfAxis {
   std::array<double, kMost> squared_gap{};  // in cells
 };
 
-// Calls visit(cell) for the cells of an axis in each of its tiles.
+// Calls visit(cell) for the cells of an axis in each of its bricks.
 template <typename Visit>
-void for_each_cell_of_tile(const CellsOfAxis& axis, int tile, const Visit& visit) {
-  const int first = std::max(axis.first, tile * kTileCells);
-  const int last = std::min(axis.last, tile * kTileCells + kTileCells - 1);
+void for_each_cell_of_brick(const CellsOfAxis& axis, int brick, const Visit& visit) {
+  const int first = std::max(axis.first, brick * kBrickCells);
+  const int last = std::min(axis.last, brick * kBrickCells + kBrickCells - 1);
   for (int c = first; c <= last; ++c) visit(c);
 }
 template <typename Visit>
-void for_each_tile(const CellsOfAxis& axis, const Visit& visit) {
-  for (int tile = gabor_tile_of(axis.first); tile <= gabor_tile_of(axis.last); ++tile) visit(tile);
+void for_each_brick(const CellsOfAxis& axis, const Visit& visit) {
+  for (int brick = gabor_brick_of(axis.first); brick <= gabor_brick_of(axis.last); ++brick) visit(brick);
 }
 
 // Whether kernels in a cell with this tangent frame may reach the point. (dx, dy, dz) is the offset of the
@@ -55,20 +55,20 @@ bool cell_reaches(const SurfaceBand& band, const TangentFrame& frame, float dx, 
 
 }  // namespace
 
-// Finds the cells within reach of the point, tile by tile.
+// Finds the cells within reach of the point, brick by brick.
 void GaborPointImpulses::find_cells(const std::array<float, 3>& point) {
   const CellsOfAxis xs(band_, 0, point[0]), ys(band_, 1, point[1]), zs(band_, 2, point[2]);
   const double reach = (1.0 + 1e-3) * double{band_.reach} / double{band_.cell} + kCellSlack;
   const double farthest = reach * reach;
   cells_.clear();
-  for_each_tile(zs, [&](int tz) {
-    for_each_tile(ys, [&](int ty) {
-      for_each_tile(xs, [&](int tx) {
-        for_each_cell_of_tile(zs, tz, [&](int z) {
-          for_each_cell_of_tile(ys, ty, [&](int y) {
+  for_each_brick(zs, [&](int tz) {
+    for_each_brick(ys, [&](int ty) {
+      for_each_brick(xs, [&](int tx) {
+        for_each_cell_of_brick(zs, tz, [&](int z) {
+          for_each_cell_of_brick(ys, ty, [&](int y) {
             const double gap = zs.gap(z) + ys.gap(y);
             if (gap > farthest) return;
-            for_each_cell_of_tile(xs, tx, [&](int x) {
+            for_each_cell_of_brick(xs, tx, [&](int x) {
               if (gap + xs.gap(x) <= farthest) cells_.push_back({x, y, z});
             });
           });

@@ -15,7 +15,7 @@ class GaborPointImpulses {
   // Both arguments must outlive the object.
   GaborPointImpulses(const SurfaceBand& band, const BodyGround& ground) : band_(band), ground_(ground) {}
 
-  // The impulses that may reach the point, in the order in which tiles hold them. The chunks have no boxes,
+  // The impulses that may reach the point, in the order in which bricks hold them. The chunks have no boxes,
   // and are valid until the next call.
   std::span<const ImpulseChunk> around(float x, float y, float z);
 

@@ -5,12 +5,11 @@
 #include <limits>
 #include <vector>
 
+#include "numerics/interval.h"
 #include "numerics/portable_double.h"
 #include "synthesis/gabor/gabor_bands.h"
 #include "synthesis/gabor/gabor_surface_points.h"
 #include "synthesis/noise/points_in_domain.h"
-
-#include "numerics/interval.h"
 
 namespace astrolith {
 namespace {
@@ -34,11 +33,6 @@ double farthest_impulse(double size) {
 // The distance from an impulse to the rim of its support, in units of 1/a.
 const double kRimReach = std::sqrt(double{kGaborDiscReach} * double{kGaborDiscReach} +
                                    double{kGaborSlabReach} * double{kGaborSlabReach});
-
-double longest_side(const Box& box) {
-  const Vec3d e = box.extent();
-  return std::max({e.x, e.y, e.z});
-}
 
 // One bandwidth at the scale of a domain. The variance is density K^2/2 (integral of P^2) (integral of W^2);
 // the factor 1/2 comes from the uniform phase.
@@ -76,7 +70,7 @@ double finest_length(const GaborBand& band, double pixel_size) {
 }
 
 GaborSurfacePoints add_bands(const GaborSurfaceNoise& noise, const BodyGround& ground,
-                             const GaborTileCache* caches, int n, const float* x, const float* y,
+                             const GaborBrickCache* caches, int n, const float* x, const float* y,
                              const float* z, bool with_slopes) {
   const PointsInDomain p(noise.low, noise.high, n, x, y, z);
   GaborSurfacePoints points(n, p.x(), p.y(), p.z(), with_slopes);
@@ -86,11 +80,6 @@ GaborSurfacePoints add_bands(const GaborSurfaceNoise& noise, const BodyGround& g
 }
 
 }  // namespace
-
-GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
-                             ArrayStore& arrays) {
-  return make_noise(layer, seed, layer_index, NoiseFrame(domain), longest_side(domain), arrays);
-}
 
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
                              const NoiseFrame& frame, double body_side, ArrayStore& arrays) {
@@ -131,14 +120,14 @@ double draws_at_a_point(const GaborSurfaceNoise& noise, const ArrayView& arrays)
   return draws;
 }
 
-void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
+void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborBrickCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height) {
   add_bands(noise, ground, caches, n, x, y, z, false).store_heights(height);
   for (int i = 0; i < n; ++i) height[i] = math::clamp(height[i], -noise.clip, noise.clip);
 }
 
 void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const BodyGround& ground,
-                                  const GaborTileCache* caches, int n, const float* x, const float* y,
+                                  const GaborBrickCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height) {
   const auto count = static_cast<std::size_t>(n / 4);
   const auto center_of = [](const float* c) { return tetrahedron_center(c[0], c[1], c[2], c[3]); };

@@ -20,7 +20,7 @@
 
 namespace astrolith {
 
-struct GaborTileCache;  // synthesis/gabor/gabor_tiles.h
+struct GaborBrickCache;  // synthesis/gabor/gabor_bricks.h
 
 // The noise and its slope at a point, with one more impulse added.
 ASTROLITH_KERNEL GaborSample with_impulse(const GaborImpulse& impulse, float disc_scale, float amplitude,
@@ -55,9 +55,6 @@ struct GaborSurfaceNoise {
   NoiseDetail detail;
 };
 
-// The impulses of a kind of noise that has lists of them.
-ASTROLITH_HD inline const GaborSurfaceNoise& gabor_impulses(const GaborSurfaceNoise& noise) { return noise; }
-
 // `layer_index` is the layer's number in the recipe; layers of one seed are independent. The domain of the
 // frame holds the surface; points outside it are moved to its border. Bands whose grids reach beyond 2^20
 // cells from the frame's origin are left out, since float coordinates could not tell neighbouring cells
@@ -65,9 +62,6 @@ ASTROLITH_HD inline const GaborSurfaceNoise& gabor_impulses(const GaborSurfaceNo
 // `body_side` is the longest side of the box that holds the body, length units.
 GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index,
                              const NoiseFrame& frame, double body_side, ArrayStore& arrays);
-// The noise in the body's frame, whose domain is that box.
-GaborSurfaceNoise make_noise(const GaborLayer& layer, std::uint64_t seed, int layer_index, const Box& domain,
-                             ArrayStore& arrays);
 
 // The number of cells that the impulses of all bands are drawn from for a cubic box; `side` is in length
 // units.
@@ -116,14 +110,14 @@ ASTROLITH_HD inline void tetrahedron_heights(const GaborSurfaceNoise& n, const A
 
 // Writes height[i] = n(p_i) at points of the bare surface. The loop is vectorised and gives the same bits as
 // height_at. `caches` has one element for each band.
-void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborTileCache* caches,
+void evaluate_heights(const GaborSurfaceNoise& noise, const BodyGround& ground, const GaborBrickCache* caches,
                       int n, const float* x, const float* y, const float* z, float* height);
 
 // Writes the heights at the corners of small tetrahedra, to first order about their centres. Points 4 t to 4
 // t + 3 are the corners of tetrahedron t. Differences of these heights give gradients; a tetrahedron costs
 // about as much as one point.
 void evaluate_tetrahedron_heights(const GaborSurfaceNoise& noise, const BodyGround& ground,
-                                  const GaborTileCache* caches, int n, const float* x, const float* y,
+                                  const GaborBrickCache* caches, int n, const float* x, const float* y,
                                   const float* z, float* height);
 
 // An interval that holds n(p) for every point, length units. It does not depend on the box.

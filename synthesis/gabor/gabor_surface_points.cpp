@@ -16,7 +16,7 @@ constexpr int kCluster = static_cast<int>(kLanes) * kGroup;
 // Points whose boxes have more cells than this are split, so that memory is bounded.
 constexpr std::int64_t kMostCells = 1 << 17;
 // If a range of points has at most this many cells per point, the impulses of all these cells are drawn once,
-// in tiles that are kept and shared. Otherwise the impulses are drawn for each point by itself.
+// in bricks that are kept and shared. Otherwise the impulses are drawn for each point by itself.
 constexpr std::int64_t kCellsPerPoint = 300;
 
 // The cells whose impulses may reach a point of the box.
@@ -31,12 +31,12 @@ CellRange cells_around(const SurfaceBand& band, const PointBox& box) {
   return range;
 }
 
-// A range of tiles, numbered in the order z, then y, then x.
-struct TileRange {
-  explicit TileRange(const CellRange& cells) {
+// A range of bricks, numbered in the order z, then y, then x.
+struct BrickRange {
+  explicit BrickRange(const CellRange& cells) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] = gabor_tile_of(cells.first[axis]);
-      count[axis] = gabor_tile_of(cells.last[axis]) - first[axis] + 1;
+      first[axis] = gabor_brick_of(cells.first[axis]);
+      count[axis] = gabor_brick_of(cells.last[axis]) - first[axis] + 1;
     }
   }
   std::size_t size() const { return static_cast<std::size_t>(count[0] * count[1] * count[2]); }
@@ -49,17 +49,17 @@ struct TileRange {
   std::array<int, 3> first, count;
 };
 
-// The most memory of the tiles that a thread holds at once, bytes, but for the last tile. The cache may have
-// dropped tiles that a thread still holds.
+// The most memory of the bricks that a thread holds at once, bytes, but for the last brick. The cache may
+// have dropped bricks that a thread still holds.
 constexpr std::size_t kMostHeldBytes = 1 << 20;
 
-using HeldTiles = std::vector<std::shared_ptr<const GaborTile>>;
+using HeldBricks = std::vector<std::shared_ptr<const GaborBrick>>;
 
-// Takes tiles of the range from number `next` on, as many as a thread may hold at once, and advances `next`.
-HeldTiles next_tiles(const GaborTiles& tiles, const TileRange& range, std::size_t& next) {
-  HeldTiles held;
+// Takes bricks of the range from number `next` on, as many as a thread may hold at once, and advances `next`.
+HeldBricks next_bricks(const GaborBricks& bricks, const BrickRange& range, std::size_t& next) {
+  HeldBricks held;
   for (std::size_t bytes = 0; next < range.size() && bytes < kMostHeldBytes; ++next) {
-    held.push_back(tiles.tile(range.index(next)));
+    held.push_back(bricks.brick(range.index(next)));
     bytes += held.back()->chunks.size() * sizeof(ImpulseChunk);
   }
   return held;
@@ -75,12 +75,12 @@ void narrow(const Chunks& chunks, const PointBox& box, Chunks& kept) {
   }
 }
 
-// Writes the chunks of the tiles that overlap a box to `chunks`.
-void find_chunks(const HeldTiles& tiles, const PointBox& box, Chunks& chunks) {
+// Writes the chunks of the bricks that overlap a box to `chunks`.
+void find_chunks(const HeldBricks& bricks, const PointBox& box, Chunks& chunks) {
   chunks.clear();
-  for (const auto& tile : tiles) {
-    if (!overlap(box, tile->low, tile->high)) continue;
-    for (const ImpulseChunk& chunk : tile->chunks) {
+  for (const auto& brick : bricks) {
+    if (!overlap(box, brick->low, brick->high)) continue;
+    for (const ImpulseChunk& chunk : brick->chunks) {
       if (overlap(box, chunk.low, chunk.high)) chunks.push_back(&chunk);
     }
   }
@@ -208,8 +208,8 @@ HeightSums GaborSurfacePoints::sums_from(int begin) {
   return {&x_[i], &y_[i], &z_[i], &height_[i], &sx_[i], &sy_[i], &sz_[i]};
 }
 
-void GaborSurfacePoints::add_band(const GaborTiles& tiles) {
-  if (size() > 0) add_band(tiles, 0, size());
+void GaborSurfacePoints::add_band(const GaborBricks& bricks) {
+  if (size() > 0) add_band(bricks, 0, size());
 }
 
 // Whether the range holds whole groups only. add_to_dense() adds to whole groups, and a split group belongs
@@ -218,29 +218,29 @@ bool GaborSurfacePoints::whole_groups(int begin, int end) const {
   return begin % kGroup == 0 && (end % kGroup == 0 || end == size());
 }
 
-void GaborSurfacePoints::add_band(const GaborTiles& tiles, int begin, int end) {
-  const CellRange range = cells_around(tiles.band(), box_of(begin, end));
+void GaborSurfacePoints::add_band(const GaborBricks& bricks, int begin, int end) {
+  const CellRange range = cells_around(bricks.band(), box_of(begin, end));
   if (range.cells() > kMostCells && end - begin > 1) {
     const int unit = end - begin > kGroup ? kGroup : 1;
     const int middle = begin + ((end - begin) / 2 + unit - 1) / unit * unit;
-    add_band(tiles, begin, middle);
-    add_band(tiles, middle, end);
+    add_band(bricks, begin, middle);
+    add_band(bricks, middle, end);
   } else if (whole_groups(begin, end) && range.cells() <= kCellsPerPoint * (end - begin)) {
-    add_to_dense(tiles, range, begin, end);
+    add_to_dense(bricks, range, begin, end);
   } else {
-    add_to_scattered(tiles, begin, end);
+    add_to_scattered(bricks, begin, end);
   }
 }
 
-// Tiles come in one order whatever part of them is held at once, and the sums are taken in this order.
-void GaborSurfacePoints::add_to_dense(const GaborTiles& tiles, const CellRange& cells, int begin, int end) {
-  const TileRange range(cells);
+// Bricks come in one order whatever part of them is held at once, and the sums are taken in this order.
+void GaborSurfacePoints::add_to_dense(const GaborBricks& bricks, const CellRange& cells, int begin, int end) {
+  const BrickRange range(cells);
   const PointBox box = box_of(begin, end);
   Chunks chunks;
   for (std::size_t next = 0; next < range.size();) {
-    const HeldTiles held = next_tiles(tiles, range, next);
+    const HeldBricks held = next_bricks(bricks, range, next);
     find_chunks(held, box, chunks);
-    if (!chunks.empty()) add_chunks(chunks, tiles.band(), begin, end);
+    if (!chunks.empty()) add_chunks(chunks, bricks.band(), begin, end);
   }
 }
 
@@ -257,11 +257,12 @@ void GaborSurfacePoints::add_chunks(const std::vector<const ImpulseChunk*>& all,
   }
 }
 
-void GaborSurfacePoints::add_to_scattered(const GaborTiles& tiles, int begin, int end) {
-  GaborPointImpulses impulses(tiles.band(), tiles.ground());
+void GaborSurfacePoints::add_to_scattered(const GaborBricks& bricks, int begin, int end) {
+  GaborPointImpulses impulses(bricks.band(), bricks.ground());
   for (int i = begin; i < end; ++i) {
     const auto p = static_cast<std::size_t>(i);
-    add_at_point(impulses.around(x_[p], y_[p], z_[p]), tiles.band().a, tiles.band().amplitude, sums_from(i));
+    add_at_point(impulses.around(x_[p], y_[p], z_[p]), bricks.band().a, bricks.band().amplitude,
+                 sums_from(i));
   }
 }
 

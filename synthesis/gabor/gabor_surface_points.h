@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/gabor/gabor_bricks.h"
 
 namespace astrolith {
 
@@ -25,7 +25,7 @@ class GaborSurfacePoints {
   GaborSurfacePoints(int n, const float* x, const float* y, const float* z, bool with_slopes);
 
   // Adds the noise of one bandwidth. The bits of the sums at a point depend on this point alone.
-  void add_band(const GaborTiles& tiles);
+  void add_band(const GaborBricks& bricks);
 
   // Writes the sums as arrays of n floats, in the order in which the points were given.
   void store_heights(float* height) const;
@@ -37,9 +37,9 @@ class GaborSurfacePoints {
   PointBox box_of(int begin, int end) const;
   HeightSums sums_from(int begin);
   bool whole_groups(int begin, int end) const;
-  void add_band(const GaborTiles& tiles, int begin, int end);
-  void add_to_scattered(const GaborTiles& tiles, int begin, int end);
-  void add_to_dense(const GaborTiles& tiles, const CellRange& cells, int begin, int end);
+  void add_band(const GaborBricks& bricks, int begin, int end);
+  void add_to_scattered(const GaborBricks& bricks, int begin, int end);
+  void add_to_dense(const GaborBricks& bricks, const CellRange& cells, int begin, int end);
   void add_chunks(const std::vector<const ImpulseChunk*>& chunks, const SurfaceBand& band, int begin,
                   int end);
   void find_groups();

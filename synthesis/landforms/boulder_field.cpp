@@ -168,7 +168,7 @@ ASTROLITH_SIMD_CLONES void join_boulder_loop(const BoulderKernel& kernel, int n,
 
 // The centre lies within 0.75 diameters of the ground, with the roughness that the extents include. From
 // there the boulder reaches half a diameter, with its noise and its joint more.
-double boulder_reach(const BoulderLayer& layer) {
+double drawn_reach(const BoulderLayer& layer) {
   return 0.75 + 0.5 * (1.0 + layer.smoothing + layer.roughness);
 }
 

@@ -44,8 +44,12 @@ std::vector<PlacedBoulder> place_boulders(const BoulderLayer& layer, const BareS
                                           const std::string& where, const Progress& progress = {},
                                           const DrawingPlaces& places = {});
 
-// How far from its place a drawn boulder may change the surface, in its diameters.
-double boulder_reach(const BoulderLayer& layer);
+// How far from its place a drawn boulder may change the surface, in its diameters. Craters of a layer reach
+// no farther than the elevations that they make.
+double drawn_reach(const BoulderLayer& layer);
+inline double drawn_reach(const CraterLayer&) { return 0.0; }
+// A bound of what the layer's boulders add to elevations, on which they lie; length units.
+inline double rise_of(const BoulderLayer&) { return 0.0; }
 
 // A boulder as it joins a field, and the box that it reaches. Outside the box it changes nothing.
 struct FieldBoulder {

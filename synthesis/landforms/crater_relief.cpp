@@ -184,7 +184,7 @@ std::vector<PlacedCrater> place_craters(const CraterLayer& layer, const BareSurf
   return craters;
 }
 
-double crater_rise(const CraterLayer& layer) {
+double rise_of(const CraterLayer& layer) {
   double greatest = 0.0;
   const auto include = [&](double diameter, double factor) {
     for (const bool complex : {false, true}) {
@@ -226,7 +226,7 @@ CraterRelief make_crater_relief(const CraterLayer& layer, std::span<const Placed
   find_bases(oldest_first, elevations, craters);
   // Which of the craters drawn by cells is the largest depends on the region; the bound must not.
   const bool by_cells = layer.population && layer.population->drawn.by_cells;
-  const double rise = by_cells ? crater_rise(layer) : kReliefClip * greatest;
+  const double rise = by_cells ? rise_of(layer) : kReliefClip * greatest;
   return {arrays.add(craters), bound_before + rise, 0};
 }
 

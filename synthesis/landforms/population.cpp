@@ -14,19 +14,23 @@
 namespace astrolith {
 namespace {
 
-constexpr std::uint64_t kPopulationStream = std::uint64_t{0x706f70} << 40;  // layer and landform follow
-constexpr std::uint64_t kPlaceStream = std::uint64_t{0x706c63} << 40;       // layer and landform follow
-constexpr std::uint64_t kClusterStream = std::uint64_t{0x636c75} << 40;     // layer and cluster follow
-constexpr std::uint64_t kCountOfLayer = 0xffffffffu;
+// What a layer's random numbers are for.
+enum class Purpose : std::uint32_t { kLandform = 0x706f7000, kPlace = 0x706c6300, kCluster = 0x636c7500 };
+constexpr std::uint32_t kCountOfLayer = 0xffffffffu;
 
 // A place is drawn again where its weight or its cluster rejects it. All landforms together take at most so
 // many places.
 constexpr std::int64_t kMostPlacesTried = 20'000'000;
 constexpr std::int64_t kPlacesBetweenReports = 1 << 15;
 
-CounterRandom stream_of(std::uint64_t seed, int layer_index, std::uint64_t landform,
-                        std::uint64_t stream = kPopulationStream) {
-  return CounterRandom(seed, stream + (static_cast<std::uint64_t>(layer_index) << 32) + landform);
+// The random numbers of a landform or a cluster. Sums of purpose and layer differ while layers are counted;
+// a layer with a seed of its own may have any number, so that its key is a hash.
+CounterRandom stream_of(std::uint64_t seed, int layer_index, std::size_t landform,
+                        Purpose purpose = Purpose::kLandform) {
+  const auto layer = static_cast<std::uint32_t>(layer_index), use = static_cast<std::uint32_t>(purpose);
+  const std::uint32_t key =
+      layer_index > kMaxLayerSeed ? hash_append(hash_append(0, layer), use) : use + layer;
+  return CounterRandom(seed, (std::uint64_t{key} << 32) + landform);
 }
 
 // A Poisson number, from the exponential waiting times between events.
@@ -76,7 +80,7 @@ class PlaceSearch {
     if (!population.clusters) return;
     std::vector<Vec3d> random;
     for (int i = 0; i < population.clusters->number; ++i) {
-      CounterRandom own = stream_of(seed, layer_index, static_cast<std::uint64_t>(i), kClusterStream);
+      CounterRandom own = stream_of(seed, layer_index, static_cast<std::size_t>(i), Purpose::kCluster);
       random.push_back(uniform_numbers(own));
     }
     centers_ = surface.scatter(random);
@@ -139,7 +143,7 @@ void find_places(const Population& population, const BareSurface& surface, std::
   const PlaceSearch search(population, surface, seed, layer_index, places);
   std::vector<Seeker> seekers;
   for (std::size_t i = 0; i < landforms.size(); ++i) {
-    seekers.push_back({i, stream_of(seed, layer_index, i, kPlaceStream)});
+    seekers.push_back({i, stream_of(seed, layer_index, i, Purpose::kPlace)});
   }
   std::vector<char> found(landforms.size(), 0);
   std::int64_t tried = 0;

@@ -1,5 +1,5 @@
-// Fractal sums of noise over many points at once. octave_sum.h evaluates them at one point, octave_bounds.h
-// bounds them over boxes.
+// Fractal sums of noise over many points at once. octave_bounds.h evaluates them at one point, and bounds
+// them over boxes.
 #pragma once
 
 #include <cstdint>

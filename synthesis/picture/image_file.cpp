@@ -1,7 +1,5 @@
 #include "synthesis/picture/image_file.h"
 
-#include "synthesis/picture/geotiff.h"
-
 #include <spng.h>
 #include <tiffio.h>
 #include <unistd.h>

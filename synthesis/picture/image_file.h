@@ -50,4 +50,11 @@ void write_png16_rgb(std::span<const std::uint16_t> rgb, int width, int height,
 void write_tiff_float(std::span<const float> values, int width, int height, const std::filesystem::path& file,
                       int channels = 1);
 
+// Writes a height map of a local plane that GDAL and GIS programs read: a GeoTIFF of 32-bit floats, row-major
+// with the top row first, uncompressed. The map is a plane in metres without a datum: `pixel` metres a pixel,
+// zero at the middle of the map, x to the right and y up. NaN is stated as the value of no data.
+// `description` becomes the image's description. Throws what write_tiff_float() throws.
+void write_geotiff(std::span<const float> values, int width, int height, double pixel,
+                   const std::string& description, const std::filesystem::path& file);
+
 }  // namespace astrolith

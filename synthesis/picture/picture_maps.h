@@ -22,7 +22,7 @@ struct PictureMaps {
   int width = 0, height = 0;
   std::vector<float> depth;       // (height x width) length of the ray; NaN where it meets nothing
   std::vector<float> normal;      // (height x width x 3) unit, towards the viewer; 0 where nothing is met
-  std::vector<std::int8_t> view;  // (height x width) number of the view; -1 where a tile is left over
+  std::vector<std::int8_t> view;  // (height x width) number of the view; -1 where a panel is left over
   std::vector<Vec3d> right, up, from;  // (#views) orthonormal; `from` points from the body to the viewer
   std::vector<Vec3d> corner;           // (#views) of the whole picture, in the picture plane
   std::vector<Vec3d> eye;              // (#views) the pinhole; NaN for an orthographic camera

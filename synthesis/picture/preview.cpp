@@ -17,7 +17,6 @@
 #include "numerics/scalar_math.h"
 #include "numerics/srgb.h"
 #include "numerics/tangent_frame.h"
-#include "synthesis/picture/picture_marks_internal.h"
 #include "synthesis/picture/preview_rays_internal.h"
 #include "synthesis/picture/ray_scene_internal.h"
 

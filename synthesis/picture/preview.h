@@ -35,7 +35,7 @@ struct PreviewOptions {
   PictureMarks marks;              // none, unless asked for; the views take the rest of the height
   // Samples along a pixel's side where neighbouring pixels differ, 1 .. 16. Even ground takes one sample.
   int oversampling = 3;
-  // Each view gets one tile, in rows. All orthographic tiles have one scale, chosen such that every view
+  // Each view gets one panel, in rows. All orthographic panels have one scale, chosen such that every view
   // fits.
   std::vector<Camera> views = standard_views();
   Sunlight sun;

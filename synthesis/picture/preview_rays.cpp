@@ -9,7 +9,7 @@
 namespace astrolith {
 namespace {
 
-constexpr double kFilled = 0.92;          // share of a tile that the largest view spans
+constexpr double kFilled = 0.92;          // share of a panel that the largest view spans
 constexpr double kLeastPixel = 1e-9;      // in the unit ball, of a mesh without extent
 constexpr double kOrthographicFar = 2.0;  // from the ball's centre to where orthographic rays begin
 
@@ -47,7 +47,7 @@ void place_orthographic(const Camera& view, const RayScene& scene, const Triangl
   camera.eye = middle.x * camera.right + middle.y * camera.up + kOrthographicFar * camera.from;
 }
 
-// The least distance at which a pinhole sees the whole mesh in the middle of its tile.
+// The least distance at which a pinhole sees the whole mesh in the middle of its panel.
 double distance_for_all(const Vec3d& target, const ViewCamera& camera, double half_width_tangent,
                         double half_height_tangent, const RayScene& scene, const TriangleMesh& mesh) {
   constexpr double kClearance = 0.05;  // radii before what lies on the line of sight
@@ -61,16 +61,16 @@ double distance_for_all(const Vec3d& target, const ViewCamera& camera, double ha
   return distance;
 }
 
-void place_pinhole(const Camera& view, const RayScene& scene, const TriangleMesh& mesh, double tile_width,
-                   double tile_height, ViewCamera& camera) {
+void place_pinhole(const Camera& view, const RayScene& scene, const TriangleMesh& mesh, double panel_width,
+                   double panel_height, ViewCamera& camera) {
   const double tangent = portable::tan(radians(0.5 * view.field_of_view));
   const Vec3d target = view.target ? scene.to_unit(*view.target) : Vec3d{0, 0, 0};
   double distance = view.in_radii ? view.distance : view.distance * scene.scale();
   if (!(view.distance > 0.0)) {
-    distance = distance_for_all(target, camera, tangent, tangent * tile_height / tile_width, scene, mesh);
+    distance = distance_for_all(target, camera, tangent, tangent * panel_height / panel_width, scene, mesh);
   }
   camera.is_pinhole = true;
-  camera.pixel = 2.0 * tangent / tile_width;
+  camera.pixel = 2.0 * tangent / panel_width;
   camera.eye = target + distance * camera.from;
 }
 
@@ -117,7 +117,7 @@ PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options
   for (const Camera& view : options.views) {
     ViewCamera camera = oriented(view);
     if (view.field_of_view > 0.0) {
-      place_pinhole(view, scene, mesh, tile_width(), tile_height(), camera);
+      place_pinhole(view, scene, mesh, panel_width(), panel_height(), camera);
     } else {
       place_orthographic(view, scene, mesh, camera);
     }
@@ -125,8 +125,8 @@ PreviewRays::PreviewRays(const TriangleMesh& mesh, const PreviewOptions& options
   }
   double at_body = 0.0;  // side of a pixel of a pinhole at the ball's centre
   for (const ViewCamera& camera : cameras_) {
-    pixel_ = std::max({pixel_, 2 * camera.half_width / (kFilled * tile_width()),
-                       2 * camera.half_height / (kFilled * tile_height())});
+    pixel_ = std::max({pixel_, 2 * camera.half_width / (kFilled * panel_width()),
+                       2 * camera.half_height / (kFilled * panel_height())});
     if (camera.is_pinhole) at_body = std::max(at_body, camera.pixel * norm(camera.eye));
   }
   if (pixel_ == kLeastPixel && at_body > 0.0) pixel_ = at_body;
@@ -147,16 +147,16 @@ void PreviewRays::require_outside(const RayScene& scene) const {
 
 std::optional<std::size_t> PreviewRays::view_at(double px, double py) const {
   if (py >= height_) return std::nullopt;
-  const int column = std::min(columns_ - 1, static_cast<int>(px / tile_width()));
-  const int row = std::min(rows_ - 1, static_cast<int>(py / tile_height()));
+  const int column = std::min(columns_ - 1, static_cast<int>(px / panel_width()));
+  const int row = std::min(rows_ - 1, static_cast<int>(py / panel_height()));
   const auto view = static_cast<std::size_t>(row * columns_ + column);
   return view < cameras_.size() ? std::optional(view) : std::nullopt;
 }
 
 Vec3d PreviewRays::across(std::size_t view, double px, double py) const {
   const int column = static_cast<int>(view) % columns_, row = static_cast<int>(view) / columns_;
-  return (px - (column + 0.5) * tile_width()) * cameras_[view].right +
-         ((row + 0.5) * tile_height() - py) * cameras_[view].up;
+  return (px - (column + 0.5) * panel_width()) * cameras_[view].right +
+         ((row + 0.5) * panel_height() - py) * cameras_[view].up;
 }
 
 Vec3d PreviewRays::on_plane(std::size_t view, double px, double py) const {
@@ -186,8 +186,8 @@ std::optional<std::pair<double, double>> PreviewRays::seen_at(std::size_t view, 
   if (scene.occluded(to_float(point + kLifted * towards), to_float(towards))) return std::nullopt;
   const double pixel = camera.is_pinhole ? depth * camera.pixel : camera.pixel;
   const auto [left, bottom] = lower_left(view);
-  const double px = left + 0.5 * tile_width() + dot(offset, camera.right) / pixel;
-  const double py = bottom - 0.5 * tile_height() - dot(offset, camera.up) / pixel;
+  const double px = left + 0.5 * panel_width() + dot(offset, camera.right) / pixel;
+  const double py = bottom - 0.5 * panel_height() - dot(offset, camera.up) / pixel;
   if (!(px >= 0.0 && py >= 0.0 && px < width_) || view_at(px, py) != view) return std::nullopt;
   return std::pair(px, py);
 }

@@ -42,12 +42,12 @@ class PreviewRays {
   // Throws InputError for a pinhole inside the mesh.
   void require_outside(const RayScene& scene) const;
 
-  // The view whose tile has a place of the picture, in pixels from its top left corner. Tiles that are left
+  // The view whose panel has a place of the picture, in pixels from its top left corner. Panels that are left
   // over have none.
   std::optional<std::size_t> view_at(double px, double py) const;
   PictureRay ray(std::size_t view, double px, double py) const;
   // Where a view shows a point of the unit ball, in pixels from the picture's top left corner; none where its
-  // tile does not reach or another part of the mesh is before the point.
+  // panel does not reach or another part of the mesh is before the point.
   std::optional<std::pair<double, double>> seen_at(std::size_t view, const Vec3d& point,
                                                    const RayScene& scene) const;
   const ViewCamera& camera(std::size_t view) const { return cameras_[view]; }
@@ -56,12 +56,12 @@ class PreviewRays {
   // The point of that plane at a place of the picture.
   Vec3d on_plane(std::size_t view, double px, double py) const;
 
-  double tile_width() const { return width_ / columns_; }
-  double tile_height() const { return height_ / rows_; }
-  // The lower left corner of a view's tile, in pixels from the top left corner of the picture.
+  double panel_width() const { return width_ / columns_; }
+  double panel_height() const { return height_ / rows_; }
+  // The lower left corner of a view's panel, in pixels from the top left corner of the picture.
   std::pair<double, double> lower_left(std::size_t view) const {
     const int column = static_cast<int>(view) % columns_, row = static_cast<int>(view) / columns_;
-    return {column * tile_width(), (row + 1) * tile_height()};
+    return {column * panel_width(), (row + 1) * panel_height()};
   }
 
  private:
@@ -89,5 +89,9 @@ struct SeenNormals {
 // In open or inverted meshes a surface may be seen from behind. Its normals are turned then.
 SeenNormals seen_normals(const TriangleMesh& mesh, const std::vector<Vec3d>& vertex_normals,
                          const RayHit& hit, const Vec3f& to_viewer);
+
+// Draws the marks of a picture into it (picture_marks.h).
+void draw_marks(RgbaImage16& image, const PreviewOptions& options, const PreviewRays& rays,
+                const RayScene& scene);
 
 }  // namespace astrolith

@@ -1,7 +1,9 @@
 #include "synthesis/relief/relief_likeness.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "numerics/errors.h"
@@ -17,7 +19,7 @@ namespace astrolith {
 namespace {
 
 // In mean edges of the measured model: standard deviations of smoothing.
-constexpr double kEqualBands[] = {0.7, 1.4, 2.8};
+constexpr std::array<double, 3> kEqualBands = {0.7, 1.4, 2.8};
 constexpr std::size_t kFewestAnchors = 10;
 
 // Anchors of a body, and for each the anchor of the measured body that gives its patch.
@@ -50,16 +52,19 @@ std::vector<PatchPoint> points_around(const ReliefPoints& points, const ReliefAn
 // The sums of the patches at the points.
 std::vector<PatchSums> sums_of(const ReliefPatches& patches, const ReliefPoints& points,
                                const DrawnAnchors& drawn, std::uint32_t hash) {
-  std::vector<std::vector<PatchHeight>> of_anchor(drawn.anchors.size());
-  parallel_for(0, static_cast<std::int64_t>(of_anchor.size()), [&](std::int64_t number) {
-    const auto a = static_cast<std::size_t>(number);
-    const PatchTurn turn = turn_of(hash_append(hash_append(hash, 2), static_cast<std::uint32_t>(a)));
-    of_anchor[a] = patches.heights_at(
-        points_around(points, drawn.anchors[a], patches.anchor_spacing().radius()), drawn.donors[a], turn);
-  });
+  constexpr std::size_t kTogether = 256;  // anchors whose patches are kept at a time
   std::vector<PatchSums> sums(points.size());
-  for (const std::vector<PatchHeight>& patch : of_anchor) {
-    for (const PatchHeight& p : patch) sums[p.number].add(p);
+  for (std::size_t first = 0; first < drawn.anchors.size(); first += kTogether) {
+    std::vector<std::vector<PatchHeight>> of_anchor(std::min(kTogether, drawn.anchors.size() - first));
+    parallel_for(0, static_cast<std::int64_t>(of_anchor.size()), [&](std::int64_t number) {
+      const std::size_t a = first + static_cast<std::size_t>(number);
+      const PatchTurn turn = turn_of(hash_append(hash_append(hash, 2), static_cast<std::uint32_t>(a)));
+      of_anchor[a - first] = patches.heights_at(
+          points_around(points, drawn.anchors[a], patches.anchor_spacing().radius()), drawn.donors[a], turn);
+    });
+    for (const std::vector<PatchHeight>& patch : of_anchor) {
+      for (const PatchHeight& p : patch) sums[p.number].add(p);
+    }
   }
   return sums;
 }
@@ -76,38 +81,45 @@ std::vector<double> blended(const ReliefPatches& patches, const ReliefPoints& po
   return heights;
 }
 
-// Heights in bands, from fine to wide; the last is what all smoothing leaves. Their sum is the heights.
-std::vector<std::vector<double>> bands_of(const ReliefPoints& points, std::vector<double> heights,
-                                          double edge) {
-  std::vector<std::vector<double>> bands;
-  for (const double sigma : kEqualBands) {
-    std::vector<double> smooth = smoothed_heights(points, heights, sigma * edge);
-    for (std::size_t i = 0; i < heights.size(); ++i) heights[i] -= smooth[i];
-    bands.push_back(std::move(heights));
-    heights = std::move(smooth);
-  }
-  bands.push_back(std::move(heights));
-  return bands;
-}
+// Heights in bands, from fine to wide, and what all smoothing leaves. Their sum is the heights.
+struct Bands {
+  ThreeFields narrow;
+  std::vector<double> rest;
 
-// The geometric mean over the body of the root mean square around a place. A mean of squares would be that of
-// few rough places. With `seen_alone` places below a seventh of the third quartile do not count.
-double typical_rms(const ReliefPoints& points, const std::vector<double>& heights, double edge,
-                   bool seen_alone) {
-  constexpr double kAround = 3.0, kLeast = 1e-12;  // edges; of the largest square
-  std::vector<double> squares(heights.size());
-  for (std::size_t i = 0; i < heights.size(); ++i) squares[i] = heights[i] * heights[i];
-  const double largest = *std::max_element(squares.begin(), squares.end());
-  if (!(largest > 0.0)) return 0.0;
-  double total = 0.0, logarithms = 0.0, least = 0.0;
-  const std::vector<double> around = smoothed_heights(points, squares, kAround * edge);
-  if (seen_alone) least = ranked_value(around, around.size() * 3 / 4) / 49.0;
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    if (around[i] < least) continue;
-    total += points.weight(i);
-    logarithms += points.weight(i) * portable::log(std::max(around[i] / largest, kLeast));
+  Bands(const ReliefPoints& points, const std::vector<double>& heights, double edge) : rest(heights) {
+    for (std::size_t band = 0; band < narrow.size(); ++band) {
+      std::vector<double> smooth = smoothed_heights(points, rest, kEqualBands[band] * edge);
+      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= smooth[i];
+      narrow[band] = std::exchange(rest, std::move(smooth));
+    }
   }
-  return std::sqrt(largest * portable::exp(logarithms / total));
+};
+
+// The geometric mean over the body of the root mean square around a place, for each band. A mean of squares
+// would be that of few rough places. With `seen_alone` places below a seventh of the third quartile do not
+// count.
+std::array<double, 3> typical_rms(const ReliefPoints& points, ThreeFields bands, double edge,
+                                  bool seen_alone) {
+  constexpr double kAround = 3.0, kLeast = 1e-12;  // edges; of the largest square
+  for (std::vector<double>& band : bands) {
+    for (double& height : band) height *= height;
+  }
+  const ThreeFields means = smoothed_fields(points, bands, kAround * edge);
+  std::array<double, 3> rms{};
+  for (std::size_t band = 0; band < bands.size(); ++band) {
+    const double largest = *std::max_element(bands[band].begin(), bands[band].end());
+    if (!(largest > 0.0)) continue;
+    const std::vector<double>& around = means[band];
+    const double least = seen_alone ? ranked_value(around, around.size() * 3 / 4) / 49.0 : 0.0;
+    double total = 0.0, logarithms = 0.0;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      if (around[i] < least) continue;
+      total += points.weight(i);
+      logarithms += points.weight(i) * portable::log(std::max(around[i] / largest, kLeast));
+    }
+    rms[band] = std::sqrt(largest * portable::exp(logarithms / total));
+  }
+  return rms;
 }
 
 // Heights whose bands are as strong as those that were measured: blends and resampling take from each a share
@@ -116,24 +128,24 @@ std::vector<double> equalized(const ReliefPoints& points, const std::vector<doub
                               const ReliefPoints& of_measured, const std::vector<double>& measured,
                               double edge, bool seen_alone) {
   constexpr double kMostGain = 2.0;  // of all bands but the finest, which would be noise
-  const std::vector<std::vector<double>> bands = bands_of(points, heights, edge),
-                                         wanted = bands_of(of_measured, measured, edge);
-  std::vector<double> sum = bands.back();
-  for (std::size_t band = 0; band + 1 < bands.size(); ++band) {
-    const double has = typical_rms(points, bands[band], edge, seen_alone),
-                 wants = typical_rms(of_measured, wanted[band], edge, seen_alone);
+  const std::array<double, 3> wants =
+      typical_rms(of_measured, Bands(of_measured, measured, edge).narrow, edge, seen_alone);
+  const Bands bands(points, heights, edge);
+  const std::array<double, 3> has = typical_rms(points, bands.narrow, edge, seen_alone);
+  std::vector<double> sum = bands.rest;
+  for (std::size_t band = 0; band < has.size(); ++band) {
     const double most = band == 0 ? 1.0 : kMostGain;
-    const double gain = has > 0.0 ? std::min(wants / has, most) : 1.0;
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands[band][i];
+    const double gain = has[band] > 0.0 ? std::min(wants[band] / has[band], most) : 1.0;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += gain * bands.narrow[band][i];
   }
   return sum;
 }
 
 }  // namespace
 
-std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefPatches& patches,
-                                 bool foreign, double spacing, const LikenessOptions& options,
-                                 const std::string& where) {
+std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefTiles& tiles,
+                                 const ReliefPatches& patches, bool foreign, double spacing,
+                                 const LikenessOptions& options, const std::string& where) {
   const std::vector<ReliefAnchor>& anchors = patches.anchors();
   const std::vector<double>& measured = patches.measured().heights;
   const AnchorSpacing& apart = patches.anchor_spacing();
@@ -144,8 +156,10 @@ std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const R
                      "; keep the arrangement measured, or fit a finer model");
   }
   if (places.empty()) return {};  // a base that is smaller than the spacing
-  const ReliefPoints points(places, spacing);
-  const ReliefValues blend(points, ReliefShares(places, spacing));
+  std::optional<ReliefPoints> others;
+  if (foreign) others.emplace(places, spacing);
+  const ReliefPoints& points = foreign ? *others : patches.points();
+  const ReliefValues blend(points, ReliefShares(places, tiles, spacing));
   const DrawnAnchors drawn =
       draw_anchors(foreign ? relief_anchors(points, {}, apart.distance(), 0.0) : anchors, anchors, options);
   const std::vector<double> otherwise =
@@ -170,7 +184,7 @@ std::vector<double> filled_heights(const ReliefPatches& patches, double spacing,
     if (anchor.unseen) unseen.anchors.push_back(anchor), unseen.donors.push_back(drawn.donors[a]);
   }
   if (unseen.anchors.empty()) return measured.heights;
-  const ReliefValues blend(points, ReliefShares(measured.places, spacing));
+  const ReliefValues blend(points, ReliefShares(measured.places, measured.tiles, spacing));
   const std::vector<PatchSums> sums = sums_of(patches, points, unseen, options.hash);
   std::vector<double> change = blend.values_of(measured.heights);
   for (std::size_t i = 0; i < change.size(); ++i) {

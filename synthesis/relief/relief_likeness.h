@@ -16,7 +16,8 @@ struct LikenessOptions {
   std::uint32_t hash = 0;
 };
 
-// New heights at places of a body, from those measured on it or, with `foreign`, on another one.
+// New heights at places of a body with their tiles, from those measured on it or, with `foreign`, on another
+// one.
 //
 // A place at the offset o from an anchor (AnchorSpacing), in the tangent frame and as long as the chord, gets
 // the height at the offset o from the anchor's donor, turned by an angle of the hash and projected on the
@@ -24,9 +25,9 @@ struct LikenessOptions {
 // and up to 30 for narrow ones. Bands of the result, cut at .7, 1.4 and 2.8 edges, become as strong as those
 // that were measured, by the geometric mean over the body of the root mean square around a place. Throws
 // InputError, which begins with `where`, where fewer than ten anchors have been measured.
-std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefPatches& patches,
-                                 bool foreign, double spacing, const LikenessOptions& options,
-                                 const std::string& where);
+std::vector<double> like_heights(const std::vector<ReliefPlace>& places, const ReliefTiles& tiles,
+                                 const ReliefPatches& patches, bool foreign, double spacing,
+                                 const LikenessOptions& options, const std::string& where);
 
 // The measured heights, but for ground that no camera saw, which gets patches of seen ground as above.
 // Between both, heights go over as the weights of the patches of wide heights do.

@@ -54,11 +54,13 @@ struct DonorBody {
   BodyTables body;
   ReachingMetaballs metaballs;
   std::vector<ReliefPlace> places;
+  ReliefTiles tiles;
 
   DonorBody(const MetaballBody& donor, double spacing, const LayerSource& source)
       : body(make_body(donor, source.recipe.seed, arrays)),
         metaballs(all_metaballs(body, arrays.view())),
-        places(find_relief_places(ground(), spacing, source.place)) {}
+        places(find_relief_places(ground(), spacing, source.place)),
+        tiles(make_relief_tiles(places, source.place)) {}
   BodyGround ground() const { return {body, arrays.view(), metaballs.lists()}; }
 };
 
@@ -107,8 +109,8 @@ void draw(const ReliefLayer& layer, const LayerSource& source, const MeasuredRel
   const double scale = layer.donor_scale;  // heights are in the unit of the donor
   const LikenessOptions options{layer.reach, layer.fill_unseen, hash_of(source)};
   if (layer.arrangement == ReliefArrangement::kLike) {
-    heights =
-        like_heights(ground.places, patches, layer.donor.has_value(), layer.spacing, options, source.place);
+    heights = like_heights(ground.places, ground.tiles, patches, layer.donor.has_value(), layer.spacing,
+                           options, source.place);
     encode(heights, scale, ground);
   } else if (layer.fill_unseen) {
     heights = filled_heights(patches, layer.spacing, options);
@@ -239,12 +241,12 @@ void ReliefGround::find(const ReliefLayer& layer, const LayerSource& source, con
   if (layer.donor) {
     const DonorBody donor(*layer.donor, layer.spacing, source);
     const std::vector<double> heights = heights_of(layer, codes_of(layer, donor.places, source.place));
-    return draw(layer, source, {donor.ground(), donor.places, heights}, *this);
+    return draw(layer, source, {donor.ground(), donor.places, donor.tiles, heights}, *this);
   }
   codes = codes_of(layer, places, source.place);
   if (layer.arrangement == ReliefArrangement::kMeasured && layer.finer == 0 && !layer.fill_unseen) return;
   const std::vector<double> heights = heights_of(layer, codes);
-  draw(layer, source, {body, places, heights}, *this);
+  draw(layer, source, {body, places, tiles, heights}, *this);
 }
 
 PreparedRelief prepare(const ReliefLayer& layer, const LayerSource&, ArrayStore&) {

@@ -50,7 +50,7 @@ std::vector<double> wide_heights(const ReliefPoints& points, const std::vector<d
 ReliefPatches::ReliefPatches(const MeasuredRelief& measured, double spacing, double edge)
     : measured_(measured),
       points_(measured.places, spacing),
-      shares_(measured.places, spacing),
+      shares_(measured.places, measured.tiles, spacing),
       low_(wide_heights(points_, measured.heights, edge)),
       high_(measured.heights),
       most_missed_(0.25 * spacing),

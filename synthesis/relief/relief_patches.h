@@ -15,6 +15,7 @@ namespace astrolith {
 struct MeasuredRelief {
   BodyGround ground;
   const std::vector<ReliefPlace>& places;
+  const ReliefTiles& tiles;            // of the places
   const std::vector<double>& heights;  // coefficients of the blend (relief_layer.h), length units
 };
 
@@ -60,7 +61,7 @@ std::vector<double> wide_heights(const ReliefPoints& points, const std::vector<d
 
 class ReliefPatches {
  public:
-  // The places and heights must outlive this.
+  // The places, tiles and heights must outlive this.
   ReliefPatches(const MeasuredRelief& measured, double spacing, double edge);
 
   const MeasuredRelief& measured() const { return measured_; }

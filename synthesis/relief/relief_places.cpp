@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <tuple>
+#include <utility>
 
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "synthesis/body/body_bounds.h"
 
 namespace astrolith {
 namespace {
@@ -15,21 +19,42 @@ namespace {
 constexpr int kBlockNodes = 16;
 constexpr int kCellNodes = 4;  // spacings along the edge of a cell
 
-struct NodeRange {
-  std::array<std::int64_t, 3> low, count;  // nodes of the lattice along each axis
+// A box of blocks, and the metaballs that reach it.
+struct BlockBox {
+  std::array<std::int64_t, 3> low, count;  // blocks along each axis
+  ReachingMetaballs metaballs;
+
+  bool is_block() const { return count[0] * count[1] * count[2] == 1; }
 };
+
+// The metaballs of leaves, as bounds of the body read them.
+struct BoundedLists {
+  LeafLists lists;
+  MetaballList metaballs(std::uint32_t leaf) const {
+    return {lists.spheres + lists.first[leaf], nullptr, lists.first[leaf + 1] - lists.first[leaf]};
+  }
+};
+
+// Whether s keeps one sign over a box, which holds the points at which the metaballs are evaluated.
+bool keeps_sign(const BodyGround& ground, const ReachingMetaballs& reaching, const Box& box) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const BoundedLists lists{reaching.lists()};
+  std::vector<KernelInterval> scratch(reaching.spheres.size());
+  if (ground.body.plain()) {
+    const MetaballParameters<float>& leaf = ground.arrays[ground.body.leaves][0].metaballs;
+    const MetaballInterval level = bound_metaballs(leaf, lists.metaballs(0), box, kInfinity, scratch.data());
+    return level.level_max < 0.0 || level.level_min > 0.0;
+  }
+  const Interval s = bound_distance(ground.body, ground.arrays, lists, box, 0.0, scratch.data());
+  return s.high < 0.0 || s.low > 0.0;
+}
 
 // Values of s at a box of nodes, and the metaballs that reach it.
 class BlockOfNodes {
  public:
-  BlockOfNodes(const BodyGround& ground, double spacing, const std::array<std::int64_t, 3>& low, int nodes,
-               int stride)
-      : ground_(ground), spacing_(spacing), low_(low), nodes_(nodes), stride_(stride) {
-    const Vec3d corner{at(0, 0), at(1, 0), at(2, 0)};
-    const double side = spacing * stride * (nodes - 1);
-    const Box box = widened(Box{corner, {corner.x + side, corner.y + side, corner.z + side}}, spacing);
-    reaching_ = metaballs_reaching(ground.body, ground.arrays, ground.metaballs, box);
-  }
+  BlockOfNodes(const BodyGround& ground, const ReachingMetaballs& reaching, double spacing,
+               const std::array<std::int64_t, 3>& low, int nodes, int stride)
+      : ground_(ground), reaching_(reaching), spacing_(spacing), low_(low), nodes_(nodes), stride_(stride) {}
 
   void evaluate(std::vector<float>& s) const {
     const auto total = static_cast<std::size_t>(nodes_) * nodes_ * nodes_;
@@ -65,10 +90,10 @@ class BlockOfNodes {
 
  private:
   const BodyGround& ground_;
+  const ReachingMetaballs& reaching_;
   double spacing_;
   std::array<std::int64_t, 3> low_;
   int nodes_, stride_;
-  ReachingMetaballs reaching_;
 };
 
 // Whether the surface may pass through a cell whose corners have these values of s, in spacings.
@@ -88,34 +113,114 @@ struct Crossing {
 
 class PlaceFinder {
  public:
-  PlaceFinder(const BodyGround& ground, double spacing) : ground_(ground), spacing_(spacing) {}
+  PlaceFinder(const BodyGround& ground, double spacing, const std::string& where)
+      : ground_(ground), spacing_(spacing), where_(where) {}
 
-  std::vector<ReliefPlace> find(const NodeRange& blocks) const {
-    const std::int64_t total = blocks.count[0] * blocks.count[1] * blocks.count[2];
-    std::vector<std::vector<ReliefPlace>> found(static_cast<std::size_t>(total));
-    parallel_for(0, total, [&](std::int64_t number) {
-      const std::array<std::int64_t, 3> block{number % blocks.count[0],
-                                              number / blocks.count[0] % blocks.count[1],
-                                              number / (blocks.count[0] * blocks.count[1])};
-      std::array<std::int64_t, 3> low;
-      for (std::size_t a = 0; a < 3; ++a) low[a] = (blocks.low[a] + block[a]) * kBlockNodes;
-      if (may_cross(low)) found[static_cast<std::size_t>(number)] = places_in(low);
+  // Halves the boxes until those through which the surface may pass are blocks.
+  std::vector<ReliefPlace> find(BlockBox root) const {
+    constexpr std::size_t kMostBoxes = std::size_t{1} << 18;  // twice those of sixteen million heights
+    std::vector<BlockBox> boxes{narrowed(std::move(root))};
+    while (std::any_of(boxes.begin(), boxes.end(), [](const BlockBox& b) { return !b.is_block(); })) {
+      std::vector<std::vector<BlockBox>> parts(boxes.size());
+      parallel_for(0, static_cast<std::int64_t>(boxes.size()), [&](std::int64_t i) {
+        parts[static_cast<std::size_t>(i)] = parts_of(boxes[static_cast<std::size_t>(i)]);
+      });
+      boxes.clear();
+      for (std::vector<BlockBox>& of_box : parts) {
+        boxes.insert(boxes.end(), std::move_iterator(of_box.begin()), std::move_iterator(of_box.end()));
+      }
+      if (boxes.size() > kMostBoxes) refuse();
+    }
+    std::vector<std::vector<ReliefPlace>> found(boxes.size());
+    parallel_for(0, static_cast<std::int64_t>(boxes.size()), [&](std::int64_t number) {
+      const auto i = static_cast<std::size_t>(number);
+      if (may_cross(boxes[i])) found[i] = places_in(boxes[i]);
     });
-    std::vector<ReliefPlace> places;
-    for (const std::vector<ReliefPlace>& of_block : found)
-      places.insert(places.end(), of_block.begin(), of_block.end());
-    std::sort(places.begin(), places.end(), [](const ReliefPlace& a, const ReliefPlace& b) {
-      return std::tie(a.axis, a.v, a.u, a.w) < std::tie(b.axis, b.v, b.u, b.w);
+    return sorted(found);
+  }
+
+  [[noreturn]] void refuse() const {
+    throw InputError(where_ +
+                     ".spacing: would take more than 16 million heights on this body; make it larger");
+  }
+
+ private:
+  // All places in their order. Those of an axis and v are gathered first.
+  std::vector<ReliefPlace> sorted(std::vector<std::vector<ReliefPlace>>& found) const {
+    std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = -low;
+    std::size_t total = 0;
+    for (const std::vector<ReliefPlace>& of_block : found) {
+      total += of_block.size();
+      for (const ReliefPlace& p : of_block) {
+        low = std::min<std::int64_t>(low, p.v), high = std::max<std::int64_t>(high, p.v);
+      }
+    }
+    if (total == 0) return {};
+    if (total > kMostReliefPlaces) refuse();
+    const auto row = [&](const ReliefPlace& p) {
+      return static_cast<std::size_t>(p.axis * (high - low + 1) + p.v - low);
+    };
+    std::vector<std::size_t> first(3 * static_cast<std::size_t>(high - low + 1) + 1, 0);
+    for (const std::vector<ReliefPlace>& of_block : found) {
+      for (const ReliefPlace& p : of_block) ++first[row(p) + 1];
+    }
+    for (std::size_t i = 0; i + 1 < first.size(); ++i) first[i + 1] += first[i];
+    std::vector<ReliefPlace> places(total);
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (std::vector<ReliefPlace>& of_block : found) {
+      for (const ReliefPlace& p : of_block) places[next[row(p)]++] = p;
+      std::vector<ReliefPlace>().swap(of_block);
+    }
+    parallel_for(0, static_cast<std::int64_t>(first.size()) - 1, [&](std::int64_t number) {
+      const auto at = [&](std::size_t i) { return places.begin() + static_cast<std::ptrdiff_t>(first[i]); };
+      const auto i = static_cast<std::size_t>(number);
+      std::sort(at(i), at(i + 1), [](const ReliefPlace& a, const ReliefPlace& b) {
+        return std::tie(a.u, a.w) < std::tie(b.u, b.w);
+      });
     });
     return places;
   }
 
- private:
+  // The box of the nodes of blocks, widened by a spacing.
+  Box box_of(const BlockBox& blocks) const {
+    const auto at = [&](std::int64_t block) { return static_cast<double>(block * kBlockNodes) * spacing_; };
+    const auto& [low, count, metaballs] = blocks;
+    return widened(Box{{at(low[0]), at(low[1]), at(low[2])},
+                       {at(low[0] + count[0]), at(low[1] + count[1]), at(low[2] + count[2])}},
+                   spacing_);
+  }
+  BlockBox narrowed(BlockBox blocks) const {
+    blocks.metaballs =
+        metaballs_reaching(ground_.body, ground_.arrays, blocks.metaballs.lists(), box_of(blocks));
+    return blocks;
+  }
+
+  // The halves of a box along its longest side through which the surface may pass; a block itself.
+  std::vector<BlockBox> parts_of(const BlockBox& blocks) const {
+    if (blocks.is_block()) return {blocks};
+    const auto axis = static_cast<std::size_t>(std::max_element(blocks.count.begin(), blocks.count.end()) -
+                                               blocks.count.begin());
+    const std::int64_t half = blocks.count[axis] / 2;
+    std::vector<BlockBox> parts;
+    for (const bool upper : {false, true}) {
+      BlockBox part = blocks;
+      part.count[axis] = upper ? blocks.count[axis] - half : half;
+      part.low[axis] += upper ? half : 0;
+      part = narrowed(std::move(part));
+      if (!keeps_sign(ground_, part.metaballs, box_of(part))) parts.push_back(std::move(part));
+    }
+    return parts;
+  }
+
+  static std::array<std::int64_t, 3> first_node(const BlockBox& block) {
+    return {block.low[0] * kBlockNodes, block.low[1] * kBlockNodes, block.low[2] * kBlockNodes};
+  }
+
   // Whether the surface may pass through any cell of a block.
-  bool may_cross(const std::array<std::int64_t, 3>& low) const {
+  bool may_cross(const BlockBox& block) const {
     constexpr int kCorners = kBlockNodes / kCellNodes + 1;
     std::vector<float> s;
-    BlockOfNodes(ground_, spacing_, low, kCorners, kCellNodes).evaluate(s);
+    BlockOfNodes(ground_, block.metaballs, spacing_, first_node(block), kCorners, kCellNodes).evaluate(s);
     const auto corner = [&](int i, int j, int k) {
       return s[static_cast<std::size_t>(i + kCorners * (j + kCorners * k))] / static_cast<float>(spacing_);
     };
@@ -134,9 +239,10 @@ class PlaceFinder {
   }
 
   // The places on edges of the lattice that begin in a block.
-  std::vector<ReliefPlace> places_in(const std::array<std::int64_t, 3>& low) const {
+  std::vector<ReliefPlace> places_in(const BlockBox& of_one) const {
     constexpr int kNodes = kBlockNodes + 1;
-    const BlockOfNodes block(ground_, spacing_, low, kNodes, 1);
+    const std::array<std::int64_t, 3> low = first_node(of_one);
+    const BlockOfNodes block(ground_, of_one.metaballs, spacing_, low, kNodes, 1);
     std::vector<float> s;
     block.evaluate(s);
     const std::array<std::size_t, 3> step{1, kNodes, kNodes * kNodes};
@@ -197,6 +303,7 @@ class PlaceFinder {
 
   const BodyGround& ground_;
   double spacing_;
+  const std::string& where_;
 };
 
 }  // namespace
@@ -205,27 +312,21 @@ std::vector<ReliefPlace> find_relief_places(const BodyGround& ground, double spa
                                             const std::string& where) {
   const Box& box = ground.body.supports;
   if (box.empty()) return {};
+  const PlaceFinder finder(ground, spacing, where);
   const double block = spacing * kBlockNodes;
-  NodeRange blocks;
-  double total = 1.0;
-  const Vec3d low = box.min, high = box.max;
-  const std::array<double, 3> lows{low.x, low.y, low.z}, highs{high.x, high.y, high.z};
+  BlockBox blocks;
+  const std::array<double, 3> lows{box.min.x, box.min.y, box.min.z}, highs{box.max.x, box.max.y, box.max.z};
   for (std::size_t a = 0; a < 3; ++a) {
     const double first = std::floor(lows[a] / block), last = std::floor(highs[a] / block);
-    total *= last - first + 1.0;
-    if (!(std::abs(first) < 1e6 && std::abs(last) < 1e6)) total = 1e30;
-    if (total > 1e6) break;
+    if (!(std::abs(first) < 1e6 && std::abs(last) < 1e6)) finder.refuse();
     blocks.low[a] = static_cast<std::int64_t>(first);
     blocks.count[a] = static_cast<std::int64_t>(last - first) + 1;
   }
-  const auto refuse = [&] {
-    throw InputError(where +
-                     ".spacing: would take more than 16 million heights on this body; make it larger");
-  };
-  if (total > 1e6) refuse();
-  std::vector<ReliefPlace> places = PlaceFinder(ground, spacing).find(blocks);
-  if (places.size() > kMostReliefPlaces) refuse();
-  return places;
+  for (std::uint32_t leaf = 0; leaf < ground.body.leaves.count; ++leaf) {
+    const std::uint32_t first = ground.metaballs.first[leaf];
+    blocks.metaballs.add({ground.metaballs.spheres + first, ground.metaballs.first[leaf + 1] - first});
+  }
+  return finder.find(std::move(blocks));
 }
 
 }  // namespace astrolith

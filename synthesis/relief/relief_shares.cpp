@@ -16,30 +16,15 @@ std::array<double, 4> spline_weights(double t) {
 
 }  // namespace
 
-ReliefShares::ReliefShares(const std::vector<ReliefPlace>& places, double spacing)
-    : places_(places), tiles_(make_relief_tiles(places, "relief")), inverse_spacing_(1.0 / spacing) {}
-
 void ReliefShares::add(const Vec3f& p, std::vector<std::uint32_t>& places, std::vector<float>& shares) const {
-  const std::array<double, 3> at{p.x * inverse_spacing_, p.y * inverse_spacing_, p.z * inverse_spacing_};
-  std::array<std::int64_t, 3> cell;
-  std::array<double, 3> local;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double number = std::floor(at[a] / kReliefCell);
-    cell[a] = static_cast<std::int64_t>(number) - tiles_.low[a];
-    if (cell[a] < 0 || cell[a] >= tiles_.count[a]) return;
-    local[a] = at[a] - number * kReliefCell;
-  }
-  const std::int64_t slot = 3 * (cell[0] + tiles_.count[0] * (cell[1] + tiles_.count[1] * cell[2]));
+  TiledPoint point;
+  if (!find_in_tiles(tiles_, {p.x * inverse_spacing_, p.y * inverse_spacing_, p.z * inverse_spacing_}, point))
+    return;
   const std::size_t begin = shares.size();
   double total = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double u = local[(a + 1) % 3], v = local[(a + 2) % 3], w = local[a];
-    std::int32_t tile = tiles_.tiles[static_cast<std::size_t>(slot) + a];
-    if (tile < 0) {
-      const ReliefSplit& s = tiles_.splits[static_cast<std::size_t>(-1 - tile)];
-      tile = w > s.at + s.of_u * u + s.of_v * v ? s.upper : s.lower;
-    }
-    if (tile != 0) total += add_tile(static_cast<std::size_t>(tile), u, v, places, shares);
+    if (point.tiles[a] == 0) continue;
+    total += add_tile(static_cast<std::size_t>(point.tiles[a]), point.u(a), point.v(a), places, shares);
   }
   if (!(total > 0.0)) {
     places.resize(begin), shares.resize(begin);

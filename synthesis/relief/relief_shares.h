@@ -14,9 +14,10 @@ namespace astrolith {
 // (relief_noise.h) blends heights.
 class ReliefShares {
  public:
-  // Expects places in the order of find_relief_places(), which must outlive this, and their spacing in length
-  // units. Throws as make_relief_tiles().
-  ReliefShares(const std::vector<ReliefPlace>& places, double spacing);
+  // Expects places in the order of find_relief_places() and their tiles, which must outlive this, and their
+  // spacing in length units.
+  ReliefShares(const std::vector<ReliefPlace>& places, const ReliefTiles& tiles, double spacing)
+      : places_(places), tiles_(tiles), inverse_spacing_(1.0 / spacing) {}
 
   // Appends what a point, in length units, takes. Appends nothing where no place has a weight.
   void add(const Vec3f& p, std::vector<std::uint32_t>& places, std::vector<float>& shares) const;
@@ -26,7 +27,7 @@ class ReliefShares {
                   std::vector<float>& shares) const;
 
   const std::vector<ReliefPlace>& places_;
-  ReliefTiles tiles_;
+  const ReliefTiles& tiles_;
   double inverse_spacing_;
 };
 

@@ -2,11 +2,17 @@
 
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <tuple>
 
+#include "numerics/host_device.h"
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
 namespace {
+
+constexpr int kLanes = 8;  // places whose means are taken together
+constexpr int kMostFields = 3;
 
 Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
   double of[3];
@@ -16,9 +22,105 @@ Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
   return {of[0], of[1], of[2]};
 }
 
+// Places in the order of their cells, and fields at them.
+struct SortedPlaces {
+  std::vector<double> x, y, z, nx, ny, nz, weight;
+  std::array<std::vector<double>, kMostFields> fields;
+
+  SortedPlaces(const ReliefPoints& points, std::span<const std::vector<double>> values) {
+    const std::vector<std::uint32_t>& order = points.order();
+    for (std::vector<double>* column : {&x, &y, &z, &nx, &ny, &nz, &weight}) column->resize(order.size());
+    for (std::size_t f = 0; f < values.size(); ++f) fields[f].resize(order.size());
+    parallel_for(
+        0, static_cast<std::int64_t>(order.size()),
+        [&](std::int64_t number) {
+          const auto k = static_cast<std::size_t>(number);
+          const std::uint32_t i = order[k];
+          const Vec3d &at = points.at(i), &normal = points.normal(i);
+          x[k] = at.x, y[k] = at.y, z[k] = at.z;
+          nx[k] = normal.x, ny[k] = normal.y, nz[k] = normal.z;
+          weight[k] = points.weight(i);
+          for (std::size_t f = 0; f < values.size(); ++f) fields[f][k] = values[f][i];
+        },
+        4096);
+  }
+};
+
+// A few places, and the sums around them.
+struct LaneSums {
+  double x[kLanes], y[kLanes], z[kLanes], nx[kLanes], ny[kLanes], nz[kLanes];
+  double total[kLanes] = {}, sums[kMostFields][kLanes] = {};
+};
+
+// Adds the places `first` to `end` - 1 to the sums. A place beyond the radius, or that faces the other side,
+// adds exactly nothing.
+ASTROLITH_SIMD_CLONES void add_places(const SortedPlaces& p, std::uint32_t first, std::uint32_t end,
+                                      bool three_fields, double squared_radius, double inverse,
+                                      LaneSums& lanes) {
+  LaneSums l = lanes;  // so that the compiler keeps it in registers
+  const double* fields[kMostFields];
+  for (std::size_t f = 0; f < kMostFields; ++f) fields[f] = p.fields[three_fields ? f : 0].data();
+  for (std::uint32_t k = first; k < end; ++k) {
+    const double x = p.x[k], y = p.y[k], z = p.z[k], nx = p.nx[k], ny = p.ny[k], nz = p.nz[k],
+                 of_place = p.weight[k], value0 = fields[0][k], value1 = fields[1][k], value2 = fields[2][k];
+#pragma omp simd
+    for (int i = 0; i < kLanes; ++i) {
+      const double dx = x - l.x[i], dy = y - l.y[i], dz = z - l.z[i];
+      const double squared = dx * dx + dy * dy + dz * dz;
+      const double facing = nx * l.nx[i] + ny * l.ny[i] + nz * l.nz[i];
+      const double near = 1.0 - squared * inverse, square = near * near;
+      const double any = square * square * facing * of_place;
+      const double within = squared < squared_radius ? any : 0.0, weight = facing > 0.0 ? within : 0.0;
+      l.total[i] += weight;
+      l.sums[0][i] += weight * value0;
+      l.sums[1][i] += weight * value1;
+      l.sums[2][i] += weight * value2;
+    }
+  }
+  lanes = l;
+}
+
+// Means of the fields around each place.
+ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<double>> fields, double sigma) {
+  const double radius = std::sqrt(8.0) * sigma, inverse = 1.0 / (radius * radius);
+  const SortedPlaces sorted(points, fields);
+  const std::vector<std::uint32_t>& order = points.order();
+  ThreeFields means;
+  for (std::size_t f = 0; f < fields.size(); ++f) means[f].resize(points.size());
+  const auto of_few = [&](std::uint32_t first, std::uint32_t count) {
+    LaneSums lanes;
+    Box box;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      const std::uint32_t k = first + std::min(i, count - 1);
+      lanes.x[i] = sorted.x[k], lanes.y[i] = sorted.y[k], lanes.z[i] = sorted.z[k];
+      lanes.nx[i] = sorted.nx[k], lanes.ny[i] = sorted.ny[k], lanes.nz[i] = sorted.nz[k];
+      box.extend(points.at(order[k]));
+    }
+    points.for_each_row(box, radius, [&](std::uint32_t from, std::uint32_t end) {
+      add_places(sorted, from, end, fields.size() == kMostFields, radius * radius, inverse, lanes);
+    });
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t place = order[first + i];
+      for (std::size_t f = 0; f < fields.size(); ++f)
+        means[f][place] = lanes.total[i] > 0.0 ? lanes.sums[f][i] / lanes.total[i] : fields[f][place];
+    }
+  };
+  parallel_for(
+      0, static_cast<std::int64_t>(points.cells()),
+      [&](std::int64_t cell) {
+        const auto c = static_cast<std::size_t>(cell);
+        const std::uint32_t end = points.first_of_cell(c + 1);
+        for (std::uint32_t first = points.first_of_cell(c); first < end; first += kLanes)
+          of_few(first, std::min<std::uint32_t>(kLanes, end - first));
+      },
+      8);
+  return means;
+}
+
 }  // namespace
 
 ReliefPoints::ReliefPoints(const std::vector<ReliefPlace>& places, double spacing) : cell_(4.0 * spacing) {
+  at_.reserve(places.size()), normals_.reserve(places.size()), weights_.reserve(places.size());
   Box box;
   for (const ReliefPlace& p : places) {
     at_.push_back(spacing * along_axes(p, double{p.w}, p.u, p.v));
@@ -26,40 +128,44 @@ ReliefPoints::ReliefPoints(const std::vector<ReliefPlace>& places, double spacin
     weights_.push_back(p.weight / 65535.0);
     box.extend(at_.back());
   }
+  cells_.push_back({0, 0});
   if (places.empty()) return;
   corner_ = {box.min.x, box.min.y, box.min.z};
   const Vec3d extent = box.extent();
   count_ = {1 + static_cast<std::int64_t>(extent.x / cell_), 1 + static_cast<std::int64_t>(extent.y / cell_),
             1 + static_cast<std::int64_t>(extent.z / cell_)};
-  std::vector<std::int64_t> keys;
-  for (const Vec3d& p : at_) keys.push_back(key(cell(p.x, 0), cell(p.y, 1), cell(p.z, 2)));
-  order_.resize(places.size());
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::stable_sort(order_.begin(), order_.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
-  for (const std::uint32_t i : order_) keys_.push_back(keys[i]);
+  struct Keyed {
+    std::int64_t row, x;
+    std::uint32_t place;
+  };
+  std::vector<Keyed> keys(places.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Vec3d& p = at_[i];
+    keys[i] = {cell(p.y, 1) + count_[1] * cell(p.z, 2), cell(p.x, 0), static_cast<std::uint32_t>(i)};
+  }
+  std::sort(keys.begin(), keys.end(), [](const Keyed& a, const Keyed& b) {
+    return std::tie(a.row, a.x, a.place) < std::tie(b.row, b.x, b.place);
+  });
+  cells_.clear();
+  order_.resize(keys.size());
+  rows_.assign(static_cast<std::size_t>(count_[1] * count_[2]) + 1, 0);
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    order_[k] = keys[k].place;
+    if (k > 0 && keys[k].row == keys[k - 1].row && keys[k].x == keys[k - 1].x) continue;
+    cells_.push_back({keys[k].x, static_cast<std::uint32_t>(k)});
+    ++rows_[static_cast<std::size_t>(keys[k].row) + 1];
+  }
+  std::partial_sum(rows_.begin(), rows_.end(), rows_.begin());
+  cells_.push_back({0, static_cast<std::uint32_t>(keys.size())});
 }
 
 std::vector<double> smoothed_heights(const ReliefPoints& points, const std::vector<double>& heights,
                                      double sigma) {
-  const double radius = std::sqrt(8.0) * sigma, inverse = 1.0 / (radius * radius);
-  std::vector<double> means(heights.size());
-  parallel_for(
-      0, static_cast<std::int64_t>(heights.size()),
-      [&](std::int64_t number) {
-        const auto i = static_cast<std::size_t>(number);
-        double total = 0.0, sum = 0.0;
-        points.for_each_near(points.at(i), points.normal(i), radius,
-                             [&](std::uint32_t k, double squared, double facing) {
-                               const double near = 1.0 - squared * inverse, square = near * near;
-                               const double weight = square * square * facing * points.weight(k);
-                               total += weight;
-                               sum += weight * heights[k];
-                             });
-        means[i] = total > 0.0 ? sum / total : heights[i];
-      },
-      64);
-  return means;
+  return std::move(smoothed(points, {&heights, 1}, sigma)[0]);
+}
+
+ThreeFields smoothed_fields(const ReliefPoints& points, const ThreeFields& fields, double sigma) {
+  return smoothed(points, fields, sigma);
 }
 
 }  // namespace astrolith

@@ -207,6 +207,26 @@ void add_cell(const Lines& lines, const FoundSheets& found, ReliefTiles& to) {
 
 }  // namespace
 
+bool find_in_tiles(const ReliefTiles& tiles, const std::array<double, 3>& at, TiledPoint& point) {
+  std::array<std::int64_t, 3> cell;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double number = std::floor(at[a] / kReliefCell);
+    cell[a] = static_cast<std::int64_t>(number) - tiles.low[a];
+    if (cell[a] < 0 || cell[a] >= tiles.count[a]) return false;
+    point.at[a] = at[a] - number * kReliefCell;
+  }
+  point.cell = cell[0] + tiles.count[0] * (cell[1] + tiles.count[1] * cell[2]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::int32_t tile = tiles.tiles[3 * static_cast<std::size_t>(point.cell) + a];
+    if (tile < 0) {
+      const ReliefSplit& s = tiles.splits[static_cast<std::size_t>(-1 - tile)];
+      tile = point.at[a] > s.at + s.of_u * point.u(a) + s.of_v * point.v(a) ? s.upper : s.lower;
+    }
+    point.tiles[a] = tile;
+  }
+  return true;
+}
+
 ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where) {
   ReliefTiles made;
   made.places.assign(kReliefTileSize, kNoPlace);
@@ -231,7 +251,7 @@ ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std:
     made.count[a] = high[a] - made.low[a] + 1;
     cells *= made.count[a];
   }
-  if (cells > 0x1p24) throw InputError(where + ".spacing: too small for this body; make it larger");
+  if (cells > kMostReliefCells) throw InputError(where + ".spacing: too small for this body; make it larger");
   made.tiles.assign(3 * static_cast<std::size_t>(cells), 0);
 
   for (int axis = 0; axis < 3; ++axis) {

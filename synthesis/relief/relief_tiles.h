@@ -17,6 +17,8 @@ namespace astrolith {
 inline constexpr int kReliefCell = 4;                    // spacings
 inline constexpr int kReliefTileSide = kReliefCell + 3;  // places along a side of a tile
 inline constexpr int kReliefTileSize = kReliefTileSide * kReliefTileSide;
+// At most so many cells hold the places of one layer.
+inline constexpr double kMostReliefCells = 0x1p24;
 inline constexpr std::uint32_t kNoPlace = 0xffffffffu;
 
 // Two tiles of one axis and cell. A point belongs to `upper` where w > at + of_u u + of_v v, in spacings from
@@ -39,8 +41,21 @@ struct ReliefTiles {
   std::size_t num_tiles() const { return places.size() / kReliefTileSize; }
 };
 
+// A point in the tiles.
+struct TiledPoint {
+  std::int64_t cell;
+  std::array<double, 3> at;           // in spacings from the corner of the cell
+  std::array<std::int32_t, 3> tiles;  // of each axis
+
+  // Its coordinates along the lines of an axis: u and v.
+  double u(std::size_t axis) const { return at[(axis + 1) % 3]; }
+  double v(std::size_t axis) const { return at[(axis + 2) % 3]; }
+};
+// Finds a point, in spacings. Returns whether it lies in a cell.
+bool find_in_tiles(const ReliefTiles& tiles, const std::array<double, 3>& at, TiledPoint& point);
+
 // Expects places in the order of find_relief_places(). Throws InputError, which begins with `where`, where
-// the box of the places has more than 2^24 cells.
+// the box of the places has more than kMostReliefCells.
 ReliefTiles make_relief_tiles(const std::vector<ReliefPlace>& places, const std::string& where);
 
 }  // namespace astrolith

@@ -1,5 +1,7 @@
 #include "synthesis/relief/relief_values.h"
 
+#include <algorithm>
+
 #include "numerics/parallel_for.h"
 
 namespace astrolith {
@@ -14,20 +16,38 @@ void for_each_place(std::size_t n, const Work& work) {
 
 }  // namespace
 
-ReliefValues::ReliefValues(const ReliefPoints& points, const ReliefShares& shares) : rows_(points.size()) {
-  for_each_place(rows_.size(), [&](std::size_t i) {
-    shares.add(to_float(points.at(i)), rows_[i].places, rows_[i].shares);
+ReliefValues::ReliefValues(const ReliefPoints& points, const ReliefShares& shares)
+    : first_(points.size() + 1, 0) {
+  constexpr std::size_t kGroup = 4096;  // places whose shares are found together
+  struct Rows {
+    std::vector<std::uint32_t> places;
+    std::vector<float> shares;
+  };
+  std::vector<Rows> groups((points.size() + kGroup - 1) / kGroup);
+  parallel_for(0, static_cast<std::int64_t>(groups.size()), [&](std::int64_t number) {
+    const auto g = static_cast<std::size_t>(number);
+    Rows& rows = groups[g];
+    for (std::size_t i = g * kGroup; i < std::min(points.size(), (g + 1) * kGroup); ++i) {
+      shares.add(to_float(points.at(i)), rows.places, rows.shares);
+      first_[i + 1] = rows.places.size();
+    }
   });
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::size_t before = places_.size();
+    places_.insert(places_.end(), groups[g].places.begin(), groups[g].places.end());
+    shares_.insert(shares_.end(), groups[g].shares.begin(), groups[g].shares.end());
+    groups[g] = {};
+    for (std::size_t i = g * kGroup; i < std::min(points.size(), (g + 1) * kGroup); ++i)
+      first_[i + 1] += before;
+  }
 }
 
 std::vector<double> ReliefValues::values_of(const std::vector<double>& coefficients) const {
-  std::vector<double> values(rows_.size());
-  for_each_place(rows_.size(), [&](std::size_t i) {
-    const Row& row = rows_[i];
-    double sum = row.places.empty() ? coefficients[i] : 0.0;
-    for (std::size_t k = 0; k < row.places.size(); ++k) {
-      sum += double{row.shares[k]} * coefficients[row.places[k]];
-    }
+  std::vector<double> values(coefficients.size());
+  for_each_place(values.size(), [&](std::size_t i) {
+    double sum = first_[i] == first_[i + 1] ? coefficients[i] : 0.0;
+    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k)
+      sum += double{shares_[k]} * coefficients[places_[k]];
     values[i] = sum;
   });
   return values;

@@ -23,11 +23,9 @@ class ReliefValues {
   std::vector<double> coefficients_of(const std::vector<double>& values) const;
 
  private:
-  struct Row {
-    std::vector<std::uint32_t> places;
-    std::vector<float> shares;
-  };
-  std::vector<Row> rows_;
+  std::vector<std::size_t> first_;  // (places + 1) of the two lists below
+  std::vector<std::uint32_t> places_;
+  std::vector<float> shares_;
 };
 
 }  // namespace astrolith

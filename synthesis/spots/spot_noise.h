@@ -16,8 +16,8 @@
 #include "synthesis/noise/noise_frame.h"
 #include "synthesis/noise/noise_traits.h"
 #include "synthesis/spots/spot_bounds.h"
+#include "synthesis/spots/spot_draw.h"
 #include "synthesis/spots/spot_kernel.h"
-#include "synthesis/spots/spot_lattice.h"
 
 namespace astrolith {
 

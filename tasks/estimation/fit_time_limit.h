@@ -18,9 +18,8 @@ namespace astrolith {
 // Asks a stage to stop when its share of the time, counted from the start of the program's work, is over.
 class TimeLimit {
  public:
-  // `option` names the limit in messages. 0 seconds: no limit.
-  explicit TimeLimit(double seconds, std::string option = "--time-limit")
-      : seconds_(seconds), option_(std::move(option)) {}
+  // 0 seconds: no limit.
+  explicit TimeLimit(double seconds) : seconds_(seconds) {}
 
   // For the preparation of the mesh, without which there is no result: throws InputError once the time is
   // over. `done` is the share of the preparation that is over when the progress begins, and it ends at 1.
@@ -30,9 +29,9 @@ class TimeLimit {
       const double share = done + (1.0 - done) * fraction, now = spent();
       if (now <= seconds_) return true;
       throw InputError(
-          fmt::format("{}: reading and checking the mesh is {:.0f} % done after {:.2g} s "
+          fmt::format("--time-limit: reading and checking the mesh is {:.0f} % done after {:.2g} s "
                       "and there is nothing to write yet; allow some {:.2g} s, or more for a fit",
-                      option_, 100.0 * share, now, now / share));
+                      100.0 * share, now, now / share));
     };
   }
 
@@ -65,7 +64,6 @@ class TimeLimit {
   }
 
   double seconds_;
-  std::string option_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::atomic<bool> reached_{false};
 };

@@ -1,8 +1,5 @@
 #include "tasks/estimation/photo_recipe.h"
 
-#include <algorithm>
-
-#include "estimation/gabor/exemplar/tiled_spectrum.h"
 #include "numerics/length_unit.h"
 
 namespace astrolith {
@@ -11,7 +8,6 @@ namespace {
 GaborLayer make_layer(const PhotoRecipeOptions& o, const FittedChannel& channel, bool first) {
   GaborLayer layer = layer_of(channel, first);
   layer.name = o.layer_name;
-  layer.evaluation = o.evaluation;
   layer.pixel_size = o.mm_per_px > 0.0 ? o.mm_per_px / (1e3 * metres_of(o.unit)) : 1.0;
   if (first && o.height_rms >= 0.0) layer.height_rms = o.height_rms;
   return layer;
@@ -30,13 +26,6 @@ nlohmann::ordered_json details(const std::vector<BandVariance>& bands) {
         {{"cycles_per_pixel", {band.lowest, band.highest}}, {"photo", band.photo}, {"noise", band.noise}});
   }
   return list;
-}
-
-// What `evaluation: tiles` would cost the fit's lobes, on a grid of at most 256 x 256 frequencies.
-double tiles_distance_of(const GaborFit& fit) {
-  constexpr int kMostFrequencies = 256;
-  return tiles_distance(fit.lobes, std::min(fit.fitted.width, kMostFrequencies),
-                        std::min(fit.fitted.height, kMostFrequencies));
 }
 
 nlohmann::ordered_json details(const FittedChannel& channel) {
@@ -58,10 +47,8 @@ nlohmann::ordered_json details(const FittedChannel& channel) {
                                     {"variance", channel.variance()},
                                     {"pixel_variance", channel.pixel_variance()},
                                     {"variance_ratio_before_scaling", fit.variance_before_scaling}};
-  if (channel.gaussianity) {  // a fit that was stopped ends at once, without the following
-    figures["tiles_distance"] = tiles_distance_of(fit);
-    figures["gaussianity"] = channel.gaussianity->p_value;
-  }
+  // A fit that was stopped ends at once, without this test.
+  if (channel.gaussianity) figures["gaussianity"] = channel.gaussianity->p_value;
   return figures;
 }
 

@@ -15,7 +15,6 @@ struct PhotoRecipeOptions {
   std::string unit = "m";    // "m" or "km", where mm_per_px is given
   double height_rms = -1.0;  // of the first layer, length units; negative: the exemplar's own contrast
   std::uint64_t seed = 1;
-  GaborEvaluation evaluation = GaborEvaluation::kImpulses;  // of all layers
 };
 
 // The recipe, whose provenance states what the fit achieved. Tool, input and options of the provenance are

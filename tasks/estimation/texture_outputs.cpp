@@ -10,7 +10,6 @@
 #include "estimation/gabor/spectrum/spectrum_estimate.h"
 #include "estimation/gabor/texture_page.h"
 #include "estimation/gabor/texture_report.h"
-#include "numerics/files/npy_file.h"
 #include "numerics/sample_statistics.h"
 #include "synthesis/exemplar/plane_exemplar.h"
 #include "synthesis/gabor/gabor_texture.h"
@@ -202,6 +201,18 @@ void write_texture_reports(const std::string& name, const TextureFit& fit, const
   }
 }
 
+std::vector<fs::path> texture_report_files(const std::vector<std::string>& folders) {
+  std::vector<fs::path> files;
+  for (const std::string& folder : folders) {
+    for (const char* channel : {"", "channel2", "channel3"}) {
+      for (const char* name : {"index.html", "report.png", "report.svg", "exemplar.png", "synthesis.png",
+                               "spectrum_exemplar.png", "spectrum_fitted.png"})
+        files.push_back(fs::path(folder) / channel / name);
+    }
+  }
+  return files;
+}
+
 SpectraArray fitted_spectra(const TextureFit& fit, const FitTexture& texture) {
   if (!fit.lobes) {
     PowerSpectrum shown = estimated(texture_image(fit, texture), kSpectrumGrid);
@@ -216,11 +227,6 @@ SpectraArray fitted_spectra(const TextureFit& fit, const FitTexture& texture) {
   }
   if (channels.size() > 1) spectra.shape.insert(spectra.shape.begin(), static_cast<int>(channels.size()));
   return spectra;
-}
-
-void write_spectra(const TextureFit& fit, const FitTexture& texture, const fs::path& file) {
-  const SpectraArray spectra = fitted_spectra(fit, texture);
-  write_npy(spectra.power, spectra.shape, file);
 }
 
 }  // namespace astrolith

@@ -37,7 +37,7 @@ struct SpectraArray {
 // the grid of the photo's DFT, at most 1024, frequency 0 first.
 SpectraArray fitted_spectra(const TextureFit& fit, const FitTexture& texture);
 
-// Writes the fitted spectra as a .npy file.
-void write_spectra(const TextureFit& fit, const FitTexture& texture, const std::filesystem::path& file);
+// The files of the reports in these folders.
+std::vector<std::filesystem::path> texture_report_files(const std::vector<std::string>& folders);
 
 }  // namespace astrolith

@@ -57,13 +57,17 @@ class SiteFinder {
     tree_ = BoxTree(boxes);
   }
 
+  Vec3d center_of(std::size_t facet) const {
+    const auto& [a, b, c] = mesh_.triangles[facet];
+    return (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) * (1.0 / 3.0);
+  }
+
   // The site about the centre of a facet; its cost is infinite where there is none.
   LandingSite site_at(std::size_t facet) const {
     LandingSite site;
     site.side = side_;
     site.cost = std::numeric_limits<double>::infinity();
-    const auto& [a, b, c] = mesh_.triangles[facet];
-    site.center = (mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) * (1.0 / 3.0);
+    site.center = center_of(facet);
     const double reach = 0.5 * std::numbers::sqrt3 * side_;
     const Vec3d r{reach, reach, reach};
     const std::vector<std::uint32_t> near = tree_.touching({site.center - r, site.center + r});
@@ -163,17 +167,22 @@ std::vector<LandingSite> find_landing_sites(const GravityBody& body, std::span<c
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
-  std::vector<LandingSite> sites;
+  std::vector<std::size_t> taken;
+  std::vector<Vec3d> centers;
   for (const std::size_t i : order) {
-    if (static_cast<int>(sites.size()) == search.count || !std::isfinite(costs[i])) break;
-    LandingSite site = finder.site_at(i * stride);
-    const auto too_near = [&](const LandingSite& other) {
-      return norm(other.center - site.center) < search.distance;
-    };
-    if (std::any_of(sites.begin(), sites.end(), too_near)) continue;
-    add_place(site);
-    sites.push_back(std::move(site));
+    if (static_cast<int>(taken.size()) == search.count || !std::isfinite(costs[i])) break;
+    const Vec3d center = finder.center_of(i * stride);
+    const auto too_near = [&](const Vec3d& other) { return norm(other - center) < search.distance; };
+    if (std::any_of(centers.begin(), centers.end(), too_near)) continue;
+    taken.push_back(i * stride);
+    centers.push_back(center);
   }
+  std::vector<LandingSite> sites(taken.size());
+  parallel_for(0, static_cast<std::int64_t>(taken.size()), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    sites[at] = finder.site_at(taken[at]);
+    add_place(sites[at]);
+  });
   return sites;
 }
 

@@ -17,7 +17,7 @@
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/field_tables.h"
 #include "synthesis/finish/erosion.h"
-#include "synthesis/gabor/gabor_tiles.h"
+#include "synthesis/gabor/gabor_bricks.h"
 
 namespace astrolith {
 namespace {
@@ -70,37 +70,37 @@ double meshing_bytes(const MeshEstimate& mesh) {
              (2.0 * (mesh.list_bytes + kNode) + of_block * (sizeof(Triangle) + 0.5 * sizeof(MeshVertex)));
 }
 
-// The tiles of Gabor impulses that a mesh draws.
-struct TileCost {
+// The bricks of Gabor impulses that a mesh draws.
+struct BrickCost {
   double bytes = 0.0;    // that the caches hold at the end, beyond what they hold now
   double seconds = 0.0;  // of one processor
 };
 
-// From the tiles that the estimate has drawn. A probe draws the tiles that reach its column, so that a tile
-// which k probes need has been drawn with the probability 1 - exp(-k).
-TileCost cost_of_tiles(const ImplicitField& field, const MeshEstimate& mesh, int threads) {
-  TileCost cost;
-  if (mesh.probes == 0) return cost;  // all tiles have been drawn
+// From the bricks that the estimate has drawn. A probe draws the bricks that reach its column, so that a
+// brick which k probes need has been drawn with the probability 1 - exp(-k).
+BrickCost cost_of_bricks(const ImplicitField& field, const MeshEstimate& mesh, int threads) {
+  BrickCost cost;
+  if (mesh.probes == 0) return cost;  // all bricks have been drawn
   const FieldView& view = field.tables();
   const std::span<const ImpulseList> lists = view.arrays.span(view.gabor_lists);
   const std::vector<GaborCacheUse> caches = field.gabor_caches();
-  const std::vector<double> tile_seconds = field.gabor_tile_seconds();
+  const std::vector<double> brick_seconds = field.gabor_brick_seconds();
   for (std::size_t i = 0; i < lists.size(); ++i) {
     if (!(caches[i].drawn > 0.0)) continue;  // under a mask, or drawn for each point
-    const GaborSurfaceNoise& noise = *gabor_impulses_of(view.layers[lists[i].layer].noise);
+    const GaborSurfaceNoise& noise = *view.layers[lists[i].layer].noise.get_if<GaborSurfaceNoise>();
     const SurfaceBand& band = view.arrays[noise.bands][lists[i].element];
     const double block = kBlockCells * mesh.step;
-    const double reached = double{band.cell} * kTileCells + 2.0 * double{band.reach};
+    const double reached = double{band.cell} * kBrickCells + 2.0 * double{band.reach};
     const double seen = (reached + 2.0 * block) * (reached + 2.0 * block) * mesh.probes / mesh.area;
-    const double tiles = caches[i].drawn / (1.0 - portable::exp(-seen));
-    const double bytes = tiles * caches[i].drawn_bytes / caches[i].drawn;
-    // Tiles that find no room are drawn anew in each layer of blocks that needs them.
+    const double bricks = caches[i].drawn / (1.0 - portable::exp(-seen));
+    const double bytes = bricks * caches[i].drawn_bytes / caches[i].drawn;
+    // Bricks that find no room are drawn anew in each layer of blocks that needs them.
     const double of_two_layers = bytes * std::min((reached + 3.0 * block) / field.bounds().extent().z, 1.0);
     const double draws = of_two_layers <= 0.9 * kMostCacheBytes ? 1.0 : std::max(reached / block + 1.0, 1.0);
     // The heaps of two or more threads have gaps.
     const double kept = bytes > kMostCacheBytes ? (threads > 1 ? 1.25 : 1.1) * kMostCacheBytes : bytes;
     cost.bytes += std::max(kept - caches[i].held_bytes, 0.0);
-    cost.seconds += tile_seconds[i] * tiles * draws;
+    cost.seconds += brick_seconds[i] * bricks * draws;
   }
   return cost;
 }
@@ -177,7 +177,7 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
   MeshEstimator estimator(mesh.field, mesh.recipe, mesh.region);
   const MeshEstimate estimate =
       estimator.at(triangles > 0.0 ? estimator.resolution_for(triangles) : resolution);
-  const TileCost tiles = cost_of_tiles(mesh.field, estimate, threads_of(run));
+  const BrickCost bricks = cost_of_bricks(mesh.field, estimate, threads_of(run));
   const UseBytes use = bytes_of_use(mesh);
   const ErosionCost erosion = mesh.use.erosion ? cost_of_erosion(mesh, estimate) : ErosionCost{};
   const double gravity = mesh.use.gravity ? gravity_seconds(estimator.coarse(), estimate) : 0.0;
@@ -185,7 +185,7 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
   give_back_freed_memory();
   const double even = mesh.use.even ? estimate.triangles : 0.0;
   const double working = std::max({meshing_bytes(estimate), erosion.bytes, kEvenTables * even}) +
-                         kRecorded * even + tiles.bytes + use.memory * estimate.triangles;
+                         kRecorded * even + bricks.bytes + use.memory * estimate.triangles;
   MeshPrediction predicted;
   predicted.resolution = estimate.resolution;
   predicted.triangles = estimate.triangles;
@@ -195,7 +195,7 @@ MeshPrediction predict_mesh(const PlannedMesh& mesh, int resolution, double tria
   const double times = mesh.use.twice ? 2.0 : 1.0;
   const double shares = times + (mesh.use.labels ? kLabelShare : 0.0) + (mesh.use.even ? kEvenShare : 0.0);
   const double parallel =
-      shares * estimate.seconds + times * tiles.seconds + erosion.vertical_seconds + gravity;
+      shares * estimate.seconds + times * bricks.seconds + erosion.vertical_seconds + gravity;
   const double serial = times * kOutputSeconds * estimate.triangles + erosion.slide_seconds;
   // Other programs on the machine slow the clock, and threads add up on the processors, so that the lower one
   // is nearer to the clock on idle cores.

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "geometry/io/mesh_io.h"
-#include "geometry/io/points_io.h"
 #include "geometry/mesh_measure.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/orient_faces.h"

@@ -23,11 +23,7 @@ namespace {
 constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{1} << 28;
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file, const std::string& place) {
-  try {
-    require_plain_file(file);
-  } catch (const InputError& e) {
-    throw InputError(place + ": " + e.what());
-  }
+  require_plain_file(file, place + ": ");
   const std::uintmax_t size = std::filesystem::file_size(file);
   if (size > kMostImageBytes) {
     throw InputError(place + ": " + file.string() + " is larger than 256 MB; scale the image down");
@@ -68,7 +64,7 @@ void require_no_input_of_fits(const std::filesystem::path& file) {
   const auto is_one_of = [&](std::initializer_list<const char*> extensions) {
     return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   };
-  if (has_mesh_extension(file) || extension == ".glb") {
+  if (has_mesh_extension(file)) {
     throw InputError(file.string() + ": is a mesh and no recipe; fit_shape makes a recipe of it");
   }
   if (is_one_of({".png", ".jpg", ".jpeg", ".tif", ".tiff"})) {
@@ -129,6 +125,27 @@ void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file) {
         named->pixels->file.lexically_normal().lexically_relative(folder.lexically_normal()).generic_string();
   }
   write_recipe(recipe, file);
+}
+
+std::vector<std::filesystem::path> recipe_and_images(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files(names.begin(), names.end());
+  for (const std::string& name : names) try {
+      for (Layer& layer : read_recipe(name).layers) {
+        const NamedImage* named = image_of(layer);
+        if (named != nullptr && !named->image.empty())
+          files.push_back(std::filesystem::path(name).parent_path() / named->image);
+      }
+    } catch (const std::exception&) {  // is told where the recipe is read
+    }
+  return files;
+}
+
+std::vector<std::filesystem::path> recipe_and_relief(const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> files(names.begin(), names.end());
+  for (const std::string& name : names) {
+    if (!is_compact_name(name)) files.push_back(relief_image_name(name, 0));
+  }
+  return files;
 }
 
 }  // namespace astrolith

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "recipe/recipe.h"
 
@@ -20,5 +22,11 @@ void load_images(Recipe& recipe, const std::filesystem::path& folder, const std:
 // relief that no file holds are written beside it, as FILE.relief.png, or into a compact recipe. Throws as
 // write_recipe() does.
 void write_loaded_recipe(Recipe recipe, const std::filesystem::path& file);
+
+// The recipe files of these names with all images that their layers name. What cannot be read names none.
+std::vector<std::filesystem::path> recipe_and_images(const std::vector<std::string>& names);
+
+// The files that write_loaded_recipe() writes for these names, where the recipe has one new relief.
+std::vector<std::filesystem::path> recipe_and_relief(const std::vector<std::string>& names);
 
 }  // namespace astrolith

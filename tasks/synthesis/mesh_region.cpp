@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "cuda/mesher/backend_mesher.h"
-#include "cuda/mesher/gpu_obstacle.h"
-#include "cuda/mesher/mesh_field.h"
+#include "cuda/mesher/gpu_mesher.h"
 #include "numerics/errors.h"
 #include "numerics/interval.h"
-#include "recipe/height_field.h"
 #include "synthesis/field/field_mesh.h"
 
 namespace astrolith {

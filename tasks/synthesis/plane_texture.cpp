@@ -5,10 +5,8 @@
 #include <string_view>
 
 #include "numerics/errors.h"
-#include "synthesis/exemplar/exemplar_texture.h"
 #include "synthesis/exemplar/plane_exemplar.h"
 #include "synthesis/gabor/color_texture.h"
-#include "synthesis/gabor/gabor_texture.h"
 #include "synthesis/picture/surface_maps.h"
 
 namespace astrolith {
@@ -35,68 +33,6 @@ void check_side(int side) {
                    std::to_string(kMaxTextureSide));
 }
 
-// A layer that is drawn.
-struct PlaneJob {
-  const Recipe& recipe;
-  const std::string& file;
-  std::size_t index;  // of the layer
-  const PlaneTextureRequest& request;
-  const Progress& progress;
-
-  std::string place() const { return file + ": layers[" + std::to_string(index) + "]"; }
-};
-
-TextureOptions gabor_options(const PlaneJob& job) {
-  TextureOptions options{job.recipe.seed};
-  if (job.request.tileable) {
-    options.period_width = job.request.width;
-    options.period_height = job.request.height;
-  }
-  return options;
-}
-
-PlaneTexture draw_heights(GaborLayer layer, const PlaneJob& job) {
-  PlaneTexture texture;
-  // A layer without a height is drawn in units of its own standard deviation.
-  texture.has_height = layer.has_height();
-  if (!texture.has_height) layer.height_rms = 1.0;
-  texture.height_rms = layer.height_rms;
-  texture.values =
-      synthesize_texture(layer, job.request.width, job.request.height, gabor_options(job), job.progress);
-  return texture;
-}
-
-PlaneTexture draw_heights(ExemplarLayer layer, const PlaneJob& job) {
-  PlaneTexture texture;
-  texture.has_height = layer.has_height();
-  if (!texture.has_height) layer.height_rms = 1.0;
-  const int number = layer_number(layer.seed, static_cast<int>(job.index));
-  texture.values = synthesize_exemplar(layer, job.place(), job.request.width, job.request.height,
-                                       {job.recipe.seed, number, job.request.tileable}, job.progress);
-  texture.height_rms = exemplar_height_rms(layer);
-  return texture;
-}
-
-PlaneTexture draw_colors(const ExemplarLayer& layer, const PlaneJob& job) {
-  PlaneTexture texture;
-  texture.channels = 3;
-  const int number = layer_number(layer.seed, static_cast<int>(job.index));
-  texture.values = synthesize_exemplar_colors(layer, job.place(), job.request.width, job.request.height,
-                                              {job.recipe.seed, number, job.request.tileable}, job.progress);
-  return texture;
-}
-
-// The colours of all Gabor layers that have one, since each has only one axis of an image's colours.
-PlaneTexture draw_colors(const GaborLayer&, const PlaneJob& job) {
-  const std::vector<GaborLayer> layers = colored_layers(job.recipe);
-  PlaneTexture texture;
-  texture.channels = 3;
-  texture.layers = layers.size();
-  texture.values = synthesize_color_texture(layers, job.request.width, job.request.height, gabor_options(job),
-                                            job.progress);
-  return texture;
-}
-
 // Calls use(layer) with a layer that a plane can show. Expects that it can.
 template <class Result, class Use>
 Result with_plane_layer(const Layer& layer, const Use& use) {
@@ -117,10 +53,10 @@ double pixel_size_of(const Layer& layer) {
 }
 
 // A recipe's textures, with one progress that remembers whether it was told to stop.
-class PlaneDrawing {
+class TextureDrawing {
  public:
-  PlaneDrawing(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
-               const Progress& progress)
+  TextureDrawing(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
+                 const Progress& progress)
       : recipe_(recipe), file_(file), request_(request) {
     check_side(request.width);
     check_side(request.height);
@@ -130,16 +66,16 @@ class PlaneDrawing {
       return go_on;
     };
   }
-  PlaneDrawing(const PlaneDrawing&) = delete;
-  PlaneDrawing& operator=(const PlaneDrawing&) = delete;
+  TextureDrawing(const TextureDrawing&) = delete;
+  TextureDrawing& operator=(const TextureDrawing&) = delete;
 
   PlaneTexture heights(std::size_t i) {
     return finished(with_plane_layer<PlaneTexture>(
-        recipe_.layers[i], [&](const auto& layer) { return draw_heights(layer, job(i)); }));
+        recipe_.layers[i], [&](const auto& layer) { return heights_on_plane(layer, drawing(i)); }));
   }
   PlaneTexture colors(std::size_t i) {
     return finished(with_plane_layer<PlaneTexture>(
-        recipe_.layers[i], [&](const auto& layer) { return draw_colors(layer, job(i)); }));
+        recipe_.layers[i], [&](const auto& layer) { return colors_on_plane(layer, drawing(i)); }));
   }
 
   const Progress& progress() const { return progress_; }
@@ -148,7 +84,15 @@ class PlaneDrawing {
   }
 
  private:
-  PlaneJob job(std::size_t i) const { return {recipe_, file_, i, request_, progress_}; }
+  PlaneDrawing drawing(std::size_t i) const {
+    return {recipe_,
+            i,
+            file_ + ": layers[" + std::to_string(i) + "]",
+            request_.width,
+            request_.height,
+            request_.tileable,
+            progress_};
+  }
   PlaneTexture finished(PlaneTexture texture) const {
     expect_complete();
     return texture;
@@ -165,7 +109,7 @@ class PlaneDrawing {
 
 PlaneTexture draw_texture(const Recipe& recipe, const std::string& file, const PlaneTextureRequest& request,
                           const Progress& progress) {
-  PlaneDrawing drawing(recipe, file, request, progress);
+  TextureDrawing drawing(recipe, file, request, progress);
   const std::size_t colored = first_colored_layer(recipe);
   const bool has_color = colored < recipe.layers.size();
   if (request.content == "color" && !has_color) {
@@ -182,7 +126,7 @@ PlaneMaterial draw_material(const Recipe& recipe, const std::string& file, const
   const std::size_t first = first_plane_layer(recipe, file);
   const std::string place = file + ": layers[" + std::to_string(first) + "]";
   const Layer& layer = recipe.layers[first];
-  PlaneDrawing drawing(recipe, file, request, progress);
+  TextureDrawing drawing(recipe, file, request, progress);
   PlaneMaterial material;
   material.pixel_size = pixel_size_of(layer);
   material.height = drawing.heights(first);

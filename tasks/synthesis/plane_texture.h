@@ -3,13 +3,13 @@
 // Gabor layers that have one.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "numerics/progress.h"
 #include "recipe/recipe.h"
+#include "synthesis/noise/plane_texture.h"
 
 namespace astrolith {
 
@@ -19,14 +19,6 @@ struct PlaneTextureRequest {
   int width = 0, height = 0;  // pixels, 1 .. kMaxTextureSide
   std::string content;        // "height" or "color"; empty: colours where layers have them
   bool tileable = false;      // the texture repeats in both directions without a seam
-};
-
-struct PlaneTexture {
-  int channels = 1;           // 1: heights; 3: red, green and blue, full scale 1, not clamped
-  std::vector<float> values;  // (height x width x channels), the top row first
-  std::size_t layers = 1;     // number of layers drawn
-  double height_rms = 0.0;    // standard deviation of the heights, length units
-  bool has_height = true;     // false: the layer states no height, and the unit is its standard deviation
 };
 
 // Draws the texture. `file` is the recipe's file, for messages. Throws InputError for a side out of range,

@@ -148,9 +148,9 @@ nlohmann::ordered_json surface_json(const SurfaceStatistics& surface) {
              {"regions", regions_json(surface)}};
   entry["height_bands"] = bands_json(surface);
   if (surface.heights.coupling) entry["band_coupling"] = *surface.heights.coupling;
-  entry["bends"] = distribution_json(surface.find(SurfaceQuantity::bend, 0.0)->values);
-  if (const LocalStatistic* slope = surface.find(SurfaceQuantity::slope, 0.0)) {
-    entry["slopes"] = distribution_json(slope->values);
+  for (const LocalStatistic& statistic : surface.local) {
+    const char* const list = traits_of(statistic.quantity).list;
+    if (list != nullptr) entry[list] = distribution_json(statistic.values);
   }
   return entry;
 }

@@ -35,6 +35,8 @@ TEST_F(Classify, LearnsClassesAndNamesThem) {
   EXPECT_EQ(summary["cross_validation"]["confusion"].size(), 3u);
   EXPECT_EQ(summary["cross_validation"]["classes"][0]["precision_at_recall"].size(),
             summary["cross_validation"]["recall_levels"].size());
+  EXPECT_GE(summary["retrieval"]["mean_average_precision"], 0.7);
+  EXPECT_EQ(summary["retrieval"]["precision_at_recall"].size(), summary["retrieval"]["recall_levels"].size());
   EXPECT_TRUE(summary["failed"].empty());
 
   const Outcome said = run("predict model.yml ball.obj box.obj ring.obj shapes/box");

@@ -325,8 +325,7 @@ TEST_F(FitShape, BadFilesAreRefused) {
                                        {"egg.obj -o folder", "folder"},
                                        {"egg.obj -o o.json --report egg.obj/report", "report"},
                                        {"egg.obj -o o.json --spheres 0", "--spheres"},
-                                       {"egg.obj -o o.json --optimizer magic", "--optimizer"},
-                                       {"egg.obj -o o.json --kernel wyvill --subtract 0.2", "--subtract"}}) {
+                                       {"egg.obj -o o.json --optimizer magic", "--optimizer"}}) {
     refuse(words, culprit);
   }
 }

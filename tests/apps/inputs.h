@@ -82,26 +82,6 @@ inline std::string png_header(std::uint32_t width, std::uint32_t height) {
          std::string("\x08\0\0\0\0", 5) + std::string(16, '\0');
 }
 
-// An uncompressed grey TIFF of 32-bit floats, in memory order of this machine (little-endian).
-inline std::string float_tiff(std::uint16_t width, std::uint16_t height, const std::vector<float>& values) {
-  std::string bytes("II*\0", 4);
-  const auto number = [&](std::uint32_t v, int count) {
-    for (int i = 0; i < count; ++i) bytes += static_cast<char>(v >> (8 * i));
-  };
-  const auto entry = [&](std::uint32_t tag, std::uint32_t type, std::uint32_t value) {
-    number(tag, 2), number(type, 2), number(1, 4), number(value, 4);
-  };
-  number(8, 4);   // where the directory begins
-  number(10, 2);  // its entries
-  const std::uint32_t data = 8 + 2 + 10 * 12 + 4;
-  entry(256, 3, width), entry(257, 3, height), entry(258, 3, 32), entry(259, 3, 1), entry(262, 3, 1);
-  entry(273, 4, data), entry(277, 3, 1), entry(278, 3, height);
-  entry(279, 4, static_cast<std::uint32_t>(4 * values.size())), entry(339, 3, 3);
-  number(0, 4);  // no further page
-  bytes.append(reinterpret_cast<const char*>(values.data()), 4 * values.size());
-  return bytes;
-}
-
 // Smooth noise: the mean of 4 x 4 independent pixels around each.
 inline std::string noise_png(int side) {
   std::vector<std::uint8_t> grey(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/counted.h"
 #include "numerics/errors.h"
 #include "numerics/files/output_file.h"
+#include "tasks/job/words.h"
 #include "tests/support/scratch_folder.h"
 
 namespace astrolith {
@@ -150,7 +150,7 @@ TEST(Program, AnUnwritableSummaryIsFoundOutBeforeTheWork) {
 
 TEST(Program, GivenOptionsAreThoseThatChangeTheResult) {
   run({"--seed", "7", "--threads", "2", "--quiet"}, [](Program& p) {
-    const auto given = p.given_options();
+    const auto given = p.options.given();
     ASSERT_EQ(given.size(), 1u);
     EXPECT_EQ(given[0], std::make_pair(std::string("seed"), std::string("7")));
   });
@@ -172,9 +172,9 @@ TEST(ProgramDeathTest, CtrlCKeepsTheBestSoFar) {
 
 TEST(ProgramDeathTest, ASignalIsCalledByItsName) {
   for (const auto& [number, name] : {std::pair{SIGINT, "Ctrl-C"}, {SIGTERM, "SIGTERM"}}) {
-    const auto work = [&, signal_number = number](Program&) {
+    const auto work = [&, signal_number = number](Program& p) {
       std::raise(signal_number);
-      std::fprintf(stderr, "stopped by %s\n", Program::stopped_by());
+      std::fprintf(stderr, "stopped by %s\n", p.stopped_by());
     };
     EXPECT_EXIT(std::exit(status_of({}, work)), ::testing::ExitedWithCode(3),
                 std::string("stopped by ") + name);

@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
 """Opens the report pages of fit_shape and fit_gabor in headless Chromium and turns their surfaces.
 
-    report_page_test.py FOLDER_OF_PROGRAMS SHAPE PHOTO [--keep FOLDER]
+    report_page_test.py FOLDER_OF_PROGRAMS SHAPE PHOTO
 
---keep leaves the pages and a screenshot of each in a folder. Exit status 77 says that selenium, Chromium or a file
-is missing, so that nothing was tested.
+Exit status 77 says that selenium, Chromium or a file is missing, so that nothing was tested.
 """
 
-import argparse
 import io
 import pathlib
 import shutil
@@ -29,15 +27,10 @@ except ImportError as error:
 
 def browser(scripts=True):
     options = webdriver.ChromeOptions()
-    for argument in (
-        "--headless=new",
-        "--no-sandbox",
-        "--disable-dev-shm-usage",
-        "--window-size=1100,1400",
-        "--use-angle=swiftshader",  # WebGL without a GPU
-        "--enable-unsafe-swiftshader",
-    ):
-        options.add_argument(argument)
+    # ANGLE's swiftshader is WebGL without a GPU.
+    for argument in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "window-size=1100,1400", "use-angle=swiftshader",
+                     "enable-unsafe-swiftshader"):  # fmt: skip
+        options.add_argument(f"--{argument}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     if not scripts:
         options.add_experimental_option("prefs", {"profile.managed_default_content_settings.javascript": 2})
@@ -93,12 +86,10 @@ def check_slider(driver):
     driver.find_element(By.CSS_SELECTOR, ".turnable .overlaid").click()
 
 
-def check_page(page, keep):
+def check_page(page):
     driver = browser()
     try:
         driver.get(page.as_uri())
-        if keep:
-            driver.save_screenshot(str(keep / f"{page.parent.name}.png"))
         check_turns(driver)
         check_slider(driver)
         errors = [entry["message"] for entry in driver.get_log("browser") if entry["level"] == "SEVERE"]
@@ -118,30 +109,16 @@ def check_page(page, keep):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("programs", type=pathlib.Path)
-    parser.add_argument("shape", type=pathlib.Path)
-    parser.add_argument("photo", type=pathlib.Path)
-    parser.add_argument("--keep", type=pathlib.Path)
-    arguments = parser.parse_args()
-    for needed in (arguments.shape, arguments.photo):
-        if not needed.exists():
-            print(f"skipped: {needed} is missing")
-            return SKIPPED
-    if not shutil.which("chromedriver"):
-        print("skipped: chromedriver is missing (scripts/setup.sh --browser)")
+    programs, shape, photo = map(pathlib.Path, sys.argv[1:])
+    if not (shape.exists() and photo.exists() and shutil.which("chromedriver")):
+        print(f"skipped: {shape}, {photo} or chromedriver is missing (scripts/setup.sh --browser)")
         return SKIPPED
     with tempfile.TemporaryDirectory() as scratch:
-        folder = arguments.keep or pathlib.Path(scratch)
-        folder.mkdir(parents=True, exist_ok=True)
-        fits = {
-            "shape": ["fit_shape", arguments.shape, "--spheres", "10", "--base-only"],
-            "photo": ["fit_gabor", arguments.photo],
-        }
-        for name, (program, *options) in fits.items():
-            command = [arguments.programs / program, *options, "-o", folder / f"{name}.json", "--report", folder / name]
+        folder = pathlib.Path(scratch)
+        for name, line in (("shape", ["fit_shape", shape, "--spheres", "10", "--base-only"]), ("photo", ["fit_gabor", photo])):
+            command = [programs / line[0], *line[1:], "-o", folder / f"{name}.json", "--report", folder / name]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            check_page((folder / name / "index.html").resolve(), arguments.keep)
+            check_page((folder / name / "index.html").resolve())
             print(f"{name}: both surfaces are seen and turned, the slider works, no network, readable without scripts")
     return 0
 

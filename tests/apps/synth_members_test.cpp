@@ -210,7 +210,7 @@ TEST_F(SynthMembers, WrongRequestsAreRefusedBeforeAnyWork) {
            {"0:2 --predict --labels --gravity 2000 8", "--gravity: is of the whole mesh"},
            {"0:2 -o {member}.ply --manifest pipe",
             "pipe is a folder, a device or a pipe; give the name of a file"},
-           {"0:2 -o {member}.ply --manifest 0000012.ply", "--manifest: "}}) {
+           {"0:2 -o {member}.ply --manifest 0000012.ply", "is the name of two outputs"}}) {
     refuse("r.json --members " + words, culprit);
   }
 }

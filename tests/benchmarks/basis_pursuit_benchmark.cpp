@@ -1,15 +1,10 @@
-// Measures the seconds to a certified gap: the working set beside FISTA, on the power spectra of photos.
+// Writes the basis pursuit problems of a photo for solvers that want a matrix, and how fast ours is:
 //
-//   basis_pursuit_benchmark gravel.png grass.png sand.png
-//   basis_pursuit_benchmark gravel.png --side 32 --export FOLDER && pursuit_peers.py FOLDER
+//   basis_pursuit_benchmark gravel.png FOLDER && pursuit_peers.py FOLDER
 //
-// The upper left square of each photo is used, with bandwidths from 2 to the narrowest. One problem is its
-// periodogram (the problem of Galerne et al. 2012), another its estimated spectrum with the weights that
-// fit_gabor gives it. FISTA stops after a time limit.
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
+// The upper left 32 x 32 pixels of the photo are used, with bandwidths from 2 to the narrowest. One problem
+// is their periodogram (the problem of Galerne et al. 2012), another their estimated spectrum with the
+// weights that fit_gabor gives it.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -24,59 +19,15 @@
 namespace astrolith {
 namespace {
 
-constexpr double kGaps[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
+constexpr int kSide = 32;
+constexpr double kPenalty = 0.01;  // over the largest useful one
 
-struct Options {
-  std::vector<std::string> images;
-  int side = 256;
-  double penalty = 0.01;
-  double fista_seconds = 60.0;
-  std::string export_folder;  // folder for problems for other solvers; empty = none
-};
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-GreyImage corner(const GreyImage& image, int side) {
-  GreyImage square{std::min(side, image.width), std::min(side, image.height), {}};
-  for (int y = 0; y < square.height; ++y) {
-    for (int x = 0; x < square.width; ++x) square.values.push_back(image.at(x, y));
+GreyImage corner(const GreyImage& image) {
+  GreyImage square{kSide, kSide, {}};
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) square.values.push_back(image.at(x, y));
   }
   return square;
-}
-
-struct Run {
-  BasisPursuitResult result;
-  std::vector<double> seconds;  // time of each check of the certificate
-};
-
-template <typename Solver>
-Run timed(const Solver& solve, const BasisPursuitProblem& problem, double limit) {
-  Run run;
-  const double start = now();
-  BasisPursuitOptions options;
-  options.relative_gap = kGaps[std::size(kGaps) - 1];
-  options.max_iterations = 1000000;
-  run.result = solve(problem, options, [&](double, std::string_view) {
-    run.seconds.push_back(now() - start);
-    return run.seconds.back() < limit;
-  });
-  return run;
-}
-
-// The certified gap keeps the best bound, but the gap of an iterate may rise. The first iterate that reaches
-// the goal counts.
-std::string row(const Run& run) {
-  std::string text;
-  for (const double gap : kGaps) {
-    std::size_t i = 0;
-    while (i < run.result.history.size() && run.result.history[i].relative_gap > gap) ++i;
-    text += i < run.result.history.size() ? fmt::format(" {:8.2f}", run.seconds[i]) : "        -";
-  }
-  const auto atoms =
-      std::count_if(run.result.x.begin(), run.result.x.end(), [](double x) { return x > 0.0; });
-  return text + fmt::format("  {:9.1e} {:6} {:6}", run.result.relative_gap, run.result.iterations, atoms);
 }
 
 void write_doubles(const std::filesystem::path& file, std::span<const double> values) {
@@ -84,82 +35,55 @@ void write_doubles(const std::filesystem::path& file, std::span<const double> va
       .write(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
-// Exports the problem for solvers that want a matrix: FOLDER/NAME.json, and float64 arrays in .matrix (column
-// by column) and .target beside it.
-void write_problem(const std::string& folder, const std::string& name, const BasisPursuitProblem& problem,
-                   const Run& ours) {
-  const GaborDictionary& dictionary = problem.dictionary;
+// Writes STEM.json, and float64 arrays in STEM.matrix (column by column) and STEM.target.
+void write_problem(const std::string& stem, const PowerSpectrum& spectrum, std::vector<double> weight) {
+  weight[0] = 0.0;
+  const GaborDictionary dictionary(spectrum.width, spectrum.height, 2,
+                                   narrowest_bandwidth(spectrum.width, spectrum.height), std::move(weight));
+  BasisPursuitProblem problem{dictionary, spectrum.power, 0.0};
+  for (std::size_t i = 0; i < problem.target.size(); ++i) problem.target[i] *= dictionary.weight()[i];
+  problem.penalty = kPenalty * largest_penalty(dictionary, problem.target);
+
+  nlohmann::json history = nlohmann::json::array();
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto start = now();
+  std::vector<double> seconds;  // time of each check of the certificate
+  const BasisPursuitResult ours = solve_working_set(problem, {1e-6, 1000000}, [&](double, std::string_view) {
+    seconds.push_back(std::chrono::duration<double>(now() - start).count());
+    return true;
+  });
+  for (std::size_t i = 0; i < seconds.size(); ++i)
+    history.push_back({{"seconds", seconds[i]}, {"relative_gap", ours.history[i].relative_gap}});
+
   std::vector<double> matrix(dictionary.rows() * dictionary.size()), unit(dictionary.size(), 0.0);
   for (std::size_t j = 0; j < dictionary.size(); ++j) {
     unit[j] = 1.0;
     dictionary.synthesize(unit, {matrix.data() + j * dictionary.rows(), dictionary.rows()});
     unit[j] = 0.0;
   }
-  const std::filesystem::path stem = std::filesystem::path(folder) / name;
-  write_doubles(stem.string() + ".matrix", matrix);
-  write_doubles(stem.string() + ".target", problem.target);
-  nlohmann::json gaps = nlohmann::json::array();
-  for (std::size_t i = 0; i < ours.seconds.size(); ++i)
-    gaps.push_back({{"seconds", ours.seconds[i]}, {"relative_gap", ours.result.history[i].relative_gap}});
-  std::ofstream(stem.string() + ".json") << nlohmann::json{{"rows", dictionary.rows()},
-                                                           {"columns", dictionary.size()},
-                                                           {"penalty", problem.penalty},
-                                                           {"primal", ours.result.primal},
-                                                           {"relative_gap", ours.result.relative_gap},
-                                                           {"history", gaps}};
+  write_doubles(stem + ".matrix", matrix);
+  write_doubles(stem + ".target", problem.target);
+  std::ofstream(stem + ".json") << nlohmann::json{
+      {"rows", dictionary.rows()}, {"columns", dictionary.size()},      {"penalty", problem.penalty},
+      {"primal", ours.primal},     {"relative_gap", ours.relative_gap}, {"history", history}};
 }
 
-void compare(const std::string& name, const PowerSpectrum& spectrum, std::vector<double> weight,
-             const Options& o) {
-  weight[0] = 0.0;
-  const double start = now();
-  const GaborDictionary dictionary(spectrum.width, spectrum.height, 2,
-                                   narrowest_bandwidth(spectrum.width, spectrum.height), std::move(weight));
-  BasisPursuitProblem problem{dictionary, spectrum.power, 0.0};
-  for (std::size_t i = 0; i < problem.target.size(); ++i) problem.target[i] *= dictionary.weight()[i];
-  problem.penalty = o.penalty * largest_penalty(dictionary, problem.target);
-  fmt::print("{}: {} atoms, dictionary in {:.2f} s\n", name, dictionary.size(), now() - start);
-  const auto working_set = [](const auto& p, const auto& options, const Progress& progress) {
-    return solve_working_set(p, options, progress);
-  };
-  const Run ours = timed(working_set, problem, 1e9);
-  fmt::print("  working set {}\n", row(ours));
-  if (!o.export_folder.empty()) write_problem(o.export_folder, name, problem, ours);
-  if (o.fista_seconds > 0.0)
-    fmt::print("  FISTA       {}\n", row(timed(solve_fista, problem, o.fista_seconds)));
-  std::fflush(stdout);
-}
-
-void measure(const std::string& file, const Options& o) {
-  PowerSpectrum periodogram = exemplar_periodogram(corner(read_grey_image(file).image, o.side));
+void write_problems(const std::string& photo, const std::filesystem::path& folder) {
+  PowerSpectrum periodogram = exemplar_periodogram(corner(read_grey_image(photo).image));
   const double variance = periodogram.variance();
   for (double& p : periodogram.power) p /= variance;
-  const std::string name = std::filesystem::path(file).stem().string();
-  compare(name + "_periodogram", periodogram, std::vector<double>(periodogram.power.size(), 1.0), o);
+  const std::string stem = (folder / std::filesystem::path(photo).stem()).string();
+  write_problem(stem + "_periodogram", periodogram, std::vector<double>(periodogram.power.size(), 1.0));
   const PowerSpectrum estimate = estimate_spectrum(periodogram).spectrum;
   std::vector<double> weight;
   for (const double p : estimate.power) weight.push_back(1.0 / std::sqrt(p + 1e-6));
-  compare(name + "_estimate", estimate, std::move(weight), o);
+  write_problem(stem + "_estimate", estimate, std::move(weight));
 }
 
 }  // namespace
 }  // namespace astrolith
 
 int main(int argc, char** argv) {
-  using namespace astrolith;
-  CLI::App app("Seconds to certified duality gaps, working set against FISTA");
-  Options o;
-  app.add_option("images", o.images, "photos")->required()->check(CLI::ExistingFile);
-  app.add_option("--side", o.side, "of the square taken, pixels")->capture_default_str();
-  app.add_option("--penalty", o.penalty, "over the largest useful one")->capture_default_str();
-  app.add_option("--fista-seconds", o.fista_seconds, "FISTA stops after so long; 0 = leave it out")
-      ->capture_default_str();
-  app.add_option("--export", o.export_folder, "folder for the problems as matrices, which grow with side^4")
-      ->check(CLI::ExistingDirectory);
-  CLI11_PARSE(app, argc, argv);
-  fmt::print("seconds to a gap of");
-  for (const double gap : kGaps) fmt::print(" {:>7.0e}", gap);
-  fmt::print("   gap at end  steps  lobes\n");
-  for (const std::string& file : o.images) measure(file, o);
-  return 0;
+  if (argc != 3) return 2;
+  astrolith::write_problems(argv[1], argv[2]);
 }

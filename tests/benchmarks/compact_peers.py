@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Error against bytes of small shape files: compact recipes beside meshes that were decimated and compressed by Draco.
 
-    pip install DracoPy fast-simplification numpy
+    pip install DracoPy fast-simplification numpy      beside the Python package of the build on PYTHONPATH
     tests/benchmarks/compact_peers.py build/release/bin MESH.ply... --bytes 1250 6250
 
 For each mesh and number of bytes `fit_shape --bytes` writes a compact recipe, and `synth` makes its mesh. The mesh is
@@ -14,29 +14,10 @@ import pathlib
 import subprocess
 import tempfile
 
+import astrolith
 import DracoPy
 import fast_simplification
 import numpy as np
-
-
-def read_ply(file):
-    """Vertices and triangles of a binary or text PLY file that DracoPy's peers write: by trimesh's rules, in short."""
-    data = file.read_bytes()
-    end = data.index(b"end_header\n") + len(b"end_header\n")
-    header = data[:end].decode("ascii").splitlines()
-    counts = {line.split()[1]: int(line.split()[2]) for line in header if line.startswith("element ")}
-    kinds = {"float": "<f4", "float32": "<f4", "double": "<f8", "float64": "<f8"}
-    columns = [kinds[line.split()[1]] for line in header if line.startswith("property") and "list" not in line]
-    vertex = np.dtype([(str(i), kind) for i, kind in enumerate(columns)])
-    rows = np.frombuffer(data, vertex, counts["vertex"], end)
-    facet = np.dtype([("n", "u1"), ("v", "<i4", 3)])
-    facets = np.frombuffer(data, facet, counts["face"], end + rows.nbytes)
-    return np.stack([rows[name] for name in "012"], 1).astype(np.float64), facets["v"].astype(np.int32)
-
-
-def write_obj(file, vertices, triangles):
-    lines = ["v %.9g %.9g %.9g" % tuple(v) for v in vertices] + ["f %d %d %d" % tuple(t + 1) for t in triangles]
-    file.write_text("\n".join(lines) + "\n")
 
 
 def mean_distance(programs, target, mesh, samples):
@@ -68,7 +49,8 @@ def most_triangles(vertices, triangles, bits, most_bytes):
 
 
 def draco_error(programs, target, most_bytes, folder):
-    vertices, triangles = read_ply(target)
+    read = astrolith.read_mesh(target)
+    vertices, triangles = np.asarray(read.vertices, float), np.asarray(read.faces, np.int32)
     best = (0, float("inf"))
     for bits in range(6, 13):
         data = most_triangles(vertices, triangles, bits, most_bytes)
@@ -76,7 +58,7 @@ def draco_error(programs, target, most_bytes, folder):
             continue
         mesh = DracoPy.decode(data)
         file = folder / "draco.obj"
-        write_obj(file, np.asarray(mesh.points).reshape(-1, 3), np.asarray(mesh.faces).reshape(-1, 3))
+        astrolith.write_mesh((np.asarray(mesh.points).reshape(-1, 3), np.asarray(mesh.faces).reshape(-1, 3)), file)
         best = min(best, (len(data), mean_distance(programs, target, file, 20000)), key=lambda pair: pair[1])
     return best
 

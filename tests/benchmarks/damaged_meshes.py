@@ -10,94 +10,64 @@ is more than for the fit of the clean shape, the seconds of the fit, and what fi
 """
 
 import argparse
-import array
 import json
-import math
 import pathlib
 import subprocess
 import sys
 import tempfile
 import time
 
+import numpy as np
+
 from garbled_meshes import Mesh
-
-
-def sub(a, b):
-    return [x - y for x, y in zip(a, b)]
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def norm(a):
-    return math.sqrt(sum(x * x for x in a))
 
 
 class Shape(Mesh):
     """A mesh whose vertices and faces can be added."""
 
-    def at(self, v):
-        return list(self.vertices[self.point(v)])
+    def add_vertices(self, points):
+        """Their numbers."""
+        first = len(self.vertices)
+        self.vertices = np.concatenate([self.vertices, np.atleast_2d(points)])
+        return np.arange(first, len(self.vertices))
 
-    def add_vertex(self, p):
-        self.vertices += array.array("f", [*p, *[0.0] * (self.floats - 3)])
-        return len(self.vertices) // self.floats - 1
+    def add_faces(self, faces):
+        self.faces = np.concatenate([self.faces, faces])
 
-    def area(self, face):
-        a, b, c = map(self.at, face)
-        return norm(cross(sub(b, a), sub(c, a))) / 2
+    def corners(self):
+        return self.vertices[self.faces].astype(float)
 
-    def normal(self, face):
-        a, b, c = map(self.at, face)
-        n = cross(sub(b, a), sub(c, a))
-        return [x / max(norm(n), 1e-300) for x in n]
-
-    def center(self, face):
-        return [sum(x) / 3 for x in zip(*map(self.at, face))]
+    def normals(self):
+        """Twice as long as the areas of the faces."""
+        a, b, c = self.corners().transpose(1, 0, 2)
+        return np.cross(b - a, c - a)
 
     def diagonal(self):
-        axes = [self.vertices[axis :: self.floats] for axis in range(3)]
-        return norm([max(a) - min(a) for a in axes])
+        return np.linalg.norm(np.ptp(self.vertices, axis=0))
 
     def around(self, share):
         """The faces nearest to the middle one that hold this share of the area."""
-        middle = self.center(self.faces[len(self.faces) // 3])
-        order = sorted(range(len(self.faces)), key=lambda f: norm(sub(self.center(self.faces[f]), middle)))
-        left, chosen = share * sum(map(self.area, self.faces)), []
-        for f in order:
-            left -= self.area(self.faces[f])
-            if left < 0:
-                break
-            chosen.append(f)
-        return chosen or order[:1]
-
-    def save(self, file):
-        count = len(self.vertices) // self.floats
-        self.header = [f"element vertex {count}" if "element vertex" in line else line for line in self.header]
-        self.write(file)
+        centers, areas = self.corners().mean(1), np.linalg.norm(self.normals(), axis=1)
+        order = np.argsort(np.linalg.norm(centers - centers[len(centers) // 3], axis=1), kind="stable")
+        return order[: max(1, np.searchsorted(np.cumsum(areas[order]), share * areas.sum(), "right"))]
 
 
 def crack(shape):
     """Along the border of a tenth of the surface, the vertices are there twice, a tenth of an edge apart."""
-    inside = set(shape.around(0.1))
-    outer = {v for f, face in enumerate(shape.faces) if f not in inside for v in face}
-    edge = norm(sub(shape.at(shape.faces[0][0]), shape.at(shape.faces[0][1])))
-    twins = {}
-    for f in inside:
-        for k, v in enumerate(shape.faces[f]):
-            if v not in outer:
-                continue
-            if v not in twins:
-                to = sub(shape.center(shape.faces[f]), shape.at(v))
-                twins[v] = shape.add_vertex([p + 0.1 * edge * x / norm(to) for p, x in zip(shape.at(v), to)])
-            shape.faces[f][k] = twins[v]
+    inside = shape.around(0.1)
+    outer = np.unique(np.delete(shape.faces, inside, axis=0))
+    edge = np.linalg.norm(shape.vertices[shape.faces[0, 0]] - shape.vertices[shape.faces[0, 1]])
+    corner, centers = np.argwhere(np.isin(shape.faces[inside], outer)), shape.corners().mean(1)
+    face, old = inside[corner[:, 0]], shape.faces[inside[corner[:, 0]], corner[:, 1]]
+    border, first = np.unique(old, return_index=True)
+    to = centers[face[first]] - shape.vertices[border]
+    twins = shape.add_vertices(shape.vertices[border] + 0.1 * edge * to / np.linalg.norm(to, axis=1)[:, None])
+    shape.faces[face, corner[:, 1]] = twins[np.searchsorted(border, old)]
 
 
 def hole(share):
     def without(shape):
-        gone = set(shape.around(share))
-        shape.faces = [face for f, face in enumerate(shape.faces) if f not in gone]
+        shape.faces = np.delete(shape.faces, shape.around(share), axis=0)
 
     without.__doc__ = f"{100 * share:g} % of the surface is missing in one place."
     return without
@@ -105,55 +75,50 @@ def hole(share):
 
 def flipped(shape):
     """One face looks inwards."""
-    shape.faces[len(shape.faces) // 2].reverse()
+    shape.faces[len(shape.faces) // 2] = shape.faces[len(shape.faces) // 2, ::-1]
 
 
 def all_flipped(shape):
     """All faces look inwards."""
-    for face in shape.faces:
-        face.reverse()
+    shape.faces = shape.faces[:, ::-1].copy()
 
 
 def doubled(shape):
     """One face in a hundred is there twice, with vertices of its own."""
-    for face in shape.faces[::100]:
-        shape.faces.append([shape.add_vertex(shape.at(v)) for v in face])
+    shape.add_faces(shape.add_vertices(shape.vertices[shape.faces[::100]].reshape(-1, 3)).reshape(-1, 3))
 
 
 def fin(shape):
     """A sheet of four faces, 3 % of the diagonal high, stands on two edges."""
-    a, b, c = shape.faces[len(shape.faces) // 4]
-    n = shape.normal([a, b, c])
-    tops = [shape.add_vertex([p + 0.03 * shape.diagonal() * x for p, x in zip(shape.at(v), n)]) for v in (a, b, c)]
-    shape.faces += [[a, b, tops[0]], [b, tops[1], tops[0]], [b, c, tops[1]], [c, tops[2], tops[1]]]
+    face = len(shape.faces) // 4
+    (a, b, c), normal = shape.faces[face], shape.normals()[face]
+    tops = shape.add_vertices(shape.vertices[[a, b, c]] + 0.03 * shape.diagonal() * normal / np.linalg.norm(normal))
+    shape.add_faces([[a, b, tops[0]], [b, tops[1], tops[0]], [b, c, tops[1]], [c, tops[2], tops[1]]])
 
 
 def t_junctions(shape):
     """One face in fifty has a vertex in the middle of an edge that its neighbour does not have."""
-    for f in range(0, len(shape.faces), 50):
-        a, b, c = shape.faces[f]
-        m = shape.add_vertex([(p + q) / 2 for p, q in zip(shape.at(a), shape.at(b))])
-        shape.faces[f] = [a, m, c]
-        shape.faces.append([m, b, c])
+    a, b, c = shape.faces[::50].T.copy()
+    middle = shape.add_vertices((shape.vertices[a] + shape.vertices[b]) / 2)
+    shape.faces[::50] = np.stack([a, middle, c], axis=1)
+    shape.add_faces(np.stack([middle, b, c], axis=1))
 
 
 def two_bodies(shape):
     """A moon of a fifth of the size stands beside the body."""
-    far, count = 1.5 * shape.diagonal(), len(shape.vertices) // shape.floats
-    new = [shape.add_vertex([0.2 * x + (far if k == 0 else 0.0) for k, x in enumerate(shape.at(v))]) for v in range(count)]
-    shape.faces += [[new[v] for v in face] for face in list(shape.faces)]
+    count = len(shape.vertices)
+    shape.add_vertices(0.2 * shape.vertices + [1.5 * shape.diagonal(), 0, 0])
+    shape.add_faces(shape.faces + count)
 
 
 def crossing(shape):
     """A patch of .2 % of the surface is drawn sideways and down, so that it folds through its surroundings."""
     patch = shape.around(0.002)
-    n = shape.normal(shape.faces[patch[0]])
-    rim = {v for f in set(range(len(shape.faces))) - set(patch) for v in shape.faces[f]}
-    for v in {v for f in patch for v in shape.faces[f]} - rim:
-        p = [x - 0.02 * shape.diagonal() * y for x, y in zip(shape.at(v), n)]
-        side = cross(n, [0.3, 0.5, 0.8])
-        p = [x + 0.05 * shape.diagonal() * y / norm(side) for x, y in zip(p, side)]
-        shape.vertices[shape.point(v)] = array.array("f", p)
+    normal = shape.normals()[patch[0]]
+    normal /= np.linalg.norm(normal)
+    side = np.cross(normal, [0.3, 0.5, 0.8])
+    moved = np.setdiff1d(shape.faces[patch], np.delete(shape.faces, patch, axis=0))
+    shape.vertices[moved] += shape.diagonal() * (0.05 * side / np.linalg.norm(side) - 0.02 * normal)
 
 
 WAYS = {
@@ -174,13 +139,12 @@ WAYS = {
 
 
 def fit(arguments, file, folder, options):
-    """The status, the seconds, the words and the summary of a fit."""
-    recipe, summary = folder / "fit.json", folder / "summary.json"
-    command = [arguments.bin / "fit_shape", file, "-o", recipe, "--base-only", "--noise-seeds", "0", "--summary", summary]
+    """The status, the seconds and the words of a fit."""
+    command = [arguments.bin / "fit_shape", file, "-o", folder / "fit.json", "--base-only", "--noise-seeds", "0"]
     start = time.monotonic()
     done = subprocess.run([*command, "--spheres", str(arguments.spheres), *options], capture_output=True, text=True, check=False)
     seconds = time.monotonic() - start
-    return done.returncode, seconds, done.stderr.splitlines(), json.loads(summary.read_text()) if done.returncode == 0 else {}
+    return done.returncode, seconds, done.stderr.splitlines()
 
 
 def distance(arguments, clean, folder):
@@ -199,11 +163,11 @@ def rows(arguments, clean, folder):
             continue
         shape, file = Shape(clean), folder / "damaged.ply"
         damage(shape)
-        shape.save(file)
+        shape.write(file)
         if arguments.keep:
             arguments.keep.mkdir(exist_ok=True)
-            shape.save(arguments.keep / f"{clean.stem}_{way.replace(' ', '_')}.ply")
-        status, seconds, lines, _ = fit(arguments, file, folder, ["--wrap"] if "--wrap" in way else [])
+            shape.write(arguments.keep / f"{clean.stem}_{way.replace(' ', '_')}.ply")
+        status, seconds, lines = fit(arguments, file, folder, ["--wrap"] if "--wrap" in way else [])
         refused = way == "hole of 10 %"
         words = next((line for line in lines if str(file) in line and " x " not in line), "").replace(f"{file}: ", "")
         if status != 0:

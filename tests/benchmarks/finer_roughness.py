@@ -1,19 +1,15 @@
 #!/usr/bin/env python3
-"""Measures how a relief goes on below the edges of its model (synth --finer), on patches of a fitted body.
+"""Measures how a relief goes on below the edges of its model (`finer` of the layer), on patches of a fitted body.
 
-    finer_roughness.py build/release/bin recipe.astro EDGE [--patches 6]
+    finer_roughness.py recipe.astro EDGE [--patches 6]      needs the Python package of the build on PYTHONPATH, and NumPy
 
 EDGE is the mean edge of the model in the recipe's unit. S(l) is the root mean square of second differences of the
 heights over the bare body at the lag l, on patches 30 edges wide. Rows: S at 1/16 to 4 edges over the
 straight line through 1 and 4 edges, without and with levels, and the difference that remains in means over an edge.
-Needs NumPy.
 """
 import argparse
-import re
-import subprocess
-import tempfile
-from pathlib import Path
 
+import astrolith
 import numpy
 
 PIXELS = 480
@@ -21,33 +17,21 @@ WIDE = 30  # edges
 LAGS = [1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 4]
 
 
-def run(*command):
-    subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True)
-
-
-def vertices_of(mesh):
-    lines = mesh.read_text().split("\n")
-    return numpy.array([[float(word) for word in line.split()[1:4]] for line in lines if line.startswith("v ")])
-
-
-def height_map(synth, recipe, finer, patch, folder):
+def height_map(recipe, finer, patch):
     """The heights of all layers on a grid of the plane that fits the patch best."""
-    mesh = folder / "patch.ply"
-    run(synth, recipe, "--finer", finer, "--patch", *patch, "--resolution", PIXELS, "--labels", "-o", mesh, "--quiet")
-    data = mesh.read_bytes()
-    header, body = data.split(b"end_header\n", 1)
-    names = re.findall(rb"property (\w+) (\w+)\n", header.split(b"element face")[0])
-    kinds = {b"float": "<f4", b"double": "<f8", b"int": "<i4", b"uchar": "u1", b"ushort": "<u2", b"short": "<i2", b"uint": "<u4"}
-    row = numpy.dtype([(name.decode(), kinds[kind]) for kind, name in names])
-    vertices = numpy.frombuffer(body, row, int(re.search(rb"element vertex (\d+)", header)[1]))
-    points = numpy.stack([vertices["x"], vertices["y"], vertices["z"]], 1).astype(float)
+    recipe = recipe.copy()
+    for layer in recipe.layers:
+        if layer["type"] == "relief":
+            layer["finer"] = finer
+    mesh = astrolith.mesh(recipe, patch=patch, resolution=PIXELS, labels=True)
+    points = mesh.vertices.astype(float)
     right, ahead, _ = numpy.linalg.svd(points - points.mean(0), full_matrices=False)[2]
     across = numpy.stack([points @ right, points @ ahead], 1)
     half, side = 0.35 * patch[3], round(0.7 * PIXELS)
     pixel = numpy.floor((across / half + 1.0) * 0.5 * side).astype(int)
     inside = ((pixel >= 0) & (pixel < side)).all(1)
     number = pixel[inside] @ [1, side]
-    sums = numpy.bincount(number, vertices["elevation"][inside].astype(float), side * side)
+    sums = numpy.bincount(number, mesh.elevations[inside].astype(float), side * side)
     counts = numpy.bincount(number, None, side * side)
     return numpy.where(counts > 0, sums / numpy.maximum(counts, 1), numpy.nan).reshape(side, side)
 
@@ -62,34 +46,26 @@ def second_differences(heights, lag):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("programs", type=Path)
-    parser.add_argument("recipe", type=Path)
+    parser.add_argument("recipe", type=astrolith.Recipe.read)
     parser.add_argument("edge", type=float)
     parser.add_argument("--patches", type=int, default=6)
     arguments = parser.parse_args()
-    synth = arguments.programs / "synth"
     pixels_per_edge = PIXELS / WIDE
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        run(synth, arguments.recipe, "--resolution", 40, "-o", folder / "body.obj", "--quiet")
-        vertices = vertices_of(folder / "body.obj")
-        chosen = vertices[numpy.random.default_rng(1).choice(len(vertices), arguments.patches, replace=False)]
-        differences = {finer: {lag: [] for lag in LAGS} for finer in range(4)}
-        left = {finer: [] for finer in range(1, 4)}
-        for centre in chosen:
-            patch = [*centre, WIDE * arguments.edge]
-            maps = {finer: height_map(synth, arguments.recipe, finer, patch, folder) for finer in range(4)}
-            for finer, heights in maps.items():
-                for lag in LAGS:
-                    differences[finer][lag].append(second_differences(heights, round(lag * pixels_per_edge)))
-                if finer == 0:
-                    continue
-                added = heights - maps[0]
-                cell = round(pixels_per_edge)
-                count = added.shape[0] // cell
-                cells = added[:count * cell, :count * cell].reshape(count, cell, count, cell)
-                means = numpy.nanmean(cells, (1, 3))
-                left[finer].append(means[numpy.isfinite(means)])
+    vertices = astrolith.mesh(arguments.recipe, resolution=40).vertices.astype(float)
+    differences = {finer: {lag: [] for lag in LAGS} for finer in range(4)}
+    left = {finer: [] for finer in range(1, 4)}
+    for centre in vertices[numpy.random.default_rng(1).choice(len(vertices), arguments.patches, replace=False)]:
+        maps = [height_map(arguments.recipe, finer, [*centre, WIDE * arguments.edge]) for finer in range(4)]
+        for finer, heights in enumerate(maps):
+            for lag in LAGS:
+                differences[finer][lag].append(second_differences(heights, round(lag * pixels_per_edge)))
+            if finer == 0:
+                continue
+            cell = round(pixels_per_edge)
+            count = heights.shape[0] // cell
+            cells = (heights - maps[0])[:count * cell, :count * cell].reshape(count, cell, count, cell)
+            means = numpy.nanmean(cells, (1, 3))
+            left[finer].append(means[numpy.isfinite(means)])
     print("| levels | H | " + " | ".join(f"{lag:g}" for lag in LAGS) + " | means over an edge, rms, edges |")
     print("|---" * (len(LAGS) + 3) + "|")
     for finer in range(4):

@@ -8,22 +8,24 @@ the same in every run: a shape, one of the ways to garble it below, and a share 
 gets tiles of a ball, one of which is garbled and certified as it is; its status 1 says that tiles do not join. Prints
 a line for each run that breaks a limit and a table of the programs. Exit status 1 if a run took more than 20 s or 1 GB,
 ended with another status than 0 and 2, or said its refusal in more than one line. Where other work shares the machine,
-a run's time is what its threads took, if that is less. A fit has --time-limit 8. Ctrl-C prints the table so far.
+a run's time is what its threads took, if that is less. A fit has --time-limit 8. Ctrl-C prints the table so far. Needs
+the Python package of the build on PYTHONPATH, and NumPy.
 """
 
 import argparse
-import array
 import collections
 import hashlib
 import json
 import os
 import pathlib
-import random
 import resource
 import subprocess
 import sys
 import tempfile
 import time
+
+import astrolith
+import numpy as np
 
 SECONDS, BYTES, LARGEST_FILE = 20.0, 1e9, 100_000
 SHARES = (0.001, 0.01, 0.1, 0.5, 1.0)
@@ -31,116 +33,79 @@ BODY = """{"format_version": 1, "length_unit": "km", "body": {"type": "metaballs
 
 
 class Mesh:
-    """A binary .ply whose vertices are floats, at least three, and whose faces are triangles."""
+    """The vertices (n, 3) of a mesh as floats, and its triangles (m, 3)."""
 
     def __init__(self, file):
-        data = file.read_bytes()
-        end = data.index(b"end_header\n") + len(b"end_header\n")
-        self.header = data[:end].decode().splitlines()
-        vertices, faces = (self.count(name) for name in ("vertex", "face"))
-        before_faces = self.header[: next(i for i, line in enumerate(self.header) if "element face" in line)]
-        self.floats = sum(line.startswith("property float") for line in before_faces)
-        self.vertices = array.array("f", data[end : end + 4 * self.floats * vertices])
-        start = end + 4 * self.floats * vertices
-        self.faces = [list(array.array("i", data[start + 13 * f + 1 : start + 13 * f + 13])) for f in range(faces)]
-
-    def count(self, name):
-        return next(int(line.split()[2]) for line in self.header if line.startswith(f"element {name} "))
+        mesh = astrolith.read_mesh(file)
+        self.vertices, self.faces = np.array(mesh.vertices, "<f4"), np.array(mesh.faces, "<i4")
 
     def write(self, file):
-        header = [f"element face {len(self.faces)}" if "element face" in line else line for line in self.header]
-        rows = b"".join(b"\x03" + array.array("i", face).tobytes() for face in self.faces)
-        file.write_bytes(("\n".join(header) + "\n").encode() + self.vertices.tobytes() + rows)
-
-    def point(self, v):
-        return slice(v * self.floats, v * self.floats + 3)
-
-    def chosen(self, share, number, chance):
-        return chance.sample(range(number), max(1, int(share * number)))
-
-    def chosen_vertices(self, share, chance):
-        return self.chosen(share, len(self.vertices) // self.floats, chance)
-
-    def chosen_faces(self, share, chance):
-        return self.chosen(share, len(self.faces), chance)
+        header = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(self.vertices)}\n"
+        header += "".join(f"property float {axis}\n" for axis in "xyz")
+        header += f"element face {len(self.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+        rows = np.empty(len(self.faces), [("count", "u1"), ("corners", "<i4", 3)])
+        rows["count"], rows["corners"] = 3, self.faces
+        file.write_bytes(header.encode() + self.vertices.astype("<f4").tobytes() + rows.tobytes())
 
 
-def moved(mesh, share, chance):
+# Ways to garble a mesh. Of vertices or of faces, `at` are the numbers of those that were chosen.
+def moved(mesh, at, chance):
     """Vertices go to random places of the box."""
-    axes = [mesh.vertices[axis :: mesh.floats] for axis in range(3)]
-    box = [(min(axis), max(axis)) for axis in axes]
-    for v in mesh.chosen_vertices(share, chance):
-        mesh.vertices[mesh.point(v)] = array.array("f", [chance.uniform(low, high) for low, high in box])
+    mesh.vertices[at] = chance.uniform(mesh.vertices.min(0), mesh.vertices.max(0), (len(at), 3))
 
 
-def exchanged(mesh, share, chance):
+def exchanged(mesh, at, chance):
     """Vertices change places with one another."""
-    chosen = mesh.chosen_vertices(share, chance)
-    points = [mesh.vertices[mesh.point(v)] for v in chosen]
-    chance.shuffle(points)
-    for v, point in zip(chosen, points):
-        mesh.vertices[mesh.point(v)] = point
+    mesh.vertices[at] = mesh.vertices[chance.permutation(at)]
 
 
-def flung(mesh, share, chance):
+def flung(mesh, at, chance):
     """Vertices are pushed up to 1e12 times as far out."""
-    for v in mesh.chosen_vertices(share, chance):
-        factor = 10 ** chance.uniform(0, 12)
-        mesh.vertices[mesh.point(v)] = array.array("f", [factor * x for x in mesh.vertices[mesh.point(v)]])
+    mesh.vertices[at] *= 10 ** chance.uniform(0, 12, (len(at), 1))
 
 
-def flipped(mesh, share, chance):
+def flipped(mesh, at, chance):
     """A bit of each vertex changes."""
-    data = bytearray(mesh.vertices.tobytes())
-    for v in mesh.chosen_vertices(share, chance):
-        bit = chance.randrange(96)
-        data[4 * v * mesh.floats + bit // 8] ^= 1 << bit % 8
-    mesh.vertices = array.array("f", bytes(data))
+    mesh.vertices.view("<u4")[at, chance.integers(3, size=len(at))] ^= np.uint32(1) << chance.integers(32, size=len(at), dtype="u4")
 
 
-def joined(mesh, share, chance):
+def joined(mesh, at, chance):
     """Vertices become one point."""
-    chosen = mesh.chosen_vertices(share, chance)
-    for v in chosen:
-        mesh.vertices[mesh.point(v)] = mesh.vertices[mesh.point(chosen[0])]
+    mesh.vertices[at] = mesh.vertices[at[0]]
 
 
-def flattened(mesh, share, chance):
+def flattened(mesh, at, chance):
     """Vertices lose their third coordinate."""
-    for v in mesh.chosen_vertices(share, chance):
-        mesh.vertices[v * mesh.floats + 2] = 0.0
+    mesh.vertices[at, 2] = 0
 
 
-def rewired(mesh, share, chance):
+def rewired(mesh, at, chance):
     """Corners of faces become random vertices."""
-    for f in mesh.chosen_faces(share, chance):
-        mesh.faces[f][chance.randrange(3)] = chance.randrange(len(mesh.vertices) // mesh.floats)
+    mesh.faces[at, chance.integers(3, size=len(at))] = chance.integers(len(mesh.vertices), size=len(at))
 
 
-def beyond(mesh, share, chance):
+def beyond(mesh, at, chance):
     """Corners of faces become numbers that no vertex has."""
-    for f in mesh.chosen_faces(share, chance):
-        mesh.faces[f][chance.randrange(3)] = chance.choice([-1, 2**31 - 1, len(mesh.vertices)])
+    mesh.faces[at, chance.integers(3, size=len(at))] = chance.choice([-1, 2**31 - 1, 3 * len(mesh.vertices)], len(at))
 
 
-def dropped(mesh, share, chance):
+def dropped(mesh, at, chance):
     """Faces are missing."""
-    missing = set(mesh.chosen_faces(share, chance))
-    mesh.faces = [face for f, face in enumerate(mesh.faces) if f not in missing]
+    mesh.faces = np.delete(mesh.faces, at, axis=0)
 
 
-def turned(mesh, share, chance):
+def turned(mesh, at, chance):
     """Faces look inwards."""
-    for f in mesh.chosen_faces(share, chance):
-        mesh.faces[f].reverse()
+    mesh.faces[at] = mesh.faces[at][:, ::-1]
 
 
-def doubled(mesh, share, chance):
+def doubled(mesh, at, chance):
     """Faces are there twice."""
-    mesh.faces += [mesh.faces[f] for f in mesh.chosen_faces(share, chance)]
+    mesh.faces = np.concatenate([mesh.faces, mesh.faces[at]])
 
 
 WAYS = (moved, exchanged, flung, flipped, joined, flattened, rewired, beyond, dropped, turned, doubled)
+OF_FACES = (rewired, beyond, dropped, turned, doubled)
 
 
 def programs(bin_folder, folder, mesh, whole):
@@ -187,10 +152,11 @@ def check_tiles_run(bin_folder, folder, number):
 
 def garble(file, number, output):
     """Writes the garbled mesh of this number and says what was done."""
-    chance = random.Random(number)
+    chance = np.random.default_rng(number)
     way, share = WAYS[number % len(WAYS)], SHARES[number // len(WAYS) % len(SHARES)]
     mesh = Mesh(file)
-    way(mesh, share, chance)
+    count = len(mesh.faces if way in OF_FACES else mesh.vertices)
+    way(mesh, chance.choice(count, max(1, int(share * count)), replace=False), chance)
     mesh.write(output)
     return f"{file.name} {way.__name__} {share:g}"
 

@@ -75,8 +75,6 @@ struct MeanRoughness {
 MeanRoughness mean_roughness(const TriangleMesh& mesh) {
   SurfaceStatisticsOptions options;
   options.places = 500;
-  options.slopes = false;
-  options.radii = {3, 6, 12};
   const SurfaceStatistics s = surface_statistics(mesh, options);
   const bool wide = s.find(SurfaceQuantity::roughness, 12) != nullptr;
   return {mean_roughness(s, 3), mean_roughness(s, wide ? 12 : 6)};

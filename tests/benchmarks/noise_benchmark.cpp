@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "synthesis/noise/fractal_noise.h"
-#include "synthesis/noise/lone_noise.h"
 #include "tests/benchmarks/processor_seconds.h"
 #include "tests/synthesis/bodies.h"
+#include "tests/synthesis/lone_noise.h"
 
 namespace astrolith {
 namespace {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Non-negative basis pursuit by scikit-learn's coordinate descent and SciPy's L-BFGS-B, on the matrices that
-basis_pursuit_benchmark --export wrote: seconds until P(x) is within 1e-3 and 1e-5 of the least, ours beside.
+basis_pursuit_benchmark wrote: seconds until P(x) is within 1e-3 and 1e-5 of the least, ours beside.
 
     pursuit_peers.py FOLDER      needs: pip install numpy scipy scikit-learn
 

@@ -7,7 +7,8 @@ Each mesh is made with one and with two threads, and predicted. What is checked:
   - the mesh is a closed 2-manifold and has the same bytes for both numbers of threads, or
   - the program refuses the recipe: exit status 2 and one line;
   - the mesh takes at most 1.2 times the predicted memory and at most 60 seconds.
-The program prints a table of failures by kind. Its exit status is 1 if there are any.
+The program prints a table of failures by kind. Its exit status is 1 if there are any. With --compact it only turns the
+recipes into compact ones and back, which must change nothing; that needs the Python package of the build on PYTHONPATH.
 """
 import argparse
 import collections
@@ -29,7 +30,7 @@ MOST_SECONDS = 60.0  # of the processors, for each thread; other programs may ru
 MOST_WAITED_SECONDS = 3 * MOST_SECONDS
 MOST_OF_PREDICTED_MEMORY = 1.2
 
-Run = collections.namedtuple("Run", "status words seconds processor bytes summary")
+Run = collections.namedtuple("Run", "status words processor bytes summary")
 
 
 def run(synth, arguments, folder):
@@ -49,7 +50,7 @@ def run(synth, arguments, folder):
         text = words.read().decode("utf-8", "replace")
     code = None if child.returncode == -signal.SIGKILL and seconds >= MOST_WAITED_SECONDS else child.returncode
     figures = json.loads(summary.read_text()) if code == 0 and summary.exists() else {}
-    return Run(code, text, seconds, usage.ru_utime + usage.ru_stime, figures.get("peak_bytes", 0), figures)
+    return Run(code, text, usage.ru_utime + usage.ru_stime, figures.get("peak_bytes", 0), figures)
 
 
 def kind_of_words(words):
@@ -77,11 +78,11 @@ def failures_of_run(result, predicted, threads):
 
 
 def check(synth, number, folder):
-    """Makes, predicts and checks one recipe. Returns its failures and its figures."""
+    """Makes, predicts and checks one recipe. Returns its failures, whether it was refused, and its file."""
     content, cells = recipe_draw.recipe(number)
     file = folder / f"{number}.json"
     file.write_text(json.dumps(content, indent=1))
-    failures, figures, hashes = [], {"cells": cells}, set()
+    failures, hashes = [], set()
     for threads in (1, 2):
         mesh = folder / f"{number}.ply"
         mesh.unlink(missing_ok=True)
@@ -94,12 +95,6 @@ def check(synth, number, folder):
             failures.append("prediction above 60 s")
         if made.status == 0 and prediction.status != 0:
             failures.append(f"prediction alone refuses: {kind_of_words(prediction.words)}")
-        figures[threads] = [made.seconds, made.bytes, made.summary.get("triangles", 0), prediction.seconds,
-                            predicted.get("seconds", 0), predicted.get("peak_bytes", 0),
-                            predicted.get("triangles", 0), made.summary.get("seconds", 0),
-                            prediction.summary.get("seconds", 0), made.processor, prediction.processor]
-        figures["status"] = made.status
-        figures["words"] = made.words.strip()
         hashes.add((made.status, hashlib.sha256(mesh.read_bytes()).hexdigest() if made.status == 0 else ""))
         if made.status == 0 and threads == 2:
             defect = closed_mesh.defect_of(mesh)
@@ -108,7 +103,28 @@ def check(synth, number, folder):
         mesh.unlink(missing_ok=True)
     if len(hashes) > 1:
         failures.append("different bytes for 1 and 2 threads")
-    return sorted(set(failures)), figures, file
+    return sorted(set(failures)), made.status == 2, file
+
+
+def check_compact(numbers, folder):
+    """Prints the sizes of both forms, and the recipes that do not come back equal. Returns the exit status."""
+    import astrolith
+
+    sizes, refused, file = [], 0, folder / "recipe.astro"
+    for number in numbers:
+        try:
+            recipe = astrolith.Recipe.from_dict(recipe_draw.recipe(number)[0])
+        except ValueError:
+            refused += 1
+            continue
+        recipe.write(file)
+        sizes.append((len(recipe.to_json()), file.stat().st_size))
+        if astrolith.Recipe.read(file).to_json() != recipe.to_json():
+            print(f"recipe {number}: comes back changed")
+            return 1
+    print(f"{len(sizes)} recipes read, {refused} refused, all equal; mean bytes of JSON and compact: "
+          f"{[sum(column) // len(sizes) for column in zip(*sizes)]}")
+    return 0
 
 
 def print_table(kinds, refusals, count):
@@ -123,29 +139,22 @@ def main():
     parser.add_argument("--count", type=int, default=50, help="number of recipes")
     parser.add_argument("--first", type=int, default=1, help="number of the first recipe")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the recipes that failed")
-    parser.add_argument("--figures", type=pathlib.Path, help="file for the figures of each run, JSON lines")
-    parser.add_argument("--only-write", type=pathlib.Path, help="only write the recipes to this folder")
+    parser.add_argument("--compact", action="store_true", help="only turn the recipes into compact ones and back")
     options = parser.parse_args()
     numbers = range(options.first, options.first + options.count)
-    if options.only_write:
-        options.only_write.mkdir(parents=True, exist_ok=True)
-        for number in numbers:
-            (options.only_write / f"{number}.json").write_text(json.dumps(recipe_draw.recipe(number)[0], indent=1))
-        return 0
     kinds, refusals = collections.defaultdict(list), 0
     with tempfile.TemporaryDirectory() as name:
+        if options.compact:
+            return check_compact(numbers, pathlib.Path(name))
         for number in numbers:
-            failures, figures, file = check(options.synth, number, pathlib.Path(name))
-            refusals += figures["status"] == 2
+            failures, refused, file = check(options.synth, number, pathlib.Path(name))
+            refusals += refused
             for failure in failures:
                 kinds[failure].append(number)
                 print(f"recipe {number}: {failure}", flush=True)
                 if options.keep:
                     options.keep.mkdir(parents=True, exist_ok=True)
                     (options.keep / f"{number}.json").write_bytes(file.read_bytes())
-            if options.figures:
-                with open(options.figures, "a") as out:
-                    out.write(json.dumps({"recipe": number, **figures, "failures": failures}) + "\n")
             file.unlink()
     print_table(kinds, refusals, options.count)
     return 1 if kinds else 0

@@ -1,116 +1,177 @@
-// Measures the power and the size of the test of realism (descriptor/surface/realism.h): which impostors it
-// rejects, and how often it rejects a body that is sampled anew, a body with other triangles, and another
-// draw of one recipe. Prints tables in Markdown (docs/descriptor.md).
+// Measures the power and the size of the test of realism (descriptor/surface/realism.h). Prints tables in
+// Markdown (docs/descriptor.md).
 //
-//   realism_benchmark --seeds 3 MESH... RECIPE...
+//   realism_benchmark --seeds 3 MESH...                          # which impostors of a body it rejects
+//   realism_benchmark --facets 1500 3000 6000 --seeds 2 MESH...  # from how many facets on it has power
+//   realism_benchmark --equals 100 --points 6000 --places 1500   # how often draws of one kind are rejected
 //
-// A mesh is a closed body of some ten thousand triangles. Two draws of a recipe (.json) are its meshes with
-// two seeds, of about 49,000 triangles each.
+// A mesh is a closed body of some ten thousand triangles. A body of few facets is the body decimated, beside
+// its relief smoothed away or halved. Equals are spheres with noise of one kind.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "descriptor/surface/realism.h"
 #include "geometry/io/mesh_io.h"
-#include "synthesis/field/field_mesh.h"
-#include "tasks/synthesis/load_recipe.h"
+#include "geometry/surface/decimated_mesh.h"
 #include "tests/benchmarks/impostors.h"
-#include "tests/benchmarks/processor_seconds.h"
+#include "tests/descriptor/surface/rough_spheres.h"
 
 namespace {
 
 using namespace astrolith;
+using astrolith::testing::BumpHeights;
+using astrolith::testing::rough_sphere;
 
-struct Counts {
-  int rejected_by_p = 0, failed = 0, cases = 0;
+struct Sampling {
+  std::int64_t points = 0,
+               places = SurfaceStatisticsOptions{}.places;  // points 0: as many as both meshes allow
 };
-std::map<std::string, Counts> counts_of_kind;
 
-std::string words_of(const RealismVerdict& verdict) {
-  std::string all;
-  for (const std::string& words : realism_words(verdict, {})) all += (all.empty() ? "" : "; ") + words;
-  return all;
-}
-
-std::string bands_of(const RealismVerdict& verdict) {
-  std::string all;
-  for (const BandRatio& band : verdict.bands) all += fmt::format("{:.2f} ", band.ratio);
-  return all;
-}
-
-SurfaceStatistics sampled(const TriangleMesh& mesh, std::int64_t points, std::uint64_t seed) {
+RealismVerdict judge(const TriangleMesh& a, const TriangleMesh& b, Sampling sampling, std::uint64_t seed) {
   SurfaceStatisticsOptions options;
-  options.points = points;
-  options.seed = seed;
-  return surface_statistics(mesh, options);
+  options.points = sampling.points > 0 ? sampling.points : common_points(a, b);
+  options.places = sampling.places;
+  options.seed = 2 * seed + 1;
+  const SurfaceStatistics of_a = surface_statistics(a, options);
+  options.seed = 2 * seed + 2;
+  return judge_realism(of_a, surface_statistics(b, options), {.seed = seed});
 }
 
-void judge(const std::string& body, const std::string& kind, const TriangleMesh& a, const TriangleMesh& b,
-           std::uint64_t seed) {
-  const std::int64_t points = common_points(a, b);
-  const SurfaceStatistics of_a = sampled(a, points, 2 * seed), of_b = sampled(b, points, 2 * seed + 1);
-  RealismOptions options;
-  options.seed = seed;
-  const RealismVerdict verdict = judge_realism(of_a, of_b, options);
-  Counts& counts = counts_of_kind[kind];
-  ++counts.cases;
-  if (verdict.p < kPassingP) ++counts.rejected_by_p;
-  if (!verdict.passes) ++counts.failed;
-  const StatisticComparison* worst = verdict.farthest();
-  fmt::print("| {} | {} | {} | {:.3f} | {:.3f} ({} {:g}) | {:.2f} | {}| {:.2f} | {} |\n", body, kind, seed,
-             verdict.p, verdict.largest_distance, worst != nullptr ? name_of(worst->quantity) : "none",
-             worst != nullptr ? worst->radius : 0.0, verdict.variance_ratio, bands_of(verdict),
-             verdict.coupling_ratio.value_or(0.0), words_of(verdict));
+// The verdicts of one case, over bodies and seeds.
+struct Counts {
+  int cases = 0, by_p = 0, by_distance = 0, failed = 0;
+  std::vector<std::pair<double, double>>
+      ranges;  // of the ratios of the bands, and of the coupling at the end
+
+  void add(const RealismVerdict& v) {
+    ++cases;
+    by_p += v.p < kPassingP ? 1 : 0;
+    by_distance += v.largest_distance > kPassingDistance ? 1 : 0;
+    failed += v.passes || v.too_coarse ? 0 : 1;
+    std::vector<double> ratios;
+    for (const BandRatio& band : v.bands) ratios.push_back(band.ratio);
+    if (v.coupling_ratio) ratios.push_back(*v.coupling_ratio);
+    if (ratios.size() > ranges.size()) ranges.resize(ratios.size(), {1e300, 0.0});
+    for (std::size_t k = 0; k < ratios.size(); ++k) {
+      ranges[k] = {std::min(ranges[k].first, ratios[k]), std::max(ranges[k].second, ratios[k])};
+    }
+  }
+};
+
+void print(const std::string& heading, const std::map<std::string, Counts>& table) {
+  fmt::print(
+      "\n| {} | cases | p < .05 | distance > .13 | rejected | bands, coupling |\n|---|---|---|---|---|---|\n",
+      heading);
+  for (const auto& [name, counts] : table) {
+    std::string ranges;
+    for (const auto& [least, most] : counts.ranges) ranges += fmt::format("{:.2f} to {:.2f}, ", least, most);
+    fmt::print("| {} | {} | {} | {} | {} | {} |\n", name, counts.cases, counts.by_p, counts.by_distance,
+               counts.failed, ranges);
+  }
   std::fflush(stdout);
 }
 
-void judge_body(const std::string& file, int seeds) {
-  const TriangleMesh body = read_mesh(file);
-  const std::string name = std::filesystem::path(file).stem().string();
-  const double seconds = processor_seconds([&] { sampled(body, 0, 1); });
-  fmt::print("| {} | measured in {:.2f} processor seconds | | | | | | | |\n", name, seconds);
-  const auto triangles = static_cast<double>(body.triangles.size());
-  const TriangleMesh other = remeshed(body, triangles), finer = remeshed(body, 2 * triangles),
-                     smooth = laplace_impostor(body), half = relief_impostor(body, 0.5),
-                     coarse = decimated_impostor(body), harmonics = harmonics_impostor(body);
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
-    judge(name, "itself, sampled anew", body, body, seed);
-    judge(name, "itself, other triangles", body, other, seed);
-    judge(name, "itself, twice the triangles", body, finer, seed);
-    judge(name, "fractal noise", body, noise_impostor(body, seed), seed);
-    judge(name, "half its relief", body, half, seed);
-    judge(name, "one Laplace step", body, smooth, seed);
-    judge(name, "decimated and refined", body, coarse, seed);
-    judge(name, "harmonics of degree 30", body, harmonics, seed);
+using Cases = std::vector<std::pair<std::string, std::function<TriangleMesh(std::uint64_t seed)>>>;
+
+void judge_cases(const TriangleMesh& body, const Cases& cases, Sampling sampling, int seeds,
+                 std::map<std::string, Counts>& table) {
+  for (const auto& [name, mesh] : cases) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+      table[name].add(judge(body, mesh(seed), sampling, seed));
+    }
   }
 }
 
-TriangleMesh drawn(Recipe recipe, std::uint64_t seed) {
-  constexpr double kTriangles = 49000;
-  recipe.seed = seed;
-  const ImplicitField field(recipe);
-  const auto meshed = [&](int resolution) {
-    MeshCollector collector;
-    mesh_field(field, field.bounds(), resolution, collector);
-    return std::move(collector.mesh);
+std::function<TriangleMesh(std::uint64_t)> always(TriangleMesh mesh) {
+  return [mesh = std::move(mesh)](std::uint64_t) { return mesh; };
+}
+
+void judge_impostors(const std::vector<TriangleMesh>& bodies, Sampling sampling, int seeds) {
+  std::map<std::string, Counts> table;
+  for (const TriangleMesh& body : bodies) {
+    const auto triangles = static_cast<double>(body.triangles.size());
+    judge_cases(body,
+                {{"itself, sampled anew", always(body)},
+                 {"itself, other triangles", always(remeshed(body, triangles))},
+                 {"itself, twice the triangles", always(remeshed(body, 2 * triangles))},
+                 {"fractal noise", [&](std::uint64_t seed) { return noise_impostor(body, seed); }},
+                 {"half its relief", always(relief_impostor(body, 0.5))},
+                 {"one Laplace step", always(laplace_impostor(body))},
+                 {"decimated and refined", always(decimated_impostor(body))},
+                 {"harmonics of degree 30", always(harmonics_impostor(body))}},
+                sampling, seeds, table);
+  }
+  print("case", table);
+}
+
+void judge_coarse(const std::vector<TriangleMesh>& bodies, std::int64_t facets, Sampling sampling,
+                  int seeds) {
+  std::map<std::string, Counts> table;
+  for (const TriangleMesh& body : bodies) {
+    const TriangleMesh coarse = decimated(body, static_cast<std::size_t>(facets / 2));
+    judge_cases(coarse,
+                {{"itself", always(coarse)},
+                 {"half its relief", always(relief_impostor(coarse, 0.5))},
+                 {"no relief", always(relief_impostor(coarse, 0))},
+                 {"one Laplace step", always(laplace_impostor(coarse))}},
+                sampling, seeds, table);
+  }
+  print(fmt::format("{} facets", facets), table);
+}
+
+// Gaussian bumps and pits of height 1 and one size: nearly Gaussian noise whose parts are independent, so
+// that one draw is as rough as the next.
+class BumpsAndPits {
+ public:
+  BumpsAndPits(double size, std::uint64_t seed)
+      : bumps_(count(size), size, 2 * seed), pits_(count(size), size, 2 * seed + 1) {}
+  double operator()(const Vec3d& p) const { return bumps_(p) - pits_(p); }
+
+ private:
+  static int count(double size) { return static_cast<int>(6 / (size * size)); }
+  BumpHeights bumps_, pits_;
+};
+
+using Heights = std::function<double(const Vec3d&)>;
+
+void judge_equals(int pairs, Sampling sampling) {
+  const double edge =
+      std::sqrt(8 * std::acos(-1.0) / (std::sqrt(3.0) * static_cast<double>(sampling.points)));
+  const auto noise = [=](double size) {
+    return [=](std::uint64_t seed) -> Heights {
+      return [=, height = BumpsAndPits(size * edge, seed)](const Vec3d& p) { return 0.2 * edge * height(p); };
+    };
   };
-  constexpr int kFirst = 64;
-  const auto triangles = static_cast<double>(meshed(kFirst).triangles.size());
-  return meshed(static_cast<int>(std::lround(kFirst * std::sqrt(kTriangles / triangles))));
-}
-
-void judge_recipe(const std::string& file, int seeds) {
-  const Recipe recipe = load_recipe(file);
-  const std::string name = std::filesystem::path(file).stem().string();
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
-    judge(name, "two draws of a recipe", drawn(recipe, 100 + seed), drawn(recipe, 200 + seed), seed);
+  const auto octaves = [=](std::uint64_t seed) -> Heights {
+    return [=, a = BumpsAndPits(1.2 * edge, seed), b = BumpsAndPits(2.5 * edge, seed + 1000),
+            c = BumpsAndPits(5 * edge, seed + 2000)](const Vec3d& p) {
+      return edge * (0.07 * a(p) + 0.14 * b(p) + 0.28 * c(p));
+    };
+  };
+  const auto boulders = [=](std::uint64_t seed) -> Heights {
+    return [=, a = BumpsAndPits(1.5 * edge, seed + 1000), b = BumpHeights(150, 1.5 * edge, seed)](
+               const Vec3d& p) { return edge * (0.1 * a(p) + 0.8 * b(p)); };
+  };
+  const std::vector<std::pair<std::string, std::function<Heights(std::uint64_t)>>> kinds{
+      {"bumps and pits of 1.5 edges", noise(1.5)},
+      {"of 3 edges", noise(3)},
+      {"of 5 edges", noise(5)},
+      {"three octaves", octaves},
+      {"boulders", boulders}};
+  std::map<std::string, Counts> table;
+  for (const auto& [name, heights] : kinds) {
+    for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(pairs); ++seed) {
+      table[name].add(
+          judge(rough_sphere(heights(2 * seed + 1)), rough_sphere(heights(2 * seed + 2)), sampling, seed));
+    }
   }
+  print("kind", table);
 }
 
 }  // namespace
@@ -118,22 +179,18 @@ void judge_recipe(const std::string& file, int seeds) {
 int main(int argc, char** argv) {
   CLI::App app{"Power and size of the test of realism."};
   std::vector<std::string> files;
-  int seeds = 3;
-  app.add_option("files", files, "meshes and recipes")->required();
+  std::vector<std::int64_t> facets;
+  int equals = 0, seeds = 1;
+  Sampling sampling;
+  app.add_option("meshes", files);
+  app.add_option("--facets", facets);
+  app.add_option("--equals", equals)->needs(app.add_option("--points", sampling.points));
+  app.add_option("--places", sampling.places);
   app.add_option("--seeds", seeds);
   CLI11_PARSE(app, argc, argv);
-  fmt::print(
-      "| body | case | seed | p | largest distance | variance ratio | bands | coupling | words "
-      "|\n|---|---|---|---|---|---|---|---|---|\n");
-  for (const std::string& file : files) {
-    if (file.ends_with(".json")) {
-      judge_recipe(file, seeds);
-    } else {
-      judge_body(file, seeds);
-    }
-  }
-  fmt::print("\n| case | cases | rejected by p | fail |\n|---|---|---|---|\n");
-  for (const auto& [kind, counts] : counts_of_kind) {
-    fmt::print("| {} | {} | {} | {} |\n", kind, counts.cases, counts.rejected_by_p, counts.failed);
-  }
+  std::vector<TriangleMesh> bodies;
+  for (const std::string& file : files) bodies.push_back(read_mesh(file));
+  for (const std::int64_t count : facets) judge_coarse(bodies, count, sampling, seeds);
+  if (facets.empty() && !bodies.empty()) judge_impostors(bodies, sampling, seeds);
+  if (equals > 0) judge_equals(equals, sampling);
 }

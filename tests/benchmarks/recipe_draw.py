@@ -164,7 +164,7 @@ def gabor(draw):
               draw.uniform(-0.5, 0.5), draw.log(1e-3, 1)] for _ in range(draw.integer(1, 6))]
     return {"type": "gabor", "pixel_size": draw.size * draw.log(3e-4, 0.1),
             "height_rms": abs(draw.height()) / 5, "lobes": lobes,
-            **draw.some({"impulses_per_kernel": draw.integer(1, 128), "evaluation": draw.choice(["impulses", "tiles"])})}
+            **draw.some({"impulses_per_kernel": draw.integer(1, 128)})}
 
 
 def population(draw):

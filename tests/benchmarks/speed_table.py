@@ -1,17 +1,14 @@
 #!/usr/bin/env python3
-"""The figures of docs/performance.md in one run: ratio, ours, the peer's, and the limit of the machine.
+"""The figures of docs/performance.md in one run: ratio, ours, and the peer's.
 
     speed_table.py BUILD [--fastnoise2 SOURCES] [--only noise terrain ...] [--turns 5] [--full]
 
 BUILD is a build folder made with -DASTROLITH_BENCHMARKS=ON. Ours and a peer run in turn, one thread each. A figure is the
 median over the turns, and a ratio the median of the ratios of the pairs. All seconds are those of the processor.
 
-Peers come from packages: pip install numpy vtk terraingenpy scikit-learn scipy. VTK may also be Debian's python3-vtk9. A
-peer that is not installed is left out, with a word. FastNoise2 is in no package: SOURCES is a folder that holds FastNoise2
-and FastSIMD side by side, where it is built the first time.
-
-A limit is counted: bytes that must be read or written, at the rate that machine_limits measures in the same run. Rows
-of noise have none yet: their operations are not counted. --full adds meshes of 10 and 30 million triangles (minutes).
+Peers come from packages: pip install numpy terraingenpy scikit-learn scipy. A peer that is not installed is left out, with a word.
+FastNoise2 is in no package: SOURCES is a folder that holds FastNoise2 and FastSIMD side by side, where it is built the first
+time. --full adds meshes of 10 and 30 million triangles (minutes).
 """
 import argparse
 import json
@@ -22,6 +19,7 @@ import sys
 import tempfile
 from statistics import median
 
+import asteroid_recipe
 import terrain_peers
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -63,26 +61,23 @@ def number(value):
 
 class Table:
     def __init__(self, title, unit, peer):
-        print(f"\n{title}\n\n| {unit} | ratio | ours | {peer} | limit |\n|---|---|---|---|---|")
+        print(f"\n{title}\n\n| {unit} | ratio | ours | {peer} |\n|---|---|---|---|")
 
-    def row(self, name, ours, theirs, limit=None, higher_is_better=True):
+    def row(self, name, ours, theirs, higher_is_better=True):
         """Medians of the turns of both; the ratio says how many times better ours is."""
         ratio = None
         if theirs and all(value is not None for value in theirs):
             pairs = zip(ours, theirs) if higher_is_better else zip(theirs, ours)
             ratio = median(a / b for a, b in pairs)
         peer = median(theirs) if ratio is not None else None
-        print(f"| {name} | {'–' if ratio is None else f'{ratio:.2f}'} | {number(median(ours))} | {number(peer)} | "
-              f"{number(limit)} |", flush=True)
+        print(f"| {name} | {'–' if ratio is None else f'{ratio:.2f}'} | {number(median(ours))} | {number(peer)} |",
+              flush=True)
 
 
 class Benchmark:
     def __init__(self, build, fastnoise2, turns, folder):
         self.build, self.tools, self.fastnoise2 = build, build / "tests/benchmarks", fastnoise2
         self.turns, self.folder = turns, folder
-        self.limits = json.loads(Run(self.tools / "machine_limits").output)
-        print("Limits of one thread: {vector_operations:.3g} vector operations a second of {lanes} floats each, "
-              "{read_bytes:.3g} bytes a second read, {write_bytes:.3g} written".format(**self.limits))
 
     def noise(self):
         ours, theirs = [], []
@@ -99,24 +94,10 @@ class Benchmark:
 
     def gabor(self):
         turns = [Run(self.tools / "gabor_noise_benchmark").rows() for _ in range(self.turns)]
-        table = Table("Gabor noise, one band, 32 impulses, M/s", "bandwidth", "Lagae 2009")
+        table = Table("Gabor noise, one band, 32 impulses, M/s", "bandwidth", "no peer")
         for i, row in enumerate(turns[0]):
-            for kind, rate in (("texture", "texture_mpixel_per_s"), ("surface", "surface_mpoint_per_s")):
-                table.row(f"{kind}, {row['bandwidth']}", [turn[i][rate] for turn in turns],
-                          [turn[i]["peer_" + kind] for turn in turns])
-
-    def together(self):
-        field, recipe = self.folder / "field.raw", self.folder / "bare.json"
-        Run(self.tools / "asteroid_recipe", recipe, "bare")
-        ours, theirs = [], []
-        for _ in range(self.turns):
-            row, = Run(self.tools / "dense_field_benchmark", recipe, 512, field).rows()
-            ours.append(row["seconds_sparse"])
-            made = peer_rows("VTK", sys.executable, HERE / "isosurface_peers.py", field) if theirs is not None else None
-            theirs = None if made is None else theirs + [row["seconds_dense_field"] +
-                                                         made[0]["flying_edges_with_normals"]["seconds"]]
-        table = Table("Field and mesh of a bare asteroid at 512^3, seconds", "the peer", "dense field and flying edges")
-        table.row("with normals", ours, theirs, higher_is_better=False)
+            for kind in ("texture", "surface"):
+                table.row(f"{kind}, {row['bandwidth']}", [turn[i][kind] for turn in turns], None)
 
     def terrain(self, targets):
         like_it = self.folder / "like_it.json"
@@ -136,9 +117,7 @@ class Benchmark:
                     peers.append(run.seconds)
                     memory["TerrainGen"] = run.bytes
             for name in recipes:
-                # 25 bytes a triangle with its half vertex are written and read again for the check sum.
-                limit = 25 * triangles * (1 / self.limits["write_bytes"] + 1 / self.limits["read_bytes"])
-                table.row(f"{triangles / 1e6:g} M, {name}", seconds[name], peers, limit, higher_is_better=False)
+                table.row(f"{triangles / 1e6:g} M, {name}", seconds[name], peers, higher_is_better=False)
             print(f"| {triangles / 1e6:g} M, memory | "
                   + ", ".join(f"{name} {used / 1e6:.0f} MB" for name, used in memory.items()) + " | | | |")
 
@@ -170,14 +149,13 @@ class Benchmark:
         os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
         problems = self.folder / "problems"
         problems.mkdir()
-        Run(self.tools / "basis_pursuit_benchmark", ROOT / "data-cache/gravel.png", "--side", 32, "--fista-seconds", 0,
-            "--export", problems)
+        Run(self.tools / "basis_pursuit_benchmark", ROOT / "data-cache/gravel.png", problems)
         run = Run(sys.executable, HERE / "pursuit_peers.py", problems, check=False)
         print(run.errors if run.failed else run.output, end="")
 
     def asteroid(self, kind, targets):
         recipe = self.folder / f"{kind}.json"
-        Run(self.tools / "asteroid_recipe", recipe, *(["bare"] if kind == "bare" else []))
+        recipe.write_text(json.dumps(asteroid_recipe.recipe(kind == "bare")))
         print(f"\nAsteroid, {kind}\n\n| triangles | seconds | microseconds a triangle | MB |\n|---|---|---|---|")
         for triangles in targets:
             runs = [self.mesh(recipe, triangles) for _ in range(self.turns if triangles <= 1_000_000 else 1)]
@@ -192,7 +170,7 @@ def main():
     parser.add_argument("--fastnoise2", type=pathlib.Path, metavar="SOURCES")
     parser.add_argument("--turns", type=int, default=5)
     parser.add_argument("--full", action="store_true")
-    sections = ("noise", "gabor", "together", "terrain", "erosion", "pursuit", "asteroid")
+    sections = ("noise", "gabor", "terrain", "erosion", "pursuit", "asteroid")
     parser.add_argument("--only", nargs="+", choices=sections, default=sections, metavar="SECTION",
                         help="some of: " + ", ".join(sections))
     arguments = parser.parse_args()

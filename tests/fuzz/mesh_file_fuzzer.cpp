@@ -4,7 +4,6 @@
 
 #include "fuzzed_reader.h"
 #include "geometry/io/mesh_io.h"
-#include "geometry/io/stated_unit.h"
 #include "numerics/files/zstd_stream.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // One format of mesh files: compiled once for each reader, whose name is ASTROLITH_READER.
 #include "fuzzed_reader.h"
-#include "geometry/io/mesh_file_internal.h"
+#include "geometry/io/format_internal.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace astrolith;

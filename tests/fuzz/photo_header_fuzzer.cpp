@@ -1,5 +1,5 @@
 // Headers of photos: PNG, JPEG and TIFF, read without decoding.
-#include "estimation/gabor/image/image_header_internal.h"
+#include "estimation/gabor/image/image_codec_internal.h"
 #include "fuzzed_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

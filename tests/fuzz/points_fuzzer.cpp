@@ -1,6 +1,6 @@
 // Lists of points in text files.
 #include "fuzzed_reader.h"
-#include "geometry/io/points_io.h"
+#include "geometry/io/mesh_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace astrolith;

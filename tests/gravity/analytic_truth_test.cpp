@@ -1,6 +1,5 @@
 // Exact sums beside truths that share nothing with them: the closed form of a cuboid, quadrature over a
 // tetrahedron, and balls and ellipsoids as limits of polyhedra.
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,5 @@
 #include "recipe/compact/height_picture.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -192,6 +190,24 @@ TEST(HeightPicture, RandomBytesEnd) {
     for (std::uint64_t size = random.below(200); size > 0; --size)
       bytes += static_cast<char>(random.below(256));
     expect_an_end(bytes);
+  }
+}
+
+// A ball in the middle of holes, larger than what one stream holds.
+TEST(HeightPicture, LargePicturesAreHeldInBands) {
+  const HeightPicture ball = make_picture(2048, 520, [](int x, int y) {
+    const int squared = (x - 400) * (x - 400) + (y - 260) * (y - 260);
+    return squared < 10000 ? 5000 + squared / 8 + noise(10, x, y, 9) : 0;
+  });
+  expect_equal_after_coding(ball);
+  const std::string bytes = bytes_of(ball);
+  EXPECT_THROW(picture_of(bytes, ball.pixels() - 1), DamagedStream);
+  EXPECT_THROW(picture_of(bytes.substr(0, bytes.size() / 2)), DamagedStream);
+  CounterRandom random(7);
+  for (int i = 0; i < 10; ++i) {
+    std::string changed = bytes;
+    changed[random.below(bytes.size())] ^= static_cast<char>(1 + random.below(255));
+    expect_an_end(changed);
   }
 }
 

@@ -146,6 +146,14 @@ TEST(RecipeJson, ErrorsNameFilePathAndRemedy) {
   expect_error("[]", "must be an object, is an array of 0");
 }
 
+// Older recipes state the evaluation of Gabor noise, of which one is left.
+TEST(RecipeJson, TheOneEvaluationMayBeStated) {
+  const std::string old =
+      testing::spoil({R"("exemplar_mean": 0.4)", R"("evaluation": "impulses", "exemplar_mean": 0.4)", ""});
+  EXPECT_EQ(recipe_to_json(parse_recipe(old, "r")),
+            recipe_to_json(parse_recipe(testing::kCompleteRecipe, "r")));
+}
+
 TEST(RecipeJson, SyntaxErrorsGiveLineAndColumn) {
   expect_error("", "line 1, column 1: not valid JSON");
   expect_error("{\n  \"format_version\": 1,\n  oops\n}", "line 3, column 3: not valid JSON");

@@ -1,10 +1,11 @@
 // A Gabor layer on a body, without a field.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "synthesis/gabor/gabor_bricks.h"
 #include "synthesis/gabor/gabor_surface_noise.h"
-#include "synthesis/gabor/gabor_tiles.h"
 
 namespace astrolith::testing {
 
@@ -14,7 +15,8 @@ class LoneGaborNoise {
                  const Box& domain)
       : tables_(make_body(body, 1, arrays_)),
         metaballs_(all_metaballs(tables_, arrays_.view())),
-        noise_(make_noise(layer, seed, layer_index, domain, arrays_)),
+        noise_(make_noise(layer, seed, layer_index, domain,
+                          std::max({domain.extent().x, domain.extent().y, domain.extent().z}), arrays_)),
         caches_(noise_.bands.count) {}
 
   void evaluate(int n, const float* x, const float* y, const float* z, float* height) const {
@@ -31,7 +33,7 @@ class LoneGaborNoise {
   BodyTables tables_;
   ReachingMetaballs metaballs_;
   GaborSurfaceNoise noise_;
-  std::vector<GaborTileCache> caches_;  // by band
+  std::vector<GaborBrickCache> caches_;  // by band
 };
 
 }  // namespace astrolith::testing

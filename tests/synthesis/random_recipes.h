@@ -86,7 +86,7 @@ inline BoulderLayer random_boulders(CounterRandom& random) {
 
 constexpr std::uint64_t kLayerKinds = 10;
 
-// A layer of a kind: the last kinds are exemplars, Gabor noise by tiles and impulses, by impulses, fractals.
+// A layer of a kind: the last kinds are exemplars, Gabor noise and fractals.
 inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
   switch (kind) {
     case 0:
@@ -103,13 +103,7 @@ inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
       return random_boulders(random);
     case 6:
       return exemplar_layer(0.01, 0.01);
-    case 7: {
-      GaborLayer layer = gabor_layer(0.03, 0.005);
-      layer.evaluation = GaborEvaluation::kTiles;
-      layer.lobes.push_back({8, 0.5, 0.0, 1.0});
-      return layer;
-    }
-    case 8:
+    case 7:
       return gabor_layer(0.03, 0.005);
     default:
       return random_fractal(random);
@@ -118,7 +112,7 @@ inline Layer layer_of_kind(std::uint64_t kind, CounterRandom& random) {
 
 inline Layer random_layer(CounterRandom& random) {
   const auto kind = random.below(9);
-  return layer_of_kind(kind < 6 ? kind : kind == 6 ? 6 + random.below(3) : 9, random);
+  return layer_of_kind(kind < 6 ? kind : kind == 6 ? 6 + random.below(2) : 9, random);
 }
 
 // A body made by operations on others: one of these has a warp, and one has operations of its own.

@@ -14,7 +14,7 @@
 namespace astrolith {
 
 // The ways to continue a photo beyond its border:
-//   kPeriodic  its periodic component (Moisan 2011), which tiles
+//   kPeriodic  its periodic component (Moisan 2011), which repeats without a seam
 //   kMatched   the periodic component, whose ranks take the grey values of the photo
 //   kMirrored  the photo itself, mirrored at its borders
 enum class ExemplarVariant { kPeriodic, kMatched, kMirrored };

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kPreferredSide = 1024;
 
-int image_side(int side, bool tiles) { return tiles ? side : longest_phase_side(side); }
+int image_side(int side, bool repeats) { return repeats ? side : longest_phase_side(side); }
 
 // The wave of random phase at a frequency. Its opposite has the conjugate, and a frequency that is its own
 // opposite a random sign.
@@ -41,7 +41,7 @@ struct ImageSides {
   int width, height;
 };
 ImageSides image_sides(const GreyImage& plane) {
-  return {image_side(plane.width, tiles_along_x(plane)), image_side(plane.height, tiles_along_y(plane))};
+  return {image_side(plane.width, repeats_along_x(plane)), image_side(plane.height, repeats_along_y(plane))};
 }
 
 // The spectrum of a plane on the frequencies of the layer's image. A photo says nothing of features wider

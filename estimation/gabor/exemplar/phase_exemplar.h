@@ -21,7 +21,7 @@ int longest_phase_side(int side);
 
 // An exemplar layer whose image has the spectrum of the photo, whatever its kind, and random phases. The
 // photo is one plane of grey, or red, green and blue, whose principal axes become independent textures. Along
-// an axis where the photo does not tile the image is four times as long, at most 1024 pixels or the photo's
+// an axis where the photo does not repeat the image is four times as long, at most 1024 pixels or the photo's
 // own length: the longer it is, the less does blending change its spectrum. Lengths are pixels.
 // height_rms is the deviation of the texture or of its luma: that of the photo but for light from one side
 // and other features wider than it. Throws as require_exemplar() and require_colors() do.

@@ -1,4 +1,4 @@
-#include "estimation/gabor/image/image_decoder_internal.h"
+#include "estimation/gabor/image/image_codec_internal.h"
 
 #include <tiffio.h>
 #include <unistd.h>

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "estimation/gabor/image/image_header_internal.h"
+#include "estimation/gabor/image/image_codec_internal.h"
 #include "numerics/errors.h"
 #include "numerics/files/input_file.h"
 

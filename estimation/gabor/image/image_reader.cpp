@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "estimation/gabor/image/image_decoder_internal.h"
+#include "estimation/gabor/image/image_codec_internal.h"
 #include "numerics/errors.h"
 
 namespace astrolith {

@@ -2,7 +2,7 @@
 //
 //   minimise  P(x) = 1/2 |A x - s|^2 + penalty * sum x,   x >= 0        (Galerne et al. 2012, eq. 14)
 //
-// over the Gabor dictionary A. Solvers share the problem, the certificate and the result.
+// over the Gabor dictionary A.
 #pragma once
 
 #include <span>
@@ -42,12 +42,6 @@ struct BasisPursuitResult {
 
 // The smallest penalty whose solution is x = 0: max_j (a_j's)+.
 double largest_penalty(const GaborDictionary& dictionary, std::span<const double> target);
-
-// FISTA: the accelerated proximal gradient (Beck and Teboulle 2009) with the gradient restart of O'Donoghue
-// and Candes 2015 and a step from a certified bound on |A'A|. It is slow on this dictionary, but simple, and
-// serves as the reference.
-BasisPursuitResult solve_fista(const BasisPursuitProblem& problem, const BasisPursuitOptions& options,
-                               const Progress& progress = {});
 
 // The working-set method. It solves the problem exactly on a few atoms, adds the atoms that violate
 // optimality most, drops the atoms at zero, and repeats. `start`, if not empty, is a first guess of x.

@@ -18,8 +18,8 @@ constexpr double kPlaceShare = 1.0 / 16.0;  // share of a side that a place cove
 
 // A border continues if it bends at most so many times as much as the third of these places. Of 400
 // realisations of 128 x 128 pixels of each of five spectra, at most 2.3 % were taken for cuts, and of their
-// quarters, cut out, at most 3 % for tiles (none of three of the spectra). With a factor of 1 the shares
-// were 9 % and 1.5 %, with 1.1 0.5 % and 4.8 %.
+// quarters, cut out, at most 3 % for periodic ones (none of three of the spectra). With a factor of 1 the
+// shares were 9 % and 1.5 %, with 1.1 0.5 % and 4.8 %.
 constexpr double kStillContinues = 1.05;
 
 double bend_of(double before, double here, double after) { return std::abs(before - 2.0 * here + after); }
@@ -64,9 +64,9 @@ bool continues(int n, const Bend& bend) {
   return std::max(bends.front(), bends.back()) <= kStillContinues * usual_largest(bends);
 }
 
-std::vector<double> fading(int n, bool tiles) {
+std::vector<double> fading(int n, bool repeats) {
   std::vector<double> taper(static_cast<std::size_t>(n), 1.0);
-  const int faded = tiles ? 0 : static_cast<int>(kFadedShare * n);
+  const int faded = repeats ? 0 : static_cast<int>(kFadedShare * n);
   for (int i = 0; i < faded; ++i) {
     const double s = std::sin(0.5 * std::numbers::pi * (i + 0.5) / faded);
     taper[static_cast<std::size_t>(i)] = taper[static_cast<std::size_t>(n - 1 - i)] = s * s;
@@ -104,11 +104,11 @@ double weighted_sum(const GreyImage& image, const std::vector<double>& wx, const
 
 }  // namespace
 
-bool tiles_along_x(const GreyImage& image) {
+bool repeats_along_x(const GreyImage& image) {
   return continues(image.width, [&](int x) { return column_bend(image, x); });
 }
 
-bool tiles_along_y(const GreyImage& image) {
+bool repeats_along_y(const GreyImage& image) {
   return continues(image.height, [&](int y) { return row_bend(image, y); });
 }
 
@@ -116,18 +116,18 @@ std::vector<double> border_fading(int n) { return fading(n, false); }
 
 void BorderTaper::fade_columns() {
   columns = border_fading(static_cast<int>(columns.size()));
-  tiles_x = false;
+  repeats_x = false;
 }
 
 void BorderTaper::fade_rows() {
   rows = border_fading(static_cast<int>(rows.size()));
-  tiles_y = false;
+  repeats_y = false;
 }
 
 double BorderTaper::looks() const { return independent_share(columns) * independent_share(rows); }
 
 BorderTaper taper_of(const GreyImage& image) {
-  const bool x = tiles_along_x(image), y = tiles_along_y(image);
+  const bool x = repeats_along_x(image), y = repeats_along_y(image);
   return {fading(image.width, x), fading(image.height, y), x, y};
 }
 

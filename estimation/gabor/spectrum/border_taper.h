@@ -1,4 +1,4 @@
-// Fades out the borders of images that do not tile. A Fourier transform takes an image for one period of an
+// Fades out the borders of images that do not repeat. A Fourier transform takes an image for one period of an
 // endless pattern, so jumps from one border to the opposite one draw a cross over its spectrum.
 #pragma once
 
@@ -12,17 +12,17 @@ namespace astrolith {
 // sum of its second differences, taken without signs. Borders continue each other if they bend about as much
 // as at least three separate places inside, or less. A strong stratum or a bright grain therefore does not
 // hide a cut. White noise continues across any cut, which does it no harm.
-bool tiles_along_x(const GreyImage& image);
-bool tiles_along_y(const GreyImage& image);
+bool repeats_along_x(const GreyImage& image);
+bool repeats_along_y(const GreyImage& image);
 
 // The weights of n columns (or rows) where borders do not match: a raised cosine (Tukey 1967) over a tenth at
 // each end.
 std::vector<double> border_fading(int n);
 
-// A taper is the product of the weights of columns and of rows. Along an axis that tiles all weights are 1.
+// A taper is the product of the weights of columns and of rows. Along an axis that repeats all weights are 1.
 struct BorderTaper {
   std::vector<double> columns, rows;
-  bool tiles_x = false, tiles_y = false;
+  bool repeats_x = false, repeats_y = false;
 
   void fade_columns();
   void fade_rows();

@@ -8,30 +8,28 @@
 
 #include "estimation/gabor/spectrum/border_taper.h"
 #include "estimation/gabor/spectrum/fourier_transform.h"
-#include "estimation/gabor/spectrum/periodic_component.h"
 #include "estimation/gabor/spectrum/tapered_periodogram.h"
 #include "numerics/errors.h"
 
 namespace astrolith {
 namespace {
 
-// The first pixels of half-overlapping tiles that are evenly spread over 0 .. extent-1.
-std::vector<int> tile_starts(int extent, int tile) {
-  const int steps = tile >= extent ? 0 : (2 * (extent - tile) + tile - 1) / tile;
+// The first pixels of half-overlapping segments that are evenly spread over 0 .. extent-1.
+std::vector<int> segment_starts(int extent, int segment) {
+  const int steps = segment >= extent ? 0 : (2 * (extent - segment) + segment - 1) / segment;
   std::vector<int> starts{0};
   for (int i = 1; i <= steps; ++i) {
-    starts.push_back(static_cast<int>(static_cast<std::int64_t>(extent - tile) * i / steps));
+    starts.push_back(static_cast<int>(static_cast<std::int64_t>(extent - segment) * i / steps));
   }
   return starts;
 }
 
-// The variance of the mean of the periodograms of tiles along one axis, over that of one periodogram. Tiles
-// that overlap share pixels, so their periodograms have the correlation |sum w w'|^2 / (sum w^2)^2, where w'
-// are the weights w of the other tile (Welch 1967).
-double scatter_along(const std::vector<int>& starts, int tile, Borders borders) {
-  const auto n = static_cast<std::size_t>(tile);
-  const std::vector<double> weight =
-      borders == Borders::kTaper ? border_fading(tile) : std::vector<double>(n, 1.0);
+// The variance of the mean of the periodograms of segments along one axis, over that of one periodogram.
+// Segments that overlap share pixels, so their periodograms have the correlation |sum w w'|^2 / (sum w^2)^2,
+// where w' are the weights w of the other segment (Welch 1967).
+double scatter_along(const std::vector<int>& starts, int segment) {
+  const auto n = static_cast<std::size_t>(segment);
+  const std::vector<double> weight = border_fading(segment);
   double energy = 0.0;
   for (const double w : weight) energy += w * w;
   double sum = 0.0;
@@ -44,11 +42,6 @@ double scatter_along(const std::vector<int>& starts, int tile, Borders borders) 
     }
   }
   return sum / static_cast<double>(starts.size() * starts.size());
-}
-
-TaperedPower power_of(const GreyImage& image, Borders borders) {
-  if (borders == Borders::kTaper) return tapered_power(image, image.width, image.height);
-  return {power_spectrum(decompose_periodic(image).periodic), {}, 0.0};
 }
 
 }  // namespace
@@ -81,28 +74,27 @@ PowerSpectrum power_spectrum(const GreyImage& image) {
   return spectrum;
 }
 
-PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, Borders borders,
-                                   const Progress& progress) {
-  const int tile_width = std::min(image.width, largest_side);
-  const int tile_height = std::min(image.height, largest_side);
-  const std::vector<int> xs = tile_starts(image.width, tile_width);
-  const std::vector<int> ys = tile_starts(image.height, tile_height);
+PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side, const Progress& progress) {
+  const int segment_width = std::min(image.width, largest_side);
+  const int segment_height = std::min(image.height, largest_side);
+  const std::vector<int> xs = segment_starts(image.width, segment_width);
+  const std::vector<int> ys = segment_starts(image.height, segment_height);
   TaperedPower sum;
   for (const int y : ys) {
     for (const int x : xs) {
       if (!report(progress, 0.0, "spectrum of the photo")) {
         throw WorkError("stopped before the spectrum was known; nothing is written");
       }
-      sum.add(power_of(image.part(x, y, tile_width, tile_height), borders));
+      sum.add(tapered_power(image.part(x, y, segment_width, segment_height), segment_width, segment_height));
     }
   }
-  const std::size_t tiles = xs.size() * ys.size();
-  sum.divide(static_cast<double>(tiles));
-  PowerSpectrum mean = borders == Borders::kTaper ? least_leaky(sum) : std::move(sum.values);
-  if (tiles == 1) return mean;
-  // Tiles that overlap share pixels, so the number of independent looks is that of tiles side by side.
+  const std::size_t segments = xs.size() * ys.size();
+  sum.divide(static_cast<double>(segments));
+  PowerSpectrum mean = least_leaky(sum);
+  if (segments == 1) return mean;
+  // Segments that overlap share pixels, so the number of independent looks is that of segments side by side.
   mean.averages = static_cast<double>(image.values.size()) / static_cast<double>(mean.power.size());
-  mean.scatter = scatter_along(xs, tile_width, borders) * scatter_along(ys, tile_height, borders);
+  mean.scatter = scatter_along(xs, segment_width) * scatter_along(ys, segment_height);
   return mean;
 }
 

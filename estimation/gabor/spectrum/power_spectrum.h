@@ -28,17 +28,12 @@ struct PowerSpectrum {
 // |DFT|^2 / (width * height) of the image, with its mean removed and its borders as they are.
 PowerSpectrum power_spectrum(const GreyImage& image);
 
-// The treatment of borders that do not match.
-enum class Borders {
-  kTaper,              // fade the borders out, unless the exemplar tiles (see border_taper.h)
-  kPeriodicComponent,  // take Moisan's periodic component, as in Galerne et al. 2012
-};
-
-// The periodogram to which lobes are fitted, with the mean removed. An image with a side above `largest_side`
-// is cut into half-overlapping tiles of at most this side, whose periodograms are averaged (Welch 1967). This
-// lowers speckle and bounds memory; frequencies below one cycle per tile are lost. Reports progress 0 after
-// each tile, and throws WorkError when asked to stop.
+// The periodogram to which lobes are fitted, with the mean removed and the borders faded out, unless the
+// exemplar repeats (border_taper.h). An image with a side above `largest_side` is cut into half-overlapping
+// segments of at most this side, whose periodograms are averaged (Welch 1967). This lowers speckle and bounds
+// memory; frequencies below one cycle per segment are lost. Reports progress 0 after each segment, and throws
+// WorkError when asked to stop.
 PowerSpectrum exemplar_periodogram(const GreyImage& image, int largest_side = 1024,
-                                   Borders borders = Borders::kTaper, const Progress& progress = {});
+                                   const Progress& progress = {});
 
 }  // namespace astrolith

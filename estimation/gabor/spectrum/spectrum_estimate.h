@@ -18,9 +18,9 @@ struct SpectrumEstimate {
   PowerSpectrum spectrum;  // same variance as the periodogram; positive everywhere but at frequency 0
   std::vector<OctaveSmoothing> smoothing;
   // The optimal-transport distance from the truth that is expected from speckle alone: the root of
-  // sum S var(ln S) / 4 over sum S. It is 0 for an estimate that is a raw periodogram.
+  // sum S var(ln S) / 4 over sum S.
   double standard_error = 0.0;
-  std::vector<double> weights;  // octave_weights of the spectrum; empty for a raw periodogram
+  std::vector<double> weights;  // octave_weights of the spectrum
   // The standard error with these weights: the root of sum w S var(ln S) / 4 over sum w S.
   double weighted_error = 0.0;
 };

@@ -16,14 +16,14 @@ namespace {
 
 // The differences between neighbours along x or y. Those across a border are left out where it does not
 // continue: the taper is next to nothing there.
-GreyImage differences(const GreyImage& image, int step_x, int step_y, bool tiles) {
+GreyImage differences(const GreyImage& image, int step_x, int step_y, bool repeats) {
   GreyImage result{image.width, image.height, {}};
   result.values.reserve(image.values.size());
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const int x1 = x + step_x, y1 = y + step_y;
       const bool across = x1 == image.width || y1 == image.height;
-      const double next = across && !tiles ? image.at(x, y) : image.at(x1 % image.width, y1 % image.height);
+      const double next = across && !repeats ? image.at(x, y) : image.at(x1 % image.width, y1 % image.height);
       result.values.push_back(next - image.at(x, y));
     }
   }
@@ -50,9 +50,9 @@ PowerSpectrum power_on_grid(const GreyImage& image, int width, int height) {
 }
 
 PowerSpectrum slope_power(const GreyImage& image, const BorderTaper& taper, int width, int height) {
-  PowerSpectrum sum = power_on_grid(faded(differences(image, 1, 0, taper.tiles_x), taper), width, height);
+  PowerSpectrum sum = power_on_grid(faded(differences(image, 1, 0, taper.repeats_x), taper), width, height);
   const PowerSpectrum down =
-      power_on_grid(faded(differences(image, 0, 1, taper.tiles_y), taper), width, height);
+      power_on_grid(faded(differences(image, 0, 1, taper.repeats_y), taper), width, height);
   std::size_t i = 0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x, ++i) {

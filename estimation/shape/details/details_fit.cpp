@@ -115,7 +115,7 @@ DetailsFitResult fit_details(const TargetBody& target, const MetaballBody& base,
   result.start_score = start.score;
   result.base_score = fitness.score({});
   result.optimization = minimize(remembered, detail_bounds(fitness.ranges()), optimize, progress);
-  result.interrupted = result.optimization.termination == OptimizeTermination::stopped;
+  result.interrupted = result.optimization.stopped;
   if (result.optimization.value < result.base_score.fitness()) {
     result.layers = detail_layers(result.optimization.x, fitness.ranges());
   }

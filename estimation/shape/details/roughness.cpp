@@ -131,8 +131,7 @@ class RoughnessFit {
     const Bounds bounds{{std::log(ranges_.lowest_frequency), 0.0},
                         {std::log(std::max(highest, ranges_.lowest_frequency)), 0.9}};
     OptimizeOptions options;
-    options.algorithm = OptimizerAlgorithm::cmaes;
-    options.population = 12;
+    options.algorithm = OptimizerAlgorithm::crs2;
     options.max_evaluations = 600;
     return scaled(noise_at(minimize(misfit, bounds, options).x));
   }

@@ -109,9 +109,11 @@ void SurfaceProbe::add_lines(const Block& block) {
     };
     lines_.start.push_back(at(block.start));
     lines_.direction.push_back(at(block.direction));
-    lines_.block.push_back(static_cast<std::uint32_t>(lines_.metaballs.size()));
+    lines_.block.push_back(static_cast<std::uint32_t>(lines_.first_metaball.size() - 1));
   }
-  lines_.metaballs.add(std::span<const MetaballSphere<float>>(block.metaballs.spheres));
+  lines_.metaballs.insert(lines_.metaballs.end(), block.metaballs.spheres.begin(),
+                          block.metaballs.spheres.end());
+  lines_.first_metaball.push_back(static_cast<std::uint32_t>(lines_.metaballs.size()));
 }
 
 std::vector<std::vector<double>> SurfaceProbe::heights(CandidateEvaluator& evaluator,

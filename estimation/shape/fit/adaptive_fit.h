@@ -26,7 +26,7 @@ struct AdaptiveFitOptions {
   int relocations = 40;            // rounds of relocation, at most
   int relocation_iterations = 20;  // of the refinement after each round of relocation
   int last_iterations = 60;        // of the refinement on all samples
-  double subtractive = 0.5;        // share of the metaballs that may be subtractive, with the Gaussian kernel
+  double subtractive = 0.5;        // share of the metaballs that may be subtractive
   double relocated = 0.15;         // share of the metaballs that the first relocation moves
   double least_relocated = 0.01;   // share that a relocation moves at least; with fewer the fit goes on
   double relocation_gain = 3e-3;   // share of the mean distance; a smaller gain lets fewer move:

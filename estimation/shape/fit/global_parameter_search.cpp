@@ -23,21 +23,12 @@ Bounds search_bounds(int packed, int max_spheres) {
           {most, t, t, std::log(kLargestExponent)}};
 }
 
-// Kernels other than the Gaussian are summed with exponent 1 and take m a and m b as tensions. For Gaussians
-// this would be the same body.
-MetaballBody body_at(const std::vector<Sphere>& packing, Kernel kernel, std::span<const double> x) {
+MetaballBody body_at(const std::vector<Sphere>& packing, std::span<const double> x) {
   MetaballBody body;
-  body.kernel = kernel;
   const auto count = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(x[0])), 1, packing.size());
   body.a = std::exp(x[1]);
   body.b = std::exp(x[2]);
   body.blend_exponent = std::exp(x[3]);
-  if (kernel != Kernel::kGaussian) {
-    const double m = std::min(std::exp(x[3]), kMaxTension / body.a);
-    body.a *= m;
-    body.b *= m;
-    body.blend_exponent = 1.0;
-  }
   body.spheres.assign(packing.begin(), packing.begin() + static_cast<std::ptrdiff_t>(count));
   return body;
 }
@@ -50,15 +41,14 @@ GlobalParameterSearchSummary search_global_parameters(const std::vector<Sphere>&
                                                       const Progress& progress) {
   const ShapeHistogram wanted = surflet_histogram(samples.points, samples.normals);
   const Objective dissimilarity = [&](std::span<const double> x) {
-    const SurfaceSamples projected =
-        project_onto_isosurface(model_of(body_at(packing, options.kernel, x)), samples.points);
+    const SurfaceSamples projected = project_onto_isosurface(model_of(body_at(packing, x)), samples.points);
     return 1.0 - similarity(wanted, surflet_histogram(projected.points, projected.normals));
   };
   GlobalParameterSearchSummary summary;
   summary.optimization =
       minimize(dissimilarity, search_bounds(static_cast<int>(packing.size()), options.max_spheres),
                options.optimize, progress);
-  const MetaballBody body = body_at(packing, options.kernel, summary.optimization.x);
+  const MetaballBody body = body_at(packing, summary.optimization.x);
   summary.model = model_of(body);
   summary.a = body.a;
   summary.b = body.b;

@@ -16,8 +16,7 @@
 namespace astrolith {
 
 struct GlobalParameterSearchOptions {
-  int max_spheres = 100;  // upper bound of the number of spheres, > 0
-  Kernel kernel = Kernel::kGaussian;
+  int max_spheres = 100;     // upper bound of the number of spheres, > 0
   OptimizeOptions optimize;  // algorithm, population, evaluations, seed
 };
 

@@ -65,7 +65,6 @@ GlobalParameterSearchSummary search(const TargetBody& target, const Packing& pac
                                     const ShapeFitOptions& options, const Progress& progress) {
   GlobalParameterSearchOptions search_options;
   search_options.max_spheres = static_cast<int>(packing.spheres.size());
-  search_options.kernel = options.kernel;
   search_options.optimize.algorithm = options.optimizer;
   search_options.optimize.population = options.population;
   search_options.optimize.max_evaluations = std::int64_t{options.population} * options.generations;

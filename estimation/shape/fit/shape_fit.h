@@ -20,9 +20,8 @@ inline constexpr std::int64_t kPointsPerSphere = 120;
 inline constexpr std::int64_t kFewestPoints = 4000;
 
 struct ShapeFitOptions {
-  int spheres = 200;  // number of metaballs, at most; 1 .. 10000
-  Kernel kernel = Kernel::kGaussian;
-  double subtract = 0.5;    // share of the metaballs that may be subtractive, 0 .. 0.9; Gaussian kernel only
+  int spheres = 200;        // number of metaballs, at most; 1 .. 10000
+  double subtract = 0.5;    // share of the metaballs that may be subtractive, 0 .. 0.9
   std::int64_t points = 0;  // surface samples of the refinement, 100 .. 10000000; 0: kPointsPerSphere each
   // The most bytes of the body as a compact recipe without provenance, or 0. The numbers are then rounded to
   // these bytes, instead of seven digits.

@@ -128,8 +128,7 @@ std::vector<std::vector<Movement>> movements(const MetaballModel& model, std::sp
         const double share = scratch.kernels.share(i, j);
         if (share <= kNegligibleShare) continue;
         moved[static_cast<std::size_t>(own[j])].push_back(
-            {scratch.spheres[i],
-             level_lost(model, sums.kernel, std::min(share, kLargestShare)) / slope_length});
+            {scratch.spheres[i], level_lost(model, std::min(share, kLargestShare)) / slope_length});
       }
     }
   });
@@ -166,7 +165,7 @@ void mark_holding(const MetaballModel& model, bool subtractive, std::span<const 
 // The radius of a new metaball for a patch of this radius. Along the surface a Gaussian falls as
 // exp(-kappa x^2 / r^2).
 double radius_for_patch(const MetaballModel& model, double patch) {
-  return model.kernel == Kernel::kGaussian ? kBumpWidth * patch * std::sqrt(model.sharpness) : patch;
+  return kBumpWidth * patch * std::sqrt(model.sharpness);
 }
 
 // The distance from the centre, in radii, at which the kernel has the value `value` < 1. The kernel decreases

@@ -77,7 +77,6 @@ void TrackedModel::grow(int spheres, int rounds_left, double idle_distance) {
 int TrackedModel::more_subtractive() const {
   constexpr int kFewest = 8;  // fewer metaballs than that have no room for dents, which eat the body up
   if (options_.spheres < kFewest) return 0;
-  if (summary_.model.kernel != Kernel::kGaussian) return 0;
   const std::vector<ModelSphere>& spheres = summary_.model.spheres;
   const auto subtractive =
       std::count_if(spheres.begin(), spheres.end(), [](const ModelSphere& s) { return s.subtractive; });

@@ -131,27 +131,10 @@ void BlockKernels::evaluate(const MetaballModel& model, const ModelEvaluation& e
     spheres_.push_back(kernel_of(model.spheres[static_cast<std::size_t>(i)]));
   kernels_.resize(spheres_.size());
   added_ = subtracted_ = {};
-  const bool gaussian = model.kernel == Kernel::kGaussian;
   for (std::size_t i = 0; i < spheres_.size(); ++i) {
     Sums& sums = spheres_[i].subtractive() ? subtracted_ : added_;
-    if (gaussian) {
-      add_gaussian({x_.data(), y_.data(), z_.data()}, spheres_[i], sharpness_, evaluation.cutoff_squared,
-                   kernels_[i].data(), sums.kernel.data(), sums.x.data(), sums.y.data(), sums.z.data());
-    } else {
-      add_other_kernel(evaluation, i, sums);
-    }
-  }
-}
-
-void BlockKernels::add_other_kernel(const ModelEvaluation& evaluation, std::size_t sphere, Sums& sums) {
-  for (std::size_t j = 0; j < points_; ++j) {
-    MetaballSums<double> own;
-    accumulate_metaball(evaluation, spheres_[sphere].as_adding(), {x_[j], y_[j], z_[j]}, own);
-    kernels_[sphere][j] = own.kernel;
-    sums.kernel[j] += own.kernel;
-    sums.x[j] += own.weighted.x;
-    sums.y[j] += own.weighted.y;
-    sums.z[j] += own.weighted.z;
+    add_gaussian({x_.data(), y_.data(), z_.data()}, spheres_[i], sharpness_, evaluation.cutoff_squared,
+                 kernels_[i].data(), sums.kernel.data(), sums.x.data(), sums.y.data(), sums.z.data());
   }
 }
 
@@ -175,7 +158,7 @@ double BlockKernels::largest_share(std::size_t sphere) const {
 }
 
 void BlockKernels::differentiate(std::span<const Slopes> slopes, const Columns& selected,
-                                 std::array<double, 4>* by_sphere, std::span<double> by_log_sharpness) const {
+                                 SphereDerivatives* by_sphere, std::span<double> by_log_sharpness) const {
   alignas(64) Lanes mean_x{}, mean_y{}, mean_z{}, sum{};
   alignas(64) std::array<Lanes, 2> weight{}, base{};  // of additive and of subtractive spheres
   for (std::size_t j = 0; j < points_; ++j) {

@@ -4,11 +4,10 @@
 // change the surface: the sharpness kappa = m a of the blend, and a/b, which scales every radius by
 // sqrt(a/b). The fit therefore works with a = b = 1 and m = kappa:
 //   k_i(p) = kappa (1 - |p - c_i|^2 / r_i^2),     L(p) = log(sum_i exp k_i) / kappa.
-// The other kernels are summed with m = 1, and their sharpness is the tension a = b:
-//   L(p) = sum_i K(|p - c_i|^2 / r_i^2) - 1,      K(0) = e^a, K(1) = 1     (synthesis/body/compact_kernel.h).
-// In both cases the surface L = 0 of a lone sphere has the sphere's radius.
+// The surface L = 0 of a lone sphere has the sphere's radius. Other kernels than the Gaussian came a quarter
+// as close in fits; a fitted body has none.
 //
-// Gaussian metaballs may be subtractive (synthesis/body/metaballs.h). The sum is then A = P / (1 + N), where
+// Metaballs may be subtractive (synthesis/body/metaballs.h). The sum is then A = P / (1 + N), where
 // P is the sum of the additive ones and N the sum of the subtractive ones.
 #pragma once
 
@@ -20,7 +19,7 @@
 namespace astrolith {
 
 struct ModelSphere : Sphere {
-  bool subtractive = false;  // only with the Gaussian kernel
+  bool subtractive = false;
 
   ModelSphere(const Sphere& sphere, bool is_subtractive = false)
       : Sphere(sphere), subtractive(is_subtractive) {}
@@ -29,9 +28,8 @@ struct ModelSphere : Sphere {
 };
 
 struct MetaballModel {
-  double sharpness = 3.0;            // kappa > 0, or the tension a in (0, kMaxTension]
+  double sharpness = 3.0;            // kappa > 0
   std::vector<ModelSphere> spheres;  // at least one is additive
-  Kernel kernel = Kernel::kGaussian;
 };
 
 // The sphere in the form that synthesis evaluates.
@@ -40,16 +38,8 @@ inline MetaballSphere<double> kernel_of(const ModelSphere& s) {
   return {s.center, s.subtractive ? -inverse_square : inverse_square};
 }
 
-// Derivatives of a compact kernel K(q) = height (k(scale q) - low) by the tension: of log scale, log height
-// and low.
-struct CompactKernelTension {
-  double log_scale = 0.0, log_height = 0.0, low = 0.0;
-};
-
 // A model ready to be evaluated, in double precision.
-struct ModelEvaluation : MetaballParameters<double> {
-  CompactKernelTension tension;  // only for kernels other than the Gaussian
-};
+using ModelEvaluation = MetaballParameters<double>;
 
 // The largest radius of the additive metaballs.
 double largest_radius(const MetaballModel& model);
@@ -65,14 +55,13 @@ double support_radii(const MetaballModel& model);
 double level_of(const MetaballModel& model, double sum);
 
 // How much L changes at this point if a metaball is removed that holds `share` < 1 of its kind's sum.
-double level_lost(const MetaballModel& model, double sum, double share);
+double level_lost(const MetaballModel& model, double share);
 
 // The thesis's parameters for the model, rounded as the recipe stores them.
 MetaballBody metaball_body(const MetaballModel& model);
 
 // The model of a recipe's body. Throws InputError for bodies that the fit does not support: bodies made by
-// operations, and other kernels than the Gaussian with an exponent other than 1 or with subtractive
-// metaballs.
+// operations, and other kernels than the Gaussian.
 MetaballModel model_of(const MetaballBody& body);
 
 }  // namespace astrolith

@@ -1,6 +1,6 @@
 // Level and first-order signed distance of a metaball model at many points. Both run in parallel, and the
 // results do not depend on the number of threads. The equations are those of metaball_model.h and
-// field_derivatives.h.
+// block_kernels.h.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // What all metaballs of one kind, additive or subtractive, have in common at a point: the weight over exp k
-// and the mean of u, in the symbols of field_derivatives.h.
+// and the mean of u, in the symbols of block_kernels.h.
 #pragma once
 
 #include "estimation/shape/model/metaball_model.h"

@@ -1,6 +1,6 @@
 // Refines a model: moves all centres and radii and the shared sharpness so that the surface passes through
 // samples of the target. The method is Levenberg-Marquardt on the first-order distance s of every sample
-// (estimation/shape/model/field_derivatives.h).
+// (estimation/shape/model/block_kernels.h).
 //
 // The cost is half the sum of the squares of these residuals, in length units:
 //   a sample on the surface     phi(s(p)),  phi^2 = 2 c^2 (sqrt(1 + s^2 / c^2) - 1)

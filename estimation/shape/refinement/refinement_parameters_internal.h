@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "estimation/shape/model/field_derivatives.h"
+#include "estimation/shape/model/block_kernels.h"
 #include "estimation/shape/model/metaball_model.h"
 
 namespace astrolith {
@@ -16,9 +16,7 @@ namespace astrolith {
 // would leave kappa undetermined.
 struct RefinementParameters {
   explicit RefinementParameters(const MetaballModel& model)
-      : kernel(model.kernel),
-        middle(0.5 * std::log(kSoftest * sharpest(model.kernel))),
-        half(0.5 * std::log(sharpest(model.kernel) / kSoftest)) {
+      : middle(0.5 * std::log(kSoftest * kSharpest)), half(0.5 * std::log(kSharpest / kSoftest)) {
     const double part = (std::log(model.sharpness) - middle) / half;
     sharpness = half * std::atanh(std::clamp(part, -0.99, 0.99));
     for (const ModelSphere& s : model.spheres) {
@@ -27,7 +25,7 @@ struct RefinementParameters {
     }
   }
   MetaballModel model() const {
-    MetaballModel m{std::exp(middle + half * std::tanh(sharpness / half)), {}, kernel};
+    MetaballModel m{std::exp(middle + half * std::tanh(sharpness / half)), {}};
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       const SphereDerivatives& s = spheres[i];
       m.spheres.emplace_back(Vec3d{s[0], s[1], s[2]}, std::exp(s[3]), subtractive[i]);
@@ -44,11 +42,8 @@ struct RefinementParameters {
   // d log kappa / dt
   double sharpness_slope() const { return 1.0 - std::pow(std::tanh(sharpness / half), 2); }
 
-  // Limits of the sharpness: kappa, or the tension of the other kernels.
-  static constexpr double kSoftest = 0.3;
-  static double sharpest(Kernel kernel) { return kernel == Kernel::kGaussian ? 30.0 : 9.9; }
+  static constexpr double kSoftest = 0.3, kSharpest = 30.0;  // limits of kappa
 
-  Kernel kernel;
   double middle, half;
   std::vector<SphereDerivatives> spheres;
   std::vector<bool> subtractive;  // (#spheres) does not change

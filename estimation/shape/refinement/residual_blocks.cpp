@@ -82,11 +82,7 @@ void ResidualBlocks::evaluate() {
                      ResidualBlock& block = blocks_[b];
                      scratch.kernels.evaluate(model, evaluation, scratch.spheres, block.points);
                      if (!has_neighbours_) choose_neighbours(block, scratch);
-                     if (model.kernel == Kernel::kGaussian) {
-                       evaluate_gaussians(block, model, evaluation, scratch);
-                     } else {
-                       evaluate_other_kernels(block, model, evaluation, scratch);
-                     }
+                     evaluate(block, model, evaluation, scratch);
                    });
   has_neighbours_ = true;
   if (options_.keep_centers_inside != nullptr) evaluate_centers(model);
@@ -155,9 +151,8 @@ ScaledResidual ResidualBlocks::scaled(PointCondition condition, double value) co
   return {options_.containment_weight * lack, options_.containment_weight * sign};
 }
 
-void ResidualBlocks::evaluate_gaussians(ResidualBlock& block, const MetaballModel& model,
-                                        const ModelEvaluation& evaluation,
-                                        const ClusterScratch& scratch) const {
+void ResidualBlocks::evaluate(ResidualBlock& block, const MetaballModel& model,
+                              const ModelEvaluation& evaluation, const ClusterScratch& scratch) const {
   std::array<BlockKernels::Slopes, BlockKernels::kMostPoints> slopes;
   const std::size_t points = block.points.size();
   for (std::size_t j = 0; j < points; ++j) {
@@ -176,31 +171,6 @@ void ResidualBlocks::evaluate_gaussians(ResidualBlock& block, const MetaballMode
                                 block.by_sphere.data(), block.by_sharpness);
   const double slope = parameters_.sharpness_slope();
   for (double& by : block.by_sharpness) by *= slope;
-}
-
-void ResidualBlocks::evaluate_other_kernels(ResidualBlock& block, const MetaballModel& model,
-                                            const ModelEvaluation& evaluation,
-                                            const ClusterScratch& scratch) const {
-  // The spheres that have left the list reach no point: their derivatives are zero.
-  const std::size_t n = block.neighbours.size();
-  const auto [places, columns] = find_places(block.neighbours, scratch.spheres);
-  std::fill(block.by_sphere.begin(), block.by_sphere.end(), SphereDerivatives{});
-  std::vector<SphereDerivatives> row(scratch.spheres.size());
-  const auto function =
-      block.condition == PointCondition::on_surface ? distance_with_derivatives : level_with_derivatives;
-  for (std::size_t j = 0; j < block.points.size(); ++j) {
-    const double value =
-        function(model, evaluation, scratch.spheres, block.points[j], row, &block.by_sharpness[j]);
-    const ScaledResidual residual = scaled(block.condition, value);
-    block.residuals[j] = residual.value;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const SphereDerivatives& by = row[static_cast<std::size_t>(places[i])];
-      for (std::size_t k = 0; k < 4; ++k) {
-        block.by_sphere[j * n + columns[i]][k] = by[k] * residual.derivative;
-      }
-    }
-    block.by_sharpness[j] *= residual.derivative * parameters_.sharpness_slope();
-  }
 }
 
 }  // namespace astrolith

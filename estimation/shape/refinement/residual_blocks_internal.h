@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "estimation/shape/model/field_derivatives.h"
 #include "estimation/shape/model/model_evaluation_internal.h"
 #include "estimation/shape/refinement/refinement.h"
 #include "estimation/shape/refinement/refinement_parameters_internal.h"
@@ -59,10 +58,8 @@ class ResidualBlocks {
   std::vector<Vec3d> active(const std::vector<Vec3d>& points, PointCondition condition) const;
   void choose_neighbours(ResidualBlock& block, const ClusterScratch& scratch) const;
   void evaluate_centers(const MetaballModel& model);
-  void evaluate_gaussians(ResidualBlock& block, const MetaballModel& model, const ModelEvaluation& evaluation,
-                          const ClusterScratch& scratch) const;
-  void evaluate_other_kernels(ResidualBlock& block, const MetaballModel& model,
-                              const ModelEvaluation& evaluation, const ClusterScratch& scratch) const;
+  void evaluate(ResidualBlock& block, const MetaballModel& model, const ModelEvaluation& evaluation,
+                const ClusterScratch& scratch) const;
   ScaledResidual scaled(PointCondition condition, double value) const;
 
   const RefinementOptions& options_;

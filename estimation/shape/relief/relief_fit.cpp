@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <vector>
 
-#include "estimation/shape/relief/relief_samples.h"
 #include "estimation/shape/relief/relief_solver.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
-#include "numerics/sample_statistics.h"
+#include "numerics/portable_double.h"
+#include "recipe/compact/height_picture.h"
 #include "synthesis/relief/relief_picture.h"
 
 namespace astrolith {
@@ -23,12 +22,22 @@ constexpr int kMostLevels = 65535;
 // be kept.
 constexpr double kPlacesOfVertex = 1.2, kMostPlacesOfVertex = 12.0, kPlacesOfSmallModel = 20000.0;
 
+// The least spacing that the picture and the cells of a body without folds bear. In the picture the maps of
+// the three axes stand below one another, and show the body from both sides.
+double least_spacing(const TriangleMesh& surface) {
+  const Vec3d extent = surface.bounds().extent();
+  const double most = std::max({extent.x, extent.y, extent.z});
+  const double of_picture = std::max(extent.x + extent.y + extent.z, 2.0 * most) / kMostHeightPictureSide;
+  const double of_cells = portable::cbrt(extent.x * extent.y * extent.z / kMostReliefCells) / kReliefCell;
+  return 1.03 * std::max(of_picture, of_cells);
+}
+
 // The spacing whose square holds one place, where a surface of this area faces an axis.
 double default_spacing(const TriangleMesh& surface) {
   const double vertices = static_cast<double>(surface.vertices.size());
   const double places =
       std::max(kPlacesOfVertex * vertices, std::min(kMostPlacesOfVertex * vertices, kPlacesOfSmallModel));
-  return std::sqrt(surface_area(surface) / places);
+  return std::max(std::sqrt(surface_area(surface) / places), least_spacing(surface));
 }
 
 // The edge of equilateral facets that cover the surface.
@@ -64,6 +73,10 @@ std::vector<std::uint16_t> rounded(std::vector<double>& heights, double step, Re
 std::shared_ptr<ExemplarImage> picture_of(const ReliefLayer& layer, const std::vector<ReliefPlace>& places,
                                           const std::vector<std::uint16_t>& codes) {
   const ReliefLayout layout = relief_layout(places);
+  if (std::max(layout.width, layout.height) > kMostHeightPictureSide) {
+    throw InputError("relief.spacing: would take a picture of heights of more than " +
+                     std::to_string(kMostHeightPictureSide) + " pixels a side on this body; make it larger");
+  }
   auto image = std::make_shared<ExemplarImage>();
   // Programs read no image that is smaller.
   image->width = std::max(layout.width, kLeastExemplarSide),
@@ -94,22 +107,20 @@ ReliefFit fit_relief(const TriangleMesh& surface, const Recipe& recipe, const Re
   ReliefLayer& layer = fit.layer;
   layer.edge = mean_edge(surface);
   layer.spacing = options.spacing > 0.0 ? options.spacing : default_spacing(surface);
-  const ReliefEquations equations = relief_equations(surface, recipe, layer.spacing);
-  const ReliefSamples& samples = equations.samples;
-  if (equations.places.empty() || samples.size() == 0) {
+  const ReliefSamples samples = relief_samples(surface, recipe, layer.spacing);
+  if (samples.places.empty() || samples.samples.empty()) {
     throw InputError("the body lies nowhere near the surface; fit its base first");
   }
-  std::vector<double> heights = solve_relief(samples, equations.places.size(), progress);
-  const double step =
-      options.step > 0.0 ? options.step : kDefaultStep * mean_of(relief_residuals(samples, heights));
+  const ReliefBlend blend(samples);
+  std::vector<double> heights = solve_relief(blend, progress);
+  const double step = options.step > 0.0 ? options.step : kDefaultStep * blend.mean_residual(heights);
   const std::vector<std::uint16_t> codes = rounded(heights, step > 0.0 ? step : 1e-6 * layer.spacing, layer);
-  layer.pixels = picture_of(layer, equations.places, codes);
+  layer.pixels = picture_of(layer, samples.places, codes);
   fit.heights = heights.size();
-  fit.base_distance = mean_of(relief_residuals(samples, std::vector<double>(heights.size(), 0.0)));
-  fit.residual = mean_of(relief_residuals(samples, heights));
-  const double all =
-      4.0 * static_cast<double>(surface.triangles.size()) + static_cast<double>(surface.vertices.size());
-  fit.left_out = std::max(0.0, 1.0 - static_cast<double>(samples.size()) / all);
+  fit.base_distance = blend.mean_residual({});
+  fit.residual = blend.mean_residual(heights);
+  fit.left_out =
+      static_cast<double>(samples.left_out) / static_cast<double>(samples.left_out + samples.samples.size());
   return fit;
 }
 

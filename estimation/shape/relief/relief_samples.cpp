@@ -1,86 +1,173 @@
 #include "estimation/shape/relief/relief_samples.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <tuple>
 
+#include "estimation/shape/relief/relief_blend.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/body/ground_points.h"
-#include "synthesis/relief/relief_shares.h"
 
 namespace astrolith {
 namespace {
 
-constexpr int kGroup = 512;  // samples that share the metaballs that reach them
+constexpr std::size_t kGroup = 512;  // points that share the metaballs that reach them
 
-// Samples follow the facets, so that those of a group lie close together.
-std::vector<Vec3d> sample_points(const TriangleMesh& surface) {
-  std::vector<Vec3d> points;
-  points.reserve(5 * surface.triangles.size());
-  std::vector<bool> used(surface.vertices.size(), false);
-  for (const auto& [i, j, k] : surface.triangles) {
-    const Vec3d &a = surface.vertices[i], &b = surface.vertices[j], &c = surface.vertices[k];
-    for (const std::uint32_t corner : {i, j, k}) {
-      if (!used[corner]) points.push_back(surface.vertices[corner]);
-      used[corner] = true;
+// A sample, and what it is sorted by.
+struct PlacedSample {
+  std::uint32_t cell;
+  std::array<std::int32_t, 3> tiles;
+  ReliefSample sample;
+};
+
+// Points of the surface in groups of neighbours: of vertices, then of facets.
+class SurfacePoints {
+ public:
+  explicit SurfacePoints(const TriangleMesh& surface)
+      : surface_(surface), used_(surface.vertices.size(), 0), of_vertices_(groups(surface.vertices.size())) {
+    for (const Triangle& t : surface.triangles) {
+      for (const std::uint32_t corner : t) used_[corner] = 1;
     }
-    const Vec3d middle = (a + b + c) * (1.0 / 3.0);
-    points.push_back(middle);
-    for (const Vec3d& corner : {a, b, c}) points.push_back(0.5 * (middle + corner));
   }
-  return points;
-}
 
-// The samples of one group of points.
-ReliefSamples samples_of(const std::vector<Vec3d>& points, const BodyGround& ground,
-                         const ReliefShares& shares, float most_missed) {
-  GroundPoints v(points);
-  evaluate(ground, v);
-  project(ground, v);
-  GroundPoints foot = v;
-  evaluate(ground, foot);
-  ReliefSamples samples;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!(std::abs(foot.distance[i]) <= most_missed)) continue;
-    const std::size_t before = samples.shares.size();
-    shares.add(v.at(i), samples.places, samples.shares);
-    if (samples.shares.size() == before) continue;
-    samples.height.push_back(-v.distance[i]);
-    samples.first.push_back(static_cast<std::uint32_t>(samples.shares.size()));
+  std::size_t count() const { return of_vertices_ + groups(4 * surface_.triangles.size()); }
+  std::vector<Vec3d> group(std::size_t number) const {
+    return number < of_vertices_ ? vertices(number * kGroup)
+                                 : on_facets((number - of_vertices_) * (kGroup / 4));
   }
-  return samples;
-}
 
-void append(const ReliefSamples& group, ReliefSamples& all) {
-  const std::uint32_t before = all.first.back();
-  all.height.insert(all.height.end(), group.height.begin(), group.height.end());
-  all.places.insert(all.places.end(), group.places.begin(), group.places.end());
-  all.shares.insert(all.shares.end(), group.shares.begin(), group.shares.end());
-  for (std::size_t i = 1; i < group.first.size(); ++i) all.first.push_back(before + group.first[i]);
+ private:
+  static std::size_t groups(std::size_t points) { return (points + kGroup - 1) / kGroup; }
+  std::vector<Vec3d> vertices(std::size_t first) const {
+    std::vector<Vec3d> points;
+    for (std::size_t i = first; i < std::min(first + kGroup, used_.size()); ++i) {
+      if (used_[i] != 0) points.push_back(surface_.vertices[i]);
+    }
+    return points;
+  }
+  std::vector<Vec3d> on_facets(std::size_t first) const {
+    std::vector<Vec3d> points;
+    for (std::size_t t = first; t < std::min(first + kGroup / 4, surface_.triangles.size()); ++t) {
+      const auto& [i, j, k] = surface_.triangles[t];
+      const Vec3d &a = surface_.vertices[i], &b = surface_.vertices[j], &c = surface_.vertices[k];
+      const Vec3d middle = (a + b + c) * (1.0 / 3.0);
+      points.push_back(middle);
+      for (const Vec3d& corner : {a, b, c}) points.push_back(0.5 * (middle + corner));
+    }
+    return points;
+  }
+
+  const TriangleMesh& surface_;
+  std::vector<char> used_;
+  std::size_t of_vertices_;
+};
+
+class SampleFinder {
+ public:
+  SampleFinder(const BodyGround& ground, const ReliefSamples& made, double spacing)
+      : ground_(ground), made_(made), spacing_(spacing) {}
+
+  std::vector<PlacedSample> samples_of(const std::vector<Vec3d>& points) const {
+    std::vector<PlacedSample> samples;
+    if (points.empty()) return samples;
+    samples.reserve(points.size());
+    GroundPoints v(points);
+    evaluate(ground_, v);
+    project(ground_, v);
+    GroundPoints foot = v;
+    evaluate(ground_, foot);
+    const double inverse = 1.0 / spacing_;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!(std::abs(foot.distance[i]) <= static_cast<float>(0.25 * spacing_))) continue;
+      TiledPoint point;
+      if (!find_in_tiles(made_.tiles, {v.x[i] * inverse, v.y[i] * inverse, v.z[i] * inverse}, point))
+        continue;
+      PlacedSample placed{static_cast<std::uint32_t>(point.cell), point.tiles, {}};
+      for (std::size_t a = 0; a < 3; ++a) placed.sample.at[a] = static_cast<float>(point.at[a]);
+      placed.sample.height = -v.distance[i];
+      const float total = weight_around(made_.weights.data(), placed.tiles, placed.sample.at);
+      if (!(total > 0.0f)) continue;
+      placed.sample.scale = 1.0f / total;
+      samples.push_back(placed);
+    }
+    return samples;
+  }
+
+ private:
+  const BodyGround& ground_;
+  const ReliefSamples& made_;
+  double spacing_;
+};
+
+// Sorts samples by cells, which a number each counts, then by their tiles and places.
+std::vector<PlacedSample> sorted(std::vector<std::vector<PlacedSample>>& groups, std::size_t num_cells) {
+  std::vector<std::uint32_t> first(num_cells + 1, 0);
+  for (const std::vector<PlacedSample>& group : groups) {
+    for (const PlacedSample& s : group) ++first[s.cell + 1];
+  }
+  for (std::size_t i = 0; i < num_cells; ++i) first[i + 1] += first[i];
+  std::vector<PlacedSample> all(first.back());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (std::vector<PlacedSample>& group : groups) {
+    for (const PlacedSample& s : group) all[next[s.cell]++] = s;
+    std::vector<PlacedSample>().swap(group);
+  }
+  parallel_for(
+      0, static_cast<std::int64_t>(num_cells),
+      [&](std::int64_t number) {
+        const auto i = static_cast<std::size_t>(number);
+        std::stable_sort(all.begin() + first[i], all.begin() + first[i + 1],
+                         [](const PlacedSample& a, const PlacedSample& b) {
+                           return std::tuple(a.tiles, square_of(a.sample.at)) <
+                                  std::tuple(b.tiles, square_of(b.sample.at));
+                         });
+      },
+      4096);
+  return all;
 }
 
 }  // namespace
 
-ReliefEquations relief_equations(const TriangleMesh& surface, const Recipe& recipe, double spacing) {
+ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, double spacing) {
   ArrayStore arrays;
   const BodyTables body = make_body(*recipe.body, recipe.seed, arrays);
   const ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
   const BodyGround ground{body, arrays.view(), metaballs.lists()};
-  ReliefEquations equations{find_relief_places(ground, spacing, "relief"), {}};
-  const ReliefShares shares(equations.places, spacing);
-  const std::vector<Vec3d> points = sample_points(surface);
-  const std::size_t num_groups = (points.size() + kGroup - 1) / kGroup;
-  std::vector<ReliefSamples> groups(num_groups);
-  parallel_for(0, static_cast<std::int64_t>(num_groups), [&](std::int64_t g) {
-    const std::size_t first = static_cast<std::size_t>(g) * kGroup,
-                      count = std::min<std::size_t>(kGroup, points.size() - first);
-    groups[static_cast<std::size_t>(g)] =
-        samples_of({points.begin() + static_cast<std::ptrdiff_t>(first),
-                    points.begin() + static_cast<std::ptrdiff_t>(first + count)},
-                   ground, shares, static_cast<float>(0.25 * spacing));
+  ReliefSamples made;
+  made.places = find_relief_places(ground, spacing, "relief");
+  made.tiles = make_relief_tiles(made.places, "relief");
+  made.weights.resize(made.tiles.places.size());
+  for (std::size_t i = 0; i < made.weights.size(); ++i) {
+    const std::uint32_t place = made.tiles.places[i];
+    made.weights[i] = place == kNoPlace ? 0.0f : made.places[place].weight;
+  }
+
+  const SurfacePoints points(surface);
+  const SampleFinder finder(ground, made, spacing);
+  std::vector<std::vector<PlacedSample>> groups(points.count());
+  std::vector<std::size_t> asked(groups.size());
+  parallel_for(0, static_cast<std::int64_t>(groups.size()), [&](std::int64_t number) {
+    const auto g = static_cast<std::size_t>(number);
+    const std::vector<Vec3d> of_group = points.group(g);
+    groups[g] = finder.samples_of(of_group);
+    asked[g] = of_group.size() - groups[g].size();
   });
-  for (const ReliefSamples& group : groups) append(group, equations.samples);
-  return equations;
+  for (const std::size_t of_group : asked) made.left_out += of_group;
+
+  const std::vector<PlacedSample> placed = sorted(groups, made.tiles.tiles.size() / 3);
+  made.samples.reserve(placed.size());
+  std::uint32_t cell = 0xffffffffu;
+  for (const PlacedSample& s : placed) {
+    const auto number = static_cast<std::uint32_t>(made.samples.size());
+    const bool new_cell = s.cell != cell;
+    if (new_cell) made.first_run_of_cell.push_back(static_cast<std::uint32_t>(made.runs.size()));
+    if (new_cell || s.tiles != made.runs.back().tiles) made.runs.push_back({s.tiles, number, number});
+    cell = s.cell;
+    made.samples.push_back(s.sample);
+    made.runs.back().end = number + 1;
+  }
+  made.first_run_of_cell.push_back(static_cast<std::uint32_t>(made.runs.size()));
+  return made;
 }
 
 }  // namespace astrolith

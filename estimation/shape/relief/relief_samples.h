@@ -1,35 +1,47 @@
 // Points of a measured surface as conditions on the heights of a relief layer.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
 #include "recipe/recipe.h"
 #include "synthesis/relief/relief_places.h"
+#include "synthesis/relief/relief_tiles.h"
 
 namespace astrolith {
 
-// One equation for each sample of the surface: the sum of shares[k] * height(places[k]), k from first[i] to
-// first[i + 1] - 1, is the height that brings the layered surface there. Heights are length units of the
-// recipe.
-struct ReliefSamples {
-  std::vector<float> height;
-  std::vector<std::uint32_t> first{0};
-  std::vector<std::uint32_t> places;
-  std::vector<float> shares;
+// A point of the bare surface, below a point of the measured one.
+struct ReliefSample {
+  std::array<float, 3> at;  // in spacings from the corner of its cell
+  float height;             // the height that brings the layered surface to the measured point, length units
+  float scale;              // 1 / the sum over the places around of weight times B (recipe/relief_layer.h)
+};
 
-  std::size_t size() const { return height.size(); }
+// The samples first to end - 1. They read the same tiles.
+struct SampleRun {
+  std::array<std::int32_t, 3> tiles;
+  std::uint32_t first, end;
+};
+
+struct ReliefSamples {
+  std::vector<ReliefPlace> places;
+  ReliefTiles tiles;
+  std::vector<float> weights;         // (tiles x kReliefTileSize) of the places of the tiles; 0 without one
+  std::vector<ReliefSample> samples;  // cell by cell
+  std::vector<SampleRun> runs;
+  std::vector<std::uint32_t> first_run_of_cell;  // of the cells with samples, and the number of runs
+  std::size_t left_out = 0;                      // number of points that no height reaches
+
+  std::size_t cells() const { return first_run_of_cell.size() - 1; }
 };
 
 // The places of the recipe's body at this spacing, and the samples of `surface`: its vertices, and four
 // points of each facet. Both are in the recipe's frame and unit. Samples whose projection misses the bare
 // surface by more than a quarter of the spacing are left out: no height brings the surface there. Expects a
 // body without operations and warps. Throws as find_relief_places().
-struct ReliefEquations {
-  std::vector<ReliefPlace> places;
-  ReliefSamples samples;
-};
-ReliefEquations relief_equations(const TriangleMesh& surface, const Recipe& recipe, double spacing);
+ReliefSamples relief_samples(const TriangleMesh& surface, const Recipe& recipe, double spacing);
 
 }  // namespace astrolith

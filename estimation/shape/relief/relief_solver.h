@@ -3,21 +3,17 @@
 
 #include <vector>
 
-#include "estimation/shape/relief/relief_samples.h"
+#include "estimation/shape/relief/relief_blend.h"
 #include "numerics/progress.h"
 
 namespace astrolith {
 
-// One height for each of `num_places` places, length units: the least squares of
+// One height for each place, length units: the least squares of
 //   sum_i (sum_k share_ik h_k - height_i)^2 + kPull d sum_k (h_k - m_k)^2
 // by conjugate gradients, where m_k is the mean of the samples around the place weighted by their shares, and
 // d the mean over the places of the sum of the squares of their shares. A place that hardly any sample sees,
 // as at the border of a map, so keeps that mean. Places without samples get 0. `progress` may end the
 // iteration early.
-std::vector<double> solve_relief(const ReliefSamples& samples, std::size_t num_places,
-                                 const Progress& progress);
-
-// |sum of shares times heights - height| of every sample, length units.
-std::vector<double> relief_residuals(const ReliefSamples& samples, const std::vector<double>& heights);
+std::vector<double> solve_relief(const ReliefBlend& blend, const Progress& progress);
 
 }  // namespace astrolith

@@ -8,8 +8,7 @@
 
 #include "estimation/page/report_page.h"
 #include "estimation/shape/report/captioned_picture.h"
-#include "estimation/shape/report/convergence_plot.h"
-#include "estimation/shape/report/error_histogram.h"
+#include "estimation/shape/report/fit_plots.h"
 #include "estimation/shape/report/realism_figures.h"
 #include "geometry/surface/decimated_mesh.h"
 #include "geometry/surface/mesh_sampling.h"
@@ -229,6 +228,16 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
         {"convergence.png", "Mean distance over the samples of the refinement, after each of its stages."});
   }
   write_report_page(page, folder / "index.html");
+}
+
+std::vector<std::filesystem::path> fit_report_files(const std::vector<std::string>& folders) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path folder : folders) {
+    for (const char* name : {"index.html", "target_and_fit.png", "distance_map.png", "error_histogram.png",
+                             "convergence.png", "quantile_curves.png", "roughness_maps.png"})
+      files.push_back(folder / name);
+  }
+  return files;
 }
 
 }  // namespace astrolith

@@ -35,4 +35,7 @@ void write_fit_report(const TargetBody& target, const ShapeFitResult& fit, const
                       const std::filesystem::path& folder, const ReportedRealism* realism = nullptr,
                       const TriangleMesh* likeness = nullptr);
 
+// The files of the reports in these folders.
+std::vector<std::filesystem::path> fit_report_files(const std::vector<std::string>& folders);
+
 }  // namespace astrolith

@@ -20,10 +20,10 @@ struct Component {
   std::vector<Vec3d> vertices;  // the corners of its triangles, with repetitions
 };
 
-// Returns an empty list if there are too many components.
+// Returns an empty list if there is one component, or if there are too many.
 std::vector<Component> separate(const TriangleMesh& mesh, const std::vector<std::uint32_t>& component) {
   const std::size_t count = std::size_t{1} + *std::max_element(component.begin(), component.end());
-  if (count > kMaxComponents) return {};
+  if (count < 2 || count > kMaxComponents) return {};
   std::vector<Component> components(count);
   for (Component& one : components) one.mesh.vertices = mesh.vertices;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -89,7 +89,7 @@ OuterSurface outer_surface(const TriangleMesh& mesh, const SurfaceTree& tree, do
   const std::vector<Component> components = separate(mesh, component_of_triangle);
   const bool solid = std::all_of(components.begin(), components.end(),
                                  [](const Component& one) { return volume(one.mesh) > 0.0; });
-  if (components.size() < 2 || !solid) {
+  if (components.empty() || !solid) {
     return {mesh, count_of(component_of_triangle), std::move(component_of_triangle)};
   }
   const std::vector<std::uint32_t> group = groups_of_union(components);

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any, Callable, Iterable, Iterator, Mapping, Optional, Sequence, Union, overload
 
 import numpy as np
@@ -58,10 +57,10 @@ class Bodies:
         points: int = 0,
         threads: int = 1,
     ) -> None:
-        if isinstance(recipes, (str, os.PathLike, Mapping)):
+        if _arrays.is_file_name(recipes) or isinstance(recipes, Mapping):
             raise ValueError("recipes: must be a list of recipes; put the one into a list")
         if not isinstance(seeds, Iterable):
-            raise ValueError(f"seeds: must be whole numbers, such as range(100), and is {seeds!r}")
+            raise ValueError(f"seeds: must be whole numbers, such as range(100), and is {_arrays.shown(seeds)}")
         self._recipes = list(recipes)
         self._seeds = [_options.seed(seed) for seed in seeds]
         self._resolution = _arrays.integer(resolution, "resolution", 4, 8192)

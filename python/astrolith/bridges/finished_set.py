@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from pathlib import Path
-from typing import Any, Iterator, Optional, Union
+from typing import Any, Iterator, Optional
 
 import numpy as np
 
-from astrolith._mesh import read_mesh
+from astrolith._arrays import MissingFileError, PathLike, file_name
+from astrolith._mesh import mesh_formats, read_mesh
 
-_MESHES = (".ply", ".ply.zst", ".obj", ".stl", ".tab", ".icq")
+_MESHES = {row.extension for row in mesh_formats() if row.read and row.written} | {".ply.zst"}
 
 
 class FinishedSet:
@@ -33,15 +33,20 @@ class FinishedSet:
     Raises
     ------
     ValueError
-        The manifest is missing or damaged, or a file is not the one that the manifest states.
+        The manifest is damaged, or a file is not the one that the manifest states.
+    FileNotFoundError
+        The manifest or a file of it is missing. It is a ValueError, too.
     """
 
-    def __init__(self, manifest: Union[str, "os.PathLike[str]"], *, check: bool = False) -> None:
+    def __init__(self, manifest: PathLike, *, check: bool = False) -> None:
+        manifest = file_name(manifest, "manifest")
         self._folder = Path(manifest).resolve().parent
         self._check = check
         members: dict[int, dict[str, Any]] = {}
         try:
             text = Path(manifest).read_text(encoding="utf-8")
+        except FileNotFoundError:
+            raise MissingFileError(f"{manifest}: does not exist; check the name") from None
         except (OSError, UnicodeDecodeError) as error:
             raise ValueError(f"{manifest}: cannot be read ({error})") from None
         for line in text.split("\n"):
@@ -79,7 +84,7 @@ class FinishedSet:
     def _path(self, entry: dict[str, Any]) -> Path:
         path = self._folder / str(entry["name"])
         if not path.is_file():
-            raise ValueError(f"{path}: is missing; run synth --members again")
+            raise MissingFileError(f"{path}: is missing; run synth --members again")
         if self._check and _sha256(path) != entry["sha256"]:
             raise ValueError(f"{path}: is not the file that the manifest states; run synth --members again")
         return path

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from astrolith._arrays import PathLike, file_name
 from astrolith._height_map import HeightMap
-from astrolith._recipe import PathLike
 from astrolith.bridges._optional import required
 
 # A plane in metres without a datum.
@@ -59,10 +59,11 @@ def write_geotiff(height_map: HeightMap, file: PathLike) -> None:
     ImportError
         rasterio is missing; ``pip install astrolith[geo]``.
     """
+    file = file_name(file, "file")
     rasterio = required("rasterio", "geo")
     side, pixel = len(height_map.heights), height_map.pixel
     half = side * pixel / 2
-    partial = f"{os.fspath(file)}.part"
+    partial = f"{file}.part"
     tags = {name: str(value) for name, value in _frame(height_map).items()}
     try:
         with rasterio.open(

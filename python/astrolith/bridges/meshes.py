@@ -11,6 +11,7 @@ from typing import Any, Mapping, Optional
 import numpy as np
 import numpy.typing as npt
 
+from astrolith._arrays import is_file_name
 from astrolith._mesh import Mesh, MeshLike, arrays_of, read_mesh
 from astrolith._units import name_of
 from astrolith.bridges._optional import required
@@ -19,7 +20,7 @@ from astrolith.bridges._optional import required
 def _mesh_of(mesh: MeshLike) -> Mesh:
     if isinstance(mesh, Mesh):
         return mesh
-    if isinstance(mesh, str) or hasattr(mesh, "__fspath__"):
+    if is_file_name(mesh):
         return read_mesh(mesh)
     arrays = arrays_of(mesh, "mesh")
     return Mesh(arrays.vertices, arrays.faces, arrays.normals)
@@ -58,7 +59,7 @@ def from_trimesh(mesh: Any) -> Mesh:
 
     Its unit is kept; "meters" become "m". Normals are kept where they were given or have been computed.
     """
-    arrays = arrays_of((mesh.vertices, np.ascontiguousarray(mesh.faces)), "mesh")
+    arrays = arrays_of((mesh.vertices, mesh.faces), "mesh")
     return Mesh(
         arrays.vertices,
         arrays.faces,
@@ -102,8 +103,7 @@ def to_pyvista(mesh: MeshLike, values: Optional[Mapping[str, npt.ArrayLike]] = N
 def from_pyvista(mesh: Any) -> Mesh:
     """Make a :class:`astrolith.Mesh` of a ``pyvista.PolyData``. Its polygons are cut into triangles."""
     triangles = mesh.triangulate()
-    faces = np.ascontiguousarray(triangles.faces.reshape(-1, 4)[:, 1:])
-    arrays = arrays_of((np.ascontiguousarray(triangles.points), faces), "mesh")
+    arrays = arrays_of((triangles.points, triangles.faces.reshape(-1, 4)[:, 1:]), "mesh")
     return Mesh(arrays.vertices, arrays.faces, _normals(triangles.point_data.get("Normals")))
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from astrolith import _arrays
+from astrolith._arrays import PathLike
 from astrolith._mesh import Mesh, MeshLike, arrays_of, unit_of
-from astrolith._recipe import PathLike
 from astrolith._units import METRES
 from astrolith.bridges._optional import required
 
@@ -153,6 +153,7 @@ def write_dsk(
     spiceypy.exceptions.SpiceyError
         SPICE refuses the frame, the numbers or the file.
     """
+    file = _arrays.file_name(file, "file")
     spice = required("spiceypy", "spice")
     segments = _segments(meshes)
     numbers = list(range(1, len(segments) + 1)) if surfaces is None else list(surfaces)
@@ -160,7 +161,7 @@ def write_dsk(
         raise ValueError(f"surfaces: has {len(numbers)} numbers; there are {len(segments)} segments")
     code = _arrays.integer(body, "body", -(2**31), 2**31 - 1)
     prepared = [(*_plates(mesh, unit, name), mesh) for name, mesh in segments]
-    partial = f"{os.fspath(file)}.part"
+    partial = f"{file}.part"
     if os.path.exists(partial):
         os.remove(partial)
     try:
@@ -227,6 +228,7 @@ def write_kernels(
     ImportError
         spiceypy is missing; ``pip install astrolith[spice]``.
     """
+    folder = _arrays.file_name(folder, "folder")
     spice = required("spiceypy", "spice")
     if not (name.isascii() and name.isidentifier() and name[0].isalpha() and len(name) <= 26):
         raise ValueError(f"name: must be a letter, then letters, digits and _, at most 26, and is {name!r}")
@@ -240,7 +242,7 @@ def write_kernels(
     vertices, _ = _plates(first_mesh, unit, first_name)
     radii = (vertices.max(axis=0) - vertices.min(axis=0)) / 2
     frame, frame_id = f"{name.upper()}_FIXED", 1_400_000 + abs(code) % 500_000
-    paths = [os.path.join(os.fspath(folder), name + extension) for extension in (".bds", ".tpc", ".tf")]
+    paths = [os.path.join(folder, name + extension) for extension in (".bds", ".tpc", ".tf")]
     files = Kernels(*paths)
     _write_text(
         files.pck,

@@ -5,11 +5,10 @@
 #include <filesystem>
 
 #include "cuda/device.h"
-#include "cuda/host_backend.h"
-#include "cuda/mesher/gpu_obstacle.h"
-#include "cuda/mesher/mesh_field.h"
+#include "cuda/mesher/gpu_mesher.h"
 #include "recipe/recipe_json.h"
 #include "synthesis/field/field_mesh.h"
+#include "tests/cuda/host_backend.h"
 #include "tests/support/test_size.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/exemplars.h"
@@ -88,14 +87,11 @@ TEST(BackendMesher, MakesTheMeshOfTheCpu) {
   expect_same(on_twin(noisy, 10), on_cpu(noisy, 10));
 }
 
-// An exemplar, an exemplar on layers, and Gabor noise of which one lobe is too narrow for a tile.
-TEST(BackendMesher, MakesTheExemplarsAndTilesOfTheCpu) {
-  GaborLayer tiled = testing::gabor_layer(0.05, 0.01);
-  tiled.evaluation = GaborEvaluation::kTiles;
-  tiled.lobes.push_back({6, 0.5, 0.0, 1.0});
+// An exemplar, and an exemplar on layers.
+TEST(BackendMesher, MakesTheExemplarsOfTheCpu) {
   const ExemplarLayer exemplar = testing::exemplar_layer(0.01, 0.01);
   for (const std::vector<Layer>& layers :
-       {std::vector<Layer>{exemplar}, {fractal_layer(0.1, 4.0, 2), exemplar}, {tiled}}) {
+       {std::vector<Layer>{exemplar}, {fractal_layer(0.1, 4.0, 2), exemplar}}) {
     Recipe recipe = potato_recipe(10, 8);
     recipe.layers = layers;
     const ImplicitField field(recipe);

@@ -7,9 +7,10 @@
 #include <cstring>
 #include <iterator>
 
-#include "cuda/host_backend.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/mesh/mesher.h"
+#include "tests/cuda/host_backend.h"
+#include "tests/synthesis/block_lists.h"
 #include "tests/synthesis/random_recipes.h"
 
 namespace astrolith {

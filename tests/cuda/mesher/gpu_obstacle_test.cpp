@@ -1,4 +1,4 @@
-#include "cuda/mesher/gpu_obstacle.h"
+#include "cuda/mesher/gpu_mesher.h"
 
 #include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"

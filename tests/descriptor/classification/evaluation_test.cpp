@@ -1,6 +1,14 @@
-#include "descriptor/classification/evaluation.h"
+#include <algorithm>
+#include <cmath>
 
-#include <gtest/gtest.h>
+#include "descriptor/classification/cross_validation.h"
+#include "descriptor/classification/evaluation.h"
+#include "descriptor/classification/noisy_resampling.h"
+#include "descriptor/classification/retrieval.h"
+#include "numerics/errors.h"
+#include "numerics/parallel_for.h"
+#include "tests/descriptor/classification/clusters.h"
+#include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
@@ -51,6 +59,141 @@ TEST(Evaluation, AClassThatNobodyCalls) {
   EXPECT_EQ(e.classes[1].precision, 0);
   EXPECT_EQ(e.classes[1].recall, 0);
   EXPECT_EQ(e.accuracy, 0.5);
+}
+
+using testing::clusters;
+
+TEST(StratifiedFolds, HoldEveryClassInEqualShares) {
+  std::vector<int> labels(14, 0);
+  labels.insert(labels.end(), 13, 1);
+  labels.insert(labels.end(), 5, 2);
+  const std::vector<int> folds = stratified_folds(labels, 3, 5, 1);
+  for (int c = 0; c < 3; ++c) {
+    const auto of_class = std::count(labels.begin(), labels.end(), c);
+    for (int fold = 0; fold < 5; ++fold) {
+      std::int64_t both = 0;
+      for (std::size_t i = 0; i < labels.size(); ++i) both += labels[i] == c && folds[i] == fold ? 1 : 0;
+      EXPECT_GE(both, of_class / 5);
+      EXPECT_LE(both, (of_class + 4) / 5);
+    }
+  }
+  for (int fold = 0; fold < 5; ++fold) {
+    EXPECT_GE(std::count(folds.begin(), folds.end(), fold), 32 / 5);
+    EXPECT_LE(std::count(folds.begin(), folds.end(), fold), (32 + 4) / 5);
+  }
+  EXPECT_NE(folds, stratified_folds(labels, 3, 5, 2));
+}
+
+TEST(CrossValidation, TellsClustersApart) {
+  const LabelledFeatures data = clusters(3, 12, 8, 0.15, 1);
+  for (const int components : {0, 2}) {
+    const VoteRows votes = cross_validate(data, {components, {40, 25, 1}}, 4, 1);
+    EXPECT_GE(evaluate(votes, data.labels, 3).accuracy, 0.95);
+  }
+}
+
+// If a classifier had learned from a shape, it would find that shape's meaningless label again.
+TEST(CrossValidation, DoesNotKnowWhatItIsAskedFor) {
+  LabelledFeatures data = clusters(1, 120, 10, 1, 1);
+  data.classes = {"heads", "tails"};
+  CounterRandom random(7);
+  for (int& label : data.labels) label = static_cast<int>(random.below(2));
+  const VoteRows votes = cross_validate(data, {0, {50, 25, 1}}, 5, 1);
+  EXPECT_NEAR(evaluate(votes, data.labels, 2).accuracy, 0.5, 0.15);
+}
+
+TEST(CrossValidation, SameVotesForAnyThreadCount) {
+  const LabelledFeatures data = clusters(3, 15, 30, 1, 1);
+  const TrainingOptions options{3, {20, 25, 1}};
+  const VoteRows all = cross_validate(data, options, 5, 1);
+  const ThreadLimit one(1);
+  EXPECT_EQ(cross_validate(data, options, 5, 1), all);
+}
+
+TEST(CrossValidation, StopsWhenAsked) {
+  const LabelledFeatures data = clusters(2, 10, 3, 0.2, 1);
+  EXPECT_THROW(cross_validate(data, {0, {5, 25, 1}}, 5, 1, [](double, std::string_view) { return false; }),
+               WorkError);
+}
+
+TEST(CrossValidation, RefusesTooFewShapes) {
+  LabelledFeatures data = clusters(2, 5, 3, 0.2, 1);
+  EXPECT_THROW(cross_validate(data, {}, 1, 1), InputError);
+  EXPECT_THROW(cross_validate(data, {}, 11, 1), InputError);
+  data.classes.push_back("alone");
+  EXPECT_THROW(cross_validate(data, {}, 2, 1), InputError);
+}
+
+double distance(std::span<const float> f, std::span<const float> g) { return std::fabs(f[0] - g[0]); }
+
+TEST(Retrieval, OfShapesOnALine) {
+  // Shapes 0 and 1 have class 0, shapes 10 and 2 have class 1. Shape 0 asks and finds 1, 2, 10; shape 10 asks
+  // and finds 2, 1, 0; and so on.
+  const FeatureRows rows{{0}, {1}, {10}, {2.5}};
+  const std::vector<int> labels{0, 0, 1, 1};
+  const Retrieval r = retrieve(rows, labels, distance);
+  // The precision at the one relevant shape is 1, 1, 1, 1/3 (2.5 finds 1, 0, 10).
+  EXPECT_NEAR(r.mean_average_precision, (3 + 1.0 / 3) / 4, 1e-12);
+  EXPECT_NEAR(r.nearest_accuracy, 0.75, 1e-12);
+  EXPECT_NEAR(r.curve[20], r.mean_average_precision, 1e-12);
+}
+
+TEST(Retrieval, ShapesWithoutCompanyDoNotAsk) {
+  const Retrieval r = retrieve({{0}, {1}, {5}}, std::vector<int>{0, 0, 1}, distance);
+  EXPECT_EQ(r.mean_average_precision, 1);
+  EXPECT_EQ(r.nearest_accuracy, 1);
+  EXPECT_EQ(retrieve({{0}}, std::vector<int>{0}, distance).mean_average_precision, 0);
+}
+
+TEST(Retrieval, SameBitsForAnyThreadCount) {
+  const LabelledFeatures data = testing::clusters(4, 30, 3, 0.7, 1);
+  const Retrieval all = retrieve(data.rows, data.labels, distance);
+  const ThreadLimit one(1);
+  const Retrieval single = retrieve(data.rows, data.labels, distance);
+  EXPECT_EQ(all.mean_average_precision, single.mean_average_precision);
+  EXPECT_EQ(all.curve, single.curve);
+}
+
+TEST(NoisyResampling, HasTheStatedNoiseAndSize) {
+  const TriangleMesh sphere = testing::icosphere(5);  // 10242 vertices
+  const double diagonal = 2 * std::sqrt(3.0);
+  ResamplingOptions options;
+  options.noise = 0.01;
+  for (std::uint64_t seed = 1; seed < 4; ++seed) {
+    const NoisyResampling r = noisy_resampling(sphere, options, seed);
+    EXPECT_GE(r.fraction, 0.0999);
+    EXPECT_LE(r.fraction, 0.2001);
+    EXPECT_EQ(r.points.size(), r.normals.size());
+    double squares = 0, agreement = 0;
+    for (std::size_t i = 0; i < r.points.size(); ++i) {
+      squares += (norm(r.points[i]) - 1) * (norm(r.points[i]) - 1);
+      agreement += dot(r.normals[i], normalized(r.points[i]));
+    }
+    const auto n = static_cast<double>(r.points.size());
+    EXPECT_NEAR(std::sqrt(squares / n) / (0.01 * diagonal), 1, 0.1);
+    EXPECT_GT(agreement / n, 0.9);
+  }
+}
+
+TEST(NoisyResampling, DependsOnTheSeedAlone) {
+  const TriangleMesh torus = testing::torus(1, 0.4);
+  const NoisyResampling a = noisy_resampling(torus, {}, 1), b = noisy_resampling(torus, {}, 1),
+                        c = noisy_resampling(torus, {}, 2);
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i], b.points[i]);
+  EXPECT_FALSE(a.points[0] == c.points[0]);
+}
+
+TEST(NoisyResampling, SmallMeshesGetSixtyFourPoints) {
+  EXPECT_EQ(noisy_resampling(testing::octahedron(), {}, 1).points.size(), 64u);
+}
+
+TEST(NoisyResampling, RefusesFractionsOutOfOrder) {
+  const TriangleMesh mesh = testing::octahedron();
+  EXPECT_THROW(noisy_resampling(mesh, {0.2, 0.1, 0.01, 12}, 1), InputError);
+  EXPECT_THROW(noisy_resampling(mesh, {0.1, 0.2, -0.01, 12}, 1), InputError);
+  EXPECT_THROW(noisy_resampling(mesh, {0.1, 0.2, std::nan(""), 12}, 1), InputError);
+  EXPECT_THROW(noisy_resampling({}, {}, 1), InputError);
 }
 
 }  // namespace

@@ -1,15 +1,18 @@
-#include "descriptor/classification/random_forest.h"
-
-#include <gtest/gtest.h>
-
+#include <cmath>
 #include <numeric>
 #include <opencv2/ml.hpp>
 
 #include "descriptor/classification/forest_conversion_internal.h"
+#include "descriptor/classification/principal_components.h"
+#include "descriptor/classification/random_forest.h"
 #include "descriptor/classification/row_matrix_internal.h"
+#include "descriptor/classification/shape_features.h"
+#include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "tests/descriptor/classification/clusters.h"
+#include "tests/support/meshes.h"
 
 namespace astrolith {
 namespace {
@@ -109,6 +112,92 @@ TEST(RandomForest, RefusesWhatCannotBeLearned) {
   const FeatureRows equal(10, std::vector<float>(3, 1.0f));
   EXPECT_THROW(train_forest(equal, data.labels, 2, {}), InputError);
 }
+
+// Points vary along (3, 4, 0) / 5, less along (0, 0, 1), and along no other direction.
+TEST(PrincipalComponents, FindTheDirectionsOfMostVariance) {
+  CounterRandom random(1);
+  FeatureRows rows;
+  for (int i = 0; i < 200; ++i) {
+    const double s = 10 * random.normal(), t = random.normal();
+    rows.push_back(
+        {static_cast<float>(1 + 0.6 * s), static_cast<float>(2 + 0.8 * s), static_cast<float>(3 + t)});
+  }
+  const PrincipalComponents pca = principal_components(rows, 2);
+  ASSERT_EQ(pca.axes.size(), 2u);
+  EXPECT_NEAR(std::fabs(0.6f * pca.axes[0][0] + 0.8f * pca.axes[0][1]), 1, 1e-3);
+  EXPECT_NEAR(std::fabs(pca.axes[1][2]), 1, 1e-3);
+  // Two components hold all variation, so that they give a point back.
+  const std::vector<float> c = pca.apply(rows[7]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(pca.mean[i] + c[0] * pca.axes[0][i] + c[1] * pca.axes[1][i], rows[7][i], 1e-3);
+  }
+}
+
+TEST(PrincipalComponents, OfMoreFeaturesThanShapes) {
+  FeatureRows rows(4, std::vector<float>(1000, 0.0f));
+  for (std::size_t i = 0; i < 4; ++i) rows[i][i] = 1;
+  EXPECT_EQ(principal_components(rows, 3).axes.size(), 3u);
+  EXPECT_THROW(principal_components(rows, 4), InputError);
+  EXPECT_THROW(principal_components(rows, 0), InputError);
+  EXPECT_THROW(principal_components({}, 1), InputError);
+}
+
+class EveryKind : public ::testing::TestWithParam<FeatureKind> {
+ protected:
+  FeatureOptions options() const {
+    FeatureOptions o = default_features(GetParam());
+    o.points = 1500;
+    return o;
+  }
+};
+
+TEST_P(EveryKind, HasItsNameAndSize) {
+  EXPECT_EQ(feature_kind_from_name(name_of(GetParam())), GetParam());
+  const std::vector<float> features = shape_features(testing::torus(1, 0.4), options());
+  EXPECT_EQ(features.size(), feature_count(options()));
+  // The mean feature is exactly 1 for histograms and about 1 for spectra.
+  const double mean =
+      std::accumulate(features.begin(), features.end(), 0.0) / static_cast<double>(features.size());
+  EXPECT_NEAR(mean, 1, GetParam() == FeatureKind::shapedna ? 0.5 : 1e-5);
+}
+
+// Size, place and sampling change a vector little compared with another shape. The same holds for points
+// instead of the mesh.
+TEST_P(EveryKind, IsNearerToItselfThanToAnother) {
+  const TriangleMesh torus = testing::torus(1, 0.4, 96, 48);
+  TriangleMesh moved = torus;
+  for (Vec3d& p : moved.vertices) p = Vec3d{3, 2, 1} + 5.0 * Vec3d{p.z, p.x, p.y};
+  FeatureOptions other_seed = options();
+  other_seed.seed = 2;
+  const std::vector<float> a = shape_features(torus, options()), b = shape_features(moved, other_seed),
+                           c = shape_features(testing::icosphere(4), options());
+  const SurfaceSamples s = sample_poisson_disk(torus, 1500, 3);
+  const std::vector<float> of_points = point_features(s.points, s.normals, options());
+  EXPECT_EQ(shape_features({s.points, {}, s.normals}, options()), of_points);
+  const double itself = feature_distance(GetParam(), a, b), another = feature_distance(GetParam(), a, c);
+  EXPECT_LT(4 * itself, another);
+  EXPECT_LT(2 * feature_distance(GetParam(), a, of_points), another);
+  EXPECT_EQ(feature_distance(GetParam(), a, a), 0);
+}
+
+TEST_P(EveryKind, RefusesNumbersOutOfRange) {
+  FeatureOptions o = options();
+  o.points = 3;
+  EXPECT_THROW(shape_features(testing::icosphere(2), o), InputError);
+  o = options();
+  o.bins = 100000;
+  EXPECT_THROW(check(o), InputError);
+  o = options();
+  o.eigenvalues = 0;
+  EXPECT_THROW(check(o), InputError);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryKind,
+                         ::testing::Values(FeatureKind::wahl, FeatureKind::ahd, FeatureKind::d2,
+                                           FeatureKind::shapedna),
+                         [](const auto& kind) { return name_of(kind.param); });
+
+TEST(ShapeFeatures, OtherNamesAreRefused) { EXPECT_THROW(feature_kind_from_name("d3"), InputError); }
 
 }  // namespace
 }  // namespace astrolith

@@ -1,7 +1,5 @@
 #include "descriptor/surface/block_permutations.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <span>

@@ -1,10 +1,14 @@
-#include "descriptor/surface/height_bands.h"
-
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <complex>
+#include <vector>
 
+#include "descriptor/surface/evened_surface.h"
+#include "descriptor/surface/height_bands.h"
+#include "descriptor/surface/local_quadric.h"
 #include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
 #include "tests/descriptor/surface/rough_spheres.h"
 
@@ -141,6 +145,122 @@ TEST(HeightBands, AreTheSameForAnyNumberOfThreads) {
 TEST(HeightBands, StopWhenAsked) {
   const EvenedSurface even = even_surface(icosphere(4), 3000, 1);
   EXPECT_THROW(height_bands(even, [](double, std::string_view) { return false; }), WorkError);
+}
+
+using testing::sheet;
+
+TEST(EvenedSurface, StaysOnASphere) {
+  const EvenedSurface even = even_surface(icosphere(5), 4000, 1);
+  ASSERT_EQ(even.points.size(), 4000u);
+  EXPECT_NEAR(even.edge, std::sqrt(2 * 4 * std::numbers::pi / (std::sqrt(3.0) * 4000)), 1e-3 * even.edge);
+  for (std::size_t i = 0; i < even.points.size(); ++i) {
+    // A smoothed sphere shrinks by about rho^2 / 20, with rho the reach of the weights.
+    EXPECT_NEAR(norm(even.points[i]), 1, 2 * even.edge * even.edge);
+    EXPECT_GT(dot(even.normals[i], normalized(even.points[i])), 0.999);
+  }
+}
+
+// The weights (1 - d^2 / rho^2)^3 over a plane let through 384 J4(x) / x^4 of a wave's height, x = k rho
+// (Sonine's first integral).
+TEST(EvenedSurface, LetsThroughAsMuchOfAWaveAsItsWeightsDo) {
+  const double wave = 10, k = 2 * std::numbers::pi / wave;
+  const TriangleMesh mesh = sheet(80, [&](double x, double) { return 0.1 * std::cos(k * x); });
+  const EvenedSurface even = even_surface(mesh, 6400, 1);
+  const double x = k * 3.5 * even.edge, expected = 384 * std::cyl_bessel_j(4, x) / (x * x * x * x),
+               between = std::sin(k / 2) / (k / 2);  // straight lines between vertices take their share, too
+  double along = 0, all = 0;
+  for (const Vec3d& p : even.points) {
+    if (std::min({p.x, p.y, 80 - p.x, 80 - p.y}) < 5) continue;
+    along += p.z * std::cos(k * p.x);
+    all += std::cos(k * p.x) * std::cos(k * p.x);
+  }
+  EXPECT_NEAR(along / all / 0.1, expected * between * between, 0.02 * expected);
+}
+
+TEST(EvenedSurface, OtherSideOfAThinPlateDoesNotCount) {
+  TriangleMesh plate = sheet(40, [](double, double) { return 0.1; });
+  plate = testing::joined(plate, testing::reversed(sheet(40, [](double, double) { return -0.1; })));
+  for (const Vec3d& p : even_surface(plate, 3000, 1).points) ASSERT_NEAR(std::fabs(p.z), 0.1, 1e-12);
+}
+
+// The area of a mesh whose vertices were exchanged is hundreds of times that of its box.
+TEST(EvenedSurface, AGarbledMeshIsNoSurface) {
+  TriangleMesh mesh = icosphere(6);
+  CounterRandom random(5);
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      v = static_cast<std::uint32_t>(random.uniform() * static_cast<double>(mesh.vertices.size()));
+    }
+  }
+  EXPECT_THROW(even_surface(mesh, 20000, 1), InputError);
+}
+
+TEST(EvenedSurface, StopsWhenAsked) {
+  EXPECT_THROW(even_surface(icosphere(4), 2000, 1, [](double, std::string_view) { return false; }),
+               WorkError);
+}
+
+std::vector<Vec3d> points_of(const LocalQuadric& quadric, int n, double noise, std::uint64_t seed) {
+  CounterRandom random(seed, 0);
+  std::vector<Vec3d> points;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+    points.push_back({x, y, quadric.height(x, y) + noise * random.normal()});
+  }
+  return points;
+}
+
+const LocalQuadric kQuadric{{0.3, -0.2, 0.1, 0.5, -0.7, 0.25}};
+
+TEST(LocalQuadric, FindsAParaboloidExactly) {
+  const auto fitted = fit_quadric(points_of(kQuadric, 40, 0, 1));
+  ASSERT_TRUE(fitted);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(fitted->c[k], kQuadric.c[k], 1e-13);
+}
+
+TEST(LocalQuadric, NormalStandsOnTheSurface) {
+  const double h = 1e-6;
+  const Vec3d n = kQuadric.normal(0.4, -0.3);
+  const double z = kQuadric.height(0.4, -0.3);
+  EXPECT_NEAR(dot(n, Vec3d{h, 0, kQuadric.height(0.4 + h, -0.3) - z}), 0, 1e-11);
+  EXPECT_NEAR(dot(n, Vec3d{0, h, kQuadric.height(0.4, -0.3 + h) - z}), 0, 1e-11);
+  EXPECT_NEAR(norm(n), 1, 1e-15);
+}
+
+TEST(LocalQuadric, HasNoneWherePointsDoNotDetermineIt) {
+  std::vector<Vec3d> line;
+  for (int i = 0; i < 30; ++i) line.push_back({0.05 * i, 0.1 * i, 0.0});
+  EXPECT_FALSE(fit_quadric(line));
+  EXPECT_FALSE(fit_quadric(points_of(kQuadric, 5, 0, 2)));
+}
+
+TEST(ResidualMoments, RmsOfKnownNoiseIsUnbiased) {
+  double mean_square = 0;
+  const int trials = 400, n = 20;
+  for (int t = 0; t < trials; ++t) {
+    const auto points = points_of(kQuadric, n, 0.1, static_cast<std::uint64_t>(10 + t));
+    const auto fitted = fit_quadric(points);
+    ASSERT_TRUE(fitted);
+    std::vector<double> residuals;
+    for (const Vec3d& p : points) residuals.push_back(p.z - fitted->height(p.x, p.y));
+    const double rms = residual_moments(residuals, 1e-9).rms;
+    mean_square += rms * rms / trials;
+  }
+  EXPECT_NEAR(mean_square, 0.01, 4 * 0.01 * std::sqrt(2.0 / (14 * trials)));
+}
+
+TEST(ResidualMoments, FollowTheirDefinition) {
+  // Two values: skewness (1 - 2p) / sqrt(p (1 - p)), kurtosis 1 / (p (1 - p)) - 6, for a share p of the
+  // upper.
+  std::vector<double> values(100, -0.1);
+  for (std::size_t i = 0; i < 10; ++i) values[i] = 0.9;
+  const ResidualMoments m = residual_moments(values, 1e-9);
+  EXPECT_NEAR(m.skewness, 0.8 / 0.3, 1e-12);
+  EXPECT_NEAR(m.kurtosis, 1 / 0.09 - 6, 1e-12);
+  EXPECT_NEAR(m.rms, std::sqrt(9.0 / 94), 1e-14);
+  for (double& v : values) v = -v;
+  EXPECT_NEAR(residual_moments(values, 1e-9).skewness, -0.8 / 0.3, 1e-12);
+  EXPECT_EQ(residual_moments(values, 10).skewness, 0);
 }
 
 }  // namespace

@@ -75,16 +75,17 @@ TEST(Gaussianity, SeesEdgesUnderAGaussianMarginal) {
 
 // A Gaussian texture of 1024 x 1024 pixels, of realisations of 128 x 128 pixels side by side.
 GreyImage large_texture(std::uint64_t seed) {
-  constexpr int kSide = 1024, kTile = 128;
+  constexpr int kSide = 1024, kPiece = 128;
   GreyImage image{kSide, kSide, std::vector<double>(kSide * kSide)};
   const PowerSpectrum spectrum = testing::broad_spectrum();
-  for (int ty = 0; ty < kSide / kTile; ++ty) {
-    for (int tx = 0; tx < kSide / kTile; ++tx) {
-      const GreyImage tile =
+  for (int ty = 0; ty < kSide / kPiece; ++ty) {
+    for (int tx = 0; tx < kSide / kPiece; ++tx) {
+      const GreyImage piece =
           testing::realisation_of(spectrum, 1000 * seed + static_cast<std::uint64_t>(ty * kSide + tx));
-      for (int y = 0; y < kTile; ++y) {
-        for (int x = 0; x < kTile; ++x)
-          image.values[static_cast<std::size_t>((ty * kTile + y) * kSide + tx * kTile + x)] = tile.at(x, y);
+      for (int y = 0; y < kPiece; ++y) {
+        for (int x = 0; x < kPiece; ++x)
+          image.values[static_cast<std::size_t>((ty * kPiece + y) * kSide + tx * kPiece + x)] =
+              piece.at(x, y);
       }
     }
   }
@@ -123,7 +124,7 @@ TEST(Gaussianity, SeesThatTheBorderOfALargePhotoIsWeakerLong) {
   EXPECT_NE(g.likeness, Likeness::kGaussian);
 }
 
-TEST(Gaussianity, OfAPhotoLargerThanATileIsTheSameForAnyThreadCount) {
+TEST(Gaussianity, OfAPhotoLargerThanAPieceIsTheSameForAnyThreadCount) {
   GreyImage image = large_texture(3);
   image.width = 1000;
   image.height = 600;

@@ -61,7 +61,7 @@ TEST_F(PhotoFitTest, ColoursComeApartIntoTheLayersThatMadeThem) {
   EXPECT_EQ(layer_of(photo.channels[1], false).height_rms, 0.0);
 }
 
-// A photo above the largest side is cut into tiles, and waves of twice their side are lost. So is a slope
+// A photo above the largest side is cut into segments, and waves of twice their side are lost. So is a slope
 // across the photo.
 TEST_F(PhotoFitTest, VarianceOfWiderFeaturesIsStated) {
   const auto held = [&](double wave, double slope, int largest_side) {

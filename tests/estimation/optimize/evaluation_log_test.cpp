@@ -42,7 +42,7 @@ TEST(EvaluationLog, ThreadsAskWhileAnotherAdds) {
 
 TEST(EvaluationLog, EveryAlgorithmGoesOnWhereItStopped) {
   const Bounds bounds{{-1, -1, -1}, {1, 1, 1}};
-  for (const char* name : {"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}) {
+  for (const char* name : {"pso", "crs2", "isres", "esch", "sbplx"}) {
     OptimizeOptions options;
     options.algorithm = optimizer_from_name(name);
     options.population = 8;

@@ -52,8 +52,7 @@ OptimizeOptions options_of(Algorithm algorithm, std::int64_t evaluations) {
 class EveryOptimizer : public ::testing::TestWithParam<Algorithm> {};
 INSTANTIATE_TEST_SUITE_P(All, EveryOptimizer,
                          ::testing::Values(Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::esch,
-                                           Algorithm::sbplx, Algorithm::cmaes),
-                         [](const auto& test) { return optimizer_name(test.param); });
+                                           Algorithm::sbplx));
 
 TEST_P(EveryOptimizer, FindsTheSphere) {
   // The two evolutionary algorithms explore much longer before they home in.
@@ -136,18 +135,9 @@ TEST_P(EveryOptimizer, StopsWhenAskedWithTheBestSoFar) {
   int reports = 0;
   const auto result =
       minimize(rastrigin, kBox, options, [&](double, std::string_view) { return ++reports < 5; });
-  EXPECT_EQ(result.termination, OptimizeTermination::stopped);
+  EXPECT_TRUE(result.stopped);
   EXPECT_EQ(result.evaluations, 100);
   EXPECT_EQ(result.value, rastrigin(result.x));
-}
-
-TEST_P(EveryOptimizer, StopsAtTheTarget) {
-  OptimizeOptions options = options_of(GetParam(), 100000);
-  options.target = 1.0;
-  const OptimizeResult result = minimize(sphere, kBox, options);
-  EXPECT_EQ(result.termination, OptimizeTermination::target);
-  EXPECT_LE(result.value, 1.0);
-  EXPECT_LT(result.evaluations, 5000);
 }
 
 TEST_P(EveryOptimizer, RethrowsWhatTheObjectiveThrows) {
@@ -178,46 +168,16 @@ TEST(Nlopt, RosenbrockAndRastrigin) {
   EXPECT_LT(minimize(rosenbrock, kBox, options_of(Algorithm::sbplx, 20000)).value, 0.01);
 }
 
-TEST(CmaEs, RosenbrockAndRastrigin) {
-  EXPECT_LT(median_value(Algorithm::cmaes, rosenbrock, 3000), 1e-9);
-  EXPECT_LT(median_value(Algorithm::cmaes, rastrigin, 10000), 1.0);
-}
-
-// A rotated ellipsoid with axes up to 1000 : 1, which needs an adapted covariance.
-TEST(CmaEs, EllipsoidInManyDimensions) {
-  const std::size_t n = 20;
-  const Bounds box = {std::vector<double>(n, -5.0), std::vector<double>(n, 5.0)};
-  const auto ellipsoid = [&](std::span<const double> x) {
-    double sum = 0;
-    for (std::size_t d = 0; d < n; ++d) {
-      const double y = (x[d] - 1.0) + 0.5 * (x[(d + 1) % n] - 1.0);
-      sum += std::pow(1e6, static_cast<double>(d) / (n - 1.0)) * y * y;
-    }
-    return sum;
-  };
-  EXPECT_LT(minimize(ellipsoid, box, options_of(Algorithm::cmaes, 20000)).value, 1e-9);
-}
-
-TEST(CmaEs, AllVariablesMayBeFixed) {
-  const OptimizeResult result =
-      minimize(sphere, {{1, 2, 3, 4}, {1, 2, 3, 4}}, options_of(Algorithm::cmaes, 100));
-  EXPECT_EQ(result.evaluations, 1);
-  EXPECT_EQ(result.x, (std::vector<double>{1, 2, 3, 4}));
-}
-
 TEST(Optimizer, TheStartIsTried) {
-  for (const Algorithm algorithm :
-       {Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::sbplx, Algorithm::cmaes}) {
+  for (const Algorithm algorithm : {Algorithm::pso, Algorithm::crs2, Algorithm::isres, Algorithm::sbplx}) {
     OptimizeOptions options = options_of(algorithm, 300);
     options.start = kOptimum;
-    EXPECT_EQ(minimize(rastrigin, kBox, options).value, 0) << optimizer_name(algorithm);
+    EXPECT_EQ(minimize(rastrigin, kBox, options).value, 0) << static_cast<int>(algorithm);
   }
 }
 
-TEST(Optimizer, NamesGoBothWays) {
-  for (const char* name : {"pso", "crs2", "isres", "esch", "sbplx", "cmaes"}) {
-    EXPECT_EQ(optimizer_name(optimizer_from_name(name)), name);
-  }
+TEST(Optimizer, UnknownNamesAreRefused) {
+  EXPECT_EQ(optimizer_from_name("sbplx"), Algorithm::sbplx);
   EXPECT_THROW(optimizer_from_name("PSO"), InputError);
 }
 

@@ -1,9 +1,11 @@
-#include "geometry/surface/surface_tree.h"
-
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
 #include "geometry/surface/closest_on_triangle.h"
+#include "geometry/surface/surface_distance.h"
+#include "geometry/surface/surface_tree.h"
+#include "geometry/surface/winding_number.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 #include "numerics/parallel_for.h"
@@ -169,6 +171,95 @@ TEST(SurfaceTree, WrongMeshesAreTheUsersError) {
   mesh.vertices[3].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(SurfaceTree{mesh}, InputError);
 }
+
+const Vec3d kA{0, 0, 0}, kB{4, 0, 0}, kC{0, 3, 0};
+
+TEST(ClosestOnTriangle, EachFeature) {
+  using F = TriangleFeature;
+  EXPECT_EQ(closest_on_triangle({1, 1, 5}, kA, kB, kC).feature, F::face);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 1, 5}, kA, kB, kC).squared_distance, 25);
+  EXPECT_EQ(closest_on_triangle({-1, -1, 2}, kA, kB, kC).feature, F::corner_a);
+  EXPECT_EQ(closest_on_triangle({9, -1, 2}, kA, kB, kC).feature, F::corner_b);
+  EXPECT_EQ(closest_on_triangle({-1, 9, 2}, kA, kB, kC).feature, F::corner_c);
+  EXPECT_EQ(closest_on_triangle({1, -2, 0}, kA, kB, kC).feature, F::side_ab);
+  EXPECT_EQ(closest_on_triangle({3, 4, 1}, kA, kB, kC).feature, F::side_bc);
+  EXPECT_EQ(closest_on_triangle({-1, 1, 0}, kA, kB, kC).feature, F::side_ca);
+}
+
+// At an obtuse corner, a test by the two sides of the corner alone goes wrong.
+TEST(ClosestOnTriangle, BeatsADenseSearch) {
+  CounterRandom random(1);
+  const auto vector = [&] { return Vec3d{random.normal(), random.normal(), random.normal()}; };
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3d p = 3.0 * vector(), u = vector(), v = vector(), w = u + 0.1 * vector();
+    const auto found = closest_on_triangle(p, u, v, w);
+    double best = 1e300;
+    for (int i = 0; i <= 60; ++i) {
+      for (int j = 0; j <= 60 - i; ++j) {
+        best = std::min(best, squared_norm(p - (u + (i / 60.0) * (v - u) + (j / 60.0) * (w - u))));
+      }
+    }
+    const double longest = std::max(norm(v - u), norm(v - w));
+    ASSERT_LE(found.squared_distance, best * (1 + 1e-12));
+    ASSERT_GE(std::sqrt(found.squared_distance), std::sqrt(best) - longest / 60);
+  }
+}
+
+TEST(ClosestOnTriangle, SegmentsAndPoints) {
+  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 0}, kA, kB, {2, 0, 0}).squared_distance, 4);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({5, 0, 0}, kA, {2, 0, 0}, kB).squared_distance, 1);
+  EXPECT_DOUBLE_EQ(closest_on_triangle({1, 2, 2}, kA, kA, kA).squared_distance, 9);
+}
+
+TEST(WindingNumber, CountsHowOftenASurfaceGoesAround) {
+  const TriangleMesh pair = testing::two_spheres(2, 1.0, 1.0);  // at x = -0.5 and 0.5
+  EXPECT_NEAR(winding_number(pair, {0, 0, 0}), 2.0, 1e-9);
+  EXPECT_NEAR(winding_number(pair, {1.2, 0, 0}), 1.0, 1e-9);
+  EXPECT_NEAR(winding_number(pair, {3, 0, 0}), 0.0, 1e-9);
+  EXPECT_NEAR(winding_number(testing::reversed(pair), {1.2, 0, 0}), -1.0, 1e-9);
+}
+
+TEST(SurfaceDistance, ConcentricSpheres) {
+  const auto r = surface_distance(icosphere(5, 1), icosphere(5, 1.1), 4000, 1);
+  EXPECT_NEAR(r.mean, 0.1, 1e-3);
+  EXPECT_NEAR(r.p99, 0.1, 1e-3);
+  EXPECT_NEAR(r.max, 0.1, 1e-3);
+}
+
+// The small body a is part of b, so that every point of a lies on b. The other sphere of b is far from a.
+TEST(SurfaceDistance, LooksInBothDirections) {
+  const TriangleMesh a = icosphere(4), b = joined(a, icosphere(4, 1, {5, 0, 0}));
+  const auto r = surface_distance(a, b, 4000, 1);
+  EXPECT_LT(r.from_a_to_b.max, 1e-9);
+  EXPECT_NEAR(r.from_b_to_a.max, 5, 0.1);
+  EXPECT_NEAR(r.mean, (r.from_a_to_b.mean + r.from_b_to_a.mean) / 2, 1e-12);
+  EXPECT_EQ(r.max, r.from_b_to_a.max);
+}
+
+// A strip of height 1 stands upright on a floor: its distances to the floor are uniform in [0, 1].
+TEST(SurfaceDistance, FiguresOfAKnownDistribution) {
+  const TriangleMesh strip{{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  const TriangleMesh floor{{{-1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};
+  const auto r = surface_distance(strip, floor, 40000, 7).from_a_to_b;
+  EXPECT_NEAR(r.mean, 0.5, 5 * 0.29 / 200);
+  EXPECT_NEAR(r.p99, 0.99, 5 * 0.1 / 200);
+  EXPECT_NEAR(r.max, 1, 1e-3);
+  EXPECT_LE(r.max, 1);
+}
+
+// One of a hundred distances is larger.
+TEST(SurfaceDistance, ThePercentileIsANearestRank) {
+  const auto r = surface_distance(icosphere(2), torus(1, 0.3), 100, 2).from_a_to_b;
+  EXPECT_LT(r.p99, r.max);
+}
+
+TEST(SurfaceDistance, ScalesWithTheUnit) {
+  const auto small = surface_distance(icosphere(3, 1e-3), torus(1e-3, 3e-4), 500, 2);
+  const auto large = surface_distance(icosphere(3, 1e5), torus(1e5, 3e4), 500, 2);
+  EXPECT_NEAR(large.mean / small.mean, 1e8, 1);
+}
+
+TEST(SurfaceDistance, NeedsASample) { EXPECT_THROW(surface_distance(cube(), cube(), 0, 1), InputError); }
 
 }  // namespace
 }  // namespace astrolith

@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/exemplar_colors.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 

@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/exemplar_ground.h"
 
-#include <gtest/gtest.h>
-
 #include "synthesis/field/field_at_point.h"
 #include "synthesis/field/field_model_internal.h"
 #include "synthesis/field/implicit_field.h"

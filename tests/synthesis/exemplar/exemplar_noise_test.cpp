@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/exemplar_noise.h"
 
-#include <gtest/gtest.h>
-
 #include "geometry/mesh_topology.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/exemplar/plane_exemplar.h"

@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/exemplar_texture.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>

@@ -1,7 +1,5 @@
 #include "synthesis/exemplar/plane_exemplar.h"
 
-#include <gtest/gtest.h>
-
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "tests/synthesis/exemplars.h"
@@ -41,7 +39,7 @@ TEST(PlaneExemplar, HasTheSameBytesForOneThreadAndForMany) {
   EXPECT_EQ(drawn(1), drawn(2));
 }
 
-// A smaller texture is the top left part of a larger one, though tiles of both end elsewhere.
+// A smaller texture is the top left part of a larger one, though squares of both end elsewhere.
 TEST(PlaneExemplar, IsStationary) {
   const ExemplarLayer layer = exemplar_layer(1.0, 1.0);
   const std::vector<float> large = synthesize_exemplar(layer, "r", 600, 300, {}),
@@ -51,7 +49,7 @@ TEST(PlaneExemplar, IsStationary) {
   }
 }
 
-// Neighbours across the borders of tiles and of a tileable texture differ as neighbours elsewhere do.
+// Neighbours across the borders of squares and of a tileable texture differ as neighbours elsewhere do.
 TEST(PlaneExemplar, HasNoSeams) {
   const ExemplarLayer layer = exemplar_layer(1.0, 1.0);
   const std::size_t side = 512;
@@ -70,7 +68,7 @@ TEST(PlaneExemplar, HasNoSeams) {
   EXPECT_LT(jump(255, 256), 1.3 * usual);
 }
 
-TEST(PlaneExemplar, RefusesATileThatIsTooSmall) {
+TEST(PlaneExemplar, RefusesAPeriodThatIsTooSmall) {
   EXPECT_THROW(synthesize_exemplar(exemplar_layer(1.0, 1.0), "r", 20, 200, {1, 0, true}), InputError);
 }
 

@@ -1,5 +1,4 @@
 // Even meshes of recipes: bodies with layers, and patches.
-#include <gtest/gtest.h>
 
 #include <cstring>
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "synthesis/field/block_lists.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/synthesis/block_lists.h"
 #include "tests/synthesis/random_recipes.h"
 
 namespace astrolith {

@@ -1,7 +1,5 @@
 #include "synthesis/field/mask_plan.h"
 
-#include <gtest/gtest.h>
-
 #include "synthesis/field/field_tables.h"
 #include "synthesis/field/implicit_field.h"
 #include "tests/synthesis/bodies.h"

@@ -1,5 +1,4 @@
 // What holds for the field of every recipe.
-#include <gtest/gtest.h>
 
 #include "geometry/mesh_sink.h"
 #include "geometry/mesh_topology.h"

@@ -1,12 +1,10 @@
 #include "synthesis/field/surface_colors.h"
 
-#include <gtest/gtest.h>
-
 #include "numerics/parallel_for.h"
 #include "synthesis/exemplar/exemplar_colors.h"
-#include "synthesis/field/block_lists.h"
 #include "synthesis/field/field_at_point.h"
 #include "synthesis/field/field_mesh.h"
+#include "tests/synthesis/block_lists.h"
 #include "tests/synthesis/bodies.h"
 #include "tests/synthesis/exemplars.h"
 

@@ -112,6 +112,44 @@ TEST(SurfaceLabels, AreThoseOfTheLayersOneAfterAnother) {
                                 "label 3: craters \"the pole's\"", "label 4: simplex"}));
 }
 
+// Boulders drawn by cells have places to the digits of a patch. Float coordinates of the body are 60
+// micrometres apart here, and would move boulders of 2 mm.
+TEST(SurfaceLabels, FineBouldersOfAPatchAreThoseOfItsMesh) {
+  Recipe recipe = testing::sphere_recipe(1000.0);
+  const ImplicitField bare(recipe);
+  BoulderLayer boulders;
+  Population& drawn = boulders.population.emplace().drawn;
+  drawn.density = 5e4;
+  drawn.least_diameter = 0.002;
+  drawn.greatest_diameter = 0.02;
+  drawn.by_cells = true;
+  recipe.layers = {boulders};
+  const PatchCube cube{1000.0 * normalized(Vec3d{0.3, -0.5, 0.8}), 0.05};
+  const ImplicitField field(recipe, "recipe", cube);
+  MeshCollector collector;
+  mesh_patch(PatchField(field, cube.center), cube.side, 48, collector);
+  std::vector<MeshVertex> vertices;
+  std::vector<float> x, y, z;
+  for (const Vec3d& p : collector.mesh.vertices) {
+    vertices.push_back({to_float(p), {0, 0, 1}});
+    x.push_back(vertices.back().position.x);
+    y.push_back(vertices.back().position.y);
+    z.push_back(vertices.back().position.z);
+  }
+  std::vector<VertexLabel> labels(x.size());
+  SurfaceLabels(recipe, field, cube).label(cube.center, vertices, labels);
+  std::vector<float> with(x.size()), without(x.size());
+  const Box all = widened(Box{cube.center, cube.center}, 0.5 * cube.side);
+  field.gather(all).evaluate_local(cube.center, x, y, z, with, kExactEverywhere);
+  bare.gather(all).evaluate_local(cube.center, x, y, z, without, kExactEverywhere);
+  std::set<int> seen;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    ASSERT_EQ(labels[i].elevation, with[i] - without[i]);
+    seen.insert(labels[i].label);
+  }
+  EXPECT_EQ(seen, (std::set<int>{0, 1}));
+}
+
 TEST(SurfaceLabels, AnOriginIsAdded) {
   Recipe recipe = testing::potato_recipe(12, 2);
   recipe.layers = {testing::fractal_layer(0.05, 3.0, 2), testing::fractal_layer(0.03, 9.0, 2)};

@@ -1,7 +1,5 @@
 #include "synthesis/finish/variation_search.h"
 
-#include <gtest/gtest.h>
-
 #include <string>
 
 #include "geometry/surface/surface_distance.h"

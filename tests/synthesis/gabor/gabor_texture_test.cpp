@@ -101,7 +101,7 @@ TEST(GaborTexture, DependsOnLayerAndSeedAlone) {
   }
 }
 
-// The texture has no seams: second differences at the borders of tiles (every 64 pixels) are as large as
+// The texture has no seams: second differences at the borders of squares (every 64 pixels) are as large as
 // elsewhere.
 TEST(GaborTexture, HasNoSeams) {
   const std::vector<float> t = synthesize_texture(texture_layer({{5, 0.02, 0.03, 1.0}}), 1024, 1024, {2});

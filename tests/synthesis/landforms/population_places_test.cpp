@@ -234,6 +234,27 @@ TEST(PopulationByCells, HasItsExponent) {
   }
 }
 
+// A layer draws its sizes, its places and its clusters from three streams. The keys of these streams may not
+// meet those of a layer with another seed: here the places of one have the numbers of another's sizes if a
+// key is the sum of a purpose and the layer.
+TEST(PopulationPlaces, LayersWithSeedsShareNoNumbers) {
+  const BareSurface surface = unit_sphere();
+  const PlaceWeight everywhere = [](const Vec3d&) { return 1.0f; };
+  surface.area();
+  for (const int apart : {199936, 218430208 - 199936, 218430208}) {
+    const auto drawn = [&](int layer_seed) {
+      return draw_population(counted(50), surface, 3, layer_number(layer_seed, 0), "r", {everywhere});
+    };
+    const auto one = drawn(77), other = drawn(77 + apart);
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      CounterRandom of_size = one[i].random;
+      const double u = share_below(counted(1), one[i].diameter), v = of_size.uniform(), w = of_size.uniform();
+      EXPECT_GT(norm(surface.place({u, v, w}) - other[i].position), 1e-6) << apart;
+    }
+  }
+}
+
 TEST(PopulationByCells, FollowsTheWeight) {
   const BareSurface surface = unit_sphere();
   const auto landforms =

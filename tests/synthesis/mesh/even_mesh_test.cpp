@@ -1,7 +1,5 @@
 #include "synthesis/mesh/even_mesh.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>

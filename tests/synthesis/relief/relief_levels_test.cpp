@@ -1,7 +1,5 @@
 #include "synthesis/relief/relief_levels.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "synthesis/field/field_tables.h"
@@ -128,8 +126,9 @@ TEST(ReliefTexture, RepeatsAndHasNoMean) {
   const std::vector<ReliefPlace> places = testing::places_of(recipe, kLevelSpacing);
   std::vector<double> heights;
   for (const ReliefPlace& p : places) heights.push_back(half_rough(testing::position(p, kLevelSpacing)));
-  const ReliefPatches patches({{body, arrays.view(), metaballs.lists()}, places, heights}, kLevelSpacing,
-                              kLevelSpacing / 1.2);
+  const ReliefTiles tiles = make_relief_tiles(places, "test");
+  const ReliefPatches patches({{body, arrays.view(), metaballs.lists()}, places, tiles, heights},
+                              kLevelSpacing, kLevelSpacing / 1.2);
   const ReliefTexture texture = relief_texture(patches, 9);
   double sum = 0.0, squares = 0.0, steps = 0.0, seam = 0.0;
   const auto n = static_cast<std::size_t>(texture.side);

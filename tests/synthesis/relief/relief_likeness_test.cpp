@@ -1,7 +1,5 @@
 #include "synthesis/relief/relief_likeness.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <set>
 
@@ -30,6 +28,7 @@ struct Rough {
   ReachingMetaballs metaballs = all_metaballs(body, arrays.view());
   BodyGround ground{body, arrays.view(), metaballs.lists()};
   std::vector<ReliefPlace> places = places_of(recipe, kSpacing);
+  ReliefTiles tiles = make_relief_tiles(places, "test");
   std::vector<double> heights;
 
   Rough() {
@@ -41,10 +40,10 @@ struct Rough {
     }
   }
   ReliefPatches patches(double edge = kSpacing / 3.0) const {
-    return {{ground, places, heights}, kSpacing, edge};
+    return {{ground, places, tiles, heights}, kSpacing, edge};
   }
   std::vector<double> like(std::uint32_t seed, double edge = kSpacing / 3.0) const {
-    return like_heights(places, patches(edge), false, kSpacing, {0.3, false, seed}, "test");
+    return like_heights(places, tiles, patches(edge), false, kSpacing, {0.3, false, seed}, "test");
   }
 };
 
@@ -113,7 +112,7 @@ TEST(ReliefLikeness, DrawsUnseenGroundFromSeenGround) {
   const auto far_side = [&](bool fill) {
     std::vector<double> heights;
     const std::vector<double> like =
-        like_heights(rough.places, rough.patches(), false, kSpacing, {0.3, fill, 5}, "test");
+        like_heights(rough.places, rough.tiles, rough.patches(), false, kSpacing, {0.3, fill, 5}, "test");
     for (std::size_t i = 0; i < like.size(); ++i) {
       if (position(rough.places[i], kSpacing).x < -0.3) heights.push_back(like[i]);
     }
@@ -138,7 +137,9 @@ TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
   const Rough rough;
   Recipe ball = testing::sphere_recipe(0.4);
   const std::vector<ReliefPlace> places = places_of(ball, kSpacing);
-  const std::vector<double> heights = like_heights(places, rough.patches(), true, kSpacing, {}, "test");
+  const ReliefTiles tiles = make_relief_tiles(places, "test");
+  const std::vector<double> heights =
+      like_heights(places, tiles, rough.patches(), true, kSpacing, {}, "test");
   ASSERT_EQ(heights.size(), places.size());
   EXPECT_NEAR(std::sqrt(mean_square(heights) / mean_square(rough.heights)), 1.0, 0.3);
 }
@@ -146,7 +147,7 @@ TEST(ReliefLikeness, LaysTheHeightsOnAnotherBody) {
 // A base that no line of the lattice meets has no places.
 TEST(ReliefLikeness, HasNoHeightsOnABodySmallerThanTheSpacing) {
   const Rough rough;
-  EXPECT_TRUE(like_heights({}, rough.patches(), true, kSpacing, {}, "test").empty());
+  EXPECT_TRUE(like_heights({}, {}, rough.patches(), true, kSpacing, {}, "test").empty());
 }
 
 TEST(ReliefLikeness, IsTheSameForAnyThreadCount) {

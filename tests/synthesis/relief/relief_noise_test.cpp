@@ -1,7 +1,5 @@
 #include "synthesis/relief/relief_noise.h"
 
-#include <gtest/gtest.h>
-
 #include "geometry/mesh_topology.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"

@@ -1,7 +1,5 @@
 #include "synthesis/relief/relief_places.h"
 
-#include <gtest/gtest.h>
-
 #include <set>
 
 #include "numerics/errors.h"

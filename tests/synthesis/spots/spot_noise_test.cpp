@@ -1,5 +1,5 @@
 #include "synthesis/spots/spot_noise.h"
-#include "synthesis/noise/lone_noise.h"
+#include "tests/synthesis/lone_noise.h"
 
 #include <array>
 #include <cmath>

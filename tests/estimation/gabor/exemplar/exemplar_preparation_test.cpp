@@ -1,7 +1,5 @@
 #include "estimation/gabor/exemplar/exemplar_preparation.h"
 
-#include <gtest/gtest.h>
-
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"
 

@@ -27,8 +27,8 @@ TEST(PhaseExemplar, AnImageHasItsSpectrumExactly) {
   }
 }
 
-// The layer's image is larger than a cut and has its spectrum and its variance. A photo that tiles keeps its
-// size.
+// The layer's image is larger than a cut and has its spectrum and its variance. A photo that repeats keeps
+// its size.
 TEST(PhaseExemplar, TakesTheSpectrumOfThePhoto) {
   const testing::CutTexture cut = testing::cut_realisation(testing::ring_power, 2);
   const ExemplarLayer layer = phase_exemplar({cut.image}, "photo", 1);
@@ -38,10 +38,10 @@ TEST(PhaseExemplar, TakesTheSpectrumOfThePhoto) {
   const GreyImage texture = exemplar_texture_like(layer, cut.image, 5);
   EXPECT_NEAR(variance_of(texture.values) / variance_of(cut.image.values), 1.0, 0.25);
   EXPECT_LT(texture_score(texture, cut.image).sum(), 0.2);
-  const ExemplarLayer tile =
-      phase_exemplar({testing::realisation_of(testing::ring_spectrum(), 2)}, "tile", 1);
-  EXPECT_EQ(tile.pixels->width, 128);
-  EXPECT_EQ(tile.pixels->height, 128);
+  const ExemplarLayer periodic =
+      phase_exemplar({testing::realisation_of(testing::ring_spectrum(), 2)}, "periodic", 1);
+  EXPECT_EQ(periodic.pixels->width, 128);
+  EXPECT_EQ(periodic.pixels->height, 128);
 }
 
 TEST(PhaseExemplar, PaintsTheColoursOfItsPrincipalAxes) {

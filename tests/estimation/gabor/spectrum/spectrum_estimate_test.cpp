@@ -1,11 +1,15 @@
-#include "estimation/gabor/spectrum/spectrum_estimate.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
+#include "estimation/gabor/spectrum/log_spectrum_spline.h"
+#include "estimation/gabor/spectrum/power_spectrum.h"
 #include "estimation/gabor/spectrum/spectrum_distance.h"
+#include "estimation/gabor/spectrum/spectrum_estimate.h"
+#include "numerics/errors.h"
+#include "numerics/hash_random.h"
 #include "tests/estimation/gabor/known_spectrum.h"
 
 namespace astrolith {
@@ -89,6 +93,149 @@ TEST(SpectrumEstimate, IsSymmetricPositiveAndZeroAtFrequencyZero) {
       EXPECT_NEAR(here, estimate.spectrum.power[static_cast<std::size_t>((48 - y) % 48 * 35 + (35 - x) % 35)],
                   1e-9 * (1.0 + here));
     }
+  }
+}
+
+GreyImage white_noise(int width, int height, std::uint64_t seed) {
+  CounterRandom random(seed);
+  GreyImage image{width, height, {}};
+  for (int i = 0; i < width * height; ++i) image.values.push_back(0.5 + 0.1 * random.normal());
+  return image;
+}
+
+double sample_variance(const GreyImage& image) {
+  double mean = 0.0;
+  for (const double v : image.values) mean += v;
+  mean /= static_cast<double>(image.values.size());
+  double sum = 0.0;
+  for (const double v : image.values) sum += (v - mean) * (v - mean);
+  return sum / static_cast<double>(image.values.size());
+}
+
+TEST(PowerSpectrum, MeanPowerIsTheVariance) {
+  for (const auto& [w, h] : {std::pair{32, 32}, {33, 48}, {47, 35}}) {
+    const GreyImage image = white_noise(w, h, 3);
+    EXPECT_NEAR(power_spectrum(image).variance(), sample_variance(image), 1e-14);
+  }
+}
+
+// A photo of 12,000 x 5,000 pixels has 200 segments, which take seconds.
+TEST(PowerSpectrum, AMeanOverSegmentsIsReportedAndStops) {
+  const GreyImage image = white_noise(160, 96, 3);
+  int reports = 0;
+  exemplar_periodogram(image, 32, [&](double, std::string_view) { return ++reports > 0; });
+  EXPECT_EQ(reports, 9 * 5);
+  EXPECT_THROW(exemplar_periodogram(image, 32, [](double, std::string_view) { return false; }), WorkError);
+}
+
+TEST(PowerSpectrum, IsSymmetric) {
+  const PowerSpectrum s = power_spectrum(white_noise(33, 48, 4));
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 33; ++x) {
+      EXPECT_DOUBLE_EQ(s.power[static_cast<std::size_t>(y * 33 + x)],
+                       s.power[static_cast<std::size_t>((48 - y) % 48 * 33 + (33 - x) % 33)]);
+    }
+  }
+}
+
+// A cosine of amplitude a has the variance a^2/2, all of it in two bins.
+TEST(PowerSpectrum, OfACosineIsTwoBins) {
+  GreyImage image{64, 48, {}};
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      image.values.push_back(0.5 + 0.2 * std::cos(2.0 * std::numbers::pi * (5.0 * x / 64 - 7.0 * y / 48)));
+    }
+  }
+  const PowerSpectrum s = power_spectrum(image);
+  const double each = 0.5 * 0.5 * 0.2 * 0.2 * 64 * 48;
+  EXPECT_NEAR(s.power[41 * 64 + 5], each, 1e-10);
+  EXPECT_NEAR(s.power[7 * 64 + 59], each, 1e-10);
+  EXPECT_NEAR(s.variance(), 0.02, 1e-13);
+}
+
+TEST(PowerSpectrum, LargeExemplarsAreAveragedOverSegments) {
+  const GreyImage image = white_noise(150, 100, 5);
+  const PowerSpectrum s = exemplar_periodogram(image, 64);
+  EXPECT_EQ(s.width, 64);
+  EXPECT_EQ(s.height, 64);
+  EXPECT_NEAR(s.variance(), sample_variance(image), 0.05 * sample_variance(image));
+  // The speckle of a single periodogram is as large as the spectrum. Averaging must have lowered it.
+  double square = 0.0;
+  for (const double p : s.power) square += (p / s.variance() - 1.0) * (p / s.variance() - 1.0);
+  EXPECT_LT(square / static_cast<double>(s.power.size()), 1.5 / s.averages);
+  EXPECT_GT(s.averages, 3.0);
+}
+
+PowerSpectrum periodogram_of(const PowerSpectrum& truth, std::uint64_t seed) {
+  return power_spectrum(testing::realisation_of(truth, seed));
+}
+
+// Smoothing does not change a Gaussian without noise, since its logarithm has no third differences.
+TEST(LogSpectrumSpline, GoesThroughASmoothSpectrum) {
+  PowerSpectrum hill{64, 48, {}};
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const double u = std::cos(2.0 * 3.14159265358979 * x / 64);
+      const double v = std::cos(2.0 * 3.14159265358979 * y / 48);
+      hill.power.push_back(std::exp(1.5 * u + v));
+    }
+  }
+  const LogSpectrumSpline spline(hill);
+  const std::vector<double> g = spline.fit(2.0);
+  for (std::size_t i = 0; i < g.size(); ++i) EXPECT_NEAR(g[i], std::log(hill.power[i]), 2e-3);
+}
+
+// At the minimum the score of the likelihood balances the penalty, whose sum over the grid is zero. The mean
+// of I / S over the frequencies with data is therefore one.
+TEST(LogSpectrumSpline, ExplainsThePowerOnAverage) {
+  const PowerSpectrum data = periodogram_of(testing::four_lobe_spectrum(), 4);
+  const LogSpectrumSpline spline(data);
+  for (const double w : {1.0, 3.0}) {
+    const std::vector<double> g = spline.fit(w);
+    double sum = 0.0;
+    for (std::size_t i = 1; i < g.size(); ++i) sum += data.power[i] * std::exp(-g[i]);
+    EXPECT_NEAR(sum / static_cast<double>(g.size() - 1), 1.0, 5e-3);
+  }
+}
+
+TEST(LogSpectrumSpline, DoesNotDependOnTheStart) {
+  const PowerSpectrum data = periodogram_of(testing::ring_spectrum(), 5);
+  const LogSpectrumSpline spline(data);
+  const std::vector<double> a = spline.fit(2.0);
+  const std::vector<double> b = spline.fit(2.0, spline.fit(1.0));
+  double largest = 0.0;
+  for (std::size_t i = 1; i < a.size(); ++i) {
+    if (data.power[i] > 1e-9) largest = std::max(largest, std::abs(a[i] - b[i]));
+  }
+  EXPECT_LT(largest, 0.05);
+}
+
+// On white noise the scatter of g about the truth, zero, is as predicted.
+TEST(LogSpectrumSpline, PredictsItsOwnVariance) {
+  const PowerSpectrum white = testing::spectrum_from([](double, double) { return 1.0; });
+  PowerSpectrum data = periodogram_of(white, 6);
+  for (int k = 0; k < 128; ++k) {  // the Nyquist row and column are empty by construction
+    data.power[static_cast<std::size_t>(64 * 128 + k)] = data.power[static_cast<std::size_t>(63 * 128 + k)];
+    data.power[static_cast<std::size_t>(k * 128 + 64)] = data.power[static_cast<std::size_t>(k * 128 + 63)];
+  }
+  const LogSpectrumSpline spline(data);
+  const std::vector<double> g = spline.fit(3.0);
+  double mean = 0.0;
+  double square = 0.0;
+  for (const double v : g) mean += v / static_cast<double>(g.size());
+  for (const double v : g) square += (v - mean) * (v - mean) / static_cast<double>(g.size());
+  EXPECT_NEAR(std::sqrt(square / spline.freedom(3.0).variance), 1.0, 0.25);
+}
+
+TEST(LogSpectrumSpline, SpendsFewerParametersTheWider) {
+  const PowerSpectrum data = periodogram_of(testing::ring_spectrum(), 7);
+  const LogSpectrumSpline spline(data);
+  double last = 1.0;
+  for (const double w : {0.6, 1.2, 2.4, 4.8}) {
+    const double spent = spline.freedom(w).parameters;
+    EXPECT_LT(spent, last);
+    EXPECT_GT(spent, 0.0);
+    last = spent;
   }
 }
 

@@ -1,10 +1,15 @@
-#include "estimation/shape/details/details_fit.h"
-
 #include <cmath>
 
+#include "cuda/candidates_on_gpu.h"
+#include "cuda/device.h"
+#include "estimation/shape/details/detail_fitness.h"
+#include "estimation/shape/details/detail_parameters.h"
+#include "estimation/shape/details/details_fit.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
+#include "recipe/recipe_json.h"
 #include "synthesis/field/implicit_field.h"
+#include "tests/cuda/host_backend.h"
 #include "tests/estimation/shape/details/known_details.h"
 
 namespace astrolith {
@@ -113,6 +118,111 @@ TEST(DetailsFit, LayersMeanTheSameInTheFilesFrame) {
 TEST(DetailsFit, RefusesOptionsOutOfRange) {
   const TargetBody target = with_details({}, 40);
   EXPECT_THROW(fit_details(target, in_target_frame(target, three_spheres()), quick(0)), InputError);
+}
+
+FractalLayer layer_of(Noise noise, double amplitude, double frequency) {
+  FractalLayer layer;
+  layer.noise = noise;
+  layer.amplitude = amplitude;
+  layer.frequency = frequency;
+  layer.octaves = 3;
+  if (!is_worley(noise)) layer.gradient_modulation = 0.3;
+  return layer;
+}
+
+// Candidates with each of the noises alone, with no layer, and with several layers.
+std::vector<std::vector<FractalLayer>> swarm() {
+  std::vector<std::vector<FractalLayer>> candidates{{}};
+  for (int noise = 0; noise < 5; ++noise) {
+    candidates.push_back({layer_of(static_cast<Noise>(noise), 0.002 + 0.001 * noise, 10.0 + 5.0 * noise)});
+  }
+  candidates.push_back({layer_of(Noise::kSimplex, 0.004, 8.0), layer_of(Noise::kPerlin, 0.003, 20.0),
+                        layer_of(Noise::kWorleyF1, 0.002, 15.0)});
+  return candidates;
+}
+
+void expect_the_scores_of_the_cpu(CandidateEvaluator& evaluator) {
+  const TargetBody target = with_details({layer_of(Noise::kSimplex, 0.03, 4.0)}, 50);
+  FitnessOptions options;
+  options.samples = 500;
+  options.lines = 300;
+  const DetailFitness fitness(target, in_target_frame(target, three_spheres()), options);
+  const auto candidates = swarm();
+  const std::vector<DetailScore> scores = fitness.scores(candidates, evaluator);
+  ASSERT_EQ(scores.size(), candidates.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const DetailScore one = fitness.score(candidates[i]);
+    EXPECT_EQ(scores[i].similarity, one.similarity) << i;
+    EXPECT_EQ(scores[i].roughness_misfit, one.roughness_misfit) << i;
+    EXPECT_EQ(scores[i].steepness, one.steepness) << i;
+  }
+}
+
+TEST(DetailFitness, ASwarmHasTheScoresOfItsCandidates) {
+  CandidateEvaluatorOn<HostBackend> twin{HostBackend()};
+  expect_the_scores_of_the_cpu(twin);
+}
+
+TEST(DetailFitnessOnGpu, ASwarmHasTheScoresOfItsCandidates) {
+  const DeviceStatus status = probe_device();
+  if (!status.usable) GTEST_SKIP() << "no GPU here: " << status.reason;
+  expect_the_scores_of_the_cpu(*candidates_on_gpu());
+}
+
+DetailRanges some_ranges() { return {8.0, 80.0, 1e-5, 1e-2, 1.0}; }
+
+TEST(DetailParameters, AreThirtyFourWithinTheirBounds) {
+  const Bounds bounds = detail_bounds(some_ranges());
+  ASSERT_EQ(bounds.lower.size(), kDetailParameters);
+  for (std::size_t which = 0; which < 3; ++which) {
+    const auto x = detail_parameters({which, 1e-3, 20.0, 3, 0.4}, some_ranges());
+    ASSERT_EQ(x.size(), kDetailParameters);
+    for (std::size_t d = 0; d < x.size(); ++d) {
+      EXPECT_GE(x[d], bounds.lower[d]) << d;
+      EXPECT_LE(x[d], bounds.upper[d]) << d;
+    }
+  }
+}
+
+TEST(DetailParameters, APlainNoiseBecomesOneLayer) {
+  for (std::size_t which = 0; which < 3; ++which) {
+    const auto layers =
+        detail_layers(detail_parameters({which, 1e-3, 10.0, 3, 0.4}, some_ranges()), some_ranges());
+    ASSERT_EQ(layers.size(), 1u);
+    EXPECT_EQ(layers[0].noise, kDetailNoises[which]);
+    EXPECT_NEAR(layers[0].amplitude * layers[0].weight, 1e-3, 1e-12);
+    EXPECT_NEAR(layers[0].frequency, 10.0, 1e-9);
+    EXPECT_EQ(layers[0].octaves, 3);
+    EXPECT_EQ(layers[0].gain, 0.4);
+    EXPECT_NEAR(norm(layers[0].scale - Vec3d{1, 1, 1}), 0.0, 1e-12);
+  }
+}
+
+TEST(DetailParameters, NoOctaveIsFinerThanTheRangesAllow) {
+  const auto layers = detail_layers(detail_parameters({0, 1e-3, 30.0, 8, 0.4}, some_ranges()), some_ranges());
+  ASSERT_EQ(layers.size(), 1u);
+  EXPECT_EQ(layers[0].octaves, 2);  // 30 and 58.5; 114 would be above 80
+}
+
+TEST(DetailParameters, SteepnessBoundsTheSlope) {
+  FractalLayer layer;
+  layer.amplitude = 0.01;
+  layer.frequency = 10.0;
+  layer.octaves = 2;
+  layer.gain = 0.5;
+  layer.lacunarity = 2.0;
+  EXPECT_NEAR(steepness(std::vector<FractalLayer>{layer}), 2 * 7.0 * 0.1, 1e-12);
+  EXPECT_EQ(steepness({}), 0.0);
+}
+
+TEST(DetailParameters, EveryCornerOfTheBoxIsAValidRecipe) {
+  const Bounds bounds = detail_bounds(some_ranges());
+  for (const auto& corner : {bounds.lower, bounds.upper}) {
+    Recipe recipe;
+    recipe.body.emplace().spheres.push_back({{0, 0, 0}, 1.0});
+    for (const FractalLayer& layer : detail_layers(corner, some_ranges())) recipe.layers.push_back(layer);
+    EXPECT_NO_THROW(validate_recipe(recipe, "corner"));
+  }
 }
 
 }  // namespace

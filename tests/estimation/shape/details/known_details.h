@@ -8,8 +8,8 @@
 #include "synthesis/field/field_mesh.h"
 #include "synthesis/field/implicit_field.h"
 #include "synthesis/noise/fractal_noise.h"
-#include "synthesis/noise/lone_noise.h"
 #include "tests/support/points.h"
+#include "tests/synthesis/lone_noise.h"
 
 namespace astrolith::testing {
 

@@ -1,5 +1,10 @@
-#include "estimation/shape/fit/shape_fit.h"
+#include <cmath>
 
+#include "estimation/shape/fit/shape_fit.h"
+#include "estimation/shape/fit/sphere_growth.h"
+#include "estimation/shape/model/isosurface_projection.h"
+#include "estimation/shape/model/model_levels.h"
+#include "geometry/mesh_measure.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"
 #include "synthesis/field/field_mesh.h"
@@ -30,14 +35,9 @@ ShapeFitOptions quick(int spheres) {
   return options;
 }
 
-// Bodies of each kernel, fitted with the kernel that they are made of.
-class ShapeFitKernels : public ::testing::TestWithParam<Kernel> {};
-
-TEST_P(ShapeFitKernels, OneSphereBecomesOneMetaballOfItsRadius) {
+TEST(ShapeFit, OneSphereBecomesOneMetaballOfItsRadius) {
   const TargetBody target = prepare_target(testing::icosphere(4, 2.0, {5, 6, 7}), "sphere");
-  ShapeFitOptions options = quick(1);
-  options.kernel = GetParam();
-  const ShapeFitResult fit = fit_shape(target, options);
+  const ShapeFitResult fit = fit_shape(target, quick(1));
   ASSERT_EQ(fit.body.spheres.size(), 1u);
   EXPECT_NEAR(fit.body.spheres[0].radius, 2.0, 0.01);
   EXPECT_NEAR(norm(fit.body.spheres[0].center - Vec3d{5, 6, 7}), 0.0, 0.01);
@@ -45,31 +45,19 @@ TEST_P(ShapeFitKernels, OneSphereBecomesOneMetaballOfItsRadius) {
   EXPECT_LT(fit.check.distance.mean, 2e-3);
 }
 
-TEST_P(ShapeFitKernels, RecoversABodyOfThreeMetaballsLong) {
+TEST(ShapeFit, RecoversABodyOfThreeMetaballs) {
   MetaballBody truth;
-  truth.kernel = GetParam();
-  if (truth.kernel == Kernel::kGaussian) {
-    truth.blend_exponent = 2.5;
-  } else {
-    truth.a = truth.b = 1.5;
-  }
+  truth.blend_exponent = 2.5;
   truth.spheres = {{{-0.9, 0, 0}, 0.9}, {{0.5, 0.2, 0}, 1.0}, {{1.3, 0.5, 0.3}, 0.6}};
   const TargetBody target = prepare_target(mesh_of(truth, 64), "three");
-  ShapeFitOptions options = quick(16);
-  options.kernel = GetParam();
-  const ShapeFitResult fit = fit_shape(target, options);
-  EXPECT_EQ(fit.body.kernel, GetParam());
+  const ShapeFitResult fit = fit_shape(target, quick(16));
   EXPECT_LT(fit.check.distance.mean, 5e-4);
   EXPECT_LT(fit.check.distance.p99, 3e-3);
-  EXPECT_NEAR(fit.check.volume_ratio, 1.0, GetParam() == Kernel::kGaussian ? 2e-3 : 4e-3);
+  EXPECT_NEAR(fit.check.volume_ratio, 1.0, 2e-3);
   EXPECT_TRUE(fit.check.topology.closed && fit.check.topology.manifold);
   EXPECT_EQ(fit.check.topology.components, 1);
-  // Compact kernels leave bumps where their supports end, and the similarity sees bumps in the normals. The
-  // Gaussian has none.
-  EXPECT_GT(fit.similarity, (GetParam() == Kernel::kGaussian ? 0.95 : 0.75) * fit.similarity_floor);
+  EXPECT_GT(fit.similarity, 0.95 * fit.similarity_floor);
 }
-
-INSTANTIATE_TEST_SUITE_P(Kernels, ShapeFitKernels, ::testing::ValuesIn(kKernels));
 
 // Bodies with several components, and a body with a hole.
 struct ComponentsCase {
@@ -161,6 +149,96 @@ TEST(ShapeFit, RefusesOptionsOutOfRange) {
   const TargetBody target = prepare_target(testing::icosphere(2), "sphere");
   EXPECT_TRUE(
       testing::has(testing::refusal_of([&] { fit_shape(target, quick(0)); }), "spheres: give 1 to 10000"));
+}
+
+TEST(SphereGrowth, NewSpheresStandWhereTheBumpIs) {
+  // A unit sphere with a bump at +x, modelled by a unit sphere.
+  TriangleMesh mesh = testing::icosphere(4);
+  for (Vec3d& p : mesh.vertices) {
+    if (p.x > 0.9) p = p * 1.15;
+  }
+  const MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
+  const SurfaceSamples samples = sample_surface(mesh, 2000, 1, SampleNormals::interpolated);
+  const std::vector<ModelSphere> grown =
+      spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1, 1});
+  ASSERT_EQ(grown.size(), 1u);
+  EXPECT_GT(normalized(grown[0].center).x, 0.9);
+  EXPECT_LT(norm(grown[0].center), 1.0);
+  EXPECT_FALSE(grown[0].subtractive);
+}
+
+TEST(SphereGrowth, WhereTheModelSticksOutNewSpheresAreSubtractive) {
+  TriangleMesh mesh = testing::icosphere(4);
+  for (Vec3d& p : mesh.vertices) {
+    if (p.x > 0.9) p = p * 0.85;
+  }
+  MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
+  const SurfaceSamples samples = sample_surface(mesh, 2000, 1, SampleNormals::interpolated);
+  const auto grown = [&](int subtractive) {
+    return spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1, subtractive}).at(0);
+  };
+  const ModelSphere dent = grown(1);
+  EXPECT_TRUE(dent.subtractive);
+  EXPECT_GT(normalized(dent.center).x, 0.9);
+  EXPECT_GT(norm(dent.center), 0.85);
+  EXPECT_FALSE(grown(0).subtractive);
+  const std::vector<Vec3d> dented{{0.85, 0, 0}};
+  const double before = model_distances(model, dented)[0];
+  model.spheres.push_back(dent);
+  EXPECT_LT(model_distances(model, dented)[0], before);
+}
+
+TEST(SphereGrowth, BumpsAreAsWideAtEverySharpness) {
+  const TriangleMesh mesh = testing::icosphere(3);
+  const SurfaceSamples samples = sample_surface(mesh, 500, 1, SampleNormals::interpolated);
+  const auto width = [&](double sharpness) {
+    const MetaballModel model{sharpness, {{{0, 0, 0}, 1.1}}};
+    const Sphere grown = spheres_for_largest_errors(model, samples, {surface_area(mesh), 20, 1}).at(0);
+    return grown.radius / std::sqrt(sharpness);
+  };
+  EXPECT_NEAR(width(0.4), width(4.0), 1e-12);
+}
+
+TEST(SphereGrowth, IdleAndOutsideSpheresAreRemoved) {
+  const TriangleMesh mesh = testing::icosphere(3);
+  FitPoints points;
+  points.on_surface = sample_surface(mesh, 500, 1).points;
+  MetaballModel model{6.0, {{{0, 0, 0}, 1.0}, {{0.1, 0, 0}, 0.05}, {{3, 0, 0}, 0.2}}};
+  EXPECT_EQ(remove_outside_spheres(model, SurfaceTree(mesh), 0.01), 1);
+  EXPECT_EQ(remove_idle_spheres(model, points, 1e-3), 1);
+  ASSERT_EQ(model.spheres.size(), 1u);
+  EXPECT_EQ(model.spheres[0].radius, 1.0);
+  EXPECT_EQ(remove_outside_spheres(model, SurfaceTree(testing::icosphere(3, 1.0, {9, 9, 9})), 0.01), 0)
+      << "the last sphere stays";
+}
+
+TEST(SphereGrowth, TheLeastUsefulSphereGoesFirst) {
+  const std::vector<Vec3d> points = sample_surface(testing::icosphere(3), 500, 1).points;
+  // The second barely touches the surface, the third is a bump on it.
+  MetaballModel model{6.0, {{{0, 0, 0}, 1.0}, {{0.3, 0, 0}, 0.4}, {{0, 0.9, 0}, 0.3}}};
+  remove_least_useful_spheres(model, points, 1);
+  ASSERT_EQ(model.spheres.size(), 2u);
+  EXPECT_EQ(model.spheres[0].radius, 1.0);
+  EXPECT_EQ(model.spheres[1].radius, 0.3);
+}
+
+TEST(SphereGrowth, OneAdditiveSphereStays) {
+  FitPoints points;
+  points.on_surface = sample_surface(testing::icosphere(3), 500, 1).points;
+  MetaballModel model{6.0, {{{0, 0, 0}, 0.01}, {{1.2, 0, 0}, 0.4, true}}};
+  remove_least_useful_spheres(model, points.on_surface, 1);
+  EXPECT_EQ(model.spheres.size(), 2u) << "the additive one is the less useful";
+  EXPECT_EQ(remove_idle_spheres(model, points, 0.02), 0);
+}
+
+TEST(IsosurfaceProjection, ArrivesOnASphereWithItsNormals) {
+  const MetaballModel model{3.0, {{{0, 0, 0}, 1.0}}};
+  const std::vector<Vec3d> points{{1.2, 0, 0}, {0, 0.7, 0}, {0.5, 0.5, 0.5}};
+  const SurfaceSamples projected = project_onto_isosurface(model, points, 8);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_NEAR(norm(projected.points[i]), 1.0, 1e-6);
+    EXPECT_NEAR(norm(projected.normals[i] - normalized(points[i])), 0.0, 1e-6);
+  }
 }
 
 }  // namespace

@@ -1,8 +1,14 @@
-#include "estimation/shape/packing/sphere_packing.h"
+#include <algorithm>
+#include <cmath>
+#include <fstream>
 
+#include "estimation/shape/packing/clearance_grid.h"
+#include "estimation/shape/packing/packing_table.h"
+#include "estimation/shape/packing/sphere_packing.h"
 #include "geometry/mesh_measure.h"
 #include "numerics/parallel_for.h"
 #include "tests/support/meshes.h"
+#include "tests/support/scratch_folder.h"
 
 namespace astrolith {
 namespace {
@@ -70,6 +76,77 @@ TEST(SpherePacking, SameBitsForOneAndTwoThreads) {
     EXPECT_EQ(packings[0].spheres[i].center, packings[1].spheres[i].center);
     EXPECT_EQ(packings[0].spheres[i].radius, packings[1].spheres[i].radius);
   }
+}
+
+// Calls check(centre of the cell, its clearance).
+template <typename Check>
+void for_each_cell(const ClearanceGrid& grid, const Check& check) {
+  for (std::size_t i = 0; i < grid.clearance.size(); ++i) check(grid.center(i), grid.clearance[i]);
+}
+
+TEST(ClearanceGrid, CubeIsMeasuredToATenthOfAStep) {
+  const TriangleMesh mesh = testing::cube(1.0);
+  const ClearanceGrid grid = make_clearance_grid(mesh, SurfaceTree(mesh), 30000);
+  std::size_t inside = 0;
+  for_each_cell(grid, [&](const Vec3d& p, float clearance) {
+    const Vec3d q = p - mesh.bounds().center();
+    const double depth = 0.5 - std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+    inside += clearance > 0.0f ? 1 : 0;
+    EXPECT_GE(clearance, std::max(0.0, depth) - 1e-5);
+    EXPECT_LE(clearance, std::max(0.0, depth + 0.1 * grid.step));
+    if (depth <= 0.0) {
+      EXPECT_LE(clearance, 0.0f);
+    }
+  });
+  EXPECT_NEAR(static_cast<double>(inside), 30000.0, 1500.0);
+}
+
+TEST(ClearanceGrid, AgreesWithTheTreeOnACurvedBody) {
+  const TriangleMesh mesh = testing::torus(1.0, 0.4);
+  const SurfaceTree tree(mesh);
+  const ClearanceGrid grid = make_clearance_grid(mesh, tree, 5000);
+  for_each_cell(grid, [&](const Vec3d& p, float clearance) {
+    const double exact = std::max(0.0, tree.signed_distance(p));
+    EXPECT_GE(clearance, exact - 1e-5);
+    EXPECT_LE(clearance, exact + 0.15 * grid.step);
+  });
+}
+
+TEST(ClearanceGrid, APlateKeepsWithinTheLimitOfCells) {
+  TriangleMesh plate = testing::cube(1.0);
+  for (Vec3d& v : plate.vertices) v.z *= 1e-7;
+  const ClearanceGrid grid = make_clearance_grid(plate, SurfaceTree(plate), 1e6, 1e5);
+  EXPECT_LE(static_cast<double>(grid.clearance.size()), 1e5);
+}
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+const std::vector<Sphere> kSpheres = {{{1, 2, 3}, 0.2}, {{-1, 0.5, 0}, 0.1}};
+
+TEST(PackingTable, HoldsCentresAndRadii) {
+  const testing::ScratchFolder folder;
+  write_packing_table(kSpheres, {"two spheres", "km"}, folder / "p.csv");
+  EXPECT_EQ(lines_of(folder / "p.csv"),
+            (std::vector<std::string>{"# two spheres", "# lengths in km", "x,y,z,radius", "1,2,3,0.2",
+                                      "-1,0.5,0,0.1"}));
+}
+
+TEST(PackingTable, MasconsWeighWhatTheBodyWeighs) {
+  const testing::ScratchFolder folder;
+  write_packing_table(kSpheres, {"two spheres", "km", 0.09, 2000.0}, folder / "p.csv");
+  const std::vector<std::string> lines = lines_of(folder / "p.csv");
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[2], "x,y,z,radius,mass");
+  const auto mass = [&](std::size_t line) {
+    return std::stod(lines[line].substr(lines[line].rfind(',') + 1));
+  };
+  EXPECT_NEAR(mass(3) + mass(4), 1.8e11, 1e3);  // 0.09 km^3 of 2000 kg / m^3
+  EXPECT_NEAR(mass(3) / mass(4), 8.0, 1e-6);
 }
 
 }  // namespace

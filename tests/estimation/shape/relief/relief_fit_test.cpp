@@ -1,7 +1,5 @@
 #include "estimation/shape/relief/relief_fit.h"
 
-#include <gtest/gtest.h>
-
 #include "geometry/surface/surface_tree.h"
 #include "numerics/errors.h"
 #include "numerics/parallel_for.h"

@@ -1,12 +1,9 @@
-#include <gtest/gtest.h>
-
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "estimation/shape/report/captioned_picture.h"
-#include "estimation/shape/report/convergence_plot.h"
-#include "estimation/shape/report/error_histogram.h"
+#include "estimation/shape/report/fit_plots.h"
 #include "numerics/errors.h"
 #include "tests/support/scratch_folder.h"
 

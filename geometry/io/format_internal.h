@@ -1,0 +1,119 @@
+// What the formats of meshes share: a file in memory, the one form of readers' error messages, the text of
+// files about themselves, and one reader and one writer for each format.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/io/mesh_format.h"
+#include "geometry/io/mesh_io.h"
+#include "numerics/errors.h"
+#include "numerics/files/output_file.h"
+
+namespace astrolith {
+
+struct MeshFile {
+  std::filesystem::path path;
+  std::string bytes;
+
+  // Throws InputError("FILE: place: what; remedy"). An empty place is left out.
+  [[noreturn]] void fail(std::string_view place, std::string_view what, std::string_view remedy) const;
+};
+
+// Reads the whole file, and unpacks Zstandard, to at most 100 times the file's size. Throws InputError when
+// it is missing, empty, a folder, or not a plain file.
+MeshFile load_mesh_file(const std::filesystem::path& path);
+
+// At most 40 characters of a piece of a file, in quotes, for a one-line message. Characters that are not
+// printable ASCII become '?'.
+std::string quoted(std::string_view piece);
+
+// Vertex indices have 32 bits, in TriangleMesh and in every binary format.
+inline constexpr std::int64_t kMaxVertices = std::int64_t{0xffffffff};
+
+// Splits a polygon into a fan of triangles around its first corner. This is exact for convex polygons, which
+// are what shape models have.
+inline void append_fan(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+  }
+}
+
+// Reads the file by the format that its name and its content tell. Throws InputError when the extension names
+// one format and the content is clearly another, and when neither tells the format.
+TriangleMesh read_content(const MeshFile& file);
+
+// Readers may leave indices out of range and coordinates that are not finite; read_mesh checks both.
+TriangleMesh read_obj(const MeshFile& file);
+TriangleMesh read_ply(const MeshFile& file);
+TriangleMesh read_stl_ascii(const MeshFile& file);
+TriangleMesh read_stl_binary(const MeshFile& file);
+TriangleMesh read_off(const MeshFile& file);
+TriangleMesh read_plate(const MeshFile& file);
+TriangleMesh read_icq(const MeshFile& file);
+TriangleMesh read_bmf(const MeshFile& file);
+
+// Writers rely on what write_mesh has checked: at least one triangle, indices in range, and coordinates that
+// float32 can hold.
+void write_ply(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+void write_stl(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+void write_glb(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+// The two formats of plates have no place for comments. write_icq throws InputError for a body that has
+// several surfaces along a direction from its centre of mass.
+void write_icq(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+// The vertices and triangles of the .icq of a mesh.
+MeshCounts icq_counts(const MeshCounts& mesh);
+void write_plate(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info);
+
+// The lines of a file's comment: "length unit: km", "frame: ...", the comment and the program. Empty texts
+// give no line.
+std::vector<std::string> info_lines(const MeshFileInfo& info);
+
+// Appends numbers, blanks between them: whole numbers, and doubles as the shortest decimals that read back as
+// the same double.
+template <typename... Number>
+void append_words(std::string& line, const Number&... numbers) {
+  const auto append = [&](const auto& number) {
+    char digits[32];
+    if (!line.empty()) line += ' ';
+    line.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+  };
+  (append(numbers), ...);
+}
+inline std::string point_text(const Vec3d& p) {
+  std::string text;
+  append_words(text, p.x, p.y, p.z);
+  return text;
+}
+
+// Collects small pieces into large writes.
+class BufferedOutput {
+ public:
+  explicit BufferedOutput(OutputFile& file) : file_(file) {}
+  void append(std::string_view bytes) {
+    buffer_.append(bytes);
+    if (buffer_.size() >= kFlushBytes) flush();
+  }
+  template <typename T>
+  void append_value(T value) {
+    append({reinterpret_cast<const char*>(&value), sizeof value});
+  }
+  void flush() {
+    file_.write(buffer_.data(), buffer_.size());
+    buffer_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kFlushBytes = std::size_t{1} << 16;
+  OutputFile& file_;
+  std::string buffer_;
+};
+
+}  // namespace astrolith

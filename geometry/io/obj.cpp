@@ -1,0 +1,76 @@
+// Wavefront OBJ. The shape of a body needs the lines "v" and "f" only; all others are ignored. PDS plate
+// models in the style "v x y z", "f a b c" can be read as OBJ too.
+#include "geometry/io/format_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+
+namespace astrolith {
+namespace {
+
+// The index of the vertex that a corner names: "7", "7/1", "7//3" or "7/1/3". Numbers count from 1, or are
+// negative and count back from the last vertex so far.
+std::uint32_t corner_index(const TextScanner& scan, std::string_view corner, std::size_t vertices_so_far) {
+  const std::int64_t index = scan.to_integer(corner.substr(0, corner.find('/')), "vertex number");
+  const std::int64_t count = static_cast<std::int64_t>(vertices_so_far);
+  const std::int64_t zero_based = index < 0 ? count + index : index - 1;
+  if (index == 0 || zero_based < 0 || zero_based >= kMaxVertices) {
+    scan.fail("vertex number " + std::to_string(index) + " does not exist (" + std::to_string(count) +
+                  " vertices so far)",
+              "vertices are numbered from 1, or from -1 backwards");
+  }
+  return static_cast<std::uint32_t>(zero_based);
+}
+
+std::string line_of(std::string keyword, const Vec3d& v) {
+  append_words(keyword, v.x, v.y, v.z);
+  return keyword + "\n";
+}
+
+std::string line_of(const Triangle& triangle, bool with_normals) {
+  std::string line = "f";
+  for (const std::uint32_t index : triangle) {
+    const std::string number = std::to_string(std::uint64_t{index} + 1);
+    line += " " + number;
+    if (with_normals) line += "//" + number;
+  }
+  return line + "\n";
+}
+
+}  // namespace
+
+TriangleMesh read_obj(const MeshFile& file) {
+  TriangleMesh mesh;
+  TextScanner scan(file);
+  std::vector<std::uint32_t> polygon;
+  while (scan.next_filled_line()) {
+    const std::string_view keyword = scan.word();
+    if (keyword == "v") {
+      mesh.vertices.push_back(scan.point());
+    } else if (keyword == "f") {
+      polygon.clear();
+      while (!scan.line_done()) {
+        const std::string_view corner = scan.word();
+        if (corner.front() == '#') break;
+        // A backslash at the end of a line continues the face on the next one.
+        if (corner == "\\" && scan.line_done() && scan.next_line()) continue;
+        polygon.push_back(corner_index(scan, corner, mesh.vertices.size()));
+      }
+      if (polygon.size() < 3) scan.fail("the face has fewer than three vertices", "remove or complete it");
+      append_fan(polygon, mesh.triangles);
+    }
+  }
+  return mesh;
+}
+
+void write_obj(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo& info) {
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  for (const std::string& text : info_lines(info)) buffer.append("# " + text + "\n");
+  buffer.append("# axes: z up; import into Blender with forward axis Y, up axis Z\n");
+  for (const Vec3d& v : mesh.vertices) buffer.append(line_of("v", v));
+  for (const Vec3d& n : mesh.normals) buffer.append(line_of("vn", n));
+  for (const Triangle& t : mesh.triangles) buffer.append(line_of(t, !mesh.normals.empty()));
+  buffer.flush();
+  out.commit();
+}
+
+}  // namespace astrolith

@@ -1,0 +1,94 @@
+// Plate models of the Planetary Data System: a count, rows "i x y z", a count, rows "i a b c", numbered from
+// 1. The first line may state both counts, and rows may lack their numbers. (Models with rows "v x y z" and
+// "f a b c" are read as OBJ.)
+#include "geometry/io/format_internal.h"
+#include "geometry/io/text_scanner_internal.h"
+
+namespace astrolith {
+namespace {
+
+constexpr std::size_t kLeastRowBytes = 6;  // "0 0 0\n"
+
+std::size_t checked_count(const TextScanner& scan, std::int64_t count, const char* what) {
+  if (count < 1 || static_cast<std::uint64_t>(count) > (scan.bytes_left() + 1) / kLeastRowBytes) {
+    scan.fail(std::to_string(count) + " " + what + " are declared, which the file does not hold",
+              "it may be truncated, or not a plate model");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+// Goes to row i (counted from 1) of a table and, where rows are numbered, reads the number at its start. The
+// first row tells: one of three words has no number.
+void start_row(TextScanner& scan, std::size_t i, const char* what, bool& numbered) {
+  if (!scan.next_filled_line()) scan.fail_truncated(std::string(what) + " " + std::to_string(i));
+  if (i == 1) numbered = scan.words_left() != 3;
+  if (!numbered) return;
+  const std::int64_t stated = scan.integer("row number");
+  if (stated != static_cast<std::int64_t>(i)) {
+    scan.fail(
+        std::string(what) + " " + std::to_string(stated) + " stands where " + std::to_string(i) + " is due",
+        "rows are numbered from 1 without gaps");
+  }
+}
+
+std::uint32_t vertex_index(TextScanner& scan, std::size_t num_vertices) {
+  const std::int64_t number = scan.integer("vertex number");
+  if (number < 1 || static_cast<std::uint64_t>(number) > num_vertices) {
+    scan.fail("vertex number " + std::to_string(number) + " does not exist (there are " +
+                  std::to_string(num_vertices) + ")",
+              "vertices are numbered from 1");
+  }
+  return static_cast<std::uint32_t>(number - 1);
+}
+
+}  // namespace
+
+TriangleMesh read_plate(const MeshFile& file) {
+  TriangleMesh mesh;
+  TextScanner scan(file);
+  if (!scan.next_filled_line()) scan.fail_truncated("the number of vertices");
+  const std::size_t num_vertices = checked_count(scan, scan.integer("number of vertices"), "vertices");
+  std::int64_t num_plates = scan.line_done() ? 0 : scan.integer("number of plates");
+  mesh.vertices.reserve(num_vertices);
+  bool numbered = true;
+  for (std::size_t i = 1; i <= num_vertices; ++i) {
+    start_row(scan, i, "vertex", numbered);
+    mesh.vertices.push_back(scan.point());
+  }
+  if (num_plates == 0) {
+    if (!scan.next_filled_line()) scan.fail_truncated("the number of plates");
+    num_plates = scan.integer("number of plates");
+  }
+  const std::size_t plates = checked_count(scan, num_plates, "plates");
+  mesh.triangles.reserve(plates);
+  for (std::size_t i = 1; i <= plates; ++i) {
+    start_row(scan, i, "plate", numbered);
+    Triangle& t = mesh.triangles.emplace_back();
+    for (std::uint32_t& corner : t) corner = vertex_index(scan, num_vertices);
+  }
+  return mesh;
+}
+
+void write_plate(const TriangleMesh& mesh, const std::filesystem::path& file, const MeshFileInfo&) {
+  OutputFile out(file);
+  BufferedOutput buffer(out);
+  const auto row = [&](const auto&... values) {
+    std::string line;
+    append_words(line, values...);
+    buffer.append(line + "\n");
+  };
+  buffer.append(std::to_string(mesh.vertices.size()) + "\n");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Vec3d& p = mesh.vertices[i];
+    row(i + 1, p.x, p.y, p.z);
+  }
+  buffer.append(std::to_string(mesh.triangles.size()) + "\n");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& [a, b, c] = mesh.triangles[i];
+    row(i + 1, std::uint64_t{a} + 1, std::uint64_t{b} + 1, std::uint64_t{c} + 1);
+  }
+  buffer.flush();
+  out.commit();
+}
+
+}  // namespace astrolith

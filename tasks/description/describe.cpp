@@ -1,0 +1,126 @@
+#include "tasks/description/describe.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "cuda/pair_count.h"
+#include "geometry/io/mesh_io.h"
+#include "numerics/files/npy_file.h"
+#include "numerics/files/output_file.h"
+#include "tasks/description/shape_options.h"
+#include "tasks/description/surface_options.h"
+#include "tasks/job/job.h"
+#include "tasks/job/output_names.h"
+#include "tasks/repair/shape_repair.h"
+#include "tasks/synthesis/describe_file.h"
+#include "tasks/synthesis/device_option.h"
+#include "tasks/synthesis/surface_report.h"
+
+namespace astrolith {
+namespace {
+
+struct DescribeArguments {
+  std::string shape, output;
+  ShapeOptions options;
+  ShapeRepair repair;
+  DeviceOption device;
+  bool surface = false;
+  SurfaceOptions surface_options;
+};
+
+void add_describe_options(Job& job, DescribeArguments& arguments) {
+  OptionTable& app = job.options;
+  app.add_option("shape", arguments.shape,
+                 "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; or ply of points with normals")
+      .required()
+      .placeholder("MESH")
+      .reads();
+  app.add_option(
+         "-o,--output", arguments.output,
+         "the frequencies, float64, one axis a feature: alpha beta gamma delta [eta kappa]; with --surface "
+         "the figures (.json) or the values at every place (.csv)")
+      .required()
+      .placeholder("H.npy")
+      .writes();
+  arguments.options.add_to(app);
+  arguments.repair.add_to(app, false);
+  arguments.device.add_to(app);
+  const Option surface =
+      app.add_flag("--surface", arguments.surface,
+                   "in place of the histogram: how rough the surface is within 3, 6, 12 and 24 mean edges of "
+                   "places all over "
+                   "it, whether bumps or pits stand out, how steep it is, and how far its regions differ");
+  arguments.surface_options.add_to(app, surface);
+}
+
+void summarize(Job& job, const ShapeDescription& shape, const std::string& features) {
+  job.summary["points"] = shape.points;
+  job.summary["pairs"] = shape.histogram.pairs;
+  job.summary["features"] = features;
+  job.summary["bins"] = shape.histogram.bins;
+  job.summary["max_distance"] = shape.histogram.max_distance;  // in the file's unit
+  job.summary["vertices_left_out"] = shape.vertices_left_out;
+  job.summary["undefined_curvatures"] = shape.undefined_curvatures;
+}
+
+void write_surface(const SurfaceStatistics& surface, const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".csv") return write_surface_table(surface, file);
+  write_file(file, surface_json(surface).dump(2) + "\n");
+}
+
+// Points with normals are described as they are, and wrapped where --wrap is given.
+TriangleMesh read_shape(Job& job, const DescribeArguments& arguments, bool or_points) {
+  const bool plain = or_points && !arguments.repair.wrap;
+  TriangleMesh mesh = plain ? read_mesh_or_points(arguments.shape) : arguments.repair.read(arguments.shape);
+  nlohmann::ordered_json figures;
+  mesh = arguments.repair.mended_surface(job, std::move(mesh), arguments.shape, figures);
+  if (!figures.is_null()) job.summary["repair"] = figures;
+  if (const std::string unit = stated_length_unit(arguments.shape); !unit.empty())
+    job.summary["length_unit"] = unit;
+  return mesh;
+}
+
+void run_surface(Job& job, const DescribeArguments& arguments) {
+  require_extension(arguments.output, {".json", ".csv"});
+  require_writable(arguments.output);
+  const TriangleMesh mesh = read_shape(job, arguments, false);
+  const SurfaceStatistics surface =
+      describe_surface({arguments.shape, mesh}, arguments.surface_options.of(job), job.progress("surface"));
+  for (const std::string& remark : surface.remarks) job.say(arguments.shape + ": " + remark);
+  write_surface(surface, arguments.output);
+  job.summary["surface"] = surface_json(surface);
+  job.say(arguments.output + ": " + std::to_string(surface.places.size()) + " places of " +
+          std::to_string(surface.points) + " points");
+}
+
+void run_describe(Job& job, const DescribeArguments& arguments) {
+  if (arguments.surface) return run_surface(job, arguments);
+  require_extension(arguments.output, {".npy"});
+  require_writable(arguments.output);
+  const TriangleMesh mesh = read_shape(job, arguments, true);
+  DescriptionOptions options = arguments.options.with_seed(job.seed);
+  const ChosenDevice chosen = arguments.device.choose(job);
+  if (chosen) options.count_pairs = count_pairs_on_gpu;
+  const Progress progress = job.progress("describe");
+  const ShapeDescription shape =
+      mesh.triangles.empty() ? describe_file(arguments.shape, mesh.vertices, mesh.normals, options, progress)
+                             : describe_file(arguments.shape, mesh, options, progress);
+  for (const std::string& remark : shape.remarks) job.say(arguments.shape + ": " + remark);
+  const std::vector<int> axes(static_cast<std::size_t>(dimensions(options.features)), options.bins);
+  write_npy(shape.histogram.frequencies(), axes, arguments.output);
+  summarize(job, shape, arguments.options.features);
+  job.say(arguments.output + ": " + std::to_string(shape.points) + " points, " +
+          std::to_string(shape.histogram.pairs) + " pairs" + chosen.remark());
+}
+
+}  // namespace
+
+JobWork declare_describe(Job& job) {
+  const auto arguments = std::make_shared<DescribeArguments>();
+  add_describe_options(job, *arguments);
+  return [&job, arguments] { run_describe(job, *arguments); };
+}
+
+}  // namespace astrolith

@@ -1,0 +1,312 @@
+#include "tasks/estimation/fit_gabor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "estimation/gabor/fit_memory.h"
+#include "estimation/gabor/image/image_reader.h"
+#include "numerics/errors.h"
+#include "numerics/files/npy_file.h"
+#include "numerics/files/output_file.h"
+#include "numerics/files/sha256.h"
+#include "numerics/length_unit.h"
+#include "numerics/memory_use.h"
+#include "tasks/estimation/exemplar_recipe.h"
+#include "tasks/estimation/photo_recipe.h"
+#include "tasks/job/output_names.h"
+#include "tasks/job/words.h"
+
+namespace astrolith {
+namespace {
+
+// Photos whose spectrum holds less than this share of their variance get a note.
+constexpr double kMostVariance = 0.95;
+
+// The photo, and the preparation of its colours and its brightness.
+void add_photo_options(OptionTable& app, PhotoFitArguments& o) {
+  app.add_option(
+         "image", o.image,
+         "photo or height map: PNG, JPEG or TIFF, 8 or 16 bits or 16- to 64-bit floats, at least 32 x 32; "
+         "alpha is ignored, of several pages or frames the first is taken")
+      .required()
+      .reads();
+  app.add_option(
+         "-o,--output", o.output,
+         "recipe to write, with one Gabor layer (up to three with --channels pca) or, of the models phase "
+         "and exemplar, one layer whose image becomes RECIPE_exemplar.png beside it")
+      .required()
+      .writes([](const auto& words) {
+        return std::vector<std::filesystem::path>{words.front(), exemplar_image_of(words.front())};
+      });
+  app.add_option(
+         "--model", o.model,
+         "how the texture is made: gabor (noise with the photo's spectrum in a few lobes), phase (an image "
+         "of noise with the whole spectrum), exemplar (the photo itself, tiled and blended) or auto (the "
+         "simplest of those whose textures are nearest to squares of the photo that the model has not "
+         "seen, by the distributions of values and of up to 12 filter responses)")
+      .check(one_of({"gabor", "phase", "exemplar", "auto"}));
+  app.add_option(
+         "--channels", o.channels,
+         "what is fitted: luminance (one layer; of colours the luma 0.2126 R + 0.7152 G + 0.0722 B of "
+         "the values as stored, gamma-encoded) or pca (a layer for each principal axis of the "
+         "colours; synth --texture then paints in colour). With pca an exemplar keeps the colours of "
+         "its image, and its height is that of their luma")
+      .check(one_of({"luminance", "pca"}));
+  Option detrend =
+      app.add_option(
+             "--detrend", o.photo.detrend_degree,
+             "first take out slow changes of brightness, such as light from one side: a polynomial of "
+             "this degree in x and y, fitted to all pixels; 0 = none")
+          .check(in_range(0, kLargestTrendDegree));
+  app.add_option("--detrend-by", o.detrend_by,
+                 "how slow changes are taken out: subtraction (v - t + mean, for height maps) or division (v "
+                 "mean / t, for photos whose "
+                 "contrast falls off with the light)")
+      .check(one_of({"subtraction", "division"}))
+      .needs(detrend);
+}
+
+// The size of the layer and of its recipe.
+void add_layer_options(OptionTable& app, PhotoFitArguments& o) {
+  app.add_option("--lobes", o.photo.fit.max_lobes, "keep at most this many lobes in a layer")
+      .check(in_range(1, 1000));
+  app.add_option(
+         "--mm-per-px", o.mm_per_px,
+         "size of an image pixel on the ground in millimetres; without it lengths in the recipe are pixels")
+      .check(above_zero())
+      .default_text("");
+  app.add_option("--unit", o.unit, "length unit of the recipe where --mm-per-px is given")
+      .check(one_of({"m", "km"}));
+  app.add_option(
+         "--height-rms", o.height_rms,
+         "standard deviation of the layer's height in the recipe's length unit. Brightness is not height: "
+         "without this the layer has the image's own contrast (full scale = 1), which is a height only if "
+         "the image is a height map in that unit")
+      .check(zero_or_more())
+      .default_text("");
+}
+
+void add_pursuit_options(OptionTable& app, PhotoFitArguments& o) {
+  app.add_option("--penalty", o.photo.fit.penalty_ratio,
+                 "sparsity penalty over the largest useful one; smaller finds more lobes")
+      .check(in_range(1e-4, 0.99));
+  app.add_option(
+         "--gap", o.photo.fit.relative_gap,
+         "stop the pursuit at this certified relative duality gap; selection and refinement then change "
+         "the lobes")
+      .check(in_range(1e-8, 0.5));
+}
+
+// The limit of memory, and the files that can be written beside the recipe.
+void add_output_options(OptionTable& app, PhotoFitArguments& o) {
+  app.add_option("--max-memory", o.max_memory_gb,
+                 "refuse fits that are predicted to need more gigabytes of memory; without it three quarters "
+                 "of the machine's")
+      .check(above_zero())
+      .default_text("");
+  app.add_option(
+         "--report", o.report_folder,
+         "folder for a page, index.html, with photo and texture as reliefs to turn; for a figure, "
+         "report.png and report.svg, of both and their spectra, of the lobes and the gap of the pursuit, "
+         "or of the grey values and the layer's image; and for its pictures pixel by pixel")
+      .placeholder("DIR")
+      .writes(texture_report_files);
+  app.add_option(
+         "--spectrum", o.spectrum_file,
+         "write the power spectrum of the lobes, or of a texture of another model, on the image's DFT grid "
+         "(.npy, float64, frequency 0 first, |DFT|^2 / (width height)); images above 1024 pixels use a "
+         "grid of at most 1024; with several layers an array (layers, height, width)")
+      .placeholder("FILE.npy")
+      .writes();
+}
+
+// Predicts the memory of the fit before the image is decoded. Throws InputError where the fit needs more than
+// allowed.
+void predict_memory(Job& job, const PhotoFitArguments& o, const PhotoFitOptions& photo) {
+  const ImageSize size = o.in_memory ? ImageSize{o.in_memory->front().width, o.in_memory->front().height}
+                                     : read_image_size(o.image);
+  const double predicted = predicted_fit_bytes(size, photo, !o.report_folder.empty(), o.model != "gabor");
+  job.summary["predicted"] = {{"peak_bytes", predicted}};
+  if (predicted > memory_limit(o.max_memory_gb)) {
+    throw InputError(
+        fmt::format("{}: fitting {} x {} pixels needs {:.2f} GB of memory, more than {:.2f} GB; "
+                    "cut out a part, scale it down or raise --max-memory",
+                    o.image, size.width, size.height, predicted / 1e9, memory_limit(o.max_memory_gb) / 1e9));
+  }
+  constexpr double kWorthSaying = 1e9;
+  if (predicted > kWorthSaying) {
+    job.say(fmt::format("{}: {} x {} pixels, about {:.1f} GB of memory", o.image, size.width, size.height,
+                        predicted / 1e9));
+  }
+}
+
+PhotoRecipeOptions recipe_options(const Job& job, const PhotoFitArguments& o) {
+  return {o.in_memory ? "" : std::filesystem::path(o.image).stem().string(), o.mm_per_px, o.unit,
+          o.height_rms, job.seed};
+}
+
+void set_provenance(const Job& job, const PhotoFitArguments& o, Recipe& recipe) {
+  recipe.provenance.tool = job.tool();
+  if (!o.in_memory) {
+    recipe.provenance.input_name = std::filesystem::path(o.image).filename().string();
+    recipe.provenance.input_sha256 = o.image_sha256;
+  }
+  recipe.provenance.options = job.options.given();
+}
+
+PhotoFitOptions photo_options(const Job& job, const PhotoFitArguments& o) {
+  PhotoFitOptions photo = o.photo;
+  photo.colors = o.channels == "pca";
+  photo.trend = o.detrend_by == "division" ? TrendModel::kMultiplied : TrendModel::kAdded;
+  photo.seed = job.seed;
+  return photo;
+}
+
+// Options that are about lobes say nothing of the models without any.
+void check_model(const Job& job, const PhotoFitArguments& o) {
+  if (o.model != "phase" && o.model != "exemplar") return;
+  for (const char* name : {"--lobes", "--penalty", "--gap"}) {
+    if (job.options.option(name).count() > 0) {
+      throw InputError(
+          fmt::format("{}: is about lobes, which --model {} has none of; leave it out", name, o.model));
+    }
+  }
+}
+
+void require_outputs(const PhotoFitArguments& o) {
+  if (!o.output.empty()) {
+    require_extension(o.output, {".json", ".astro"});
+    require_writable(o.output);
+    if (o.model != "gabor") require_writable(exemplar_image_of(o.output));
+  } else if (o.model != "gabor") {
+    throw InputError(
+        "--output: is missing; a layer with an image wants a recipe's file, beside which the image lies");
+  }
+  if (!o.spectrum_file.empty()) require_extension(o.spectrum_file, {".npy"});
+  if (!o.spectrum_file.empty()) require_writable(o.spectrum_file);
+  if (!o.report_folder.empty()) make_output_folder(o.report_folder);
+}
+
+// What may mend a weak fit.
+std::string remedy(const PhotoFit& photo, const PhotoFitArguments& o) {
+  const bool full = std::any_of(photo.channels.begin(), photo.channels.end(), [&](const FittedChannel& c) {
+    return static_cast<int>(c.fit.lobes.size()) >= o.photo.fit.max_lobes;
+  });
+  if (full) return fmt::format("allow more than {} --lobes", o.photo.fit.max_lobes);
+  return o.photo.detrend_degree == 0 ? "try a smaller --penalty, or --detrend 2 against uneven light"
+                                     : "try a smaller --penalty";
+}
+
+void say_lobes(const PhotoFit& photo, const PhotoFitArguments& o, const Job& job) {
+  const std::size_t layers = photo.channels.size();
+  job.say(fmt::format(
+      "{}{}; pursuit gap {:.1e}; their spectrum is {:.3f} from the smoothed one of the photo and, speckle "
+      "aside, "
+      "{:.3f} from the photo's own (weak above {:.3f}), {:.1f} % of the variance in the right octave",
+      counted(photo.lobes(), "lobe"), layers > 1 ? fmt::format(" in {} layers", layers) : "",
+      photo.pursuit_gap(), photo.spectrum_distance(), photo.spectrum_residual(), photo.weak_above(),
+      100.0 * photo.band_overlap()));
+  if (photo.weak()) {
+    job.say("note: weak fit: a good one would be nearer to the photo's spectrum; " + remedy(photo, o));
+  }
+  if (!photo.pursuit_reached()) job.say("note: the pursuit ended before the --gap asked for");
+  const double held = photo.variance_in_spectrum();
+  if (held < kMostVariance) {
+    const GreyImage& image = photo.channels.front().exemplar;
+    const bool cut = std::max(image.width, image.height) > o.photo.fit.largest_side;
+    job.say(fmt::format(
+        "note: {:.0f} % of the photo's variance lies in features wider than {}, which the noise lacks{}",
+        100.0 * (1.0 - held),
+        cut ? fmt::format("{} pixels", o.photo.fit.largest_side) : "it, or in light from one side",
+        cut ? "; scale the photo down to that size to keep them" : ""));
+  }
+  job.say(photo.gaussianity().value().sentence);
+}
+
+void say_exemplar(const PreparedExemplar& exemplar, const Job& job) {
+  const TextureScore& score = exemplar.scores[static_cast<int>(exemplar.variant)];
+  job.say(fmt::format(
+      "exemplar: {}; a texture of it differs from the photo itself by {:.3f} in values and {:.3f} in filters",
+      variant_word(exemplar.variant), score.values, score.filters));
+}
+
+void say_phases(const TextureFit& fit, const Job& job) {
+  const ExemplarImage& image = *fit.image->pixels;
+  job.say(fmt::format("random phases: an image of {} x {} pixels with the photo's spectrum", image.width,
+                      image.height));
+  const double held = variance_in_phases(fit);
+  if (held < kMostVariance) {
+    job.say(fmt::format(
+        "note: {:.0f} % of the photo's variance lies in features wider than it, or in light from one side, "
+        "which random phases lack",
+        100.0 * (1.0 - held)));
+  }
+  job.say(fit.gaussianity.value().sentence);
+}
+
+void say_result(const TextureFit& fit, const PhotoFitArguments& o, const Job& job) {
+  if (o.mm_per_px > 0.0 && o.height_rms < 0.0) {
+    job.say(fmt::format(
+        "note: without --height-rms white is a height of 1 {}; half a pixel is --height-rms {:.3g}", o.unit,
+        0.5e-3 * o.mm_per_px / metres_of(o.unit)));
+  }
+  if (fit.lobes) say_lobes(*fit.lobes, o, job);
+  if (fit.model == TextureModel::kPhase) say_phases(fit, job);
+  if (fit.exemplar) say_exemplar(*fit.exemplar, job);
+}
+
+// Returns the spectra where they are wanted.
+SpectraArray write_beside(const TextureFit& fit, const PhotoFitArguments& o, Job& job) {
+  const FitTexture texture = synthesize_like_photo(fit, job.progress("synthesis"));
+  job.summary["variance_ratio_synthesized"] = synthesized_variance_ratio(fit, texture);
+  if (!o.report_folder.empty()) {
+    write_texture_reports(std::filesystem::path(o.image).filename().string(), fit, texture, o.report_folder);
+  }
+  if (o.spectrum_file.empty() && !o.wants_spectra) return {};
+  SpectraArray spectra = fitted_spectra(fit, texture);
+  if (!o.spectrum_file.empty()) write_npy(spectra.power, spectra.shape, o.spectrum_file);
+  return spectra;
+}
+
+}  // namespace
+
+void declare_photo_fit(Job& job, PhotoFitArguments& o) {
+  add_photo_options(job.options, o);
+  add_layer_options(job.options, o);
+  add_pursuit_options(job.options, o);
+  add_output_options(job.options, o);
+}
+
+FittedPhoto fit_gabor(Job& job, PhotoFitArguments& o) {
+  check_model(job, o);
+  require_outputs(o);
+  if (!o.in_memory) o.image_sha256 = sha256_of_file(o.image);
+  const TextureFitOptions options{model_named(o.model), photo_options(job, o), recipe_options(job, o)};
+  predict_memory(job, o, options.photo);
+  ColorImageFile photo =
+      o.in_memory ? ColorImageFile{*o.in_memory, {}} : read_image(o.image, options.photo.colors);
+  for (const std::string& remark : photo.remarks) job.say(o.image + ": " + remark);
+  if (!report(job.progress("photo"), 0.0, "read")) throw WorkError(o.image + ": stopped; nothing is written");
+  FittedPhoto result{fit_texture(std::move(photo.planes), o.image, options, job.stages()), {}};
+  TextureFit& fit = result.fit;
+  set_provenance(job, o, fit.recipe);
+  if (!o.output.empty()) write_texture_recipe(fit, fit.recipe, o.output);
+  job.summary.update(texture_figures(fit));
+  if (fit.choice) job.say(choice_sentence(fit));
+  if (job.stopped()) {
+    job.say(std::string("stopped by ") + job.stopped_by() +
+            ": the recipe holds the best so far; no synthesis, no report");
+    return result;
+  }
+  result.spectra = write_beside(fit, o, job);
+  job.summary["peak_bytes"] = peak_bytes();
+  say_result(fit, o, job);
+  return result;
+}
+
+}  // namespace astrolith

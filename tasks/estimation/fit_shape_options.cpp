@@ -1,0 +1,138 @@
+#include "tasks/estimation/fit_shape.h"
+
+#include "estimation/shape/report/fit_report.h"
+#include "numerics/errors.h"
+#include "tasks/job/density_question.h"
+#include "tasks/repair/mesh_unit.h"
+#include "tasks/synthesis/load_recipe.h"
+
+namespace astrolith {
+namespace {
+
+// The input, the output and the fit of the metaballs.
+void declare_base_options(OptionTable& app, FitArguments& arguments) {
+  app.add_option(
+         "mesh", arguments.mesh,
+         "mesh of a closed body: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
+         "memory a facet")
+      .required()
+      .placeholder("MESH")
+      .reads();
+  app.add_option("-o,--output", arguments.output,
+                 "the recipe to write, as JSON or compact (.astro); with --packing-only a .csv")
+      .required()
+      .placeholder("RECIPE.json")
+      .writes([&arguments](const auto& words) {
+        std::vector<std::string> recipes = words;
+        for (const auto& file : variation_files(words.front(), arguments.details.variations))
+          recipes.push_back(file.string());
+        return recipe_and_relief(recipes);
+      });
+  app.add_option("--spheres", arguments.fit.spheres, "largest number of metaballs").check(in_range(1, 10000));
+  app.add_option(
+         "--bytes", arguments.fit.bytes,
+         "round the numbers of the metaballs so that the recipe of the bare body takes at most so many "
+         "bytes as a compact recipe (RECIPE.astro), for the least error; without --spheres the number of "
+         "metaballs follows from the bytes, some 4 each. The recipe has no provenance then")
+      .check(in_range(100, 1000000))
+      .default_text("");
+  app.add_option(
+         "--subtract", arguments.fit.subtract,
+         "largest share of the metaballs that may be subtractive; 0: none, for mascons or other programs")
+      .check(in_range(0.0, 0.9));
+  app.add_option("--points", arguments.fit.points,
+                 "samples of the surface that the refinement sees; 0 = 120 a metaball")
+      .check(in_range(std::int64_t{0}, std::int64_t{10000000}));
+  app.add_option("--optimizer", arguments.optimizer,
+                 "optimizer of the base's global parameters and of the details")
+      .check(one_of({"pso", "crs2", "isres", "esch", "sbplx"}));
+  app.add_option("--population", arguments.fit.population, "population of the optimizer")
+      .check(in_range(1, 10000));
+}
+
+// The end of a fit, its checkpoint and its unit.
+void declare_run_options(OptionTable& app, FitArguments& arguments) {
+  app.add_option(
+         "--tolerance", arguments.fit.tolerance,
+         "no more metaballs once the mean distance is below this fraction of the bounding-box diagonal")
+      .check(zero_or_more());
+  app.add_option("--time-limit", arguments.time_limit,
+                 "seconds after which the best so far is written, measured figures included; 0 = none. The "
+                 "result then depends on the machine. A step that has begun is ended first, such as the "
+                 "sampling of the surface or the mesh of the result, some seconds each. Where reading and "
+                 "checking the mesh takes longer than the limit, there is nothing to write, and the program "
+                 "ends with a line that says how long they need")
+      .check(zero_or_more());
+  app.add_option(
+         "--noise-seeds", arguments.noise_seeds,
+         "meshes of the result, each with another seed of its noise, that are compared with the target's "
+         "surface: whether it passes, and what it lacks, as compare --realism says it; medians over the "
+         "seeds, some five processor seconds each. 0: no verdict")
+      .check(in_range(0, 100));
+  app.add_option(
+         "--checkpoint", arguments.checkpoint,
+         "keep the progress of the fit in this file; where the file exists, go on from there. The result is "
+         "the result of a run without a stop")
+      .placeholder("FILE.json")
+      .writes();
+  app.add_option(
+         "--unit", arguments.unit,
+         "length unit of the mesh's coordinates, in place of what its file states; km where neither says one")
+      .check(one_of({"km", "m"}))
+      .default_text("");
+  arguments.repair.add_to(app);
+}
+
+// The packing of spheres, and the report, which a packing does not have.
+void declare_packing_options(OptionTable& app, FitArguments& arguments) {
+  Option packing_only = app.add_flag(
+      "--packing-only", arguments.packing_only,
+      "fill the body with --spheres spheres that do not overlap, write their centres and radii as "
+      "a table, and stop");
+  for (const char* option :
+       {"--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only", "--details",
+        "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
+    packing_only.excludes(app.option(option));
+  }
+  app.add_option("--density", arguments.density,
+                 "density of the body in kg/m^3: the table then holds a mass for each sphere (mascons)")
+      .check(above_zero())
+      .needs(packing_only)
+      .default_text("");
+  app.add_option(
+         "--report", arguments.report,
+         "write a page, index.html, with target and fit to turn, and pictures of both, of distances and "
+         "convergence here")
+      .excludes(packing_only)
+      .placeholder("DIR")
+      .writes(fit_report_files);
+}
+
+}  // namespace
+
+void declare_fit_options(Job& job, FitArguments& arguments) {
+  declare_base_options(job.options, arguments);
+  declare_detail_options(job, arguments.details);
+  declare_run_options(job.options, arguments);
+  declare_packing_options(job.options, arguments);
+  Option bytes = job.options.option("--bytes");
+  for (const char* option : {"--packing-only", "--variations", "--micro"}) {
+    bytes.excludes(job.options.option(option));
+  }
+}
+
+void settle_fit_options(const Job& job, FitArguments& arguments) {
+  arguments.fit.seed = job.seed;
+  if (!arguments.in_memory) arguments.unit = unit_of_mesh(job, arguments.mesh, {arguments.unit}, {"km", "m"});
+  arguments.fit.length_unit = arguments.unit;
+  if (arguments.fit.bytes > 0 && !arguments.details.base_only) {
+    throw InputError("--bytes: counts the bare body's bytes, to which details would add; add --base-only");
+  }
+  question_density(job, arguments.density);
+  if (arguments.fit.bytes > 0 && job.options.option("--spheres").count() == 0) {
+    arguments.fit.spheres = spheres_for_bytes(arguments.fit.bytes);
+  }
+  arguments.fit.optimizer = optimizer_from_name(arguments.optimizer);
+}
+
+}  // namespace astrolith

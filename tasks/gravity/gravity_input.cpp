@@ -1,0 +1,42 @@
+#include "tasks/gravity/gravity_input.h"
+
+#include <utility>
+
+#include "geometry/mesh_measure.h"
+#include "geometry/mesh_topology.h"
+#include "numerics/errors.h"
+#include "recipe/recipe_json.h"
+#include "tasks/repair/unit_question.h"
+#include "tasks/synthesis/load_recipe.h"
+
+namespace astrolith {
+
+GravityBody read_gravity_body(const Job& job, const std::filesystem::path& file, const UnitChoice& unit,
+                              int resolution, const ShapeRepair& repair, nlohmann::ordered_json& figures) {
+  if (!is_recipe_name(file)) {
+    const std::string stated = unit_of_mesh(job, file, unit, {"m", "km", "cm", "mm"});
+    TriangleMesh mesh = repair.read(file);
+    // Edges of four facets, two each way, are no trouble for gravity.
+    const MeshTopology topology = analyze_topology(mesh);
+    const bool touches = topology.closed && topology.oriented && topology.non_manifold_edges > 0;
+    if (!touches) {
+      mesh = repair.closed_body(job, std::move(mesh), file.string(), stated, repair.options(), figures);
+    }
+    GravityBody body = body_of_mesh(std::move(mesh), stated, file.string());
+    if (const std::string asked = unit_question(file, volume(body.mesh), body.metres); !asked.empty())
+      job.say(asked);
+    if (const std::int64_t surfaces = analyze_topology(body.mesh).components; surfaces > 1) {
+      job.say(file.string() + ": holds " + std::to_string(surfaces) +
+              " surfaces apart from one another, bodies or cavities: their gravity is that of all together");
+    }
+    return body;
+  }
+  const Recipe recipe = load_recipe(file);
+  if (!unit.given.empty() && unit.given != recipe.length_unit) {
+    throw InputError("--unit: the recipe states " + recipe.length_unit + "; leave the option out");
+  }
+  return body_of_recipe(recipe, resolution, file.string(),
+                        [&](const std::string& stage) { return job.progress(stage); });
+}
+
+}  // namespace astrolith

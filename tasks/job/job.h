@@ -1,0 +1,57 @@
+// A job at work: what it takes from its caller, and what it tells the caller. A job is a function of the
+// tasks, such as fit_shape(), with a table of options. A program and a function of the Python package are
+// each a job with another caller.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "numerics/progress.h"
+#include "tasks/job/option_table.h"
+
+namespace astrolith {
+
+// The work of a job whose options have been declared.
+using JobWork = std::function<void()>;
+
+class Job {
+ public:
+  // Declares --seed, which all jobs take.
+  explicit Job(std::string name);
+  virtual ~Job() = default;
+
+  // The callback of a stage of the work. It returns false once the caller asks the work to stop.
+  virtual Progress progress(std::string stage) const = 0;
+  // True once the caller has asked the work to stop. The job then ends with its best so far.
+  virtual bool stopped() const = 0;
+  // What asked: "Ctrl-C", for instance.
+  virtual const char* stopped_by() const = 0;
+  // Tells a person one line.
+  virtual void say(const std::string& line) const = 0;
+  // Tells a person the line once the work is done. Work that fails tells no notes.
+  virtual void note(const std::string& line) = 0;
+  // Hands over the text of a result, at once. Throws WorkError where nobody takes it any more.
+  virtual void print_result(const std::string& text) = 0;
+  // Reports a part of the work that failed while the rest goes on.
+  virtual void report_failure(const std::string& line) = 0;
+
+  StageProgress stages() const {
+    return [this](const std::string& stage) { return progress(stage); };
+  }
+  // "fit_shape 0.2.0 (1a2b3c4)", for provenance.
+  std::string tool() const;
+
+  OptionTable options;
+  nlohmann::ordered_json summary;
+  std::uint64_t seed = 1;
+
+ protected:
+  Job(const Job&) = delete;
+  Job& operator=(const Job&) = delete;
+
+  std::string name_;
+};
+
+}  // namespace astrolith

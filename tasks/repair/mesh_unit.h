@@ -1,0 +1,24 @@
+// The unit of a mesh's lengths, by --unit or by its file.
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "tasks/job/job.h"
+
+namespace astrolith {
+
+struct UnitChoice {
+  std::string given;             // by --unit; empty where it is not
+  std::string otherwise = "km";  // where neither --unit nor the file says one
+};
+
+// The unit of a mesh's lengths: the given one, else what the file states, else `otherwise`. Says so where the
+// file states another unit than the given one. Throws InputError where the file's unit decides and is none of
+// `units`; any unit will do where these are none.
+std::string unit_of_mesh(const Job& job, const std::filesystem::path& file, const UnitChoice& choice,
+                         std::initializer_list<std::string_view> units);
+
+}  // namespace astrolith
