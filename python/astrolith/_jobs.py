@@ -36,9 +36,9 @@ def _texts(value: Any, name: str) -> list[str]:
     if value is True:
         return ["true"]
     if _arrays.is_file_name(value):
-        return [_arrays.file_name(value, name)]
+        return [_arrays.file_name(value, name) if value else ""]
     if isinstance(value, Mapping):
-        raise TypeError(f"{name}: must be a number, a text or a sequence of them, and is {value!r}")
+        raise TypeError(f"{name}: must be a number, a text or a sequence of them, and is {_arrays.shown(value)}")
     if isinstance(value, Iterable):
         return [text for item in value for text in _texts(item, name)]
     if hasattr(value, "__index__"):
@@ -46,7 +46,7 @@ def _texts(value: Any, name: str) -> list[str]:
     try:
         return [repr(float(value))]
     except (TypeError, ValueError):
-        raise TypeError(f"{name}: must be a number or a text, and is {value!r}") from None
+        raise TypeError(f"{name}: must be a number or a text, and is {_arrays.shown(value)}") from None
 
 
 def given_mesh(mesh: Union[MeshLike, npt.ArrayLike], faces: Optional[npt.ArrayLike], unit: Optional[str]) -> Optional[tuple[Any, Any, str]]:

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <filesystem>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -17,8 +19,9 @@
 
 namespace astrolith::python {
 
-// The options that were given, each with the words of its value, as on a command line.
-using GivenOptions = std::vector<std::pair<std::string, std::vector<std::string>>>;
+// The options that were given, each with the words of its value, as on a command line. Words may be names of
+// files that are no UTF-8.
+using GivenOptions = std::vector<std::pair<std::string, std::vector<std::filesystem::path>>>;
 
 class CalledJob : public Job {
  public:
@@ -37,7 +40,7 @@ class CalledJob : public Job {
     for (const auto& [name, words] : given) {
       OptionRow* const row = options.find(name);
       if (row == nullptr) throw InputError(name + ": is no option of " + name_);
-      OptionTable::set(*row, words);
+      OptionTable::set(*row, std::vector<std::string>(words.begin(), words.end()));
     }
     options.check_combination();
     options.check_files();
