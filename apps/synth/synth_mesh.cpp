@@ -79,14 +79,12 @@ void check_mesh_request(const MeshRequest& request, const Recipe& recipe, const 
 }
 
 void check_mesh_name(const MeshRequest& request, const fs::path& output) {
-  check_mesh_extension(output);
-  if (request.points || request.labels || request.gravity.wanted()) {
-    require_extension(output, {".ply", ".ply.zst"});
-  }
-  if (request.texture_coordinates) require_extension(output, {".glb"});
-  if (request.even && output.extension() == ".icq") {
-    throw InputError(output.string() +
-                     ": has quadrilaterals of its own, which lie evenly; leave out --even, or write a .ply");
+  const MeshFormat& format = written_mesh_format(output);
+  if (request.points || request.labels || request.gravity.wanted())
+    require_mesh_format(output, &MeshFormat::has_values);
+  if (request.texture_coordinates) require_mesh_format(output, &MeshFormat::has_texture_coordinates);
+  if (request.even && format.counts != nullptr) {
+    throw InputError(output.string() + ": has facets of its own; leave out --even, or write a .ply");
   }
 }
 
@@ -125,7 +123,7 @@ void summarize_mesh(Program& program, const Region& region, const MeshStatistics
 
 // A tile of a .ply may hold no triangle, so that the tiles of a body can be made one after the other.
 bool may_be_empty(const MeshRequest& request, const Region& region, const fs::path& output) {
-  return region.tile.count > 1 && is_ply_name(output) && request.preview.file.empty();
+  return region.tile.count > 1 && written_mesh_format(output).streamed && request.preview.file.empty();
 }
 
 std::string describe_mesh(const ManifoldReport& report, const MeshRequest& request) {
@@ -145,7 +143,7 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
 
 // Programs take lengths of a file that states no unit for kilometres.
 void say_unstated_unit(const Program& program, const std::string& unit, const fs::path& output) {
-  if (unit == "km" || !has_known_length(unit) || tells_length_unit(output)) return;
+  if (unit == "km" || !has_known_length(unit) || written_mesh_format(output).tells_unit) return;
   program.say(fmt::format("note: a {} states no unit; read it with --unit {}", mesh_extension(output), unit));
 }
 
@@ -194,8 +192,11 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     quantities = vertex_gravity(program, request.gravity, recipe, result.collected());
   result.write(quantities);
   say_unstated_unit(program, recipe.length_unit, output);
-  const MeshCounts kept = counts_in_file({report.vertices, report.triangles}, output);
-  report.vertices = kept.vertices, report.triangles = kept.triangles;
+  const MeshFormat& format = written_mesh_format(output);
+  if (format.counts != nullptr) {
+    const MeshCounts kept = format.counts({report.vertices, report.triangles});
+    report.vertices = kept.vertices, report.triangles = kept.triangles;
+  }
   if (!request.preview.file.empty())
     write_preview(program, request.preview, result.collected(), recipe.length_unit);
   if (!request.preview.maps.empty())
@@ -207,8 +208,8 @@ void make_files(Program& program, const MeshJob& job, const ChosenDevice& chosen
     write_feature_list(field, recipe, region.cube(), made.statistics.step, request.landforms);
   summarize_mesh(program, region, made.statistics, report);
   if (has_colors(recipe)) {
-    program.summary["vertex_colors"] = holds_colors(output);
-    if (!holds_colors(output)) {
+    program.summary["vertex_colors"] = format.has_colors;
+    if (!format.has_colors) {
       program.say("note: " + output.extension().string() +
                   " holds no colours, which the recipe's layers have; write a .ply or a .glb");
     }

@@ -52,11 +52,6 @@ class ExtentOfMesh : public MeshSink {
   Box box;
 };
 
-// Whether the format has a place for the colours of vertices.
-inline bool holds_colors(const std::filesystem::path& output) {
-  return is_ply_name(output) || output.extension() == ".glb";
-}
-
 // Receives a mesh while it is made, and writes its file. A PLY file is written as the mesh grows, unless
 // erosion changes the finished mesh. The other formats, erosion and the picture need the whole mesh in
 // memory.
@@ -68,16 +63,17 @@ class MeshOutput {
       : output_(output),
         center_(region.center),
         info_{recipe.length_unit, recipe.frame, "made by " + tool, {}} {
+    const MeshFormat& format = written_mesh_format(output);
     if (region.is_patch) info_.origin = region.center;
     info_.texture_coordinates = request.texture_coordinates;
-    if (has_colors(recipe) && (holds_colors(output) || !request.preview.file.empty())) {
+    if (has_colors(recipe) && (format.has_colors || !request.preview.file.empty())) {
       colors_.emplace(recipe, file.string(), field);
     }
     if (request.labels) {
       labels_.emplace(recipe, field, region.cube());
       info_.notes = labels_->legend();
     }
-    const bool streamed = is_ply_name(output) && !recipe.erosion && !request.gravity.wanted();
+    const bool streamed = format.streamed && !recipe.erosion && !request.gravity.wanted();
     if (!streamed || !request.preview.file.empty() || !request.height_map.empty()) sinks_.add(collector_);
     if (streamed) stream(request.points);
   }

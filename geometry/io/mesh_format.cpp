@@ -171,7 +171,7 @@ std::string extensions_with(Member MeshFormat::*member, bool with_words) {
   return list;
 }
 
-std::string remedy() { return "give a mesh (" + extensions_with(&MeshFormat::reader, false) + ")"; }
+std::string remedy() { return "give a mesh (" + read_mesh_words() + ")"; }
 
 [[noreturn]] void fail_unknown(const MeshFile& file) {
   for (const Signature& other : kOtherFiles) {
@@ -227,6 +227,8 @@ void require_mesh_format(const std::filesystem::path& file, bool MeshFormat::*as
   throw InputError(file.string() + ": is no " + extensions_with(asked, false) +
                    " file; name it with that extension");
 }
+
+std::string read_mesh_words() { return extensions_with(&MeshFormat::reader, false); }
 
 std::string written_mesh_words() { return extensions_with(&MeshFormat::writer, true); }
 

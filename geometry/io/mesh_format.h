@@ -49,8 +49,10 @@ const MeshFormat& written_mesh_format(const std::filesystem::path& file);
 // has_texture_coordinates, with the extensions of those that have it.
 void require_mesh_format(const std::filesystem::path& file, bool MeshFormat::*asked);
 
-// What help texts say of the formats that are written: ".ply (binary, streamed), .stl or .obj".
+// What help texts say of the formats that are written: ".ply (binary, streamed), .stl or .obj"; and of those
+// that are read.
 std::string written_mesh_words();
+std::string read_mesh_words();
 
 // Whether the extension alone tells that the file is a mesh, and a mesh that read_mesh() reads. False for
 // .txt, which may be anything.
@@ -60,12 +62,5 @@ bool has_readable_extension(const std::filesystem::path& file);
 // The extension of a mesh's name in lower case, without the .zst of a compressed one: ".ply" for "Bennu.PLY"
 // and for "bennu.ply.zst".
 std::string mesh_extension(const std::filesystem::path& file);
-
-inline bool is_ply_name(const std::filesystem::path& file) { return mesh_extension(file) == ".ply"; }
-inline void check_mesh_extension(const std::filesystem::path& file) { written_mesh_format(file); }
-inline MeshCounts counts_in_file(const MeshCounts& mesh, const std::filesystem::path& file) {
-  const auto counts = written_mesh_format(file).counts;
-  return counts != nullptr ? counts(mesh) : mesh;
-}
 
 }  // namespace astrolith

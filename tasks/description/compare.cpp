@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/output_file.h"
 #include "numerics/length_unit.h"
@@ -34,7 +35,7 @@ struct CompareArguments {
 
 void add_compare_options(Job& job, CompareArguments& arguments) {
   OptionTable& app = job.options;
-  const std::string formats = "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf";
+  const std::string formats = "mesh (" + read_mesh_words() + ")";
   app.add_option("a", arguments.a, formats).required().placeholder("A").reads();
   app.add_option("b", arguments.b, formats).required().placeholder("B").reads();
   app.add_option("-o,--output", arguments.output, "write the JSON here rather than to stdout")

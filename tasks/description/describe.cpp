@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cuda/pair_count.h"
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "numerics/files/npy_file.h"
 #include "numerics/files/output_file.h"
@@ -32,8 +33,7 @@ struct DescribeArguments {
 
 void add_describe_options(Job& job, DescribeArguments& arguments) {
   OptionTable& app = job.options;
-  app.add_option("shape", arguments.shape,
-                 "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; or ply of points with normals")
+  app.add_option("shape", arguments.shape, "mesh (" + read_mesh_words() + "), or .ply of points with normals")
       .required()
       .placeholder("MESH")
       .reads();

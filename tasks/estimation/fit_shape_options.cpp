@@ -1,6 +1,7 @@
 #include "tasks/estimation/fit_shape.h"
 
 #include "estimation/shape/report/fit_report.h"
+#include "geometry/io/mesh_format.h"
 #include "numerics/errors.h"
 #include "tasks/job/density_question.h"
 #include "tasks/repair/mesh_unit.h"
@@ -11,10 +12,10 @@ namespace {
 
 // The input, the output and the fit of the metaballs.
 void declare_base_options(OptionTable& app, FitArguments& arguments) {
-  app.add_option(
-         "mesh", arguments.mesh,
-         "mesh of a closed body: obj, ply, stl, off, PDS plate .tab, ICQ, bmf; takes some 450 bytes of "
-         "memory a facet")
+  app.add_option("mesh", arguments.mesh,
+                 "mesh of a closed body (" + read_mesh_words() +
+                     "); takes some 450 bytes of "
+                     "memory a facet")
       .required()
       .placeholder("MESH")
       .reads();

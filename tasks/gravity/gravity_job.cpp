@@ -4,6 +4,7 @@
 #include <string>
 #include <tuple>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "gravity/body_mass.h"
 #include "numerics/errors.h"
@@ -36,8 +37,7 @@ struct Arguments {
 
 void add_options(Job& job, Arguments& a) {
   OptionTable& app = job.options;
-  app.add_option("shape", a.shape,
-                 "closed mesh (obj, ply, stl, off, PDS plate .tab, ICQ, bmf) or recipe (.json, .astro)")
+  app.add_option("shape", a.shape, "closed mesh (" + read_mesh_words() + ") or recipe (.json, .astro)")
       .required()
       .placeholder("SHAPE")
       .reads(recipe_and_images);

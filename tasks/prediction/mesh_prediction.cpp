@@ -7,6 +7,7 @@
 #include <span>
 #include <thread>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/ply_stream_writer.h"
 #include "gravity/polyhedron_gravity.h"
 #include "gravity/vertical_directions.h"
@@ -44,17 +45,15 @@ struct UseBytes {
 
 UseBytes bytes_of_use(const PlannedMesh& mesh) {
   const MeshUse& use = mesh.use;
-  const std::string extension = is_ply_name(mesh.output) ? ".ply" : mesh.output.extension().string();
+  const MeshFormat& format = written_mesh_format(mesh.output.empty() ? "mesh.ply" : mesh.output);
   const double held = std::max(
       {use.preview ? kPicture : 0.0, use.erosion ? kErosionTables : 0.0, use.gravity ? kGravityTables : 0.0});
   // Two numbers of four bytes at half a vertex with labels, eight with gravity.
   const double values = use.labels ? 4.0 : use.gravity ? 16.0 : 0.0;
   // Texture coordinates are two numbers of four bytes at half a vertex, and have triangles of their own.
   const double mapped = use.texture_coordinates ? 4.0 : 0.0;
-  if (extension == ".ply") return {25.0 + values, held > 0.0 ? kCollected + held : 0.0};
-  if (extension == ".stl") return {50.0, kCollected + held};
-  if (extension == ".glb") return {24.0 + mapped, kCollected + 24.0 + held + 4.0 * mapped};
-  return {75.0, kCollected + held};
+  if (format.streamed) return {format.file_bytes + values, held > 0.0 ? kCollected + held : 0.0};
+  return {format.file_bytes + mapped, kCollected + format.kept_bytes + held + 4.0 * mapped};
 }
 
 // Memory of the mesher and of the check of its mesh: blocks, narrowed fields, triangles and vertices of

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/io/mesh_format.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/ply_values.h"
 #include "numerics/errors.h"
@@ -30,10 +31,7 @@ struct Arguments {
 
 void add_options(Job& job, Arguments& a) {
   OptionTable& app = job.options;
-  app.add_option("shape", a.shape, "mesh: obj, ply, stl, off, PDS plate .tab, ICQ, bmf")
-      .required()
-      .placeholder("MESH")
-      .reads();
+  app.add_option("shape", a.shape, "mesh (" + read_mesh_words() + ")").required().placeholder("MESH").reads();
   app.add_option("-o,--output", a.output, "the picture").required().placeholder("FILE.png").writes();
   Option color = app.add_option(
       "--color", a.color,
