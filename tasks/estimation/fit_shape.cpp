@@ -53,11 +53,12 @@ Recipe recipe_of(const Job& job, const FitArguments& arguments, const ShapeFitRe
 // Adds the measured surface as a relief, and says how much nearer it brings the model.
 void keep_relief(Job& job, const FitArguments& arguments, const TargetBody& target, const Progress& progress,
                  Recipe& recipe) try {
-  const ReliefFit relief = add_relief(target, progress, recipe);
+  const ReliefFit relief = add_relief(target, {arguments.details.relief_spacing, 0.0}, progress, recipe);
   job.say(fmt::format("relief: {} heights, {:.3g} {} apart, in steps of {:.2g} {}", relief.heights,
                       relief.layer.spacing, arguments.unit, relief.layer.step(), arguments.unit));
   job.summary["relief"] = relief_json(relief);
 } catch (const InputError& e) {
+  if (arguments.details.relief_spacing > 0.0) throw InputError("--relief-spacing: " + std::string(e.what()));
   if (!arguments.details.chosen_by_job()) throw;
   job.say(std::string("no relief: ") + e.what());
   job.summary["relief"] = {{"remark", e.what()}};

@@ -65,6 +65,13 @@ void declare_detail_options(Job& job, DetailArguments& arguments) {
       .placeholder("auto|relief|thesis|OTHER.json")
       .reads(recipe_and_images)
       .excludes(base_only);
+  job.options
+      .add_option("--relief-spacing", arguments.relief_spacing,
+                  "of the heights of a relief, in the unit of the mesh; larger ones make smaller recipes")
+      .check(above_zero())
+      .placeholder("L")
+      .default_text("as fine as the mesh")
+      .excludes(base_only);
   declare_micro_options(job, arguments);
   Option variations =
       job.options
@@ -89,6 +96,8 @@ void check_detail_inputs(const Job& job, const DetailArguments& arguments) {
   if (job.options.option("--generations").count() > 0 && !arguments.searches()) {
     throw InputError("--generations: are those of --details thesis; give that too, or leave them out");
   }
+  if (arguments.relief_spacing > 0.0 && !arguments.keeps_relief())
+    throw InputError("--relief-spacing: is about --details relief; give that, or leave it out");
   Recipe unused;
   if (arguments.transfers()) unused.layers = read_details(arguments.details).layers;
   if (!arguments.micro.empty() && arguments.micro != "auto") {

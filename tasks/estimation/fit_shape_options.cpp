@@ -92,7 +92,7 @@ void declare_packing_options(OptionTable& app, FitArguments& arguments) {
       "a table, and stop");
   for (const char* option :
        {"--subtract", "--points", "--optimizer", "--population", "--generations", "--base-only", "--details",
-        "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
+        "--relief-spacing", "--variations", "--tolerance", "--time-limit", "--noise-seeds", "--checkpoint"}) {
     packing_only.excludes(app.option(option));
   }
   app.add_option("--density", arguments.density,
