@@ -405,9 +405,10 @@ void predict_members(Program& program, const MembersRequest& request, const Body
                                   {"sampled_members", numbers},
                                   {"own_seconds", program.seconds() - start}};
   if (program.quiet) return;
-  print_result(fmt::format("{} members: about {} triangles, {} of files, {} memory, {}; from {} of them\n",
-                           members, rounded_count(triangles), byte_words(file_bytes), byte_words(peak),
-                           seconds_words(seconds, processor), numbers.size()));
+  program.print_result(
+      fmt::format("{} members: about {} triangles, {} of files, {} memory, {}; from {} of them\n", members,
+                  rounded_count(triangles), byte_words(file_bytes), byte_words(peak),
+                  seconds_words(seconds, processor), numbers.size()));
 }
 
 }  // namespace astrolith

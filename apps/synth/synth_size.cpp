@@ -73,7 +73,7 @@ int choose_resolution(Program& program, const MeshSizeRequest& request, const Pl
                                        byte_words(predicted.file_bytes), byte_words(predicted.peak_bytes),
                                        seconds_words(predicted.seconds, predicted.processor_seconds));
   if (!request.only_predict) program.say(line);
-  if (request.only_predict && !program.quiet) print_result(line + "\n");
+  if (request.only_predict && !program.quiet) program.print_result(line + "\n");
   return resolution;
 }
 

@@ -48,10 +48,30 @@ TEST_F(SynthRefusal, GaborLayersThatTakeTooLongAreRefused) {
   succeed(write("g.json", recipe("32")) + " -o m.ply --resolution 16");
 }
 
-TEST_F(SynthRefusal, NoOutputIsTheInputOrAnotherOutput) {
-  refuse("r.json -o out.ply --summary r.json", "is the input itself");
-  refuse("r.json -o out.ply --preview r.json", "is the input itself");
-  refuse("r.json -o out.ply --summary out.ply", "two outputs");
+// All pairs of options that name files. Names are compared before anything is read, whatever they end in.
+TEST_F(SynthRefusal, NoOutputIsAnInputOrAnotherOutput) {
+  write("base.json", kTwoSpheres);
+  const std::vector<std::string> outputs{"-o",
+                                         "--summary",
+                                         "--preview",
+                                         "--preview-maps",
+                                         "--feature-list",
+                                         "--height-map",
+                                         "--manifest --members 0:2",
+                                         "--write-recipe"};
+  const auto with_file = [](const std::string& option, const std::string& file) {
+    const std::size_t more = option.find(' ');
+    if (more == std::string::npos) return " " + option + " " + file;
+    return " " + option.substr(0, more) + " " + file + option.substr(more);
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    refuse("r.json" + with_file(outputs[i], "r.json"), "is the input itself");
+    refuse("r.json --base base.json" + with_file(outputs[i], "base.json"), "is the input itself");
+    refuse("r.json --vary .1 --target base.json" + with_file(outputs[i], "base.json"), "is the input itself");
+    for (std::size_t j = i + 1; j < outputs.size(); ++j)
+      refuse("r.json" + with_file(outputs[i], "a.json") + with_file(outputs[j], "a.json"), "two outputs");
+  }
+  refuse("r.json -o out.ply --height-map r.tif", "r.json: is the input itself");  // its frame
   EXPECT_EQ(text("r.json"), kTwoSpheres);
 }
 
