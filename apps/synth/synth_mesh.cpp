@@ -134,7 +134,7 @@ std::string describe_mesh(const ManifoldReport& report, const MeshRequest& reque
 
 // Programs take lengths of a file that states no unit for kilometres.
 void say_unstated_unit(const Program& program, const std::string& unit, const fs::path& output) {
-  if (unit == "km" || !has_known_length(unit) || tells_length_unit(output)) return;
+  if (unit == "km" || !has_known_length(unit) || written_mesh_format(output).tells_unit) return;
   program.say(fmt::format("note: a {} states no unit; read it with --unit {}", mesh_extension(output), unit));
 }
 
