@@ -6,7 +6,6 @@
 
 #include "descriptor/spectrum/laplacian_spectrum.h"
 #include "descriptor/spectrum/point_cloud_triangles.h"
-#include "geometry/points/point_normals.h"
 #include "geometry/surface/mesh_sampling.h"
 #include "numerics/errors.h"
 #include "numerics/hash_random.h"

@@ -42,10 +42,8 @@ TEST(SurfaceStatistics, ASphereIsSmoothAndLevel) {
 // times what the evening lets through.
 TEST(SurfaceStatistics, RoughnessOfAWaveIsItsAmplitude) {
   const double wave = 8, k = 2 * std::numbers::pi / wave, amplitude = 0.2;
-  SurfaceStatisticsOptions options;
-  options.radii = {12};
   const SurfaceStatistics s =
-      surface_statistics(sheet(100, [&](double x, double) { return amplitude * std::cos(k * x); }), options);
+      surface_statistics(sheet(100, [&](double x, double) { return amplitude * std::cos(k * x); }), {});
   const double x = k * 3.5 * s.edge, through = 384 * std::cyl_bessel_j(4, x) / (x * x * x * x);
   std::vector<double> rms;
   for (std::size_t i = 0; i < s.places.size(); ++i) {
@@ -149,10 +147,6 @@ TEST(SurfaceStatistics, BadOptionsAndMeshesAreRefused) {
   refused([](auto& o) { o.points = 499; });
   refused([](auto& o) { o.points = 60001; });
   refused([](auto& o) { o.places = 99; });
-  refused([](auto& o) { o.radii = {}; });
-  refused([](auto& o) { o.radii = {6, 3}; });
-  refused([](auto& o) { o.radii = {1}; });
-  refused([](auto& o) { o.radii = {3, std::nan("")}; });
   refused([](auto& o) { o.density = 0; });
   EXPECT_THROW(surface_statistics(testing::octahedron(), {}), InputError);
   EXPECT_THROW(surface_statistics(mesh, {}, [](double, std::string_view) { return false; }), WorkError);
