@@ -52,9 +52,9 @@ TEST(SurfaceStatistics, RoughnessOfAWaveIsItsAmplitude) {
     rms.push_back(12 * s.edge * std::exp(s.find(SurfaceQuantity::roughness, 12)->values[i]));
   }
   EXPECT_NEAR(mean_of(rms), amplitude * through / std::sqrt(2.0), 0.03 * amplitude);
-  // directions.
+  // A sheet holds no volume, so that slopes have no vertical; discs of 24 edges are as large as the sheet.
   EXPECT_EQ(s.find(SurfaceQuantity::slope, 0), nullptr);
-  EXPECT_EQ(s.remarks.size(), 1u);
+  EXPECT_EQ(s.remarks.size(), 2u);
 }
 
 TEST(SurfaceStatistics, TwiceTheHeightIsTwiceAsRough) {
