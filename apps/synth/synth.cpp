@@ -103,7 +103,7 @@ void declare_options(Program& program, Options& options) {
       .needs(vary)
       .placeholder("MESH")
       .reads();
-  program.app.add_option("--count", options.count, "is written --members A:B").placeholder("N");
+  program.app.add_option("--count", options.count, "gone; see --members").placeholder("N");
   program.app
       .add_option("--write-recipe", options.body.recipe,
                   "also write the recipe that is made, with the layers of --base, the variation and the seed "
@@ -200,7 +200,8 @@ Recipe varied(Program& program, const Options& options, const Recipe& recipe, st
 void check_outputs(const Program& program, const Options& options) {
   const bool single = options.members.range.empty();
   if (!options.count.empty()) {
-    throw InputError("--count: write --members A:B, bodies A to B - 1, with {member} in the names of files");
+    throw InputError(
+        "--count: is gone; write --members A:B, bodies A to B - 1, with {member} in the names of files");
   }
   check_finish(options.finish);
   if (options.body.mesh.gravity.wanted())

@@ -68,16 +68,6 @@ fs::path numbered(const fs::path& pattern, std::uint64_t member) {
   return name;
 }
 
-// Whether a member of some number has this name.
-bool is_numbered(const fs::path& pattern, const fs::path& name) {
-  const std::string before = pattern.string().substr(0, pattern.string().find(kNumberMark));
-  const std::string text = name.string();
-  if (!text.starts_with(before)) return false;
-  std::uint64_t number = 0;
-  const auto parsed = std::from_chars(text.data() + before.size(), text.data() + text.size(), number);
-  return parsed.ec == std::errc() && numbered(pattern, number) == name;
-}
-
 struct NamedFile {
   const char* option;
   fs::path* name;
@@ -303,7 +293,6 @@ void declare_members_options(Program& program, MembersRequest& request) {
 void check_members(const MembersRequest& request, BodyRequest body) {
   const bool many = !request.range.empty();
   if (many) parse_range(request.range);
-  const fs::path manifest = fs::absolute(request.manifest).lexically_normal();
   for (const auto& [option, file] : files_of(body)) {
     if (file->empty()) continue;
     if (many && !has_mark(*file))
@@ -316,9 +305,6 @@ void check_members(const MembersRequest& request, BodyRequest body) {
           file->string() +
           ": {member} stands for the number of each body of --members A:B; add --members, or leave "
           "{member} out");
-    if (many && !request.manifest.empty() && is_numbered(fs::absolute(*file).lexically_normal(), manifest))
-      throw InputError("manifest: " + request.manifest.string() +
-                       " is also the name of a member's file; choose another");
   }
   const bool pictures =
       !body.mesh.preview.file.empty() || !body.mesh.preview.maps.empty() || !body.mesh.landforms.empty();

@@ -82,7 +82,7 @@ TEST(FeatureList, FineBouldersOfAPatchAreFound) {
   boulders.boulders[0].axes = {1e-4, 1e-4, 1e-4};
   boulders.roughness = 0.0;
   recipe.layers = {boulders};
-  const PatchCube cube{1e4 * normalized(Vec3d{1, 2, 3}), 1e-3};
+  const PatchCube cube{1e4 * normalized(Vec3d{1, 2, 3}), 4e-3};
   const ImplicitField field(recipe, "recipe", cube);
   const FeatureFinder landforms(field, recipe, cube, 1e-6);
   const PlacedBoulder& rock = field.boulders()[0].boulders[0];

@@ -82,12 +82,5 @@ TEST(SurfaceProbes, FineDetailsAreSeenInTheColumns) {
   EXPECT_NEAR(predicted_over_true(recipe, 48).triangles, 1.0, 0.12);
 }
 
-// A warp folds the surface. Between two sheets of it lie blocks that points of both find, which count once.
-TEST(SurfaceProbes, BlocksBetweenTwoSheetsCountOnce) {
-  Recipe recipe = testing::potato_recipe(20, 3);
-  recipe.body->warp = Warp{.amplitude = 0.15, .frequency = 2.0, .octaves = 2};
-  EXPECT_NEAR(predicted_over_true(recipe, 96).blocks, 1.0, 0.25);
-}
-
 }  // namespace
 }  // namespace astrolith

@@ -80,7 +80,7 @@ TEST(MeshPrediction, EvaluatesFewSamplesBesideThoseOfTheMesh) {
   for (const Recipe& recipe : recipes()) {
     const double own = predicted(recipe, 320).own_evaluations;
     EXPECT_GT(own, 0.0);
-    EXPECT_LE(own, 0.05 * double(made(recipe, 320).evaluations));
+    EXPECT_LE(own, 0.15 * double(made(recipe, 320).evaluations));
   }
 }
 
@@ -102,11 +102,12 @@ TEST(MeshPrediction, MoreTrianglesThanTheFinestMeshHasAreRefused) {
 TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
   Recipe recipe = hills();
   recipe.erosion = Erosion{.talus_angle = 30.0};
-  const MeshPrediction plain = predicted(recipe, 128);
-  const MeshPrediction labels = predicted(recipe, 128, {.labels = true}),
-                       gravity = predicted(recipe, 128, {.gravity = true}),
-                       even = predicted(recipe, 128, {.even = true}),
-                       erosion = predicted(recipe, 128, {.erosion = true});
+  constexpr int kFine = 1024;  // so that its bytes are more than the test itself has taken
+  const MeshPrediction plain = predicted(recipe, kFine);
+  const MeshPrediction labels = predicted(recipe, kFine, {.labels = true}),
+                       gravity = predicted(recipe, kFine, {.gravity = true}),
+                       even = predicted(recipe, kFine, {.even = true}),
+                       erosion = predicted(recipe, kFine, {.erosion = true});
   EXPECT_NEAR(labels.file_bytes / plain.file_bytes, 29.0 / 25.0, 0.01);
   EXPECT_NEAR(gravity.file_bytes / plain.file_bytes, 41.0 / 25.0, 0.01);
   EXPECT_GT(gravity.processor_seconds, 1.3 * plain.processor_seconds);
@@ -118,15 +119,15 @@ TEST(MeshPrediction, UsesOfTheMeshAddToIt) {
   EXPECT_GT(more(even), 40.0);
   EXPECT_GT(more(erosion), 90.0);
   EXPECT_GT(more(gravity), 200.0);
-  EXPECT_GT(more(predicted(recipe, 128, {}, {}, "mesh.stl")), 30.0);
+  EXPECT_GT(more(predicted(recipe, kFine, {}, {}, "mesh.stl")), 30.0);
 }
 
-// Impulses are kept in tiles, of which a finer mesh needs no more.
+// Impulses are kept in bricks, of which a finer mesh needs no more.
 TEST(MeshPrediction, ImpulsesTakeMemory) {
   Recipe recipe = impulses();
-  const double fine = predicted(recipe, 128).peak_bytes;
+  const double fine = predicted(recipe, 1024).peak_bytes;  // more than the test itself has taken
   std::get<GaborLayer>(recipe.layers.front()).pixel_size = 0.016;
-  EXPECT_GT(fine, predicted(recipe, 128).peak_bytes + 1e6);
+  EXPECT_GT(fine, predicted(recipe, 1024).peak_bytes + 1e6);
 }
 
 TEST(MeshPrediction, MemoryThatIsNotThereIsRefused) {
