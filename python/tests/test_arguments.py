@@ -193,6 +193,8 @@ def test_wrong_arguments_are_named(call, suits, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in inspect.signature(call).parameters:
         for odd in ODD:
+            if name == "progress" and callable(odd):
+                continue  # what it raises is its own
             try:
                 call(**{**suits, name: odd})
             except (ValueError, TypeError, RuntimeError) as error:
