@@ -14,6 +14,8 @@
 #include <string>
 #include <string_view>
 
+#include "numerics/portable_double.h"
+
 namespace astrolith {
 
 struct KnownBody {
@@ -52,7 +54,7 @@ inline std::optional<KnownBody> known_body(std::string_view file_name) {
 inline std::string unit_question(const std::filesystem::path& file, double volume, double metres_per_unit) {
   constexpr double kClearlyWrong = 30.0, kLargest = 600.0, kSmallest = 0.00025;  // km: Ceres has 470
   const double radius =
-      std::cbrt(std::abs(volume) * 3.0 / (4.0 * std::numbers::pi)) * metres_per_unit / 1000.0;
+      portable::cbrt(std::abs(volume) * 3.0 / (4.0 * std::numbers::pi)) * metres_per_unit / 1000.0;
   const auto asked = [&](const std::string& is_not) {
     return fmt::format("note: {}: a mean radius of {:.4g} km is {}; is --unit {} right, or the mesh scaled?",
                        file.string(), radius, is_not, metres_per_unit == 1.0 ? "m" : "km");

@@ -141,7 +141,7 @@ std::vector<std::string> names() {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllPrograms, OptionFiles, ::testing::ValuesIn(names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& program) { return program.param; });
 
 }  // namespace
 }  // namespace astrolith
