@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Optional, Union
+from typing import TYPE_CHECKING, Optional, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -106,7 +106,7 @@ def fit_texture(
     if _arrays.is_file_name(image):
         arguments.append(("image", [_arrays.file_name(image, "image")]))
     else:
-        planes = _planes(image)
+        planes = _planes(cast(npt.ArrayLike, image))
         if options.get("channels") == "pca":
             if len(planes) == 1:
                 raise ValueError("channels: a grey image has no colours; leave it out")
