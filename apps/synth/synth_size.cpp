@@ -37,18 +37,19 @@ void declare_size_options(Program& program, MeshSizeRequest& request) {
           "quarters of the machine's memory are refused")
       .check(above_zero())
       .default_text("");
-  program.app.add_flag("--predict", request.only_predict,
-                       "only say how many triangles, bytes (of .ply.zst before it is compressed), how much "
-                       "memory and how many "
-                       "seconds the mesh would take, from a coarse mesh and some places of its surface; "
-                       "nothing is written but "
-                       "the summary. Seconds of the processor are those of all threads together; seconds on "
-                       "idle cores are what "
-                       "the clock shows while nothing else runs on them. Triangles are within 30 %, memory "
-                       "within 50 %, seconds "
-                       "within a factor of two. With --members it is said of the meshes and recipes of the "
-                       "set, from up to eight "
-                       "of them");
+  program.app.add_flag(
+      "--predict", request.only_predict,
+      "only say how many triangles, bytes (of .ply.zst before it is compressed), how much "
+      "memory and how many "
+      "seconds the mesh would take, from a coarse mesh and some places of its surface; "
+      "nothing is written but "
+      "the summary. Seconds of the processor are those of all threads together; seconds on "
+      "idle cores are what "
+      "the clock shows while nothing else runs on them. Triangles are mostly within 30 %, memory "
+      "within 50 %, seconds "
+      "within a factor of two. With --members it is said of the meshes and recipes of the "
+      "set, from up to eight "
+      "of them");
 }
 
 int choose_resolution(Program& program, const MeshSizeRequest& request, const PlannedMesh& mesh) {

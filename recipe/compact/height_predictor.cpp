@@ -61,7 +61,7 @@ ASTROLITH_SIMD_CLONES bool fade(std::size_t n, std::int64_t memory, std::int64_t
   return any != 0;
 }
 
-// The same, and the equations of a pixel are added to both.
+// Fades both sums, adds the equations of a pixel to both, and those above to the left.
 ASTROLITH_SIMD_CLONES void learn_column(const std::int64_t* __restrict pixel, std::size_t n,
                                         std::int64_t memory, std::int64_t* __restrict left,
                                         std::int64_t* __restrict above) {
