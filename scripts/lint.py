@@ -42,7 +42,7 @@ def members_of(source):
 def write_groups(folder):
     """Writes one file for each group, and their commands. Returns for each the sources and lines that its lines come from."""
     groups, entries = {}, []
-    folder.mkdir(exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     for entry in commands_of("lint"):
         source = Path(entry["file"])
         parts = source.relative_to(ROOT).parts
