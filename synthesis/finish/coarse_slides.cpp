@@ -10,7 +10,7 @@
 namespace astrolith {
 namespace {
 
-constexpr std::uint32_t kRock = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoCluster = std::numeric_limits<std::uint32_t>::max();
 constexpr double kClusterRadius = 2.0;  // of a cluster, in mean lengths of the edges of its columns
 // Clusters are this flat: neighbours on a body of fewer clusters have verticals of too different directions.
 constexpr std::size_t kFewestClusters = 400;
@@ -46,7 +46,7 @@ class NeighbourLists {
 // Clusters of columns: the columns of the next coarser level.
 struct ColumnClusters {
   double radius = 0.0;
-  std::vector<std::uint32_t> of_column;  // the cluster of each column, or kRock
+  std::vector<std::uint32_t> of_column;  // the cluster of each column, or kNoCluster
   std::vector<Vec3d> positions, up;
   std::vector<double> area;
   std::vector<GroundPair> pairs;
@@ -69,11 +69,11 @@ std::uint32_t assign_clusters(const Ground& ground, ColumnClusters& clusters) {
   const NeighbourLists neighbours(n, ground.pairs);
   std::vector<float> distance(n, std::numeric_limits<float>::max());  // squared, in squared radii
   const double scale = 1.0 / (clusters.radius * clusters.radius);
-  clusters.of_column.assign(n, kRock);
+  clusters.of_column.assign(n, kNoCluster);
   std::vector<std::uint32_t> queue;
   std::uint32_t count = 0;
   for (std::uint32_t seed = 0; seed < n; ++seed) {
-    if (!(ground.area[seed] > 0.0) || clusters.of_column[seed] != kRock) continue;
+    if (!(ground.area[seed] > 0.0) || clusters.of_column[seed] != kNoCluster) continue;
     queue.assign(1, seed);
     clusters.of_column[seed] = count;
     distance[seed] = 0.0f;
@@ -98,7 +98,7 @@ void sum_columns(const Ground& ground, std::uint32_t count, ColumnClusters& clus
   clusters.up.assign(count, {});
   for (std::size_t v = 0; v < clusters.of_column.size(); ++v) {
     const std::uint32_t c = clusters.of_column[v];
-    if (c == kRock) continue;
+    if (c == kNoCluster) continue;
     clusters.area[c] += ground.area[v];
     clusters.positions[c] += ground.area[v] * ground.positions[v];
     clusters.up[c] += ground.area[v] * ground.up[v];
@@ -112,7 +112,7 @@ void sum_columns(const Ground& ground, std::uint32_t count, ColumnClusters& clus
 void join_neighbours(const Ground& ground, ColumnClusters& clusters) {
   for (const GroundPair& pair : ground.pairs) {
     const auto [a, b] = std::minmax(clusters.of_column[pair.a], clusters.of_column[pair.b]);
-    if (a != b && b != kRock) clusters.pairs.push_back({a, b});
+    if (a != b && b != kNoCluster) clusters.pairs.push_back({a, b});
   }
   std::sort(clusters.pairs.begin(), clusters.pairs.end());
   clusters.pairs.erase(std::unique(clusters.pairs.begin(), clusters.pairs.end()), clusters.pairs.end());
@@ -132,7 +132,7 @@ ColumnClusters make_clusters(const Ground& ground) {
 // directions, slopes are limited nearly alike in all directions.
 std::vector<GroundPair> wide_pairs(std::size_t count, const NeighbourLists& neighbours) {
   std::vector<GroundPair> pairs;
-  std::vector<std::uint32_t> seen(count, kRock);
+  std::vector<std::uint32_t> seen(count, kNoCluster);
   for (std::uint32_t c = 0; c < count; ++c) {
     seen[c] = c;
     const auto add = [&](std::uint32_t d) {
@@ -187,7 +187,7 @@ class SmoothSpread {
     const double scale = 1.0 / ((kReach * clusters_.radius) * (kReach * clusters_.radius));
     for (std::size_t v = 0; v < heights.size(); ++v) {
       const std::uint32_t own = clusters_.of_column[v];
-      if (own == kRock || rises_[own] == 0.0) continue;
+      if (own == kNoCluster || rises_[own] == 0.0) continue;
       double sum = 0.0, weights = 0.0;
       const auto add_plane = [&](std::uint32_t c) {
         const Vec3d to = ground_.positions[v] - clusters_.positions[c];
@@ -218,7 +218,7 @@ std::vector<double> rises_of_columns(const Ground& ground, const ColumnClusters&
   std::vector<double> lacking(rises.begin(), rises.end());
   for (std::size_t v = 0; v < heights.size(); ++v) {
     const std::uint32_t c = clusters.of_column[v];
-    if (c != kRock) lacking[c] -= ground.area[v] * heights[v] / clusters.area[c];
+    if (c != kNoCluster) lacking[c] -= ground.area[v] * heights[v] / clusters.area[c];
   }
   spread.add(lacking, {}, heights);
   return heights;

@@ -11,7 +11,7 @@
 namespace astrolith {
 namespace {
 
-constexpr int kLanes = 8;  // places whose means are taken together
+constexpr int kPlacesAtOnce = 8;  // whose means are taken together
 constexpr int kMostFields = 3;
 
 Vec3d along_axes(const ReliefPlace& place, double along, double u, double v) {
@@ -48,8 +48,9 @@ struct SortedPlaces {
 
 // A few places, and the sums around them.
 struct LaneSums {
-  double x[kLanes], y[kLanes], z[kLanes], nx[kLanes], ny[kLanes], nz[kLanes];
-  double total[kLanes] = {}, sums[kMostFields][kLanes] = {};
+  double x[kPlacesAtOnce], y[kPlacesAtOnce], z[kPlacesAtOnce], nx[kPlacesAtOnce], ny[kPlacesAtOnce],
+      nz[kPlacesAtOnce];
+  double total[kPlacesAtOnce] = {}, sums[kMostFields][kPlacesAtOnce] = {};
 };
 
 // Adds the places `first` to `end` - 1 to the sums. A place beyond the radius, or that faces the other side,
@@ -64,7 +65,7 @@ ASTROLITH_SIMD_CLONES void add_places(const SortedPlaces& p, std::uint32_t first
     const double x = p.x[k], y = p.y[k], z = p.z[k], nx = p.nx[k], ny = p.ny[k], nz = p.nz[k],
                  of_place = p.weight[k], value0 = fields[0][k], value1 = fields[1][k], value2 = fields[2][k];
 #pragma omp simd
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kPlacesAtOnce; ++i) {
       const double dx = x - l.x[i], dy = y - l.y[i], dz = z - l.z[i];
       const double squared = dx * dx + dy * dy + dz * dz;
       const double facing = nx * l.nx[i] + ny * l.ny[i] + nz * l.nz[i];
@@ -90,7 +91,7 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
   const auto of_few = [&](std::uint32_t first, std::uint32_t count) {
     LaneSums lanes;
     Box box;
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
+    for (std::uint32_t i = 0; i < kPlacesAtOnce; ++i) {
       const std::uint32_t k = first + std::min(i, count - 1);
       lanes.x[i] = sorted.x[k], lanes.y[i] = sorted.y[k], lanes.z[i] = sorted.z[k];
       lanes.nx[i] = sorted.nx[k], lanes.ny[i] = sorted.ny[k], lanes.nz[i] = sorted.nz[k];
@@ -110,8 +111,8 @@ ThreeFields smoothed(const ReliefPoints& points, std::span<const std::vector<dou
       [&](std::int64_t cell) {
         const auto c = static_cast<std::size_t>(cell);
         const std::uint32_t end = points.first_of_cell(c + 1);
-        for (std::uint32_t first = points.first_of_cell(c); first < end; first += kLanes)
-          of_few(first, std::min<std::uint32_t>(kLanes, end - first));
+        for (std::uint32_t first = points.first_of_cell(c); first < end; first += kPlacesAtOnce)
+          of_few(first, std::min<std::uint32_t>(kPlacesAtOnce, end - first));
       },
       8);
   return means;
